@@ -1,0 +1,185 @@
+//! What may stop a computation: time, memory, or the user. Clocks come in from the faces, so that wasm works.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Seconds since some fixed moment.
+pub trait Clock: Send + Sync {
+    /// The present moment, in seconds; never goes back.
+    fn seconds(&self) -> f64;
+}
+
+/// A clock that stands still: no deadline ever passes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoClock;
+
+impl Clock for NoClock {
+    fn seconds(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Called with a stage's name, the work done and the whole work.
+pub type Progress = dyn Fn(&str, u64, u64) + Send + Sync;
+
+/// Why a computation stopped early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Limit {
+    /// The deadline passed.
+    #[error("the time limit of {limit} s was reached during {stage}")]
+    Time {
+        /// Seconds allowed.
+        limit: f64,
+        /// What was being done.
+        stage: &'static str,
+    },
+    /// More memory would be needed than allowed.
+    #[error("{stage} needs {needed} bytes, the memory limit is {limit}")]
+    Memory {
+        /// Bytes needed in all.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+        /// What wanted them.
+        stage: &'static str,
+    },
+    /// The user cancelled.
+    #[error("cancelled during {stage}")]
+    Cancelled {
+        /// What was being done.
+        stage: &'static str,
+    },
+}
+
+/// Time, memory, cancellation and progress of one computation. Clones share the counters.
+#[derive(Clone)]
+pub struct Budget {
+    clock: Arc<dyn Clock>,
+    start: f64,
+    time_limit: Option<f64>,
+    memory_limit: Option<u64>,
+    memory: Arc<AtomicU64>,
+    cancelled: Arc<AtomicBool>,
+    progress: Option<Arc<Progress>>,
+}
+
+impl std::fmt::Debug for Budget {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Budget {{ time: {:?} s, memory: {:?} bytes }}", self.time_limit, self.memory_limit)
+    }
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self::new(Arc::new(NoClock))
+    }
+}
+
+impl Budget {
+    /// No limits; time starts now.
+    pub fn new(clock: Arc<dyn Clock>) -> Self {
+        let start = clock.seconds();
+        Self {
+            clock,
+            start,
+            time_limit: None,
+            memory_limit: None,
+            memory: Arc::default(),
+            cancelled: Arc::default(),
+            progress: None,
+        }
+    }
+
+    /// Allows `seconds` from the budget's making.
+    #[must_use]
+    pub fn with_time_limit(mut self, seconds: Option<f64>) -> Self {
+        self.time_limit = seconds;
+        self
+    }
+
+    /// Allows `bytes` to be charged in all.
+    #[must_use]
+    pub fn with_memory_limit(mut self, bytes: Option<u64>) -> Self {
+        self.memory_limit = bytes;
+        self
+    }
+
+    /// Reports progress to `progress`.
+    #[must_use]
+    pub fn with_progress(mut self, progress: Arc<Progress>) -> Self {
+        self.progress = Some(progress);
+        self
+    }
+
+    /// A flag that stops the computation when set.
+    pub fn cancel_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.cancelled)
+    }
+
+    /// Seconds since the budget was made; 0 without a clock.
+    pub fn elapsed(&self) -> f64 {
+        self.clock.seconds() - self.start
+    }
+
+    /// Fails when the deadline has passed or the user cancelled. Call it once for each batch of work.
+    pub fn check(&self, stage: &'static str) -> Result<(), Limit> {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return Err(Limit::Cancelled { stage });
+        }
+        match self.time_limit {
+            Some(limit) if self.elapsed() > limit => Err(Limit::Time { limit, stage }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Charges `bytes` before they are allocated; give them back with [`Self::release`].
+    pub fn charge(&self, bytes: u64, stage: &'static str) -> Result<(), Limit> {
+        let needed = self.memory.fetch_add(bytes, Ordering::Relaxed) + bytes;
+        match self.memory_limit {
+            Some(limit) if needed > limit => {
+                self.release(bytes);
+                Err(Limit::Memory { needed, limit, stage })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Gives charged bytes back.
+    pub fn release(&self, bytes: u64) {
+        self.memory.fetch_sub(bytes, Ordering::Relaxed);
+    }
+
+    /// Tells the listener, if there is one.
+    pub fn progress(&self, stage: &str, done: u64, total: u64) {
+        if let Some(listener) = &self.progress {
+            listener(stage, done, total);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Tick(AtomicU64);
+    impl Clock for Tick {
+        fn seconds(&self) -> f64 {
+            self.0.fetch_add(1, Ordering::Relaxed) as f64
+        }
+    }
+
+    #[test]
+    fn limits_stop_the_work() {
+        let budget = Budget::new(Arc::new(Tick(AtomicU64::new(0)))).with_time_limit(Some(1.5));
+        assert!(budget.check("a").is_ok());
+        assert!(matches!(budget.check("b"), Err(Limit::Time { stage: "b", .. })));
+        let budget = Budget::default().with_memory_limit(Some(100));
+        assert!(budget.charge(80, "x").is_ok());
+        assert!(matches!(budget.charge(30, "y"), Err(Limit::Memory { needed: 110, limit: 100, .. })));
+        budget.release(80);
+        assert!(budget.charge(100, "z").is_ok());
+        budget.cancel_flag().store(true, Ordering::Relaxed);
+        assert!(matches!(budget.check("c"), Err(Limit::Cancelled { .. })));
+    }
+}

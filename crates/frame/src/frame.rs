@@ -1,0 +1,29 @@
+//! What a renderer hands to whoever asked: a colour picture, and the channels that were wanted.
+
+use crate::Plane;
+
+/// A finished picture. Planes that were not asked for are `None`; all others have the same size.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Display colour, straight (not premultiplied) alpha. sRGB-encoded, or raw where the raw colour space was chosen.
+    pub color: Option<Plane<[u8; 4]>>,
+    /// Depth at the pixel centre, `1` on the near plane, `0` on the far plane and on the background.
+    pub depth: Option<Plane<f32>>,
+    /// Surface id: faces counted instance by instance in scene order; [`Frame::BACKGROUND`] where there is none.
+    pub surface: Option<Plane<u32>>,
+    /// Instance index in scene order; [`Frame::BACKGROUND`] where there is none.
+    pub object: Option<Plane<u32>>,
+    /// Material index; [`Frame::BACKGROUND`] where there is none.
+    pub material: Option<Plane<u32>>,
+    /// Unit shading normal in world space, facing the viewer; zero on the background.
+    pub normal: Option<Plane<[f32; 3]>>,
+}
+
+impl Frame {
+    /// The id that no surface has.
+    pub const BACKGROUND: u32 = u32::MAX;
+}

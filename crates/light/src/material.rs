@@ -1,0 +1,179 @@
+//! Materials: how a surface reflects, emits and lets light through.
+
+use crate::Rgb;
+use serde::{Deserialize, Serialize};
+use vitral_frame::Sampler;
+
+/// A surface's optical properties. All colours are linear RGB coefficients.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Material {
+    /// For overrides and messages; may be empty.
+    pub name: String,
+    /// The reflection coefficients, in the form in which the file gave them.
+    pub reflectance: Reflectance,
+    /// Light that the surface sends out by itself (ki), RGB.
+    pub emission: Rgb,
+    /// 1: opaque, 0: invisible. With `kt` of the course, `opacity = 1 - kt`.
+    pub opacity: f32,
+    /// How `opacity`, and the alpha of the base texture, are used.
+    pub alpha_mode: AlphaMode,
+    /// What kind of transparency the surface has.
+    pub transmission: Transmission,
+    /// Index of refraction.
+    pub ior: f32,
+    /// Both sides are visible and lit, whatever the mesh's closedness.
+    pub double_sided: bool,
+    /// Shown with its base colour alone, without any light.
+    pub unlit: bool,
+    /// Multiplies the diffuse (or base) colour; its alpha multiplies `opacity`.
+    pub base_texture: Option<TextureRef>,
+    /// Multiplies `ks`.
+    pub specular_texture: Option<TextureRef>,
+    /// Multiplies `emission`.
+    pub emission_texture: Option<TextureRef>,
+    /// Its red channel multiplies `opacity` (`map_d`).
+    pub opacity_texture: Option<TextureRef>,
+    /// Green multiplies roughness, blue multiplies metallic (glTF).
+    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Normals in tangent space, `0..=255` for `-1..=1`.
+    pub normal_texture: Option<TextureRef>,
+    /// Scales x and y of the normal texture.
+    pub normal_scale: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            reflectance: Reflectance::default(),
+            emission: [0.0; 3],
+            opacity: 1.0,
+            alpha_mode: AlphaMode::Opaque,
+            transmission: Transmission::Transparent,
+            ior: 1.5,
+            double_sided: false,
+            unlit: false,
+            base_texture: None,
+            specular_texture: None,
+            emission_texture: None,
+            opacity_texture: None,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+        }
+    }
+}
+
+/// Reflection coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Reflectance {
+    /// The empirical model's: ambient, diffuse and specular coefficients and the exponent `n`.
+    Phong {
+        /// Reflected part of ambient light.
+        ka: Rgb,
+        /// Diffusely reflected part.
+        kd: Rgb,
+        /// Specularly reflected part.
+        ks: Rgb,
+        /// Specular exponent, 1 (dull) to 200 (polished) in the course, up to 1000 in MTL files.
+        shininess: f32,
+    },
+    /// The physical model's.
+    MetallicRoughness {
+        /// Albedo of a dielectric, specular colour of a metal.
+        base_color: Rgb,
+        /// 0: dielectric, 1: metal.
+        metallic: f32,
+        /// 0: mirror, 1: rough. Its square is the RMS slope `m` of the microfacets.
+        roughness: f32,
+    },
+}
+
+impl Default for Reflectance {
+    fn default() -> Self {
+        Self::Phong { ka: [0.8; 3], kd: [0.8; 3], ks: [0.15; 3], shininess: 40.0 }
+    }
+}
+
+/// How opacity is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "mode", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum AlphaMode {
+    /// Not at all: the surface is opaque.
+    #[default]
+    Opaque,
+    /// Cut-out: fully there where opacity reaches `cutoff`, gone elsewhere.
+    Mask {
+        /// The threshold, usually 0.5.
+        cutoff: f32,
+    },
+    /// Blended with what is behind.
+    Blend,
+}
+
+/// Specular or diffuse transmission (the course's transparent and translucent materials).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Transmission {
+    /// Light passes along a straight or refracted ray: things behind are seen sharply.
+    #[default]
+    Transparent,
+    /// Light is scattered on its way: things behind are blurred.
+    Translucent,
+}
+
+/// A texture as a material uses it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct TextureRef {
+    /// Index into the scene's textures.
+    pub texture: u32,
+    /// How it is looked up.
+    #[serde(default)]
+    pub sampler: Sampler,
+    /// Which texture-coordinate set of the mesh, 0 or 1.
+    #[serde(default)]
+    pub uv_set: u32,
+    /// Rows of the affine map from mesh coordinates `(u, v, 1)` to texture coordinates.
+    #[serde(default = "TextureRef::identity")]
+    pub transform: [[f32; 3]; 2],
+}
+
+impl TextureRef {
+    /// The whole texture, once.
+    pub fn new(texture: u32) -> Self {
+        Self { texture, sampler: Sampler::default(), uv_set: 0, transform: Self::identity() }
+    }
+
+    fn identity() -> [[f32; 3]; 2] {
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    }
+}
+
+impl Material {
+    /// Whether light from behind can show: blended or cut out.
+    pub fn is_layered(&self) -> bool {
+        match self.alpha_mode {
+            AlphaMode::Opaque => false,
+            AlphaMode::Mask { .. } | AlphaMode::Blend => true,
+        }
+    }
+}
+
+impl Material {
+    /// Every texture that the material uses, to change.
+    pub fn textures_mut(&mut self) -> impl Iterator<Item = &mut TextureRef> {
+        [
+            &mut self.base_texture,
+            &mut self.specular_texture,
+            &mut self.emission_texture,
+            &mut self.opacity_texture,
+            &mut self.metallic_roughness_texture,
+            &mut self.normal_texture,
+        ]
+        .into_iter()
+        .filter_map(Option::as_mut)
+    }
+}

@@ -1,0 +1,402 @@
+//! Eight numbers at a time, or one: the only place that names SIMD types.
+//!
+//! A formula written over [`Lanes`] serves one vertex (`f32`) and eight pixels (`F32x8`) with the same operations in
+//! the same order, so both give the same bits. There is no fused multiply-add and no approximate reciprocal;
+//! `exp2`/`log2` are polynomials of ours, made of exact operations only.
+//!
+//! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the instruction set.
+
+use fearless_simd::prelude::*;
+pub use fearless_simd::{Level, Simd, dispatch, f32x8 as F32x8, i32x8 as I32x8, mask32x8 as Mask8, u32x8 as U32x8};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// What fearless_simd's methods need in scope (`from_slice`, `store_slice`, `select`, comparisons ...).
+pub mod prelude {
+    pub use fearless_simd::prelude::*;
+}
+
+/// How many lanes the wide types have.
+pub const LANES: usize = 8;
+
+/// One `f32` or eight of them.
+pub trait Lanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f32, Output = Self>
+    + Sub<f32, Output = Self>
+    + Mul<f32, Output = Self>
+    + Div<f32, Output = Self>
+{
+    /// One truth value for each lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+
+    /// `value` in every lane (`self` only lends its instruction set).
+    fn splat(self, value: f32) -> Self;
+    /// Square root; NaN for negative values.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// Largest whole number not above.
+    fn floor(self) -> Self;
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `self` where the mask is true, else `other`.
+    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+    /// Whether any lane is true.
+    fn any(mask: Self::Mask) -> bool;
+    /// `2^n` for whole `n` in `-126..=127`.
+    fn exp2_whole(self) -> Self;
+    /// For a positive normal number: its exponent as a whole number, and its mantissa in `1..2`.
+    fn split_exponent(self) -> (Self, Self);
+
+    /// The larger; `other` if either is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.lt(self), self, other)
+    }
+
+    /// The smaller; `other` if either is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
+
+    /// Clamped to `0..=1`; NaN gives 0.
+    #[inline(always)]
+    fn saturate(self) -> Self {
+        self.max(self.splat(0.0)).min(self.splat(1.0))
+    }
+
+    /// `max(self, 0)`; NaN gives 0.
+    #[inline(always)]
+    fn positive(self) -> Self {
+        self.max(self.splat(0.0))
+    }
+
+    /// 2 to the power `self`, relative error below 2e-7. Below -126 the result is 0, above 127 it stays at `2^127`.
+    #[inline(always)]
+    fn exp2(self) -> Self {
+        let underflow = self.lt(self.splat(-126.0));
+        let x = self.max(self.splat(-126.0)).min(self.splat(127.0));
+        let whole = (x + 0.5).floor();
+        let f = x - whole;
+        // Taylor series of 2^f, |f| <= 0.5: the coefficients are ln2^k / k!, and 2^0 is exactly 1.
+        let mut p = self.splat(1.525273380e-05);
+        for c in [1.540353039e-04, 1.333355815e-03, 9.618129108e-03, 5.550410866e-02, 2.402265070e-01, std::f32::consts::LN_2, 1.0] {
+            p = p * f + c;
+        }
+        Self::select(underflow, self.splat(0.0), p * whole.exp2_whole())
+    }
+
+    /// Logarithm to base 2 of a positive number, absolute error below 2e-7 near 1 (relative elsewhere). Zero,
+    /// negative and subnormal numbers count as `2^-126`.
+    #[inline(always)]
+    fn log2(self) -> Self {
+        let (mut e, mut m) = self.max(self.splat(f32::MIN_POSITIVE)).split_exponent();
+        let big = m.splat(std::f32::consts::SQRT_2).lt(m);
+        m = Self::select(big, m * 0.5, m);
+        e = Self::select(big, e + 1.0, e);
+        // log2 m = 2/ln2 * atanh((m-1)/(m+1)), |t| <= 0.1716.
+        let t = (m - 1.0) / (m + 1.0);
+        let t2 = t * t;
+        let mut p = self.splat(2.885_390_1 / 11.0);
+        for c in [2.885_390_1 / 9.0, 2.885_390_1 / 7.0, 2.885_390_1 / 5.0, 2.885_390_1 / 3.0, 2.885_390_1] {
+            p = p * t2 + c;
+        }
+        e + p * t
+    }
+
+    /// `self` to the power `exponent` for `self >= 0`: 1 for exponent 0, else 0 at 0.
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        let zero = self.splat(0.0);
+        let p = (self.log2() * exponent).exp2();
+        let p = Self::select(self.le(zero), zero, p);
+        Self::select(exponent.le(zero) & zero.le(exponent), self.splat(1.0), p)
+    }
+
+    /// Linear light from an sRGB-encoded value.
+    #[inline(always)]
+    fn linear_from_srgb(self) -> Self {
+        let curve = ((self + 0.055) / 1.055).positive().pow(self.splat(2.4));
+        Self::select(self.le(self.splat(0.040_45)), self / 12.92, curve)
+    }
+
+    /// sRGB-encoded value from linear light.
+    #[inline(always)]
+    fn srgb_from_linear(self) -> Self {
+        let curve = self.positive().pow(self.splat(1.0 / 2.4)) * 1.055 - 0.055;
+        Self::select(self.le(self.splat(0.003_130_8)), self * 12.92, curve)
+    }
+}
+
+impl Lanes for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f32::floor(self)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
+        if mask { if_true } else { if_false }
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn exp2_whole(self) -> Self {
+        f32::from_bits(((self as i32 + 127) as u32) << 23)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        (((bits >> 23) as i32 - 127) as f32, f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000))
+    }
+}
+
+impl<S: Simd> Lanes for F32x8<S> {
+    type Mask = Mask8<S>;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self {
+        <Self as SimdBase<S>>::splat(self.token(), value)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.token().abs_f32x8(self)
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        SimdFloat::floor(self)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        self.simd_lt(other)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Self::Mask {
+        self.simd_le(other)
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
+        Select::select(mask, if_true, if_false)
+    }
+    #[inline(always)]
+    fn any(mask: Self::Mask) -> bool {
+        mask.any_true()
+    }
+    #[inline(always)]
+    fn exp2_whole(self) -> Self {
+        let whole: I32x8<S> = self.to_int();
+        ((whole + 127) << 23).bitcast()
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits: I32x8<S> = self.bitcast();
+        let exponent: Self = ((bits >> 23) - 127).to_float();
+        (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
+    }
+}
+
+/// A vector of three lanes: eight directions or points, or one.
+#[derive(Clone, Copy, Debug)]
+pub struct V3<T> {
+    /// First component.
+    pub x: T,
+    /// Second component.
+    pub y: T,
+    /// Third component.
+    pub z: T,
+}
+
+impl<T: Lanes> V3<T> {
+    /// From components.
+    #[inline(always)]
+    pub fn new(x: T, y: T, z: T) -> Self {
+        Self { x, y, z }
+    }
+    /// The same three numbers in every lane of `like`'s kind.
+    #[inline(always)]
+    pub fn splat(like: T, v: [f32; 3]) -> Self {
+        Self { x: like.splat(v[0]), y: like.splat(v[1]), z: like.splat(v[2]) }
+    }
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> T {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+    /// Cross product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
+    }
+    /// Each component times `s`.
+    #[inline(always)]
+    pub fn scale(self, s: T) -> Self {
+        Self::new(self.x * s, self.y * s, self.z * s)
+    }
+    /// Component-wise product.
+    #[inline(always)]
+    pub fn times(self, o: Self) -> Self {
+        Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
+    }
+    /// Each component through `f`.
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(T) -> T) -> Self {
+        Self::new(f(self.x), f(self.y), f(self.z))
+    }
+    /// Unit vector; the zero vector stays zero.
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        let length2 = self.dot(self);
+        let zero = length2.splat(0.0);
+        let inverse = T::select(zero.lt(length2), length2.splat(1.0) / length2.sqrt(), zero);
+        self.scale(inverse)
+    }
+    /// `if_true` where the mask is true, else `if_false`.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, if_true: Self, if_false: Self) -> Self {
+        Self::new(
+            T::select(mask, if_true.x, if_false.x),
+            T::select(mask, if_true.y, if_false.y),
+            T::select(mask, if_true.z, if_false.z),
+        )
+    }
+}
+
+impl<T: Lanes> Add for V3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+
+impl<T: Lanes> Sub for V3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+
+impl<T: Lanes> Neg for V3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+/// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names
+/// (`scalar`, `sse2`, `avx2`, `best`). An unknown or unavailable name is an error that lists the available ones.
+pub fn level_from_environment() -> Result<Level, String> {
+    match std::env::var("VITRAL_SIMD") {
+        Err(_) => Ok(Level::new()),
+        Ok(name) => level_by_name(&name).ok_or_else(|| {
+            let available: Vec<_> = available_levels().iter().map(|(n, _)| *n).collect();
+            format!("VITRAL_SIMD={name}: this machine has {}", available.join(", "))
+        }),
+    }
+}
+
+/// A level by its name, if this machine has it.
+pub fn level_by_name(name: &str) -> Option<Level> {
+    if name == "best" {
+        return Some(Level::new());
+    }
+    available_levels().into_iter().find(|(n, _)| *n == name).map(|(_, level)| level)
+}
+
+/// Every level that can run here, slowest first. Pictures do not depend on it.
+pub fn available_levels() -> Vec<(&'static str, Level)> {
+    let mut levels = vec![("scalar", Level::fallback())];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let best = Level::new();
+        levels.extend(best.as_sse2().map(|s| ("sse2", s.level())));
+        levels.extend(best.as_avx2().map(|s| ("avx2", s.level())));
+    }
+    #[cfg(target_arch = "aarch64")]
+    levels.extend(Level::new().as_neon().map(|s| ("neon", s.level())));
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    levels.push(("simd128", Level::new()));
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[inline(always)]
+    fn formula<T: Lanes>(x: T) -> [T; 4] {
+        [x.exp2(), x.abs().log2(), x.abs().pow(x.splat(7.3)), x.abs().srgb_from_linear()]
+    }
+
+    fn wide(level: Level, x: [f32; 8]) -> [[f32; 8]; 4] {
+        dispatch!(level, simd => formula(F32x8::from_slice(simd, &x)).map(|v| v.to_array()))
+    }
+
+    #[test]
+    fn one_lane_and_eight_give_the_same_bits_at_every_level() {
+        let x: [f32; 8] = [0.0, 1.0, -3.7, 0.25, 88.2, -140.0, 1e-20, 0.5];
+        for (name, level) in available_levels() {
+            let w = wide(level, x);
+            for lane in 0..8 {
+                let one = formula(x[lane]);
+                for k in 0..4 {
+                    assert_eq!(one[k].to_bits(), w[k][lane].to_bits(), "{name}: function {k} of {}", x[lane]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn exp2_log2_and_pow_are_accurate() {
+        for i in -1200..1200 {
+            let x = i as f32 * 0.1;
+            let exact = libm::exp2(f64::from(x));
+            assert!((f64::from(Lanes::exp2(x)) / exact - 1.0).abs() < 4e-7, "2^{x}");
+            let y = libm::exp2f(x);
+            if (1e-37..1e37).contains(&y) {
+                let exact = libm::log2(f64::from(y));
+                assert!((f64::from(Lanes::log2(y)) - exact).abs() < 3e-7 * exact.abs().max(1.0), "log2 {y}");
+            }
+        }
+        assert_eq!(Lanes::pow(0.0f32, 5.0), 0.0);
+        assert_eq!(Lanes::pow(0.0f32, 0.0), 1.0);
+        assert!((Lanes::pow(0.866_025_4f32, 10.0) - 0.237_304_7).abs() < 1e-6);
+    }
+}

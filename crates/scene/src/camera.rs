@@ -1,0 +1,162 @@
+//! Cameras: perspective (projectors meet in a point) and parallel (projectors share a direction).
+//!
+//! View space is right-handed, x to the right, y up, looking along -z. Clip space is `-w <= x, y <= w`,
+//! `0 <= z <= w` with **z = w on the near plane and z = 0 on the far plane**: larger is nearer, as in the course's
+//! convention (back plane 0, front plane zmax), and the precision of floating point is where perspective needs it.
+
+use serde::{Deserialize, Serialize};
+use vitral_math::{DMat4, DVec3, DVec4, func};
+
+/// A viewer. Position, focal point and up are in world space (or the space of the node that carries it).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Camera {
+    /// Where the viewer is.
+    pub position: DVec3,
+    /// Where the viewer looks; a different point.
+    pub focal_point: DVec3,
+    /// Roughly upwards in the picture; not parallel to the direction of view.
+    pub view_up: DVec3,
+    /// How rays run.
+    pub projection: Projection,
+    /// Distances of the near and far plane along the direction of view, `0 < near < far` (parallel: `near < far`);
+    /// `None`: fitted to the scene.
+    #[serde(default)]
+    pub clip: Option<(f64, f64)>,
+}
+
+/// Perspective or parallel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Projection {
+    /// Projectors through the position.
+    Perspective {
+        /// Vertical angle of view in radians, `0..π`.
+        view_angle: f64,
+    },
+    /// Projectors along the direction of view.
+    Parallel {
+        /// Height of the picture in world units.
+        height: f64,
+    },
+}
+
+/// A camera made ready for a viewport.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewTransform {
+    /// Rigid: world space to view space.
+    pub view_from_world: DMat4,
+    /// Projection, to the clip space of this module.
+    pub clip_from_view: DMat4,
+    /// Distance of the near plane along -z.
+    pub near: f64,
+    /// Distance of the far plane along -z.
+    pub far: f64,
+    /// Whether projectors meet in the eye.
+    pub perspective: bool,
+}
+
+impl Camera {
+    /// World to view. Falls back to another up vector where `view_up` is parallel to the view direction or zero.
+    pub fn view_from_world(&self) -> DMat4 {
+        let forward = (self.focal_point - self.position).try_normalize().unwrap_or(DVec3::NEG_Z);
+        let side = |up: DVec3| forward.cross(up).try_normalize().filter(|s| s.is_finite());
+        let right = [self.view_up.normalize_or_zero(), DVec3::Y, DVec3::Z].into_iter().find_map(|up| {
+            side(up).filter(|_| forward.cross(up).length_squared() > 1e-12)
+        });
+        let right = right.unwrap_or(DVec3::X);
+        let up = right.cross(forward);
+        let rows = [right, up, -forward].map(|r| DVec4::from((r, -r.dot(self.position))));
+        DMat4::from_cols(rows[0], rows[1], rows[2], DVec4::W).transpose()
+    }
+
+    /// The transform for a picture `aspect = width / height`. `depths` is the range of distances along the direction
+    /// of view that holds the scene; it chooses the clipping planes where the camera has none of its own.
+    pub fn transform(&self, aspect: f64, depths: (f64, f64)) -> ViewTransform {
+        let (near, far) = self.clip.unwrap_or_else(|| self.fitted_clip(depths));
+        let perspective = matches!(self.projection, Projection::Perspective { .. });
+        let clip_from_view = match self.projection {
+            Projection::Perspective { view_angle } => {
+                let focal = 1.0 / func::tan(view_angle * 0.5);
+                // z_clip = (near z_view + near far) / (far - near): w = near at the near plane, 0 at the far plane.
+                let (a, b) = (near / (far - near), near * far / (far - near));
+                DMat4::from_cols(
+                    DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, focal, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, a, -1.0),
+                    DVec4::new(0.0, 0.0, b, 0.0),
+                )
+            }
+            Projection::Parallel { height } => {
+                let (sx, sy, sz) = (2.0 / (height * aspect), 2.0 / height, 1.0 / (far - near));
+                DMat4::from_cols(
+                    DVec4::new(sx, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, sy, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, sz, 0.0),
+                    DVec4::new(0.0, 0.0, far * sz, 1.0),
+                )
+            }
+        };
+        ViewTransform { view_from_world: self.view_from_world(), clip_from_view, near, far, perspective }
+    }
+
+    /// Clipping planes a little outside `depths`; for a perspective the near plane stays in front of the eye.
+    fn fitted_clip(&self, (nearest, farthest): (f64, f64)) -> (f64, f64) {
+        let usable = nearest.is_finite() && farthest.is_finite() && nearest <= farthest;
+        let (nearest, farthest) = if usable { (nearest, farthest) } else { (0.1, 100.0) };
+        let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4).max(1e-9);
+        match self.projection {
+            Projection::Parallel { .. } => (nearest - margin, farthest + margin),
+            Projection::Perspective { .. } => {
+                let far = (farthest + margin).max(1e-6);
+                ((nearest - margin).max(far * 1e-4), far)
+            }
+        }
+    }
+}
+
+impl ViewTransform {
+    /// World to clip.
+    pub fn clip_from_world(&self) -> DMat4 {
+        self.clip_from_view * self.view_from_world
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(projection: Projection) -> Camera {
+        Camera {
+            position: DVec3::new(0.0, 0.0, 5.0),
+            focal_point: DVec3::ZERO,
+            view_up: DVec3::Y,
+            projection,
+            clip: Some((1.0, 10.0)),
+        }
+    }
+
+    #[test]
+    fn depth_is_one_on_the_near_plane_and_zero_on_the_far_plane() {
+        for projection in [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }] {
+            let clip = camera(projection).transform(1.0, (0.0, 0.0)).clip_from_world();
+            for (z, depth) in [(4.0, 1.0), (-5.0, 0.0)] {
+                let p = clip * DVec4::new(0.0, 0.0, z, 1.0);
+                assert!((p.z / p.w - depth).abs() < 1e-12 && p.w > 0.0, "{projection:?} at z = {z}: {p}");
+            }
+            let right = clip * DVec4::new(1.0, 0.0, 0.0, 1.0);
+            let up = clip * DVec4::new(0.0, 1.0, 0.0, 1.0);
+            assert!(right.x > 0.0 && up.y > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_bad_up_vector_is_replaced() {
+        let mut c = camera(Projection::Parallel { height: 2.0 });
+        for up in [DVec3::Z, DVec3::ZERO, DVec3::NAN] {
+            c.view_up = up;
+            let m = c.view_from_world();
+            assert!(m.is_finite() && (m.determinant() - 1.0).abs() < 1e-12);
+        }
+    }
+}

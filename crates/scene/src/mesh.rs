@@ -1,0 +1,245 @@
+//! A mesh in model space: positions, faces as in the file, the triangles they were cut into, and attributes.
+//!
+//! Positions are indexed by themselves; normals, texture coordinates and colours may have indices of their own, as in
+//! OBJ. So a crease or a seam does not tear the surface apart, and edges are found where the model has them.
+//!
+//! A **face** is a polygon as in the file (its number within the mesh gives the *surface id*). Every polygon with `n`
+//! corners is cut into exactly `n - 2` triangles (its *facets*), in order, so that triangle numbers follow from
+//! corner numbers.
+
+use std::ops::Range;
+use vitral_math::{Aabb, DVec3};
+
+/// Three indices, one a corner of a triangle.
+pub type Corners = [u32; 3];
+
+/// A mesh. Constructed by loaders and builders; [`Mesh::check`] tells whether it is sound.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// For messages; may be empty.
+    pub name: String,
+    /// Vertex positions, model space.
+    pub positions: Vec<[f32; 3]>,
+    /// Triangles as indices into `positions`, face by face.
+    pub triangles: Vec<Corners>,
+    /// How triangles form the file's faces.
+    pub faces: Faces,
+    /// Ranges of triangles with one material each, in order, together covering all triangles.
+    pub parts: Vec<Part>,
+    /// Shading normals, any positive length (need not be unit).
+    pub normals: Option<Attribute<[f32; 3]>>,
+    /// Up to two sets of texture coordinates, `(0, 0)` at the image's top left.
+    pub uvs: Vec<Attribute<[f32; 2]>>,
+    /// Linear RGBA that multiplies the material's diffuse or base colour.
+    pub colors: Option<Attribute<[f32; 4]>>,
+    /// Free line segments, as pairs of indices into `positions`.
+    pub lines: Vec<[u32; 2]>,
+    /// Free points, as indices into `positions`.
+    pub points: Vec<u32>,
+    /// Material of lines and points (index into the scene's materials).
+    pub line_material: Option<u32>,
+    /// Smoothing group of each face (OBJ; 0 = none), if the file has any: faces of one group are smooth together.
+    pub smoothing_groups: Option<Vec<u32>>,
+}
+
+/// Values at corners.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attribute<T> {
+    /// The values.
+    pub values: Vec<T>,
+    /// For each triangle, which values its corners take; `None`: the same indices as the positions.
+    pub corners: Option<Vec<Corners>>,
+}
+
+impl<T: Copy> Attribute<T> {
+    /// Values that go with the positions.
+    pub fn per_vertex(values: Vec<T>) -> Self {
+        Self { values, corners: None }
+    }
+
+    /// The values at the corners of triangle `t` of `mesh_triangles`.
+    pub fn at(&self, t: usize, mesh_triangles: &[Corners]) -> [T; 3] {
+        let corners = self.corners.as_deref().unwrap_or(mesh_triangles);
+        corners[t].map(|i| self.values[i as usize])
+    }
+}
+
+/// How triangles form faces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Faces {
+    /// Each triangle is a face.
+    #[default]
+    Triangles,
+    /// Polygons. Face `f` has the corners `corners[starts[f]..starts[f + 1]]`, at least three, as indices into the
+    /// positions; its triangles are `starts[f] - 2 f .. starts[f + 1] - 2 (f + 1)`.
+    Polygons {
+        /// One more than there are faces; the first is 0.
+        starts: Vec<u32>,
+        /// Outlines, one after the other.
+        corners: Vec<u32>,
+    },
+}
+
+/// Triangles with one material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Group or object name; may be empty.
+    pub name: String,
+    /// Which triangles.
+    pub triangles: Range<u32>,
+    /// Index into the scene's materials; `None`: the default material.
+    pub material: Option<u32>,
+}
+
+impl Mesh {
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        match &self.faces {
+            Faces::Triangles => self.triangles.len(),
+            Faces::Polygons { starts, .. } => starts.len().saturating_sub(1),
+        }
+    }
+
+    /// The triangles of face `f`.
+    pub fn face_triangles(&self, f: usize) -> Range<usize> {
+        match &self.faces {
+            Faces::Triangles => f..f + 1,
+            Faces::Polygons { starts, .. } => starts[f] as usize - 2 * f..starts[f + 1] as usize - 2 * (f + 1),
+        }
+    }
+
+    /// The corners of face `f`, as indices into the positions.
+    pub fn face_corners(&self, f: usize) -> &[u32] {
+        match &self.faces {
+            Faces::Triangles => &self.triangles[f],
+            Faces::Polygons { starts, corners } => &corners[starts[f] as usize..starts[f + 1] as usize],
+        }
+    }
+
+    /// The face that triangle `t` belongs to.
+    pub fn face_of_triangle(&self, t: usize) -> usize {
+        match &self.faces {
+            Faces::Triangles => t,
+            Faces::Polygons { starts, .. } => {
+                // First triangles `starts[f] - 2 f` grow strictly with f: binary search.
+                let (mut low, mut high) = (0, starts.len() - 1);
+                while high - low > 1 {
+                    let middle = (low + high) / 2;
+                    if starts[middle] as usize - 2 * middle <= t { low = middle } else { high = middle }
+                }
+                low
+            }
+        }
+    }
+
+    /// The box round all finite positions, model space.
+    pub fn bounds(&self) -> Aabb {
+        // f32 throughout: exact, and quicker than widening each point.
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for p in &self.positions {
+            if p.iter().all(|c| c.is_finite()) {
+                for k in 0..3 {
+                    min[k] = min[k].min(p[k]);
+                    max[k] = max[k].max(p[k]);
+                }
+            }
+        }
+        let wide = |v: [f32; 3]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
+        Aabb { min: wide(min), max: wide(max) }
+    }
+
+    /// The material of triangle `t`.
+    pub fn material_of_triangle(&self, t: usize) -> Option<u32> {
+        let i = self.parts.partition_point(|p| p.triangles.end as usize <= t);
+        self.parts.get(i).and_then(|p| p.material)
+    }
+
+    /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
+    pub fn check(&self) -> Result<(), String> {
+        let vertices = self.positions.len();
+        let in_range = |what: &str, indices: &[u32], count: usize| match indices.iter().position(|&i| i as usize >= count) {
+            Some(k) => Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k])),
+            None => Ok(()),
+        };
+        in_range("triangle corner", self.triangles.as_flattened(), vertices)?;
+        in_range("line end", self.lines.as_flattened(), vertices)?;
+        in_range("point", &self.points, vertices)?;
+        if let Faces::Polygons { starts, corners } = &self.faces {
+            in_range("face corner", corners, vertices)?;
+            let ordered = starts.first() == Some(&0) && starts.windows(2).all(|w| w[1] >= w[0] + 3);
+            let fits = starts.last().is_some_and(|&last| {
+                last as usize == corners.len() && last as usize == self.triangles.len() + 2 * (starts.len() - 1)
+            });
+            if !ordered || !fits {
+                return Err(format!("mesh `{}`: faces and triangles do not fit", self.name));
+            }
+        }
+        let mut next = 0;
+        for part in &self.parts {
+            if part.triangles.start != next || part.triangles.end < next {
+                return Err(format!("mesh `{}`: parts leave a gap at triangle {next}", self.name));
+            }
+            next = part.triangles.end;
+        }
+        if next as usize != self.triangles.len() {
+            return Err(format!("mesh `{}`: parts end at {next} of {} triangles", self.name, self.triangles.len()));
+        }
+        let attribute = |what: &str, count: usize, corners: Option<&[Corners]>| match corners {
+            Some(c) if c.len() != self.triangles.len() => {
+                Err(format!("mesh `{}`: {what} for {} of {} triangles", self.name, c.len(), self.triangles.len()))
+            }
+            Some(c) => in_range(what, c.as_flattened(), count),
+            None if count != vertices => Err(format!("mesh `{}`: {count} {what}s for {vertices} vertices", self.name)),
+            None => Ok(()),
+        };
+        if let Some(n) = &self.normals {
+            attribute("normal", n.values.len(), n.corners.as_deref())?;
+        }
+        for uv in &self.uvs {
+            attribute("texture coordinate", uv.values.len(), uv.corners.as_deref())?;
+        }
+        if let Some(c) = &self.colors {
+            attribute("colour", c.values.len(), c.corners.as_deref())?;
+        }
+        if self.smoothing_groups.as_ref().is_some_and(|g| g.len() != self.face_count()) {
+            return Err(format!("mesh `{}`: smoothing groups do not fit the faces", self.name));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle, a quad and a triangle.
+    fn strip() -> Mesh {
+        Mesh {
+            positions: vec![[0.0; 3]; 6],
+            triangles: vec![[0, 1, 2], [1, 2, 3], [1, 3, 4], [3, 4, 5]],
+            faces: Faces::Polygons { starts: vec![0, 3, 7, 10], corners: vec![0, 1, 2, 1, 2, 3, 4, 3, 4, 5] },
+            parts: vec![Part { name: String::new(), triangles: 0..4, material: None }],
+            ..Mesh::default()
+        }
+    }
+
+    #[test]
+    fn triangles_and_faces_find_each_other() {
+        let mesh = strip();
+        mesh.check().unwrap();
+        assert_eq!(mesh.face_count(), 3);
+        assert_eq!((0..4).map(|t| mesh.face_of_triangle(t)).collect::<Vec<_>>(), [0, 1, 1, 2]);
+        assert_eq!(mesh.face_triangles(1), 1..3);
+        assert_eq!(mesh.face_corners(1), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn unsound_meshes_are_told() {
+        let mut mesh = strip();
+        mesh.triangles[2][1] = 6;
+        assert!(mesh.check().unwrap_err().contains("index 6, there are 6"));
+        let mut mesh = strip();
+        mesh.parts[0].triangles = 0..3;
+        assert!(mesh.check().unwrap_err().contains("parts end at 3 of 4"));
+    }
+}

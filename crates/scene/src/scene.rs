@@ -1,0 +1,153 @@
+//! The scene graph: nodes with transforms, each of which may show a mesh, carry a light or a camera.
+
+use crate::{Camera, Mesh};
+use std::sync::Arc;
+use vitral_frame::Texture;
+use vitral_light::{Light, Material};
+use vitral_math::{DMat4, DQuat, DVec3};
+
+/// Everything there is to see, and how it is placed. Meshes and textures are shared, never copied by instances.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Meshes, model space.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Materials that mesh parts refer to.
+    pub materials: Vec<Material>,
+    /// Textures that materials refer to.
+    pub textures: Vec<Arc<Texture>>,
+    /// All nodes. A node is in at most one `children` list and the graph has no cycle.
+    pub nodes: Vec<Node>,
+    /// The nodes without a parent that are shown, in order.
+    pub roots: Vec<u32>,
+    /// Lights of the scene as a whole, world space (those in nodes come in addition).
+    pub lights: Vec<Light>,
+    /// Cameras, each placed by the node that names it.
+    pub cameras: Vec<Camera>,
+    /// Global ambient light (Ia of the course), RGB, on top of the lights' own.
+    pub ambient: [f32; 3],
+    /// What was odd in the files, for the user to read.
+    pub warnings: Vec<String>,
+}
+
+/// A place in the scene graph.
+#[derive(Clone, Debug, Default)]
+pub struct Node {
+    /// For messages; may be empty.
+    pub name: String,
+    /// From this node's space to its parent's.
+    pub transform: NodeTransform,
+    /// Indices of its children in [`Scene::nodes`].
+    pub children: Vec<u32>,
+    /// Index into [`Scene::meshes`].
+    pub mesh: Option<u32>,
+    /// A light; its position and direction are in the node's space.
+    pub light: Option<Light>,
+    /// Index into [`Scene::cameras`]; the camera's position, focal point and up are in the node's space.
+    pub camera: Option<u32>,
+}
+
+/// A node's placement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NodeTransform {
+    /// Any affine matrix.
+    Matrix(DMat4),
+    /// Scale, then rotate, then translate.
+    Parts {
+        /// Translation.
+        translation: DVec3,
+        /// Unit quaternion.
+        rotation: DQuat,
+        /// Scale along the axes.
+        scale: DVec3,
+    },
+}
+
+impl Default for NodeTransform {
+    fn default() -> Self {
+        Self::Matrix(DMat4::IDENTITY)
+    }
+}
+
+impl NodeTransform {
+    /// As a matrix.
+    pub fn matrix(&self) -> DMat4 {
+        match *self {
+            Self::Matrix(m) => m,
+            Self::Parts { translation, rotation, scale } => {
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// A scene that shows one mesh where it is.
+    pub fn from_mesh(mesh: Mesh) -> Self {
+        let mut scene = Self::default();
+        scene.add_mesh(mesh, DMat4::IDENTITY);
+        scene
+    }
+
+    /// Adds a mesh and a root node that shows it; gives the node's index.
+    pub fn add_mesh(&mut self, mesh: Mesh, parent_from_model: DMat4) -> u32 {
+        let name = mesh.name.clone();
+        self.meshes.push(Arc::new(mesh));
+        let mesh = Some(self.meshes.len() as u32 - 1);
+        self.add_root(Node { name, transform: NodeTransform::Matrix(parent_from_model), mesh, ..Node::default() })
+    }
+
+    /// Adds a root node; gives its index.
+    pub fn add_root(&mut self, node: Node) -> u32 {
+        self.nodes.push(node);
+        let index = self.nodes.len() as u32 - 1;
+        self.roots.push(index);
+        index
+    }
+
+    /// Adds a material; gives its index.
+    pub fn add_material(&mut self, material: Material) -> u32 {
+        self.materials.push(material);
+        self.materials.len() as u32 - 1
+    }
+
+    /// Takes everything of `other` into this scene, behind what is there: several models in one picture.
+    pub fn append(&mut self, other: Self) {
+        let (meshes, materials, textures, nodes, cameras) = (
+            self.meshes.len() as u32,
+            self.materials.len() as u32,
+            self.textures.len() as u32,
+            self.nodes.len() as u32,
+            self.cameras.len() as u32,
+        );
+        self.meshes.extend(other.meshes.into_iter().map(|mut mesh| {
+            if materials > 0 {
+                let mesh = Arc::make_mut(&mut mesh);
+                for part in &mut mesh.parts {
+                    part.material = part.material.map(|m| m + materials);
+                }
+                mesh.line_material = mesh.line_material.map(|m| m + materials);
+            }
+            mesh
+        }));
+        self.materials.extend(other.materials.into_iter().map(|mut material| {
+            for texture in material.textures_mut() {
+                texture.texture += textures;
+            }
+            material
+        }));
+        self.textures.extend(other.textures);
+        self.nodes.extend(other.nodes.into_iter().map(|mut node| {
+            node.mesh = node.mesh.map(|m| m + meshes);
+            node.camera = node.camera.map(|c| c + cameras);
+            node.children.iter_mut().for_each(|c| *c += nodes);
+            node
+        }));
+        self.roots.extend(other.roots.into_iter().map(|r| r + nodes));
+        self.lights.extend(other.lights);
+        self.cameras.extend(other.cameras);
+        for k in 0..3 {
+            self.ambient[k] = self.ambient[k].max(other.ambient[k]);
+        }
+        self.warnings.extend(other.warnings);
+    }
+}

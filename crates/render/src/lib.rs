@@ -1,1 +1,44 @@
-//! Placeholder.
+//! Floor 3: the classical algorithms, from a scene to a [`Frame`](vitral_frame::Frame).
+//!
+//! The way of the data is in [`pipeline`]: scene → cull → prepare → visible → shade → frame. Finding the visible
+//! surface of each sample and colouring it are separate, so every visibility algorithm works with every illumination
+//! and shading model. [`registry`] lists the algorithms.
+#![forbid(unsafe_code)]
+
+pub mod cull;
+pub mod marks;
+pub mod pipeline;
+pub mod prepare;
+pub mod registry;
+mod session;
+mod settings;
+pub mod shading;
+pub mod stats;
+pub mod visible;
+
+pub use pipeline::{Rendered, Shot, render};
+pub use prepare::PreparedView;
+pub use session::{Execution, Session};
+pub use settings::{
+    Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading, Transparency,
+    TransparencyOrder,
+};
+pub use stats::Stats;
+
+/// Why a picture could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The settings ask for what cannot be.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The scene graph is not sound.
+    #[error(transparent)]
+    World(#[from] vitral_scene::WorldError),
+    /// The scene's parts do not fit together.
+    #[error("{0}")]
+    Scene(String),
+    /// A limit was reached.
+    #[error(transparent)]
+    Limit(#[from] vitral_exec::Limit),
+}

@@ -1,0 +1,380 @@
+//! From draws to tiles: vertices to the screen, triangles culled, clipped, set up and sorted into the tiles they touch.
+//!
+//! In:   [`Draw`]s: a mesh's positions and triangles, and the matrix from its model space to clip space.
+//! Out:  [`Batch`]es of [`Setup`]s with a list for each tile.
+//! Cost: linear in vertices and triangles, plus one list entry for each tile that a triangle touches.
+
+use crate::clip::{Polygon, clip};
+use crate::setup::{CornerPosition, DepthPlane, Setup};
+use crate::{GUARD_BAND, SUBPIXEL, SamplePattern, TILE, Viewport};
+use bytemuck::Zeroable;
+use std::ops::Range;
+use vitral_math::{Mat4, Vec2, Vec4, vec2};
+
+/// Bits of [`ScreenVertex::flags`].
+pub mod flag {
+    /// `x < -w`.
+    pub const LEFT: u32 = 1;
+    /// `x > w`.
+    pub const RIGHT: u32 = 2;
+    /// `y < -w`.
+    pub const BOTTOM: u32 = 4;
+    /// `y > w`.
+    pub const TOP: u32 = 8;
+    /// `z < 0`.
+    pub const FAR: u32 = 16;
+    /// `z > w`.
+    pub const NEAR: u32 = 32;
+    /// All bits of the view volume.
+    pub const FRUSTUM: u32 = 63;
+    /// Beyond near, far or the guard band: a triangle with such a vertex is clipped.
+    pub const CLIP: u32 = 64;
+    /// A coordinate is NaN or infinite: the primitive is dropped.
+    pub const NOT_FINITE: u32 = 128;
+}
+
+/// A vertex on the screen. Coordinates are only meaningful without [`flag::CLIP`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Zeroable)]
+#[repr(C)]
+pub struct ScreenVertex {
+    /// 1/256 pixel from the left.
+    pub x: i32,
+    /// 1/256 pixel from the top.
+    pub y: i32,
+    /// Depth, 1 near, 0 far.
+    pub z: f32,
+    /// Where it lies, see [`flag`].
+    pub flags: u32,
+}
+
+impl ScreenVertex {
+    fn corner(self) -> CornerPosition {
+        CornerPosition { x: self.x, y: self.y, z: self.z }
+    }
+}
+
+/// The map from ndc to the screen, in 1/256 pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewportTransform {
+    pub(crate) scale: Vec2,
+    pub(crate) center: Vec2,
+    pub(crate) guard: Vec2,
+}
+
+impl ViewportTransform {
+    /// The map onto the whole viewport, y downwards.
+    pub fn new(viewport: Viewport) -> Self {
+        let half = vec2(viewport.width as f32, viewport.height as f32) * 0.5;
+        let subpixel = SUBPIXEL as f32;
+        Self {
+            scale: vec2(half.x, -half.y) * subpixel,
+            center: half * subpixel,
+            guard: vec2(GUARD_BAND / half.x, GUARD_BAND / half.y),
+        }
+    }
+
+    /// Projects and snaps a clipped point.
+    pub fn project(&self, clip: Vec4) -> CornerPosition {
+        let snapped = |v: f32| (v + 0.5).floor() as i32;
+        CornerPosition {
+            x: snapped(clip.x / clip.w * self.scale.x + self.center.x),
+            y: snapped(clip.y / clip.w * self.scale.y + self.center.y),
+            z: (clip.z / clip.w).clamp(0.0, 1.0),
+        }
+    }
+
+    /// The guard band, in multiples of the view.
+    pub fn guard(&self) -> Vec2 {
+        self.guard
+    }
+}
+
+/// Triangles of one mesh under one transform.
+#[derive(Clone, Debug)]
+pub struct Draw<'a> {
+    /// Vertex positions, model space.
+    pub positions: &'a [[f32; 3]],
+    /// Indices into `positions`.
+    pub triangles: &'a [[u32; 3]],
+    /// Which triangles to draw.
+    pub ranges: Vec<Range<u32>>,
+    /// Model space to clip space.
+    pub clip_from_model: Mat4,
+    /// Facet id of triangle 0.
+    pub first_facet: u32,
+    /// Drops triangles whose corners run clockwise as the viewer sees them.
+    pub cull_back: bool,
+    /// The transform mirrors: what runs clockwise in model space is the front.
+    pub mirrored: bool,
+}
+
+/// What happened to triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GeometryCounters {
+    /// Triangles looked at.
+    pub triangles: u64,
+    /// Outside one plane of the view volume with all corners.
+    pub outside: u64,
+    /// Facing away.
+    pub back_facing: u64,
+    /// Without area on the grid of 1/256 pixel.
+    pub degenerate: u64,
+    /// Between the samples, or beside the picture.
+    pub no_sample: u64,
+    /// With a NaN or infinite corner.
+    pub not_finite: u64,
+    /// Cut at a clipping plane.
+    pub clipped: u64,
+    /// Set up (a clipped triangle may count several times).
+    pub set_up: u64,
+    /// Entries in tile lists.
+    pub tile_entries: u64,
+}
+
+impl GeometryCounters {
+    /// Adds `other`'s counts.
+    pub fn add(&mut self, other: &Self) {
+        self.triangles += other.triangles;
+        self.outside += other.outside;
+        self.back_facing += other.back_facing;
+        self.degenerate += other.degenerate;
+        self.no_sample += other.no_sample;
+        self.not_finite += other.not_finite;
+        self.clipped += other.clipped;
+        self.set_up += other.set_up;
+        self.tile_entries += other.tile_entries;
+    }
+}
+
+/// Triangles set up, and for each tile the ones that touch it, in order.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    setups: Vec<Setup>,
+    /// `(tile, index of the setup)`, in the order of submission.
+    entries: Vec<[u32; 2]>,
+    /// `items[starts[t]..starts[t + 1]]` are the setups of tile `t`.
+    starts: Vec<u32>,
+    items: Vec<u32>,
+    /// What happened.
+    pub counters: GeometryCounters,
+}
+
+/// Where triangles go on the screen: shared by all batches of a picture.
+#[derive(Clone, Debug)]
+pub struct Screen {
+    viewport: Viewport,
+    transform: ViewportTransform,
+    sample_x: [i32; 2],
+    sample_y: [i32; 2],
+}
+
+impl Screen {
+    /// The screen for a viewport and sample pattern.
+    pub fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
+        let [sample_x, sample_y] = pattern.extent();
+        Self { viewport, transform: ViewportTransform::new(viewport), sample_x, sample_y }
+    }
+
+    /// The map from ndc to the screen.
+    pub fn transform(&self) -> &ViewportTransform {
+        &self.transform
+    }
+
+    /// First and last pixel of `size` whose samples may lie in `min..=max` (1/256 pixel); empty if the first is larger.
+    #[inline(always)]
+    fn pixels(min: i32, max: i32, samples: [i32; 2], size: u32) -> (i32, i32) {
+        let first = (min - samples[1] + SUBPIXEL - 1) >> 8;
+        let last = (max - samples[0]) >> 8;
+        (first.max(0), last.min(size as i32 - 1))
+    }
+}
+
+impl Batch {
+    /// Empties the batch, keeping its memory.
+    pub fn clear(&mut self) {
+        self.setups.clear();
+        self.entries.clear();
+        self.counters = GeometryCounters::default();
+    }
+
+    /// Adds triangles `range` of `draw`, whose vertices were transformed to `vertices`.
+    pub fn add(&mut self, draw: &Draw<'_>, vertices: &[ScreenVertex], range: Range<u32>, screen: &Screen) {
+        self.counters.triangles += u64::from(range.end - range.start);
+        for t in range.start..range.end {
+            let corners = draw.triangles[t as usize];
+            let [a, b, c] = corners.map(|i| vertices[i as usize]);
+            let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
+            let facet = draw.first_facet + t;
+            if any & (flag::NOT_FINITE | flag::CLIP) == 0 && all & flag::FRUSTUM == 0 {
+                let corners = [a.corner(), b.corner(), c.corner()];
+                self.add_corners(corners, draw.cull_back, draw.mirrored, facet, screen);
+            } else if any & flag::NOT_FINITE != 0 {
+                self.counters.not_finite += 1;
+            } else if all & flag::FRUSTUM != 0 {
+                self.counters.outside += 1;
+            } else {
+                let clip_corners = corners.map(|i| {
+                    let p = draw.positions[i as usize];
+                    transform_point(&draw.clip_from_model, p)
+                });
+                self.add_clipped(clip_corners, draw.cull_back, draw.mirrored, facet, screen);
+            }
+        }
+    }
+
+    /// Adds one triangle of snapped corners inside the guard band.
+    #[inline(always)]
+    pub fn add_corners(
+        &mut self,
+        corners: [CornerPosition; 3],
+        cull_back: bool,
+        mirrored: bool,
+        facet: u32,
+        screen: &Screen,
+    ) {
+        let [a, b, c] = corners;
+        let area = Setup::doubled_area(a, b, c);
+        if area == 0 {
+            self.counters.degenerate += 1;
+        } else if cull_back && (area > 0) != mirrored {
+            self.counters.back_facing += 1;
+        } else if let Some(pixels) = covered_pixels(&corners, screen) {
+            self.push(Setup::new(corners, area, facet), pixels, screen);
+        } else {
+            self.counters.no_sample += 1;
+        }
+    }
+
+    /// Clips a triangle given in clip space and adds the pieces: one facet with one depth plane, that of the largest
+    /// piece of the fan.
+    #[cold]
+    fn add_clipped(&mut self, corners: [Vec4; 3], cull_back: bool, mirrored: bool, facet: u32, screen: &Screen) {
+        self.counters.clipped += 1;
+        let polygon = clip(Polygon::triangle(corners), screen.transform.guard);
+        let count = polygon.corners().len();
+        if count < 3 {
+            self.counters.outside += 1;
+            return;
+        }
+        let mut snapped = [CornerPosition { x: 0, y: 0, z: 0.0 }; crate::clip::MAX_CORNERS + 1];
+        for (s, &p) in snapped.iter_mut().zip(polygon.corners()) {
+            *s = screen.transform.project(p);
+        }
+        let snapped = &snapped[..count];
+        let fan = |i: usize| [snapped[0], snapped[i], snapped[i + 1]];
+        let areas = |i: usize| {
+            let [a, b, c] = fan(i);
+            Setup::doubled_area(a, b, c)
+        };
+        let total: i64 = (1..count - 1).map(areas).sum();
+        let Some(largest) = (1..count - 1).max_by_key(|&i| areas(i).abs()).filter(|&i| areas(i) != 0) else {
+            self.counters.degenerate += 1;
+            return;
+        };
+        if cull_back && (total > 0) != mirrored {
+            self.counters.back_facing += 1;
+            return;
+        }
+        let [a, b, c] = fan(largest);
+        let mut plane = DepthPlane::new(a, b, c, areas(largest));
+        for corner in snapped {
+            plane.z_min = plane.z_min.min(corner.z);
+            plane.z_max = plane.z_max.max(corner.z);
+        }
+        for i in 1..count - 1 {
+            let area = areas(i);
+            // Snapping can turn a sliver of the fan over; its neighbours cover it.
+            if area != 0
+                && (area > 0) == (total > 0)
+                && let Some(pixels) = covered_pixels(&fan(i), screen)
+            {
+                self.push(Setup::with_plane(fan(i), area, &plane, facet), pixels, screen);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, setup: Setup, [x0, y0, x1, y1]: [u32; 4], screen: &Screen) {
+        let index = self.setups.len() as u32;
+        let tiles_x = screen.viewport.tiles_x();
+        let tile = TILE as u32;
+        let (tx0, ty0, tx1, ty1) = (x0 / tile, y0 / tile, x1 / tile, y1 / tile);
+        self.setups.push(setup);
+        if tx0 == tx1 && ty0 == ty1 {
+            self.entries.push([ty0 * tiles_x + tx0, index]);
+            return;
+        }
+        for ty in ty0..=ty1 {
+            for tx in tx0..=tx1 {
+                if touches_tile(&setup, tx as i32, ty as i32) {
+                    self.entries.push([ty * tiles_x + tx, index]);
+                }
+            }
+        }
+    }
+
+    /// Sorts the entries by tile, keeping their order. Call it once, after the last triangle.
+    pub fn finish(&mut self, screen: &Screen) {
+        let tiles = (screen.viewport.tiles_x() * screen.viewport.tiles_y()) as usize;
+        self.starts.clear();
+        self.starts.resize(tiles + 2, 0);
+        // Counting sort; starts is shifted by one so that filling it leaves the final offsets.
+        for [tile, _] in &self.entries {
+            self.starts[*tile as usize + 2] += 1;
+        }
+        for t in 2..self.starts.len() {
+            self.starts[t] += self.starts[t - 1];
+        }
+        self.items.clear();
+        self.items.resize(self.entries.len(), 0);
+        for &[tile, setup] in &self.entries {
+            let place = &mut self.starts[tile as usize + 1];
+            self.items[*place as usize] = setup;
+            *place += 1;
+        }
+        self.counters.set_up = self.setups.len() as u64;
+        self.counters.tile_entries = self.entries.len() as u64;
+    }
+
+    /// All triangles, in order of submission.
+    pub fn setups(&self) -> &[Setup] {
+        &self.setups
+    }
+
+    /// The triangles that touch tile `tile`, in order of submission.
+    pub fn tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
+        let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
+        self.items[range].iter().map(|&i| &self.setups[i as usize])
+    }
+}
+
+/// `clip_from_model * (p, 1)` with the operations in the order of the vertex kernel.
+pub fn transform_point(clip_from_model: &Mat4, p: [f32; 3]) -> Vec4 {
+    let m = clip_from_model.to_cols_array();
+    let row = |r: usize| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + m[12 + r];
+    Vec4::new(row(0), row(1), row(2), row(3))
+}
+
+/// The pixels whose samples the triangle's box may hold, `[x0, y0, x1, y1]` inclusive.
+#[inline(always)]
+fn covered_pixels([a, b, c]: &[CornerPosition; 3], screen: &Screen) -> Option<[u32; 4]> {
+    let (min_x, max_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
+    let (min_y, max_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+    let (x0, x1) = Screen::pixels(min_x, max_x, screen.sample_x, screen.viewport.width);
+    let (y0, y1) = Screen::pixels(min_y, max_y, screen.sample_y, screen.viewport.height);
+    (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])
+}
+
+/// Whether a tile may hold covered samples: no edge has the whole tile on its outer side.
+fn touches_tile(setup: &Setup, tx: i32, ty: i32) -> bool {
+    let side = TILE as i32 * SUBPIXEL;
+    let (x, y) = (tx * side, ty * side);
+    (0..3).all(|i| {
+        let j = (i + 1) % 3;
+        let (dx, dy) = (i64::from(setup.x[j] - setup.x[i]), i64::from(setup.y[j] - setup.y[i]));
+        // The corner of the tile where the edge function is largest.
+        let corner_x = i64::from(if dy < 0 { x + side } else { x } - setup.x[i]);
+        let corner_y = i64::from(if dx > 0 { y + side } else { y } - setup.y[i]);
+        dx * corner_y - dy * corner_x >= 0
+    })
+}

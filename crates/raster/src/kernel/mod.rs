@@ -1,0 +1,4 @@
+//! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or tile.
+
+pub(crate) mod transform;
+pub(crate) mod traverse;

@@ -1,0 +1,75 @@
+//! Where the samples of a pixel lie.
+//!
+//! The positions are those of a rooks placement: each sample has a row and a column of its own, so that nearly
+//! horizontal and nearly vertical edges both show as many steps as there are samples. With four samples it is the
+//! rotated grid that GPUs use.
+
+use crate::SUBPIXEL;
+
+/// Sample positions within a pixel, in 1/256 pixel from its top left corner, sorted from top to bottom.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SamplePattern {
+    positions: Vec<[i32; 2]>,
+}
+
+impl SamplePattern {
+    /// `count` samples, clamped to 1..=16. One sample lies at the centre.
+    pub fn new(count: usize) -> Self {
+        let n = count.clamp(1, 16) as i32;
+        // Multiplicative step modulo n + 1, coprime to it and near the golden section: rows i get columns (i+1)k mod (n+1) - 1.
+        let gcd = |mut a: i32, mut b: i32| {
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        };
+        let step =
+            (1..=n).filter(|&k| gcd(k, n + 1) == 1).min_by_key(|&k| (k * 1000 - (n + 1) * 382).abs()).unwrap_or(1);
+        let place = |i: i32| ((2 * i + 1) * SUBPIXEL) / (2 * n);
+        let positions = (0..n).map(|i| [place((i + 1) * step % (n + 1) - 1), place(i)]).collect();
+        Self { positions }
+    }
+
+    /// How many there are.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Position `[x, y]` of sample `s` in 1/256 pixel.
+    pub fn position(&self, s: usize) -> [i32; 2] {
+        self.positions[s]
+    }
+
+    /// Position of sample `s` in pixels, `0..1`.
+    pub fn offset(&self, s: usize) -> [f32; 2] {
+        self.positions[s].map(|p| p as f32 / SUBPIXEL as f32)
+    }
+
+    /// Smallest and largest x, then y, over all samples.
+    pub(crate) fn extent(&self) -> [[i32; 2]; 2] {
+        [0, 1].map(|k| {
+            let values = self.positions.iter().map(|p| p[k]);
+            [values.clone().min().unwrap_or(0), values.max().unwrap_or(0)]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pattern_is_a_rooks_placement() {
+        assert_eq!(SamplePattern::new(1).positions, [[128, 128]]);
+        assert_eq!(SamplePattern::new(4).positions, [[96, 32], [224, 96], [32, 160], [160, 224]]);
+        for n in 1..=16 {
+            let pattern = SamplePattern::new(n);
+            for k in 0..2 {
+                let mut seen: Vec<_> = pattern.positions.iter().map(|p| p[k] as usize * n / 256).collect();
+                seen.sort_unstable();
+                assert_eq!(seen, (0..n).collect::<Vec<_>>(), "{n} samples, axis {k}");
+            }
+        }
+    }
+}

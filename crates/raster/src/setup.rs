@@ -1,0 +1,180 @@
+//! Triangle setup: from three snapped corners to edge functions and a depth plane.
+//!
+//! The depth of a facet at a sample is one function of the facet and the sample's position, with a fixed order of
+//! operations, clamped to the facet's own range: [`Setup::depth`]. Every algorithm that decides what is nearer calls
+//! it, so that all of them decide alike.
+//!
+//! Source: edge functions after [Pineda 1988].
+
+use crate::SUBPIXEL;
+use bytemuck::Zeroable;
+
+/// A corner on the screen: `x`, `y` in 1/256 pixel from the top left, `z` is depth, 1 near, 0 far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerPosition {
+    /// To the right.
+    pub x: i32,
+    /// Downwards.
+    pub y: i32,
+    /// Depth.
+    pub z: f32,
+}
+
+/// Snaps a screen coordinate in pixels to the grid of 1/256 pixel. The caller has clipped it to the guard band.
+pub fn snap(pixels: f32) -> i32 {
+    (pixels * SUBPIXEL as f32 + 0.5).floor() as i32
+}
+
+/// A triangle ready to be walked. Its corners run so that all edge functions are positive inside.
+#[derive(Clone, Copy, Debug, PartialEq, Zeroable)]
+#[repr(C)]
+pub struct Setup {
+    /// Corners' x in 1/256 pixel.
+    pub x: [i32; 3],
+    /// Corners' y in 1/256 pixel, downwards.
+    pub y: [i32; 3],
+    /// Depth at the plane's origin.
+    pub z: f32,
+    /// Change of depth for one pixel to the right.
+    pub dz_dx: f32,
+    /// Change of depth for one pixel downwards.
+    pub dz_dy: f32,
+    /// The plane's origin, in 1/256 pixel.
+    pub origin: [i32; 2],
+    /// Farthest depth of the facet.
+    pub z_min: f32,
+    /// Nearest depth of the facet.
+    pub z_max: f32,
+    /// The facet's id.
+    pub facet: u32,
+}
+
+/// A depth plane through three corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DepthPlane {
+    pub z: f32,
+    pub dz_dx: f32,
+    pub dz_dy: f32,
+    pub origin: [i32; 2],
+    pub z_min: f32,
+    pub z_max: f32,
+}
+
+impl DepthPlane {
+    /// The plane through `a`, `b`, `c`; `area` is twice their signed area in 1/65536 square pixels, not 0.
+    #[inline(always)]
+    pub(crate) fn new(a: CornerPosition, b: CornerPosition, c: CornerPosition, area: i64) -> Self {
+        let (dx1, dy1) = ((b.x - a.x) as f32, (b.y - a.y) as f32);
+        let (dx2, dy2) = ((c.x - a.x) as f32, (c.y - a.y) as f32);
+        let (dz1, dz2) = (b.z - a.z, c.z - a.z);
+        // Differences are in 1/256 pixel: one factor of 256 remains.
+        let scale = SUBPIXEL as f32 / area as f32;
+        Self {
+            z: a.z,
+            dz_dx: (dz1 * dy2 - dz2 * dy1) * scale,
+            dz_dy: (dz2 * dx1 - dz1 * dx2) * scale,
+            origin: [a.x, a.y],
+            z_min: a.z.min(b.z).min(c.z),
+            z_max: a.z.max(b.z).max(c.z),
+        }
+    }
+}
+
+impl Setup {
+    /// Twice the signed area, in 1/65536 square pixels: negative for corners that run counter-clockwise as the viewer
+    /// sees them (y points down).
+    #[inline(always)]
+    pub fn doubled_area(a: CornerPosition, b: CornerPosition, c: CornerPosition) -> i64 {
+        i64::from(b.x - a.x) * i64::from(c.y - a.y) - i64::from(c.x - a.x) * i64::from(b.y - a.y)
+    }
+
+    /// Sets up a triangle of non-zero doubled area `area` with its own depth plane.
+    #[inline(always)]
+    pub fn new(corners: [CornerPosition; 3], area: i64, facet: u32) -> Self {
+        let [a, b, c] = corners;
+        Self::with_plane(corners, area, &DepthPlane::new(a, b, c, area), facet)
+    }
+
+    #[inline(always)]
+    pub(crate) fn with_plane([a, b, c]: [CornerPosition; 3], area: i64, plane: &DepthPlane, facet: u32) -> Self {
+        let (b, c) = if area > 0 { (b, c) } else { (c, b) };
+        Self {
+            x: [a.x, b.x, c.x],
+            y: [a.y, b.y, c.y],
+            z: plane.z,
+            dz_dx: plane.dz_dx,
+            dz_dy: plane.dz_dy,
+            origin: plane.origin,
+            z_min: plane.z_min,
+            z_max: plane.z_max,
+            facet,
+        }
+    }
+
+    /// Depth at `(x, y)` in 1/256 pixel.
+    pub fn depth(&self, x: i32, y: i32) -> f32 {
+        let (dx, dy) = ((x - self.origin[0]) as f32 / SUBPIXEL as f32, (y - self.origin[1]) as f32 / SUBPIXEL as f32);
+        let z = (self.z + dy * self.dz_dy) + dx * self.dz_dx;
+        // The order of comparisons is the lanes': a NaN plane (overflow on a needle) falls to z_min.
+        let z = if self.z_min < z { z } else { self.z_min };
+        if z < self.z_max { z } else { self.z_max }
+    }
+
+    /// Whether the sample at `(x, y)` in 1/256 pixel is covered: all edge functions positive, or zero on a top or left edge.
+    pub fn covers(&self, x: i32, y: i32) -> bool {
+        (0..3).all(|i| {
+            let j = (i + 1) % 3;
+            let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
+            let e = i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
+            e > 0 || (e == 0 && is_top_left(dx, dy))
+        })
+    }
+}
+
+/// Whether an edge of a triangle whose edge functions are positive inside (y downwards) is a top or a left edge.
+#[inline(always)]
+pub(crate) fn is_top_left(dx: i32, dy: i32) -> bool {
+    // Positive inside with y down means clockwise on the screen: left edges go up, top edges go right.
+    dy < 0 || (dy == 0 && dx > 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(x: i32, y: i32, z: f32) -> CornerPosition {
+        CornerPosition { x: x * 256, y: y * 256, z }
+    }
+
+    #[test]
+    fn a_square_of_two_triangles_covers_each_sample_once() {
+        let q = [corner(0, 0, 0.5), corner(4, 0, 0.5), corner(4, 4, 0.5), corner(0, 4, 0.5)];
+        let make =
+            |a: usize, b: usize, c: usize| Setup::new([q[a], q[b], q[c]], Setup::doubled_area(q[a], q[b], q[c]), 0);
+        for (first, second) in [(make(0, 1, 2), make(0, 2, 3)), (make(2, 1, 0), make(1, 3, 2))] {
+            let _ = second;
+            assert!(first.covers(3 * 256, 128) && !first.covers(128, 3 * 256));
+        }
+        let (first, second) = (make(0, 1, 2), make(0, 2, 3));
+        for y in -1..=5 {
+            for x in -1..=5 {
+                // Samples on corners and edges: the hardest places.
+                let count = u32::from(first.covers(x * 256, y * 256)) + u32::from(second.covers(x * 256, y * 256));
+                assert_eq!(count, u32::from((0..4).contains(&x) && (0..4).contains(&y)), "({x}, {y})");
+            }
+        }
+    }
+
+    #[test]
+    fn p17_depth_is_linear_on_the_screen_and_clamped() {
+        let (a, b, c) = (corner(0, 0, 0.2), corner(8, 0, 0.6), corner(0, 8, 0.4));
+        let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 7);
+        assert!((setup.depth(4 * 256, 0) - 0.4).abs() < 1e-7);
+        assert!((setup.depth(256, 256) - 0.275).abs() < 1e-6);
+        // P17: along a span, each step adds dz/dx.
+        let span: Vec<f32> = (0..4).map(|x| setup.depth(x * 256, 256)).collect();
+        assert!(span.windows(2).all(|w| (w[1] - w[0] - setup.dz_dx).abs() < 1e-6));
+        assert_eq!(setup.depth(-100 * 256, 0), 0.2);
+        assert_eq!(setup.depth(100 * 256, 0), 0.6);
+    }
+}

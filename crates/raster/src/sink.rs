@@ -1,0 +1,146 @@
+//! What covered samples mean: the nearest facet, or all facets in front of it.
+
+use crate::kernel::traverse::{Block, BlockSink};
+use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
+
+const LANE_OFFSETS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// Depths of eight pixels of a row, by the operations of [`Setup::depth`].
+#[inline(always)]
+fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x8<S> {
+    let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
+    let dx = (x - setup.origin[0]) as f32 / SUBPIXEL as f32;
+    // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.
+    let dx = F32x8::from_slice(simd, &LANE_OFFSETS) + dx;
+    let z = dx * setup.dz_dx + (setup.z + dy * setup.dz_dy);
+    lanes::Lanes::min(lanes::Lanes::max(z, F32x8::splat(simd, setup.z_min)), F32x8::splat(simd, setup.z_max))
+}
+
+/// The z-buffer: each sample keeps the nearest facet, of equally near ones the lowest.
+#[derive(Debug)]
+pub struct VisibilitySink<'a> {
+    tile: &'a mut Tile,
+    pattern: &'a SamplePattern,
+}
+
+impl<'a> VisibilitySink<'a> {
+    /// Draws into `tile`.
+    pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
+        Self { tile, pattern }
+    }
+
+    /// Brings `block_far` up to date once a block has been written over.
+    #[inline(always)]
+    fn note_writes<S: Simd>(&mut self, simd: S, block: &Block, written: u32) {
+        let index = block.index();
+        let samples = self.pattern.len();
+        self.tile.block_writes[index] += written;
+        if self.tile.block_writes[index] < (BLOCK * BLOCK * samples) as u32 {
+            return;
+        }
+        self.tile.block_writes[index] = 0;
+        let mut far = F32x8::splat(simd, f32::INFINITY);
+        for s in 0..samples {
+            for row in 0..BLOCK {
+                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+                far = lanes::Lanes::min(far, F32x8::from_slice(simd, &self.tile.depth[at..at + BLOCK]));
+            }
+        }
+        self.tile.block_far[index] = far.to_array().into_iter().fold(f32::INFINITY, f32::min);
+    }
+}
+
+impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        setup.z_max < self.tile.block_far[block.index()]
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let new_facet = U32x8::splat(simd, setup.facet);
+        let mut written = 0;
+        for (s, &mask) in masks.iter().enumerate() {
+            let [sx, sy] = self.pattern.position(s);
+            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
+            for row in block.rows.clone() {
+                let covered = (mask >> (8 * row)) & 0xff;
+                if covered == 0 {
+                    continue;
+                }
+                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
+                let z = row_depth(simd, setup, x, y);
+                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+                let depths = &mut self.tile.depth[at..at + BLOCK];
+                let facets = &mut self.tile.facet[at..at + BLOCK];
+                let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
+                let nearer = z.simd_gt(old_z) | (z.simd_eq(old_z) & new_facet.simd_lt(old_facet));
+                let wins = nearer & Mask8::from_bitmask(simd, covered);
+                wins.select(z, old_z).store_slice(depths);
+                wins.select(new_facet, old_facet).store_slice(facets);
+                written += wins.to_bitmask().count_ones();
+            }
+        }
+        self.note_writes(simd, block, written);
+    }
+}
+
+/// A facet seen at a sample, in front of the nearest opaque one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// `sample * TILE_PIXELS + y * TILE + x` within the tile.
+    pub at: u32,
+    /// Depth, 1 near.
+    pub depth: f32,
+    /// The facet.
+    pub facet: u32,
+}
+
+/// Collects every facet that is not hidden by the tile's opaque samples.
+#[derive(Debug)]
+pub struct LayerSink<'a> {
+    tile: &'a Tile,
+    pattern: &'a SamplePattern,
+    layers: &'a mut Vec<Layer>,
+}
+
+impl<'a> LayerSink<'a> {
+    /// Adds to `layers`, in front of what `tile` holds.
+    pub fn new(tile: &'a Tile, pattern: &'a SamplePattern, layers: &'a mut Vec<Layer>) -> Self {
+        Self { tile, pattern, layers }
+    }
+}
+
+impl<S: Simd> BlockSink<S> for LayerSink<'_> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        setup.z_max < self.tile.block_far[block.index()]
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        for (s, &mask) in masks.iter().enumerate() {
+            let [sx, sy] = self.pattern.position(s);
+            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
+            for row in block.rows.clone() {
+                let mut covered = (mask >> (8 * row)) & 0xff;
+                if covered == 0 {
+                    continue;
+                }
+                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
+                let z = row_depth(simd, setup, x, y).to_array();
+                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+                while covered != 0 {
+                    let lane = covered.trailing_zeros() as usize;
+                    covered &= covered - 1;
+                    let (old_z, old_facet) = (self.tile.depth[at + lane], self.tile.facet[at + lane]);
+                    if z[lane] > old_z || (z[lane] == old_z && setup.facet < old_facet) {
+                        self.layers.push(Layer { at: (at + lane) as u32, depth: z[lane], facet: setup.facet });
+                    }
+                }
+            }
+        }
+    }
+}

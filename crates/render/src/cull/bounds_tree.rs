@@ -1,0 +1,129 @@
+//! A tree of boxes over things in their given order: one test rejects any number of them.
+//!
+//! Leaves are boxes round single things, or round runs of consecutive triangles; each inner node holds the box round
+//! two nodes below. Order is kept, so that numbering is, and files usually list neighbours together.
+//!
+//! Cost: building is linear; a query visits the nodes whose parents cross the view volume.
+//! Source: [Clark 1976].
+
+use std::ops::Range;
+use vitral_math::frustum::{Containment, Frustum};
+use vitral_math::{Aabb, DVec3};
+use vitral_scene::Mesh;
+
+/// Triangles in a leaf of a mesh's tree.
+pub const TRIANGLES_A_LEAF: usize = 256;
+
+/// A complete binary tree: node `i` has the children `2 i + 1` and `2 i + 2`; leaves fill the last places.
+#[derive(Clone, Debug)]
+pub struct BoundsTree {
+    nodes: Vec<Aabb>,
+    leaves: usize,
+    first_leaf: usize,
+    items: usize,
+    items_a_leaf: usize,
+}
+
+impl BoundsTree {
+    /// A tree over `boxes`, one leaf each.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        Self::build(boxes, boxes.len(), 1)
+    }
+
+    /// A tree over a mesh's triangles in order, [`TRIANGLES_A_LEAF`] a leaf, model space. Corners that are not finite
+    /// are passed over, as the rasteriser passes over their triangles.
+    pub fn over_triangles(mesh: &Mesh) -> Self {
+        let boxes: Vec<Aabb> = mesh
+            .triangles
+            .chunks(TRIANGLES_A_LEAF)
+            .map(|run| {
+                Aabb::from_points(run.iter().flatten().map(|&i| {
+                    let p = mesh.positions[i as usize];
+                    DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
+                }))
+            })
+            .collect();
+        Self::build(&boxes, mesh.triangles.len(), TRIANGLES_A_LEAF)
+    }
+
+    fn build(boxes: &[Aabb], items: usize, items_a_leaf: usize) -> Self {
+        let leaves = boxes.len().next_power_of_two();
+        let first_leaf = leaves - 1;
+        let mut nodes = vec![Aabb::EMPTY; 2 * leaves - 1];
+        nodes[first_leaf..first_leaf + boxes.len()].copy_from_slice(boxes);
+        for i in (0..first_leaf).rev() {
+            nodes[i] = nodes[2 * i + 1].union(&nodes[2 * i + 2]);
+        }
+        Self { nodes, leaves, first_leaf, items, items_a_leaf }
+    }
+
+    /// The runs of items whose boxes reach into the frustum, in order and joined where they meet; adds the number of
+    /// box tests to `tests`.
+    pub fn visible(&self, frustum: &Frustum, tests: &mut u64) -> Vec<Range<u32>> {
+        let mut runs = Vec::new();
+        self.visit(0, 0, self.leaves, frustum, tests, &mut runs);
+        runs
+    }
+
+    fn visit(
+        &self,
+        node: usize,
+        first: usize,
+        count: usize,
+        frustum: &Frustum,
+        tests: &mut u64,
+        runs: &mut Vec<Range<u32>>,
+    ) {
+        if self.nodes[node].is_empty() {
+            return;
+        }
+        *tests += 1;
+        let containment = frustum.test_box(&self.nodes[node]);
+        if containment == Containment::Outside {
+            return;
+        }
+        if containment == Containment::Inside || node >= self.first_leaf {
+            let start = (first * self.items_a_leaf) as u32;
+            let end = ((first + count) * self.items_a_leaf).min(self.items) as u32;
+            match runs.last_mut() {
+                Some(last) if last.end == start => last.end = end,
+                _ => runs.push(start..end),
+            }
+            return;
+        }
+        let half = count / 2;
+        self.visit(2 * node + 1, first, half, frustum, tests, runs);
+        self.visit(2 * node + 2, first + half, half, frustum, tests, runs);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::DMat4;
+
+    fn unit(x: f64) -> Aabb {
+        Aabb { min: DVec3::new(x, 0.0, 0.4), max: DVec3::new(x + 0.1, 0.1, 0.6) }
+    }
+
+    #[test]
+    fn p10_one_test_rejects_everything() {
+        let frustum = Frustum::from_matrix(&DMat4::IDENTITY);
+        let tree = BoundsTree::new(&(0..1000).map(|i| unit(5.0 + f64::from(i))).collect::<Vec<_>>());
+        let mut tests = 0;
+        assert!(tree.visible(&frustum, &mut tests).is_empty());
+        assert_eq!(tests, 1);
+    }
+
+    #[test]
+    fn p10_the_visible_ones_are_all_there() {
+        let frustum = Frustum::from_matrix(&DMat4::IDENTITY);
+        let boxes: Vec<_> = (0..37).map(|i| unit(f64::from(i) * 0.3 - 4.0)).collect();
+        let tree = BoundsTree::new(&boxes);
+        let runs = tree.visible(&frustum, &mut 0);
+        for (i, b) in boxes.iter().enumerate() {
+            let inside = runs.iter().any(|r| r.contains(&(i as u32)));
+            assert_eq!(inside, frustum.test_box(b) != Containment::Outside, "box {i}");
+        }
+    }
+}

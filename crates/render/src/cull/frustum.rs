@@ -1,0 +1,72 @@
+//! View-frustum culling by hierarchy: the scene, then objects, then runs of triangles of objects that cross its border.
+//!
+//! In:   the world's instances, the view volume.
+//! Out:  for each instance that may be visible, the runs of its triangles that may be.
+//! Cost: one box test for whatever is wholly outside or inside; the tests in between go with the border.
+//! Source: [Clark 1976].
+
+use super::bounds_tree::{BoundsTree, TRIANGLES_A_LEAF};
+use crate::Session;
+use crate::stats::CullCounters;
+use std::ops::Range;
+use vitral_math::DMat4;
+use vitral_math::frustum::{Containment, Frustum};
+
+/// An instance and which of its triangles to draw.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VisibleInstance {
+    /// Index into the world's instances.
+    pub instance: usize,
+    /// Runs of triangles, in order.
+    pub ranges: Vec<Range<u32>>,
+}
+
+/// What may be visible. With `enabled` false, everything.
+pub fn cull(
+    session: &Session,
+    clip_from_world: &DMat4,
+    enabled: bool,
+    counters: &mut CullCounters,
+) -> Vec<VisibleInstance> {
+    let instances = &session.world.instances;
+    counters.instances = instances.len() as u64;
+    counters.triangles = u64::from(session.world.facet_count);
+    let all = |i: usize| 0..instances[i].mesh.triangles.len() as u32;
+    if !enabled {
+        return (0..instances.len()).map(|i| VisibleInstance { instance: i, ranges: vec![all(i)] }).collect();
+    }
+
+    // Reject whole objects through a tree over their boxes.
+    let boxes: Vec<_> = instances.iter().map(|i| i.bounds).collect();
+    let runs = if boxes.is_empty() {
+        Vec::new()
+    } else {
+        BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut counters.box_tests)
+    };
+
+    // Of large objects across the border, reject runs of triangles.
+    let mut visible = Vec::new();
+    for i in runs.into_iter().flatten().map(|i| i as usize) {
+        let instance = &instances[i];
+        let frustum = Frustum::from_matrix(&(*clip_from_world * instance.world_from_model));
+        let ranges = if instance.mesh.triangles.len() <= 4 * TRIANGLES_A_LEAF {
+            vec![all(i)]
+        } else {
+            counters.box_tests += 1;
+            match frustum.test_box(&instance.model_bounds) {
+                Containment::Outside => Vec::new(),
+                Containment::Inside => vec![all(i)],
+                Containment::Crossing => {
+                    session.tree(instance.mesh_index).visible(&frustum, &mut counters.box_tests)
+                }
+            }
+        };
+        if !ranges.is_empty() || !instance.mesh.lines.is_empty() || !instance.mesh.points.is_empty() {
+            visible.push(VisibleInstance { instance: i, ranges });
+        }
+    }
+    counters.instances_culled = (instances.len() - visible.len()) as u64;
+    let kept: u64 = visible.iter().flat_map(|v| &v.ranges).map(|r| u64::from(r.end - r.start)).sum();
+    counters.triangles_culled = counters.triangles - kept;
+    visible
+}

@@ -1,0 +1,5 @@
+//! Throwing away early what cannot be seen. Nothing here changes a picture.
+
+pub mod backface;
+pub mod bounds_tree;
+pub mod frustum;

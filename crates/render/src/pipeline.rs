@@ -1,0 +1,187 @@
+//! The spine: scene → cull → prepare → visible → shade → frame.
+
+use crate::marks;
+use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameConstants};
+use crate::stats::Stats;
+use crate::{Error, Execution, PreparedView, Session, Settings, registry};
+use std::sync::Mutex;
+use vitral_exec::Workers;
+use vitral_frame::{Frame, Plane};
+use vitral_light::{Light, Rgb};
+use vitral_raster::{SamplePattern, TILE, TileGrid, Viewport};
+use vitral_scene::Camera;
+
+/// A picture and how it came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The picture.
+    pub frame: Frame,
+    /// Counters and times.
+    pub stats: Stats,
+}
+
+/// From where, and in which light.
+#[derive(Clone, Debug)]
+pub struct Shot<'a> {
+    /// The viewer, world space.
+    pub camera: Camera,
+    /// The lights, world space.
+    pub lights: &'a [Light],
+    /// Global ambient light.
+    pub ambient: Rgb,
+}
+
+/// Renders one picture.
+///
+/// # Errors
+/// Settings that cannot be carried out, or a limit that was reached; a scene cannot fail.
+pub fn render(
+    session: &mut Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    execution: &Execution,
+) -> Result<Rendered, Error> {
+    let viewport = settings.check()?;
+    let start = execution.budget.elapsed();
+    let mut stats = Stats::default();
+    let mut frame = Frame { width: viewport.width, height: viewport.height, ..Frame::default() };
+    if settings.channels.color {
+        render_color(session, shot, settings, viewport, execution, &mut stats, &mut frame)?;
+    }
+    if settings.channels.any_data() {
+        render_data(session, shot, settings, viewport, execution, &mut stats, &mut frame)?;
+    }
+    stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
+    stats.seconds.total = execution.budget.elapsed() - start;
+    Ok(Rendered { frame, stats })
+}
+
+/// The colour picture, with all samples.
+fn render_color(
+    session: &mut Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    viewport: Viewport,
+    execution: &Execution,
+    stats: &mut Stats,
+    frame: &mut Frame,
+) -> Result<(), Error> {
+    let pattern = SamplePattern::new(settings.samples as usize);
+    let mut grid = take_grid(session, viewport, pattern.len(), execution)?;
+    let clock = || execution.budget.elapsed();
+
+    // Cull and prepare.
+    let t0 = clock();
+    let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
+    let tables = DecodeTables::new(settings.color_space);
+    let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
+    let t1 = clock();
+    let (mark_batch, mark_colors) = marks::build(&view, settings, execution);
+    let t2 = clock();
+
+    // Find what is visible, and shade each tile as it is finished.
+    let sink = ColorSink::new(&constants, &mark_colors, execution.level, grid.tiles.len());
+    let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
+    let marks = (!mark_colors.is_empty()).then_some(&mark_batch);
+    let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
+    let t3 = clock();
+    stats.picture = sink.counters();
+    let pictures = sink.tiles;
+    drop(constants);
+    drop(view);
+    session.grid = Some(grid);
+    stats.geometry = resolved?;
+
+    // Put the tiles together.
+    let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
+    frame.color = Plane::from_rows(viewport.width, viewport.height, data);
+    let t4 = clock();
+    stats.seconds.prepare = t1 - t0;
+    stats.seconds.marks = t2 - t1;
+    stats.seconds.tiles = t3 - t2;
+    stats.seconds.assemble = t4 - t3;
+    Ok(())
+}
+
+/// Depth, ids and normals at pixel centres.
+fn render_data(
+    session: &mut Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    viewport: Viewport,
+    execution: &Execution,
+    stats: &mut Stats,
+    frame: &mut Frame,
+) -> Result<(), Error> {
+    let pattern = SamplePattern::new(1);
+    let mut grid = take_grid(session, viewport, 1, execution)?;
+    stats.cull = crate::stats::CullCounters::default();
+    let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
+    let tables = DecodeTables::new(settings.color_space);
+    let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
+    let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
+    let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
+    stats.geometry = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
+    let (tiles, workers) = (&sink.tiles, &execution.workers);
+    let (w, h) = (viewport.width, viewport.height);
+    let wanted = settings.channels;
+    if wanted.depth {
+        frame.depth = Plane::from_rows(w, h, assemble(viewport, tiles, |t: &DataPlanes| &t.depth, workers));
+    }
+    if wanted.surface {
+        frame.surface = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.surface, workers));
+    }
+    if wanted.object {
+        frame.object = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.object, workers));
+    }
+    if wanted.material {
+        frame.material = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.material, workers));
+    }
+    if wanted.normal {
+        frame.normal = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.normal, workers));
+    }
+    drop(constants);
+    drop(view);
+    session.grid = Some(grid);
+    Ok(())
+}
+
+/// The session's tiles if they fit, else new ones, charged to the budget.
+fn take_grid(
+    session: &mut Session,
+    viewport: Viewport,
+    samples: usize,
+    execution: &Execution,
+) -> Result<TileGrid, Error> {
+    let bytes = TileGrid::bytes(viewport, samples);
+    // Pictures, tile by tile and as a whole, take 8 bytes a pixel.
+    let pictures = u64::from(viewport.width) * u64::from(viewport.height) * 8;
+    execution.budget.charge(bytes + pictures, "the picture")?;
+    execution.budget.release(bytes + pictures);
+    match session.grid.take() {
+        Some(grid) if grid.viewport() == viewport && grid.samples() == samples => Ok(grid),
+        _ => Ok(TileGrid::new(viewport, samples)),
+    }
+}
+
+/// Rows of the picture from rows of its tiles.
+fn assemble<P: Send + Sync, T: Copy + Default + Send + Sync>(
+    viewport: Viewport,
+    tiles: &[Mutex<P>],
+    plane: impl Fn(&P) -> &Vec<T> + Sync + Send,
+    workers: &Workers,
+) -> Vec<T> {
+    let (width, tiles_x) = (viewport.width as usize, viewport.tiles_x() as usize);
+    let mut out = vec![T::default(); width * viewport.height as usize];
+    workers.for_each_chunk(&mut out, width * TILE, |band, rows| {
+        for tx in 0..tiles_x {
+            let tile = tiles[band * tiles_x + tx].lock().expect("finished tile");
+            let plane = plane(&tile);
+            let (x, count) = (tx * TILE, TILE.min(width - tx * TILE));
+            for (y, row) in rows.chunks_mut(width).enumerate() {
+                row[x..x + count].copy_from_slice(&plane[y * TILE..y * TILE + count]);
+            }
+        }
+    });
+    out
+}

@@ -1,0 +1,189 @@
+//! Prepare: from the world to draws that a visibility algorithm can take, with one numbering and one depth function.
+//!
+//! Facets are the triangles of all instances, counted in scene order before anything is culled. [`PreparedView::depth`]
+//! and [`PreparedView::covers`] say for any facet and sample what is covered and how near it is; the z-buffer's kernels
+//! compute the same in bulk.
+
+use crate::cull::{backface, frustum};
+use crate::stats::CullCounters;
+use crate::{Execution, Session, Settings, Transparency};
+use std::ops::Range;
+use vitral_light::{AlphaMode, Material};
+use vitral_math::{DMat4, DVec3};
+use vitral_raster::geometry::Screen;
+use vitral_raster::{Batch, Draw, SamplePattern, ScreenVertex, Setup, Viewport};
+use vitral_scene::{Camera, Instance, ViewTransform};
+
+/// One instance's triangles, ready for the rasteriser.
+#[derive(Clone, Debug)]
+pub struct PreparedInstance<'a> {
+    /// Index into the world's instances.
+    pub instance: usize,
+    /// Opaque triangles.
+    pub opaque: Vec<Draw<'a>>,
+    /// Triangles through which something behind may be seen.
+    pub layered: Vec<Draw<'a>>,
+}
+
+/// A scene seen from a camera, before visibility is decided.
+#[derive(Debug)]
+pub struct PreparedView<'a> {
+    /// The scene and what is known of it.
+    pub session: &'a Session,
+    /// Camera matrices.
+    pub view: ViewTransform,
+    /// The viewer, world space.
+    pub camera: Camera,
+    /// Size of the picture.
+    pub viewport: Viewport,
+    /// Where the samples of a pixel lie.
+    pub pattern: SamplePattern,
+    /// The map to the screen.
+    pub screen: Screen,
+    /// What may be visible, in scene order.
+    pub instances: Vec<PreparedInstance<'a>>,
+}
+
+/// What a material's triangles are to a visibility algorithm.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Class {
+    layered: bool,
+    double_sided: bool,
+}
+
+impl<'a> PreparedView<'a> {
+    /// Culls and sorts the scene's triangles by what they need.
+    pub fn new(
+        session: &'a Session,
+        camera: &Camera,
+        settings: &Settings,
+        viewport: Viewport,
+        pattern: SamplePattern,
+        execution: &Execution,
+        counters: &mut CullCounters,
+    ) -> Self {
+        let aspect = f64::from(viewport.width) / f64::from(viewport.height);
+        let view = camera.transform(aspect, depth_range(camera, &session.world.bounds));
+        let clip_from_world = view.clip_from_world();
+        let surfaces = !matches!(settings.lines, crate::Lines::Wireframe);
+        let mut instances = Vec::new();
+        for visible in frustum::cull(session, &clip_from_world, settings.cull.frustum, counters) {
+            let instance = &session.world.instances[visible.instance];
+            let solid = |double_sided: bool| {
+                settings.cull.back_face
+                    && !double_sided
+                    && backface::applies(session.solidity(instance.mesh_index, &execution.workers), double_sided)
+            };
+            let draws = if surfaces {
+                draws(session, instance, &visible.ranges, &clip_from_world, settings, solid)
+            } else {
+                Vec::new()
+            };
+            let (layered, opaque): (Vec<_>, Vec<_>) = draws.into_iter().partition(|(class, _)| class.layered);
+            let strip = |list: Vec<(Class, Draw<'a>)>| list.into_iter().map(|(_, draw)| draw).collect::<Vec<_>>();
+            let (opaque, layered) = (strip(opaque), strip(layered));
+            counters.back_face_culled_instances += u64::from(opaque.iter().chain(&layered).any(|d| d.cull_back));
+            instances.push(PreparedInstance { instance: visible.instance, opaque, layered });
+        }
+        let screen = Screen::new(viewport, &pattern);
+        Self { session, view, camera: *camera, viewport, pattern, screen, instances }
+    }
+
+    /// The viewer in world space, and whether projectors meet there.
+    pub fn eye(&self) -> (DVec3, bool) {
+        (self.camera.position, self.view.perspective)
+    }
+
+    /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports
+    /// and algorithms that take facets one by one.
+    pub fn setups(&self, facet: u32, cull_back: bool) -> Vec<Setup> {
+        let instance = &self.session.world.instances[self.session.world.instance_of_facet(facet)];
+        let mesh = &instance.mesh;
+        let triangle = (facet - instance.first_facet) as usize;
+        let corners = mesh.triangles[triangle].map(|i| mesh.positions[i as usize]);
+        let clip_from_model = (self.view.clip_from_world() * instance.world_from_model).as_mat4();
+        let mut vertices = [ScreenVertex::default(); 3];
+        let level = vitral_math::lanes::Level::fallback();
+        vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
+        let draw = Draw {
+            positions: &corners,
+            triangles: &[[0, 1, 2]],
+            ranges: Vec::new(),
+            clip_from_model,
+            first_facet: facet,
+            cull_back,
+            mirrored: mirrors(&instance.world_from_model),
+        };
+        let mut batch = Batch::default();
+        batch.add(&draw, &vertices, 0..1, &self.screen);
+        batch.setups().to_vec()
+    }
+}
+
+/// Whether a transform turns left-handed into right-handed.
+pub fn mirrors(transform: &DMat4) -> bool {
+    transform.determinant() < 0.0
+}
+
+/// The opacity class of a material.
+fn class(material: Option<&Material>, transparency: Transparency) -> Class {
+    let layered = |m: &Material| match m.alpha_mode {
+        AlphaMode::Opaque => false,
+        AlphaMode::Mask { .. } => true,
+        AlphaMode::Blend => transparency != Transparency::None,
+    };
+    material.map_or(Class { layered: false, double_sided: false }, |m| Class {
+        layered: layered(m),
+        double_sided: m.double_sided,
+    })
+}
+
+/// Cuts an instance's visible ranges by class, in order, one draw a class.
+fn draws<'a>(
+    session: &'a Session,
+    instance: &'a Instance,
+    ranges: &[Range<u32>],
+    clip_from_world: &DMat4,
+    settings: &Settings,
+    solid: impl Fn(bool) -> bool,
+) -> Vec<(Class, Draw<'a>)> {
+    let mesh = &*instance.mesh;
+    let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
+    for part in &mesh.parts {
+        let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
+        let class = class(material, settings.transparency);
+        for range in ranges {
+            let (start, end) = (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
+            if start >= end {
+                continue;
+            }
+            let draw = match draws.iter().position(|(c, _)| *c == class) {
+                Some(i) => &mut draws[i].1,
+                None => {
+                    let draw = Draw {
+                        positions: &mesh.positions,
+                        triangles: &mesh.triangles,
+                        ranges: Vec::new(),
+                        clip_from_model: (*clip_from_world * instance.world_from_model).as_mat4(),
+                        first_facet: instance.first_facet,
+                        cull_back: solid(class.double_sided) && !class.layered,
+                        mirrored: mirrors(&instance.world_from_model),
+                    };
+                    draws.push((class, draw));
+                    &mut draws.last_mut().expect("just pushed").1
+                }
+            };
+            match draw.ranges.last_mut() {
+                Some(last) if last.end == start => last.end = end,
+                _ => draw.ranges.push(start..end),
+            }
+        }
+    }
+    draws
+}
+
+fn depth_range(camera: &Camera, bounds: &vitral_math::Aabb) -> (f64, f64) {
+    let m = camera.view_from_world();
+    let d = bounds.corners().map(|c| -m.transform_point3(c).z);
+    (d.iter().copied().fold(f64::INFINITY, f64::min), d.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+}

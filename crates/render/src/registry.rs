@@ -1,0 +1,31 @@
+//! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
+
+use crate::visible::{VisibleSurface, zbuffer::ZBuffer};
+
+/// An algorithm that finds the visible surface at each sample.
+pub struct VisibilityAlgorithm {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub description: &'static str,
+    /// Key into the bibliography.
+    pub source: &'static str,
+    /// `image` or `list-priority` precision.
+    pub precision: &'static str,
+    /// The code.
+    pub algorithm: &'static dyn VisibleSurface,
+}
+
+/// All visible-surface algorithms, the default first.
+pub static VISIBILITY: &[VisibilityAlgorithm] = &[VisibilityAlgorithm {
+    name: "z-buffer",
+    description: "every sample keeps its nearest facet",
+    source: "Catmull 1974",
+    precision: "image",
+    algorithm: &ZBuffer,
+}];
+
+/// A visible-surface algorithm by its name.
+pub fn visibility(name: &str) -> Option<&'static VisibilityAlgorithm> {
+    VISIBILITY.iter().find(|a| a.name == name)
+}

@@ -1,0 +1,115 @@
+//! What outlives a frame: the flattened scene, what is known of its meshes, and memory to use again.
+//!
+//! Pictures with a fresh session and with a used one are equal.
+
+use crate::Error;
+use crate::cull::bounds_tree::BoundsTree;
+use crate::shading::FaceTable;
+use std::sync::{Arc, Mutex, OnceLock};
+use vitral_exec::{Budget, Workers};
+use vitral_math::lanes::Level;
+use vitral_raster::{Batch, ScreenVertex, TileGrid};
+use vitral_scene::topology::Solidity;
+use vitral_scene::edges::Edge;
+use vitral_scene::{Scene, World};
+
+/// Who computes, with which instructions, and how much is allowed.
+#[derive(Clone, Debug)]
+pub struct Execution {
+    /// The threads.
+    pub workers: Workers,
+    /// The instruction set; pictures do not depend on it.
+    pub level: Level,
+    /// Time, memory, cancellation, progress.
+    pub budget: Budget,
+}
+
+impl Default for Execution {
+    /// All threads that the process may use, the machine's best instruction set, no limits.
+    fn default() -> Self {
+        Self { workers: Workers::new(0), level: Level::new(), budget: Budget::default() }
+    }
+}
+
+/// A scene made ready for many frames. The scene cannot change under it: edit a copy and make a new session.
+#[derive(Debug)]
+pub struct Session {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) world: World,
+    meshes: Vec<MeshKnowledge>,
+    pub(crate) grid: Option<TileGrid>,
+    pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
+    pub(crate) spare_batches: Mutex<Vec<Batch>>,
+}
+
+/// What is found out about a mesh when it is first needed.
+#[derive(Debug, Default)]
+struct MeshKnowledge {
+    solidity: OnceLock<Solidity>,
+    tree: OnceLock<BoundsTree>,
+    faces: OnceLock<FaceTable>,
+    edges: OnceLock<Vec<Edge>>,
+}
+
+impl Session {
+    /// Flattens the scene and checks that its parts fit together.
+    pub fn new(scene: Arc<Scene>) -> Result<Self, Error> {
+        for mesh in &scene.meshes {
+            mesh.check().map_err(Error::Scene)?;
+            let materials = scene.materials.len();
+            let used = mesh.parts.iter().filter_map(|p| p.material).chain(mesh.line_material);
+            if let Some(bad) = used.into_iter().find(|&m| m as usize >= materials) {
+                return Err(Error::Scene(format!("mesh `{}`: material {bad}, there are {materials}", mesh.name)));
+            }
+        }
+        let mut materials = scene.materials.clone();
+        for material in &mut materials {
+            let name = material.name.clone();
+            let count = scene.textures.len();
+            if let Some(bad) = material.textures_mut().find(|t| t.texture as usize >= count) {
+                return Err(Error::Scene(format!("material `{name}`: texture {}, there are {count}", bad.texture)));
+            }
+        }
+        let world = World::new(&scene)?;
+        let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
+        Ok(Self {
+            scene,
+            world,
+            meshes,
+            grid: None,
+            spare_vertices: Mutex::default(),
+            spare_batches: Mutex::default(),
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The flattened scene.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Whether a mesh is closed, consistently wound and wound outwards.
+    pub fn solidity(&self, mesh: u32, workers: &Workers) -> Solidity {
+        let known = &self.meshes[mesh as usize].solidity;
+        *known.get_or_init(|| Solidity::of(&self.scene.meshes[mesh as usize], workers))
+    }
+
+    pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {
+        let known = &self.meshes[mesh as usize].tree;
+        known.get_or_init(|| BoundsTree::over_triangles(&self.scene.meshes[mesh as usize]))
+    }
+
+    pub(crate) fn faces(&self, mesh: u32) -> &FaceTable {
+        let known = &self.meshes[mesh as usize].faces;
+        known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
+    }
+
+    pub(crate) fn edges(&self, mesh: u32, workers: &Workers) -> &[Edge] {
+        let known = &self.meshes[mesh as usize].edges;
+        known.get_or_init(|| vitral_scene::edges::edges(&self.scene.meshes[mesh as usize], 0.0, workers))
+    }
+}

@@ -1,0 +1,256 @@
+//! What the user may choose, in one plain structure that command line, files and other faces share.
+
+use crate::registry;
+use serde::{Deserialize, Serialize};
+use vitral_light::Illumination;
+use vitral_raster::{MAX_SIDE, Viewport};
+
+/// How a scene is to be rendered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Settings {
+    /// Width of the picture in pixels, `1..=16384`.
+    pub width: u32,
+    /// Height of the picture in pixels, `1..=16384`.
+    pub height: u32,
+    /// Samples a pixel, `1..=16`; 1 means no anti-aliasing.
+    pub samples: u32,
+    /// Name of a visible-surface algorithm in the [`registry`].
+    pub visibility: String,
+    /// What is thrown away early.
+    pub cull: Culling,
+    /// How light is reflected.
+    pub illumination: Illumination,
+    /// Where illumination is computed.
+    pub shading: Shading,
+    /// Light sources on; off shows each surface's own colour.
+    pub lighting: bool,
+    /// How values between vertices are found.
+    pub interpolation: Interpolation,
+    /// What the numbers in the picture mean.
+    pub color_space: ColorSpace,
+    /// How transparent surfaces are combined.
+    pub transparency: Transparency,
+    /// In which order they are.
+    pub transparency_order: TransparencyOrder,
+    /// Edges instead of, or on top of, surfaces.
+    pub lines: Lines,
+    /// Behind everything.
+    pub background: Background,
+    /// Which planes of the frame are wanted.
+    pub channels: Channels,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            width: 1024,
+            height: 768,
+            samples: 4,
+            visibility: "z-buffer".to_owned(),
+            cull: Culling::default(),
+            illumination: Illumination::default(),
+            shading: Shading::default(),
+            lighting: true,
+            interpolation: Interpolation::default(),
+            color_space: ColorSpace::default(),
+            transparency: Transparency::default(),
+            transparency_order: TransparencyOrder::default(),
+            lines: Lines::default(),
+            background: Background::default(),
+            channels: Channels::default(),
+        }
+    }
+}
+
+/// Early rejection. Neither changes the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Culling {
+    /// Objects, and runs of triangles of large objects, outside the view volume.
+    pub frustum: bool,
+    /// Faces of closed meshes that are turned away.
+    pub back_face: bool,
+}
+
+impl Default for Culling {
+    fn default() -> Self {
+        Self { frustum: true, back_face: true }
+    }
+}
+
+/// Where illumination is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shading {
+    /// Once a face, at its centre with its own normal.
+    Flat,
+    /// At each vertex; intensities are interpolated.
+    Gouraud,
+    /// At each pixel, with the interpolated normal.
+    #[default]
+    Phong,
+}
+
+impl Shading {
+    /// All, with a line each.
+    pub const ALL: [(Self, &'static str, &'static str); 3] = [
+        (Self::Phong, "phong", "normals are interpolated, each pixel is illuminated"),
+        (Self::Gouraud, "gouraud", "vertices are illuminated, intensities are interpolated"),
+        (Self::Flat, "flat", "one colour for each face"),
+    ];
+}
+
+/// How values between vertices are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interpolation {
+    /// As on the surface in space.
+    #[default]
+    Perspective,
+    /// Linearly on the screen: the classical defect, for comparison.
+    Linear,
+}
+
+/// What the numbers in a picture mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorSpace {
+    /// Light is computed linearly and encoded as sRGB.
+    #[default]
+    Srgb,
+    /// Intensities go straight to bytes, as in the course's arithmetic; textures are taken as they are.
+    Raw,
+}
+
+/// How transparent surfaces are combined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Transparency {
+    /// `opacity` of the surface, the rest of what is behind.
+    #[default]
+    Linear,
+    /// Everything is opaque (cut-outs stay).
+    None,
+}
+
+/// The order in which transparent surfaces are combined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TransparencyOrder {
+    /// Sorted by depth at each sample.
+    #[default]
+    Sorted,
+}
+
+/// Edges instead of, or on top of, surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lines {
+    /// Only the lines and points that the model itself has.
+    #[default]
+    None,
+    /// Surfaces with their faces' edges.
+    Edges,
+    /// Edges alone, the hidden ones too.
+    Wireframe,
+    /// Edges alone, the visible ones.
+    WireframeHiddenLine,
+}
+
+/// Behind everything.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Background {
+    /// Alpha 0.
+    Transparent,
+    /// One colour, in the display's encoding, `0..=1`.
+    Color {
+        /// RGB.
+        color: [f32; 3],
+    },
+    /// From the top row to the bottom row, in the display's encoding, `0..=1`.
+    Gradient {
+        /// RGB of the top row.
+        top: [f32; 3],
+        /// RGB of the bottom row.
+        bottom: [f32; 3],
+    },
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::Gradient { top: [0.965, 0.972, 0.98], bottom: [0.76, 0.79, 0.83] }
+    }
+}
+
+/// Which planes of the frame are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Channels {
+    /// The picture.
+    pub color: bool,
+    /// Depth.
+    pub depth: bool,
+    /// Surface ids.
+    pub surface: bool,
+    /// Instances.
+    pub object: bool,
+    /// Materials.
+    pub material: bool,
+    /// Normals.
+    pub normal: bool,
+}
+
+impl Default for Channels {
+    fn default() -> Self {
+        Self { color: true, depth: false, surface: false, object: false, material: false, normal: false }
+    }
+}
+
+impl Channels {
+    /// Whether any plane besides colour is wanted.
+    pub fn any_data(&self) -> bool {
+        self.depth || self.surface || self.object || self.material || self.normal
+    }
+}
+
+/// Settings that cannot be carried out.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// The picture's size.
+    #[error("resolution {width}x{height}: each side must be 1 to {MAX_SIDE}")]
+    Resolution {
+        /// Asked for.
+        width: u32,
+        /// Asked for.
+        height: u32,
+    },
+    /// Number of samples.
+    #[error("{0} samples a pixel: 1 to 16 are possible")]
+    Samples(u32),
+    /// The name of an algorithm.
+    #[error("there is no visibility algorithm `{name}`: choose {choices}")]
+    Visibility {
+        /// Asked for.
+        name: String,
+        /// What there is.
+        choices: String,
+    },
+}
+
+impl Settings {
+    /// Checks what a type cannot.
+    pub fn check(&self) -> Result<Viewport, SettingsError> {
+        if !(1..=16).contains(&self.samples) {
+            return Err(SettingsError::Samples(self.samples));
+        }
+        if registry::visibility(&self.visibility).is_none() {
+            let choices: Vec<_> = registry::VISIBILITY.iter().map(|a| a.name).collect();
+            return Err(SettingsError::Visibility { name: self.visibility.clone(), choices: choices.join(", ") });
+        }
+        let (width, height) = (self.width, self.height);
+        Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
+    }
+}

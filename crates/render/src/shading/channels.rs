@@ -1,0 +1,132 @@
+//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material, normal.
+
+use super::FrameConstants;
+use super::geometry::{Viewing, surface};
+use super::group::slots;
+use super::phong::interpolated_normal;
+use super::points::{NO_POINT, Points, visible_part};
+use crate::Channels;
+use crate::marks::MarkColors;
+use crate::visible::TileSink;
+use std::sync::Mutex;
+use vitral_frame::Frame;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{LANES, Level, Simd, dispatch};
+use vitral_raster::{Layer, NO_FACET, TILE, TILE_PIXELS, Tile};
+
+/// The wanted planes of one tile, row by row; unwanted ones stay empty.
+#[derive(Debug, Default)]
+pub(crate) struct DataPlanes {
+    pub depth: Vec<f32>,
+    pub surface: Vec<u32>,
+    pub object: Vec<u32>,
+    pub material: Vec<u32>,
+    pub normal: Vec<[f32; 3]>,
+}
+
+/// Collects data planes; needs one sample a pixel.
+pub(crate) struct ChannelSink<'a> {
+    constants: &'a FrameConstants<'a>,
+    wanted: Channels,
+    level: Level,
+    pub tiles: Vec<Mutex<DataPlanes>>,
+}
+
+impl<'a> ChannelSink<'a> {
+    pub(crate) fn new(
+        constants: &'a FrameConstants<'a>,
+        wanted: Channels,
+        level: Level,
+        tile_count: usize,
+    ) -> Self {
+        Self { constants, wanted, level, tiles: (0..tile_count).map(|_| Mutex::default()).collect() }
+    }
+}
+
+impl TileSink for ChannelSink<'_> {
+    fn tile(&self, index: usize, tile: &Tile, _layers: &mut Vec<Layer>) {
+        let mut planes = DataPlanes::default();
+        if self.wanted.depth {
+            planes.depth = tile.depth.clone();
+        }
+        if self.wanted.surface || self.wanted.object || self.wanted.material {
+            self.ids(tile, &mut planes);
+        }
+        if self.wanted.normal {
+            planes.normal = vec![[0.0; 3]; TILE_PIXELS];
+            let mut points = Points::default();
+            points.collect(tile, &[], self.constants, &MarkColors::default());
+            dispatch!(self.level, simd => normals(simd, &points, tile, self.constants, &mut planes.normal));
+        }
+        *self.tiles[index].lock().expect("data planes") = planes;
+    }
+}
+
+impl ChannelSink<'_> {
+    fn ids(&self, tile: &Tile, planes: &mut DataPlanes) {
+        let world = &self.constants.view.session.world;
+        planes.surface = vec![Frame::BACKGROUND; TILE_PIXELS];
+        planes.object = planes.surface.clone();
+        planes.material = planes.surface.clone();
+        let mut last = (NO_FACET, [Frame::BACKGROUND; 3]);
+        for pixel in 0..TILE_PIXELS {
+            let facet = tile.facet[pixel];
+            if facet != last.0 {
+                let of = |facet: u32| {
+                    let object = world.instance_of_facet(facet);
+                    let instance = &world.instances[object];
+                    let triangle = (facet - instance.first_facet) as usize;
+                    let surface = instance.first_surface + instance.mesh.face_of_triangle(triangle) as u32;
+                    let material = instance.mesh.material_of_triangle(triangle).unwrap_or(Frame::BACKGROUND);
+                    [surface, object as u32, material]
+                };
+                last = (facet, if facet == NO_FACET { [Frame::BACKGROUND; 3] } else { of(facet) });
+            }
+            [planes.surface[pixel], planes.object[pixel], planes.material[pixel]] = last.1;
+        }
+    }
+}
+
+/// World-space shading normals of the points, on the viewer's side where both sides are seen.
+#[inline(always)]
+fn normals<S: Simd>(
+    simd: S,
+    points: &Points,
+    tile: &Tile,
+    constants: &FrameConstants<'_>,
+    out: &mut [[f32; 3]],
+) {
+    let rotation = constants.view.view.view_from_world.as_mat4();
+    let mut of_point = vec![[0.0; 3]; points.len()];
+    for group in &points.groups {
+        let world_instance = &constants.view.session.world.instances[group.instance as usize];
+        let instance = &constants.instances[group.instance as usize];
+        let mesh = &*world_instance.mesh;
+        let material = constants.material(mesh.parts[group.part as usize].material);
+        let viewing = Viewing {
+            interpolation: constants.interpolation,
+            perspective: constants.view.view.perspective,
+            double_sided: material.material.double_sided,
+        };
+        for eight in points.order[group.start as usize..group.end as usize].chunks(LANES) {
+            let slots = slots(points, eight, world_instance.first_facet);
+            let n = interpolated_normal(&surface(simd, mesh, instance, &slots, viewing));
+            let soa = [n.x, n.y, n.z].map(|c| c.to_array());
+            for (lane, &p) in eight.iter().enumerate() {
+                let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
+                // The inverse of a rotation is its transpose.
+                let world = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(|a| a.truncate().dot(view));
+                of_point[p as usize] = world;
+            }
+        }
+    }
+    let (width, height) = visible_part(tile, constants);
+    for y in 0..height {
+        for pixel in y * TILE..y * TILE + width {
+            let point = points.of_sample[pixel];
+            if point != NO_POINT {
+                out[pixel] = of_point[point as usize];
+            }
+        }
+    }
+}

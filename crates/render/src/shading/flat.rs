@@ -1,0 +1,69 @@
+//! Flat (constant) shading: one intensity for each face of the file, however many triangles it was cut into.
+//!
+//! The model supposes light and viewer at infinity; here both are taken as seen from the face's centre. Neighbouring
+//! faces differ in steps, and the eye exaggerates them (Mach bands).
+//!
+//! Input: the face's centre and normal, model space. Output: reflected light, the same at all points of the face.
+//! Source: [Foley et al. 1990], 16.2.1.
+
+use super::frame_constants::InstanceConstants;
+use super::geometry::{Slots, Surface, gather};
+use super::group::{Coefficients, Lighting};
+use vitral_light::Reflected;
+use vitral_math::lanes::{F32x8, Lanes, Simd, V3};
+use vitral_scene::{Faces, Mesh, normals};
+
+/// Centre and normal of each polygon of a mesh, model space. Meshes of triangles need none: a facet is a face.
+#[derive(Debug, Default)]
+pub struct FaceTable {
+    centers_and_normals: Vec<[[f32; 3]; 2]>,
+}
+
+impl FaceTable {
+    /// Walks the mesh's polygons.
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let Faces::Polygons { .. } = mesh.faces else { return Self::default() };
+        let center = |face: usize| {
+            let corners = mesh.face_corners(face);
+            let mut sum = [0.0; 3];
+            for &c in corners {
+                (0..3).for_each(|k| sum[k] += mesh.positions[c as usize][k]);
+            }
+            sum.map(|s| s / corners.len() as f32)
+        };
+        let faces = (0..mesh.face_count()).map(|f| [center(f), normals::face_normal(mesh, f)]);
+        Self { centers_and_normals: faces.collect() }
+    }
+}
+
+/// Illuminates each point's face at its centre.
+#[inline(always)]
+pub(crate) fn shade<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    faces: &FaceTable,
+    instance: &InstanceConstants,
+    slots: &Slots,
+    surface: &Surface<S>,
+    lighting: &Lighting<'_>,
+    coefficients: &Coefficients<S>,
+) -> Reflected<F32x8<S>> {
+    let [a, b, c] = surface.positions;
+    if faces.centers_and_normals.is_empty() {
+        let third = a.x.splat(1.0 / 3.0);
+        return lighting.reflect(simd, (a + b + c).scale(third), surface.facet_normal, coefficients);
+    }
+    let [center, normal, _] = gather(simd, |lane| {
+        let [center, normal] = faces.centers_and_normals[mesh.face_of_triangle(slots.triangle[lane] as usize)];
+        [center, normal, [0.0; 3]]
+    });
+    let m = &instance.view_from_model;
+    let row = |r: usize| center[0] * m[r][0] + center[1] * m[r][1] + center[2] * m[r][2] + m[r][3];
+    let position = V3::new(row(0), row(1), row(2));
+    let n = &instance.view_from_model_normal;
+    let row = |r: usize| normal[0] * n[r][0] + normal[1] * n[r][1] + normal[2] * n[r][2];
+    let normal = V3::new(row(0), row(1), row(2)).normalize();
+    // The facet's own normal has been turned to the viewer where both sides are seen: follow it.
+    let behind = normal.dot(surface.facet_normal).lt(a.x.splat(0.0));
+    lighting.reflect(simd, position, V3::select(behind, -normal, normal), coefficients)
+}

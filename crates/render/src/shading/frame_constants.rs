@@ -1,0 +1,202 @@
+//! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
+
+use super::group::{Model, model};
+use crate::prepare::mirrors;
+use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Settings, Shading, Transparency};
+use vitral_frame::Texture;
+use vitral_frame::texture::decode_table;
+use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef};
+use vitral_math::color::{byte_from_unit, linear_from_srgb};
+use vitral_math::{DMat4, DVec4};
+
+/// Matrices of an instance, as rows.
+#[derive(Clone, Debug)]
+pub(crate) struct InstanceConstants {
+    /// Model space to `(X, Y, W)` with `X / W`, `Y / W` in pixels.
+    pub screen_from_model: [[f32; 4]; 3],
+    /// Model space to view space.
+    pub view_from_model: [[f32; 4]; 3],
+    /// Normals, model to view space, up to a positive factor.
+    pub view_from_model_normal: [[f32; 3]; 3],
+    /// Back faces can be seen and are lit like front faces.
+    pub two_sided: bool,
+    /// The transform turns right into left: geometric normals change sign.
+    pub mirrored: bool,
+}
+
+/// A texture as a material uses it, ready to sample.
+pub(crate) struct TextureConstants<'a> {
+    pub texture: &'a Texture,
+    pub reference: TextureRef,
+    pub decode: &'a [f32; 256],
+}
+
+/// A material, ready for the formulas.
+pub(crate) struct MaterialConstants<'a> {
+    pub material: Material,
+    pub model: Model,
+    pub base: Option<TextureConstants<'a>>,
+    pub specular: Option<TextureConstants<'a>>,
+    pub emission: Option<TextureConstants<'a>>,
+    pub opacity: Option<TextureConstants<'a>>,
+    pub metallic_roughness: Option<TextureConstants<'a>>,
+    pub normal: Option<TextureConstants<'a>>,
+    /// Below this alpha nothing is there (cut-outs), else `None`.
+    pub cutoff: Option<f32>,
+    /// Alpha matters.
+    pub blend: bool,
+}
+
+/// Decode tables of one frame.
+pub(crate) struct DecodeTables {
+    srgb: [f32; 256],
+    linear: [f32; 256],
+}
+
+impl DecodeTables {
+    pub(crate) fn new(color_space: ColorSpace) -> Self {
+        let raw = color_space == ColorSpace::Raw;
+        Self {
+            srgb: decode_table(vitral_frame::Encoding::Srgb, raw),
+            linear: decode_table(vitral_frame::Encoding::Linear, raw),
+        }
+    }
+}
+
+/// See the module.
+pub(crate) struct FrameConstants<'a> {
+    pub view: &'a PreparedView<'a>,
+    pub instances: Vec<InstanceConstants>,
+    /// The scene's materials, and the default material last.
+    pub materials: Vec<MaterialConstants<'a>>,
+    pub lights: Vec<PreparedLight>,
+    /// Global ambient light.
+    pub ambient: Rgb,
+    pub shading: Shading,
+    pub interpolation: Interpolation,
+    pub raw: bool,
+    /// Surfaces are drawn in the background's colour.
+    pub surfaces_are_background: bool,
+    /// Background of each row in the space in which colours are composed, and 0 or 1 for its alpha.
+    pub background: Vec<[f32; 4]>,
+    /// The same as display bytes.
+    pub background_bytes: Vec<[u8; 4]>,
+}
+
+impl<'a> FrameConstants<'a> {
+    pub(crate) fn new(
+        view: &'a PreparedView<'a>,
+        settings: &Settings,
+        lights: &[Light],
+        ambient: Rgb,
+        tables: &'a DecodeTables,
+        execution: &Execution,
+    ) -> Self {
+        let session = view.session;
+        let raw = settings.color_space == ColorSpace::Raw;
+        let instances = (0..session.world.instances.len()).map(|i| instance_constants(view, i, execution)).collect();
+        let default = Material { name: "default".to_owned(), ..Material::default() };
+        let materials = session.scene.materials.iter().chain([&default]);
+        let materials = materials.map(|m| material_constants(m, view, settings, tables)).collect();
+        let background = background_rows(&settings.background, settings.height, raw);
+        let encode = |c: f32| byte_from_unit(if raw { c } else { vitral_math::color::srgb_from_linear(c) });
+        let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
+        Self {
+            view,
+            instances,
+            materials,
+            lights: lights.iter().filter_map(|l| PreparedLight::new(l, &view.view.view_from_world)).collect(),
+            ambient,
+            shading: settings.shading,
+            interpolation: settings.interpolation,
+            raw,
+            surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
+            background_bytes: background.iter().map(bytes).collect(),
+            background,
+        }
+    }
+
+    /// The material of a part of a mesh.
+    pub(crate) fn material(&self, index: Option<u32>) -> &MaterialConstants<'a> {
+        let last = self.materials.len() - 1;
+        &self.materials[index.map_or(last, |m| (m as usize).min(last))]
+    }
+}
+
+fn rows(m: &DMat4) -> [[f32; 4]; 3] {
+    [0, 1, 2].map(|r| m.row(r).as_vec4().to_array())
+}
+
+fn instance_constants(view: &PreparedView<'_>, index: usize, execution: &Execution) -> InstanceConstants {
+    let instance = &view.session.world.instances[index];
+    let view_from_model = view.view.view_from_world * instance.world_from_model;
+    let clip = view.view.clip_from_view * view_from_model;
+    let (w, h) = (f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5);
+    let [x, y, clip_w] = [clip.row(0), clip.row(1), clip.row(3)];
+    let screen: [DVec4; 3] = [x * w + clip_w * w, clip_w * h - y * h, clip_w];
+    // The cofactor matrix is the inverse transpose times the determinant, and exists for flat transforms too.
+    let [a, b, c] = [0, 1, 2].map(|k| view_from_model.col(k).truncate());
+    let cofactor = [b.cross(c), c.cross(a), a.cross(b)];
+    let mirrored = mirrors(&instance.world_from_model);
+    let sign = if mirrored { -1.0 } else { 1.0 };
+    let scale = cofactor.iter().map(|v| v.length()).fold(0.0, f64::max);
+    let scale = if scale > 0.0 { sign / scale } else { 0.0 };
+    let normal_row = |r: usize| [0, 1, 2].map(|k| (cofactor[k][r] * scale) as f32);
+    InstanceConstants {
+        screen_from_model: screen.map(|r| r.as_vec4().to_array()),
+        view_from_model: rows(&view_from_model),
+        view_from_model_normal: [0, 1, 2].map(normal_row),
+        two_sided: !view.session.solidity(instance.mesh_index, &execution.workers).is_solid(),
+        mirrored,
+    }
+}
+
+fn material_constants<'a>(
+    material: &Material,
+    view: &'a PreparedView<'a>,
+    settings: &Settings,
+    tables: &'a DecodeTables,
+) -> MaterialConstants<'a> {
+    let scene = &view.session.scene;
+    let texture = |reference: Option<TextureRef>| {
+        let reference = reference?;
+        let texture = scene.textures.get(reference.texture as usize)?;
+        let decode = match texture.encoding {
+            vitral_frame::Encoding::Srgb => &tables.srgb,
+            vitral_frame::Encoding::Linear => &tables.linear,
+        };
+        Some(TextureConstants { texture: &**texture, reference, decode })
+    };
+    let (cutoff, blend) = match material.alpha_mode {
+        AlphaMode::Opaque => (None, false),
+        AlphaMode::Mask { cutoff } => (Some(cutoff), false),
+        AlphaMode::Blend => (None, settings.transparency != Transparency::None),
+    };
+    MaterialConstants {
+        model: model(material, settings.illumination, settings.lighting),
+        base: texture(material.base_texture),
+        specular: texture(material.specular_texture),
+        emission: texture(material.emission_texture),
+        opacity: texture(material.opacity_texture),
+        metallic_roughness: texture(material.metallic_roughness_texture),
+        normal: texture(material.normal_texture),
+        cutoff,
+        blend,
+        material: material.clone(),
+    }
+}
+
+fn background_rows(background: &Background, height: u32, raw: bool) -> Vec<[f32; 4]> {
+    let light = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
+    let opaque = |c: [f32; 3]| [c[0], c[1], c[2], 1.0];
+    (0..height)
+        .map(|y| match background {
+            Background::Transparent => [0.0; 4],
+            Background::Color { color } => opaque(light(*color)),
+            Background::Gradient { top, bottom } => {
+                let t = (y as f32 + 0.5) / height as f32;
+                opaque(light([0, 1, 2].map(|k| top[k] + (bottom[k] - top[k]) * t)))
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,360 @@
+//! Illuminating points of one object and material, eight at a time.
+
+use super::FrameConstants;
+use super::frame_constants::{MaterialConstants, TextureConstants};
+use super::geometry::{F, Slots, Surface, Viewing, blend, constant, gather, surface};
+use super::points::{Group, Points};
+use super::{flat, gouraud, phong};
+use crate::Shading;
+use vitral_light::{
+    Illumination, Material, Microfacet, Phong, PreparedLight, Reflectance, Reflected, Rgb, constant_color,
+    cook_torrance, microfacet_from_phong, phong_from_microfacet,
+};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
+use vitral_scene::Mesh;
+
+/// What a material's points go through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Model {
+    /// The surface's own colour, without lights: lighting is off, or the material is unlit.
+    Own,
+    /// Self-luminous: `I = ki`.
+    Constant(Rgb),
+    /// Ambient, Lambert, Phong or Blinn–Phong.
+    Empirical(Illumination),
+    /// Cook–Torrance.
+    Microfacet,
+}
+
+/// The model that a material gets.
+pub(crate) fn model(material: &Material, illumination: Illumination, lighting: bool) -> Model {
+    match illumination.for_reflectance(&material.reflectance) {
+        Illumination::Constant => Model::Constant(constant_color(material)),
+        _ if !lighting || material.unlit => Model::Own,
+        Illumination::CookTorrance => Model::Microfacet,
+        other => Model::Empirical(other),
+    }
+}
+
+/// Reflection coefficients at eight points.
+pub(crate) enum Coefficients<S: Simd> {
+    Empirical(Phong<F<S>>),
+    Microfacet(Microfacet<F<S>>),
+}
+
+/// The lights of a frame and the way to use them.
+pub(crate) struct Lighting<'a> {
+    lights: &'a [PreparedLight],
+    ambient: Rgb,
+    illumination: Illumination,
+    perspective: bool,
+}
+
+impl Lighting<'_> {
+    /// Light reflected towards the viewer; position and unit normal in view space.
+    #[inline(always)]
+    pub(crate) fn reflect<S: Simd>(
+        &self,
+        simd: S,
+        position: V3<F<S>>,
+        n: V3<F<S>>,
+        coefficients: &Coefficients<S>,
+    ) -> Reflected<F<S>> {
+        let one = constant(simd, 1.0);
+        let v = if self.perspective { (-position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
+        let surface = vitral_light::Surface { position, n, v };
+        let lit = |_| one;
+        match coefficients {
+            Coefficients::Empirical(k) => {
+                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit)
+            }
+            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
+        }
+    }
+}
+
+/// Illuminates all points; `colors` gets premultiplied RGBA in the space in which pictures are composed.
+#[inline(always)]
+pub(crate) fn shade_all<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, colors: &mut [[f32; 4]]) {
+    for group in &points.groups {
+        let order = &points.order[group.start as usize..group.end as usize];
+        for eight in order.chunks(LANES) {
+            if constants.surfaces_are_background {
+                for &p in eight {
+                    let row = points.place[p as usize][1] as usize;
+                    colors[p as usize] = constants.background[row.min(constants.background.len() - 1)];
+                }
+            } else {
+                simd.vectorize(
+                    #[inline(always)]
+                    || shade_eight(simd, points, group, eight, constants, colors),
+                );
+            }
+        }
+    }
+}
+
+/// The slots of up to eight points of a group.
+#[inline(always)]
+pub(crate) fn slots(points: &Points, eight: &[u32], first_facet: u32) -> Slots {
+    let mut slots = Slots { triangle: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+    for lane in 0..LANES {
+        let p = eight[lane.min(eight.len() - 1)] as usize;
+        slots.triangle[lane] = points.facet[p] - first_facet;
+        [slots.x[lane], slots.y[lane]] = points.place[p];
+    }
+    slots
+}
+
+#[inline(always)]
+fn shade_eight<S: Simd>(
+    simd: S,
+    points: &Points,
+    group: &Group,
+    eight: &[u32],
+    constants: &FrameConstants<'_>,
+    colors: &mut [[f32; 4]],
+) {
+    let world_instance = &constants.view.session.world.instances[group.instance as usize];
+    let instance = &constants.instances[group.instance as usize];
+    let mesh = &*world_instance.mesh;
+    let material = constants.material(mesh.parts[group.part as usize].material);
+    let slots = slots(points, eight, world_instance.first_facet);
+    let viewing = Viewing {
+        interpolation: constants.interpolation,
+        perspective: constants.view.view.perspective,
+        double_sided: material.material.double_sided,
+    };
+    let surface = surface(simd, mesh, instance, &slots, viewing);
+    let looks = Looks::new(simd, mesh, &slots, &surface, material, constants.raw);
+
+    let lighting = Lighting {
+        lights: &constants.lights,
+        ambient: constants.ambient,
+        illumination: match material.model {
+            Model::Empirical(illumination) => illumination,
+            _ => Illumination::Phong,
+        },
+        perspective: viewing.perspective,
+    };
+    let reflected = match material.model {
+        Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },
+        Model::Constant(color) => {
+            let color = V3::splat(looks.alpha, color);
+            Reflected { diffuse: color.times(looks.base), specular: V3::splat(looks.alpha, [0.0; 3]) }
+        }
+        Model::Empirical(_) | Model::Microfacet => match constants.shading {
+            Shading::Phong => {
+                let k = looks.coefficients(simd, material, looks.base);
+                let normal = looks.mapped_normal(simd, mesh, &slots, &surface, material);
+                phong::shade(simd, &surface, normal, &lighting, &k)
+            }
+            Shading::Flat => {
+                let k = looks.coefficients(simd, material, looks.base);
+                let faces = constants.view.session.faces(world_instance.mesh_index);
+                flat::shade(simd, mesh, faces, instance, &slots, &surface, &lighting, &k)
+            }
+            Shading::Gouraud => {
+                let corners = std::array::from_fn(|c| looks.coefficients(simd, material, looks.corner_colors[c]));
+                let r = gouraud::shade(simd, &surface, &lighting, &corners);
+                Reflected { diffuse: r.diffuse.times(looks.texture), specular: r.specular }
+            }
+        },
+    };
+
+    // Premultiply and hand on.
+    let emitted = match material.model {
+        Model::Constant(_) => V3::splat(looks.alpha, [0.0; 3]),
+        _ => looks.emission,
+    };
+    let color = (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha);
+    let soa = [color.x, color.y, color.z, looks.alpha].map(|c| c.to_array());
+    for (lane, &p) in eight.iter().enumerate() {
+        colors[p as usize] = [0, 1, 2, 3].map(|k| soa[k][lane]);
+    }
+}
+
+/// What textures and vertex colours make of a material at eight points.
+struct Looks<S: Simd> {
+    /// Texture colour alone.
+    texture: V3<F<S>>,
+    /// Texture colour times vertex colour: multiplies the diffuse or base colour.
+    base: V3<F<S>>,
+    /// Vertex colours at the three corners.
+    corner_colors: [V3<F<S>>; 3],
+    specular: V3<F<S>>,
+    emission: V3<F<S>>,
+    metallic_factor: F<S>,
+    roughness_factor: F<S>,
+    alpha: F<S>,
+}
+
+impl<S: Simd> Looks<S> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        raw: bool,
+    ) -> Self {
+        let one = constant(simd, 1.0);
+        let white = V3::new(one, one, one);
+        let lookup = |texture: &Option<TextureConstants<'_>>| {
+            texture.as_ref().and_then(|t| sample(simd, mesh, slots, surface, t))
+        };
+        let rgb = |t: &[F<S>; 4]| V3::new(t[0], t[1], t[2]);
+
+        // Vertex colours are kept linear; the raw colour space wants them as they were in the file.
+        let (mut corner_colors, mut vertex_color, mut alpha) = ([white; 3], white, one);
+        if let Some(attribute) = &mesh.colors {
+            let corners = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
+            let encode = |c: F<S>| if raw { lanes::Lanes::srgb_from_linear(c) } else { c };
+            corner_colors = corners.map(|c| V3::new(c[0], c[1], c[2]).map(encode));
+            vertex_color = super::geometry::blend3(&surface.weights, &corner_colors);
+            alpha = blend(&surface.weights, [corners[0][3], corners[1][3], corners[2][3]]);
+        }
+
+        let base_texture = lookup(&material.base);
+        let texture = base_texture.as_ref().map_or(white, rgb);
+        if let Some(t) = &base_texture {
+            alpha = alpha * t[3];
+        }
+        if let Some(t) = lookup(&material.opacity) {
+            alpha = alpha * t[0];
+        }
+        let alpha = lanes::Lanes::saturate(alpha * material.material.opacity);
+        let alpha = match (material.cutoff, material.blend) {
+            (Some(cutoff), _) => {
+                let gone = lanes::Lanes::lt(alpha, constant(simd, cutoff));
+                gone.select(constant(simd, 0.0), one)
+            }
+            (None, true) => alpha,
+            (None, false) => one,
+        };
+        let emission = V3::splat(one, material.material.emission);
+        let emission = lookup(&material.emission).map_or(emission, |t| emission.times(rgb(&t)));
+        let specular = lookup(&material.specular).map_or(white, |t| rgb(&t));
+        let metallic_roughness = lookup(&material.metallic_roughness);
+        Self {
+            texture,
+            base: texture.times(vertex_color),
+            corner_colors,
+            specular,
+            emission,
+            metallic_factor: metallic_roughness.as_ref().map_or(one, |t| t[2]),
+            roughness_factor: metallic_roughness.as_ref().map_or(one, |t| t[1]),
+            alpha,
+        }
+    }
+
+    /// The surface's own colour.
+    #[inline(always)]
+    fn own(&self, simd: S, material: &MaterialConstants<'_>) -> V3<F<S>> {
+        let color = match material.material.reflectance {
+            Reflectance::Phong { kd, .. } => kd,
+            Reflectance::MetallicRoughness { base_color, .. } => base_color,
+        };
+        V3::splat(constant(simd, 1.0), color).times(self.base)
+    }
+
+    /// Coefficients for the material's model, with `color` multiplying the diffuse or base colour.
+    #[inline(always)]
+    fn coefficients(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
+        let one = constant(simd, 1.0);
+        let splat = |c: Rgb| V3::splat(one, c);
+        match (material.material.reflectance, material.model) {
+            (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
+                let k = Phong {
+                    ka: splat(ka).times(color),
+                    kd: splat(kd).times(color),
+                    ks: splat(ks).times(self.specular),
+                    shininess: constant(simd, shininess),
+                };
+                match model {
+                    Model::Microfacet => Coefficients::Microfacet(microfacet_from_phong(&k)),
+                    _ => Coefficients::Empirical(k),
+                }
+            }
+            (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
+                let m = Microfacet {
+                    base_color: splat(base_color).times(color),
+                    metallic: self.metallic_factor * metallic,
+                    roughness: self.roughness_factor * roughness,
+                };
+                match model {
+                    Model::Microfacet => Coefficients::Microfacet(m),
+                    _ => Coefficients::Empirical(phong_from_microfacet(&m)),
+                }
+            }
+        }
+    }
+
+    /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates.
+    #[inline(always)]
+    fn mapped_normal(
+        &self,
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+    ) -> Option<V3<F<S>>> {
+        let texture = material.normal.as_ref()?;
+        let texel = sample(simd, mesh, slots, surface, texture)?;
+        let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
+        let uv = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
+        let n = phong::interpolated_normal(surface);
+
+        // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
+        let (e1, e2) = (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
+        let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
+        let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
+        let zero = constant(simd, 0.0);
+        let flipped = lanes::Lanes::lt(du1 * dv2 - du2 * dv1, zero);
+        let tangent = e1.scale(dv2) - e2.scale(dv1);
+        let tangent = V3::select(flipped, -tangent, tangent);
+        let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
+        let bitangent = n.cross(tangent);
+        let scale = material.material.normal_scale;
+        let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
+        Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
+    }
+}
+
+/// Looks a texture up at eight points; `None` if the mesh has no such texture coordinates.
+#[inline(always)]
+fn sample<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<S>,
+    t: &TextureConstants<'_>,
+) -> Option<[F<S>; 4]> {
+    let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
+    let m = &t.reference.transform;
+    let corners = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
+    let [u, v] = [0, 1].map(|r| corners.map(|c| c[0] * m[r][0] + c[1] * m[r][1] + m[r][2]));
+    let at = |weights: &[F<S>; 3]| (blend(weights, u), blend(weights, v));
+    let (here, right, down) = (at(&surface.weights), at(&surface.weights_right), at(&surface.weights_down));
+
+    // Level of detail: the longer side of the pixel's footprint, in texels.
+    let base = t.texture.levels.first()?;
+    let (w, h) = (base.width() as f32, base.height() as f32);
+    let length2 = |p: (F<S>, F<S>)| {
+        let (du, dv) = ((p.0 - here.0) * w, (p.1 - here.1) * h);
+        du * du + dv * dv
+    };
+    let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(right), length2(down))) * 0.5;
+    let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
+    let mut soa = [[0.0f32; LANES]; 4];
+    for lane in 0..LANES {
+        let texel = t.texture.sample(&t.reference.sampler, us[lane], vs[lane], lods[lane], t.decode);
+        for k in 0..4 {
+            soa[k][lane] = texel[k];
+        }
+    }
+    Some(soa.map(|c| F32x8::from_slice(simd, &c)))
+}

@@ -1,0 +1,33 @@
+//! Phong shading: the normal is interpolated and every pixel is illuminated by itself. The costly reference.
+//!
+//! Input: corners and weights of a point, view space. Output: reflected light at the point.
+//! Source: [Phong 1975].
+
+use super::geometry::{Surface, blend3};
+use super::group::{Coefficients, Lighting};
+use vitral_light::Reflected;
+use vitral_math::lanes::{F32x8, Simd, V3};
+
+/// Illuminates each point with its interpolated normal; `normal` replaces it (normal maps).
+#[inline(always)]
+pub(crate) fn shade<S: Simd>(
+    simd: S,
+    surface: &Surface<S>,
+    normal: Option<V3<F32x8<S>>>,
+    lighting: &Lighting<'_>,
+    coefficients: &Coefficients<S>,
+) -> Reflected<F32x8<S>> {
+    let position = blend3(&surface.weights, &surface.positions);
+    let normal = normal.unwrap_or_else(|| interpolated_normal(surface));
+    lighting.reflect(simd, position, normal, coefficients)
+}
+
+/// The unit normal between the corners'.
+#[inline(always)]
+pub(crate) fn interpolated_normal<S: Simd>(surface: &Surface<S>) -> V3<F32x8<S>> {
+    let n = blend3(&surface.weights, &surface.normals).normalize();
+    // Opposite corner normals can cancel out: use the facet's.
+    let length2 = n.dot(n);
+    let usable = vitral_math::lanes::Lanes::lt(length2 * 0.0, length2);
+    V3::select(usable, n, surface.facet_normal)
+}

@@ -1,0 +1,28 @@
+//! Which surface is seen at each sample.
+
+pub mod zbuffer;
+
+use crate::{Execution, PreparedView};
+use crate::stats::GeometryStats;
+use vitral_exec::Limit;
+use vitral_raster::{Batch, Layer, Tile, TileGrid};
+
+/// Takes tiles as they are finished, from any thread, each once.
+pub trait TileSink: Sync {
+    /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>);
+}
+
+/// An algorithm that finds the visible surface at each sample.
+pub trait VisibleSurface: Sync {
+    /// Fills `grid` and hands each finished tile to `sink`. `marks` are lines and points already on the screen, to be
+    /// tested against the finished depth. Besides limits, nothing can fail.
+    fn resolve(
+        &self,
+        view: &PreparedView<'_>,
+        marks: Option<&Batch>,
+        grid: &mut TileGrid,
+        execution: &Execution,
+        sink: &dyn TileSink,
+    ) -> Result<GeometryStats, Limit>;
+}

@@ -1,0 +1,234 @@
+//! The z-buffer: every sample keeps the nearest facet that covers it.
+//!
+//! Triangles come in any order. For each covered sample their depth is compared with the depth that the sample holds;
+//! the nearer one stays. Here the picture is cut into tiles of 64x64 pixels whose samples fit in the second-level
+//! cache; triangles are sorted into the tiles they touch, a few hundred thousand at a time, and each tile is then
+//! walked by one thread. Blocks of 8x8 pixels remember how far their farthest sample is, so that hidden triangles are
+//! rejected without looking at samples. Transparent facets are not tested against each other but collected, after all
+//! opaque ones.
+//!
+//! In:   prepared draws (model space). Out: the samples of each tile (screen space).
+//! Cost: linear in vertices, triangles and covered samples; memory: the samples and one round of triangles.
+//! Source: [Catmull 1974], [Straßer 1974]; hierarchical depth after [Greene et al. 1993]. Departs from them: equal
+//! depths go to the lower facet, so the order of triangles cannot be seen.
+
+use super::{TileSink, VisibleSurface};
+use crate::stats::GeometryStats;
+use crate::{Execution, PreparedView};
+use std::ops::Range;
+use std::sync::Mutex;
+use vitral_exec::Limit;
+use vitral_math::lanes::{Level, Simd, dispatch};
+use vitral_raster::{
+    Batch, BlockSink, Draw, Layer, LayerSink, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink, transform,
+    traverse,
+};
+
+/// Triangles in one piece of work.
+const TRIANGLES_A_JOB: u32 = 8192;
+/// Triangles that are set up before the tiles are walked: bounds the memory.
+const TRIANGLES_A_ROUND: u64 = 1 << 18;
+/// Vertices in one piece of work.
+const VERTICES_A_JOB: usize = 4096;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct ZBuffer;
+
+/// A run of triangles of one draw.
+struct Piece<'v, 'a> {
+    draw: &'v Draw<'a>,
+    /// Index into the view's instances.
+    item: usize,
+    range: Range<u32>,
+}
+
+/// Pieces that are set up together; a job's batch holds opaque triangles or layers, not both.
+struct Job<'v, 'a> {
+    pieces: Vec<Piece<'v, 'a>>,
+    layered: bool,
+}
+
+impl VisibleSurface for ZBuffer {
+    fn resolve(
+        &self,
+        view: &PreparedView<'_>,
+        marks: Option<&Batch>,
+        grid: &mut TileGrid,
+        execution: &Execution,
+        sink: &dyn TileSink,
+    ) -> Result<GeometryStats, Limit> {
+        let mut stats = GeometryStats::default();
+        let jobs = jobs(view);
+        let rounds = rounds(&jobs);
+        let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
+        let layers: Vec<Mutex<Vec<Layer>>> = grid.tiles.iter().map(|_| Mutex::default()).collect();
+        for (number, round) in rounds.iter().enumerate() {
+            execution.budget.check("visibility")?;
+            let last = number + 1 == rounds.len();
+            let jobs = &jobs[round.clone()];
+            transform_vertices(view, jobs, &mut vertices, execution, &mut stats);
+            let batches = set_up(view, jobs, &vertices, execution);
+            for (_, batch) in &batches {
+                stats.add(&batch.counters);
+            }
+            if !last {
+                retire_vertices(view, jobs, &mut vertices);
+            }
+            execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
+                let tile = &mut tiles[0];
+                if number == 0 {
+                    tile.clear();
+                }
+                let mut layers = layers[index].lock().expect("no thread panics while it holds layers");
+                let tile_batches = batches.iter().map(|(layered, batch)| (*layered, batch));
+                let tile_batches = tile_batches.chain(marks.filter(|_| last).map(|m| (true, m)));
+                walk(execution.level, tile_batches, index, tile, &view.pattern, &mut layers);
+                if last {
+                    sink.tile(index, tile, &mut layers);
+                }
+            });
+            let mut spare = view.session.spare_batches.lock().expect("spare batches");
+            spare.extend(batches.into_iter().map(|(_, batch)| batch));
+        }
+        let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
+        spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
+        Ok(stats)
+    }
+}
+
+/// Cuts the view's draws into jobs of about equal size, all opaque ones first.
+fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
+    let mut jobs = Vec::new();
+    for layered in [false, true] {
+        let mut job = Job { pieces: Vec::new(), layered };
+        let mut size = 0;
+        for (item, instance) in view.instances.iter().enumerate() {
+            for draw in if layered { &instance.layered } else { &instance.opaque } {
+                for range in &draw.ranges {
+                    let mut start = range.start;
+                    while start < range.end {
+                        let end = range.end.min(start + (TRIANGLES_A_JOB - size));
+                        job.pieces.push(Piece { draw, item, range: start..end });
+                        size += end - start;
+                        start = end;
+                        if size == TRIANGLES_A_JOB {
+                            jobs.push(std::mem::replace(&mut job, Job { pieces: Vec::new(), layered }));
+                            size = 0;
+                        }
+                    }
+                }
+            }
+        }
+        if !job.pieces.is_empty() {
+            jobs.push(job);
+        }
+    }
+    jobs
+}
+
+/// Groups jobs into rounds; there is always at least one, so that tiles are cleared and handed on.
+fn rounds(jobs: &[Job<'_, '_>]) -> Vec<Range<usize>> {
+    let jobs_a_round = (TRIANGLES_A_ROUND / u64::from(TRIANGLES_A_JOB)) as usize;
+    let count = jobs.len().div_ceil(jobs_a_round).max(1);
+    (0..count).map(|r| r * jobs_a_round..((r + 1) * jobs_a_round).min(jobs.len())).collect()
+}
+
+/// Brings the vertices of all instances in `jobs` to the screen, where that has not been done in an earlier round.
+fn transform_vertices(
+    view: &PreparedView<'_>,
+    jobs: &[Job<'_, '_>],
+    vertices: &mut [Vec<ScreenVertex>],
+    execution: &Execution,
+    stats: &mut GeometryStats,
+) {
+    let mut needed: Vec<Option<&Draw<'_>>> = vertices.iter().map(|_| None).collect();
+    for piece in jobs.iter().flat_map(|j| &j.pieces) {
+        if vertices[piece.item].is_empty() {
+            needed[piece.item] = Some(piece.draw);
+        }
+    }
+    let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
+    let mut work = Vec::new();
+    for (draw, out) in needed.iter().zip(vertices.iter_mut()) {
+        let Some(draw) = draw else { continue };
+        if out.capacity() == 0 {
+            *out = spare.pop().unwrap_or_default();
+        }
+        out.resize(draw.positions.len(), ScreenVertex::default());
+        stats.vertices += draw.positions.len() as u64;
+        let chunks = draw.positions.chunks(VERTICES_A_JOB).zip(out.chunks_mut(VERTICES_A_JOB));
+        work.extend(chunks.map(|(positions, out)| (positions, &draw.clip_from_model, out)));
+    }
+    drop(spare);
+    let viewport = view.screen.transform();
+    execution.workers.for_each(work, |(positions, clip_from_model, out)| {
+        transform(execution.level, positions, clip_from_model, viewport, out);
+    });
+}
+
+/// Gives the vertices of finished instances back: all but the last of the round, which may go on in the next.
+fn retire_vertices(view: &PreparedView<'_>, jobs: &[Job<'_, '_>], vertices: &mut [Vec<ScreenVertex>]) {
+    let last = jobs.last().and_then(|j| j.pieces.last()).map(|p| p.item);
+    let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
+    for (item, v) in vertices.iter_mut().enumerate() {
+        if Some(item) != last && v.capacity() > 0 {
+            let mut v = std::mem::take(v);
+            v.clear();
+            spare.push(v);
+        }
+    }
+}
+
+/// Sets up each job's triangles and sorts them by tile.
+fn set_up(
+    view: &PreparedView<'_>,
+    jobs: &[Job<'_, '_>],
+    vertices: &[Vec<ScreenVertex>],
+    execution: &Execution,
+) -> Vec<(bool, Batch)> {
+    execution.workers.map(jobs.len(), |i| {
+        let mut batch = view.session.spare_batches.lock().expect("spare batches").pop().unwrap_or_default();
+        batch.clear();
+        for piece in &jobs[i].pieces {
+            batch.add(piece.draw, &vertices[piece.item], piece.range.clone(), &view.screen);
+        }
+        batch.finish(&view.screen);
+        (jobs[i].layered, batch)
+    })
+}
+
+/// Walks a tile's triangles.
+fn walk<'b>(
+    level: Level,
+    batches: impl Iterator<Item = (bool, &'b Batch)>,
+    index: usize,
+    tile: &mut Tile,
+    pattern: &SamplePattern,
+    layers: &mut Vec<Layer>,
+) {
+    let place = (tile.x, tile.y);
+    dispatch!(level, simd => {
+        for (layered, batch) in batches {
+            if layered {
+                walk_batch(simd, batch, index, place, pattern, LayerSink::new(tile, pattern, layers));
+            } else {
+                walk_batch(simd, batch, index, place, pattern, VisibilitySink::new(tile, pattern));
+            }
+        }
+    });
+}
+
+#[inline(always)]
+fn walk_batch<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    batch: &Batch,
+    index: usize,
+    place: (u32, u32),
+    pattern: &SamplePattern,
+    mut sink: K,
+) {
+    for setup in batch.tile(index) {
+        traverse(simd, setup, place, pattern, &mut sink);
+    }
+}

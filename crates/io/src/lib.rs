@@ -4,8 +4,70 @@
 //! touches the file system or the clock, so the same code runs in a browser.
 #![forbid(unsafe_code)]
 
+pub mod encode;
 mod error;
+mod format;
+pub mod gltf;
+pub mod image;
+mod mtl;
+pub mod obj;
+pub mod off;
+pub mod ply;
+mod polygons;
 mod resolve;
+pub mod scene_json;
+pub mod stl;
+mod text;
+mod textures;
+pub mod triangulate;
+mod uri;
+mod warnings;
+mod weld;
 
 pub use error::{Error, Place};
+pub use format::{Format, FormatKind, FormatRow, formats};
 pub use resolve::{NoFiles, ResolveError, Resolver};
+
+use vitral_exec::Workers;
+use vitral_scene::{Mesh, Scene};
+
+/// Reads a model or scene file of any readable [`Format`], known by its content first, by its extension second.
+///
+/// `file` is its name, for messages and for the extension; `-` for what came in by standard input. `resolver` gives the
+/// files that it names. What is odd but readable is told in [`Scene::warnings`]. The scene does not depend on the number
+/// of `workers`.
+///
+/// # Errors
+/// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`] names a file that it
+/// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
+pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    match Format::detect(bytes, file)? {
+        Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
+        Format::Obj => obj::load(bytes, file, resolver, workers),
+        Format::Stl => stl::load(bytes, file, workers),
+        Format::Ply => ply::load(bytes, file, workers),
+        Format::Off => off::load(bytes, file, workers),
+        Format::SceneJson => scene_json::load(bytes, file, resolver, workers),
+    }
+}
+
+/// The name of a file without folder and extension, for meshes that have no name of their own.
+pub(crate) fn stem(file: &str) -> String {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    name.rsplit_once('.').map_or(name, |(stem, _)| if stem.is_empty() { name } else { stem }).to_owned()
+}
+
+/// Puts a mesh into the scene, and tells what a renderer would stumble over: nothing to show, coordinates that are not
+/// finite (they are kept; whoever draws drops the primitives that touch them).
+pub(crate) fn finish(mesh: Mesh, mut scene: Scene, file: &str) -> Scene {
+    let broken = mesh.positions.iter().filter(|p| !p.iter().all(|c| c.is_finite())).count();
+    if broken > 0 {
+        scene.warnings.push(format!("{file}: {broken} vertices have coordinates that are not finite; what they touch vanishes"));
+    }
+    if mesh.triangles.is_empty() && mesh.lines.is_empty() && mesh.points.is_empty() {
+        scene.warnings.push(format!("{file}: the file holds nothing to show"));
+        return scene;
+    }
+    scene.add_mesh(mesh, vitral_math::DMat4::IDENTITY);
+    scene
+}

@@ -177,3 +177,70 @@ impl Material {
         .filter_map(Option::as_mut)
     }
 }
+
+impl Material {
+    /// The course's transmission coefficient `kt`: 0 opaque, 1 fully transparent. `opacity`, the A of RGBA, is `1 - kt`.
+    pub fn kt(&self) -> f32 {
+        1.0 - self.opacity
+    }
+
+    /// Sets `opacity` from the course's `kt`.
+    pub fn set_kt(&mut self, kt: f32) {
+        self.opacity = 1.0 - kt;
+    }
+}
+
+/// The self-luminous model, `I = ki`: one value for the whole object, whatever the lights are. `ki` is the emission; a
+/// material that emits nothing shows its diffuse or base colour instead, so that the model draws every scene.
+pub fn constant_color(material: &Material) -> Rgb {
+    if material.emission.iter().any(|&channel| channel != 0.0) {
+        return material.emission;
+    }
+    match material.reflectance {
+        Reflectance::Phong { kd, .. } => kd,
+        Reflectance::MetallicRoughness { base_color, .. } => base_color,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn p30_the_constant_model_is_one_value_per_object() {
+        let mut material = Material::default();
+        assert_eq!(constant_color(&material), [0.8; 3]);
+        material.reflectance =
+            Reflectance::MetallicRoughness { base_color: [1.0, 0.5, 0.0], metallic: 1.0, roughness: 0.2 };
+        assert_eq!(constant_color(&material), [1.0, 0.5, 0.0]);
+        material.emission = [0.0, 0.0, 0.3];
+        assert_eq!(constant_color(&material), [0.0, 0.0, 0.3]);
+    }
+
+    #[test]
+    fn t13_opacity_is_one_minus_kt() {
+        let mut material = Material::default();
+        material.set_kt(0.3);
+        assert_eq!(material, Material { opacity: 0.7, ..Material::default() });
+        assert!((material.kt() - 0.3).abs() < 1e-7);
+    }
+
+    #[test]
+    fn t1_both_kinds_of_transmission_can_be_set() {
+        for (name, expected) in [("transparent", Transmission::Transparent), ("translucent", Transmission::Translucent)]
+        {
+            let json = format!(r#"{{"transmission": "{name}", "opacity": 0.5}}"#);
+            let material: Material = serde_json::from_str(&json).unwrap();
+            assert_eq!((material.transmission, material.opacity), (expected, 0.5));
+        }
+    }
+
+    #[test]
+    fn textures_can_be_visited() {
+        let mut material = Material { base_texture: Some(TextureRef::new(3)), ..Material::default() };
+        for texture in material.textures_mut() {
+            texture.texture += 1;
+        }
+        assert_eq!(material.base_texture.map(|t| t.texture), Some(4));
+    }
+}

@@ -80,7 +80,11 @@ impl Aabb {
     /// The axis-aligned box round this box after an affine transform.
     #[must_use]
     pub fn transformed(&self, to_from_here: &DMat4) -> Self {
-        if self.is_empty() { *self } else { Self::from_points(self.corners().map(|c| to_from_here.transform_point3(c))) }
+        if self.is_empty() {
+            *self
+        } else {
+            Self::from_points(self.corners().map(|c| to_from_here.transform_point3(c)))
+        }
     }
 
     /// Whether `p` lies inside or on the boundary.

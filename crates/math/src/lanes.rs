@@ -88,7 +88,15 @@ pub trait Lanes:
         let f = x - whole;
         // Taylor series of 2^f, |f| <= 0.5: the coefficients are ln2^k / k!, and 2^0 is exactly 1.
         let mut p = self.splat(1.525273380e-05);
-        for c in [1.540353039e-04, 1.333355815e-03, 9.618129108e-03, 5.550410866e-02, 2.402265070e-01, std::f32::consts::LN_2, 1.0] {
+        for c in [
+            1.540353039e-04,
+            1.333355815e-03,
+            9.618129108e-03,
+            5.550410866e-02,
+            2.402265070e-01,
+            std::f32::consts::LN_2,
+            1.0,
+        ] {
             p = p * f + c;
         }
         Self::select(underflow, self.splat(0.0), p * whole.exp2_whole())
@@ -320,6 +328,25 @@ impl<T: Lanes> Neg for V3<T> {
     }
 }
 
+/// Gives `f` back. A closure in a call may carry `#[inline(always)]`; one on its own may not, and a closure that is not
+/// inlined computes without the pass's instruction set.
+#[inline(always)]
+pub fn inlined<F>(f: F) -> F {
+    f
+}
+
+/// `[f(0), f(1), f(2)]`, surely inlined.
+#[inline(always)]
+pub fn three<U>(f: impl Fn(usize) -> U) -> [U; 3] {
+    [f(0), f(1), f(2)]
+}
+
+/// `[f(0), f(1), f(2), f(3)]`, surely inlined.
+#[inline(always)]
+pub fn four<U>(f: impl Fn(usize) -> U) -> [U; 4] {
+    [f(0), f(1), f(2), f(3)]
+}
+
 /// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names
 /// (`scalar`, `sse2`, `avx2`, `best`). An unknown or unavailable name is an error that lists the available ones.
 pub fn level_from_environment() -> Result<Level, String> {
@@ -342,7 +369,10 @@ pub fn level_by_name(name: &str) -> Option<Level> {
 
 /// Every level that can run here, slowest first. Pictures do not depend on it.
 pub fn available_levels() -> Vec<(&'static str, Level)> {
-    let mut levels = vec![("scalar", Level::fallback())];
+    #[allow(unused_mut)]
+    let mut levels: Vec<(&'static str, Level)> = Vec::new();
+    #[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64", target_feature = "simd128"))))]
+    levels.push(("scalar", Level::fallback()));
     #[cfg(target_arch = "x86_64")]
     {
         let best = Level::new();

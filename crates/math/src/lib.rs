@@ -7,15 +7,18 @@
 //! `to_from_from`: `clip_from_view * view_from_world * world_from_model`.
 #![forbid(unsafe_code)]
 
+mod bounding_sphere;
 pub mod bounds;
 pub mod color;
 pub mod frustum;
 pub mod func;
 pub mod lanes;
+pub mod obb;
 
 pub use bounds::{Aabb, Sphere};
 pub use frustum::Frustum;
 pub use glam::{
-    DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, IVec2, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, dvec2, dvec3, dvec4,
-    ivec2, uvec2, vec2, vec3, vec4,
+    DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, IVec2, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, dvec2, dvec3,
+    dvec4, ivec2, uvec2, vec2, vec3, vec4,
 };
+pub use obb::Obb;

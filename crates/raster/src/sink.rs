@@ -36,6 +36,7 @@ impl<'a> VisibilitySink<'a> {
     fn note_writes<S: Simd>(&mut self, simd: S, block: &Block, written: u32) {
         let index = block.index();
         let samples = self.pattern.len();
+        self.tile.touched |= written > 0;
         self.tile.block_writes[index] += written;
         if self.tile.block_writes[index] < (BLOCK * BLOCK * samples) as u32 {
             return;

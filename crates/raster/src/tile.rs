@@ -42,6 +42,8 @@ pub struct Tile {
     pub facet: Vec<u32>,
     /// For each 8x8 block, a depth that none of its samples is farther than.
     pub block_far: [f32; TILE_PIXELS / (BLOCK * BLOCK)],
+    /// Whether any sample was written since the tile was cleared.
+    pub touched: bool,
     /// Samples written in each block since `block_far` was computed.
     pub(crate) block_writes: [u32; TILE_PIXELS / (BLOCK * BLOCK)],
 }
@@ -54,12 +56,17 @@ impl Tile {
             depth: vec![0.0; samples * TILE_PIXELS],
             facet: vec![NO_FACET; samples * TILE_PIXELS],
             block_far: [0.0; TILE_PIXELS / (BLOCK * BLOCK)],
+            touched: false,
             block_writes: [0; TILE_PIXELS / (BLOCK * BLOCK)],
         }
     }
 
-    /// Empties the tile.
+    /// Empties the tile; free if nothing was written.
     pub fn clear(&mut self) {
+        if !self.touched {
+            return;
+        }
+        self.touched = false;
         self.depth.fill(0.0);
         self.facet.fill(NO_FACET);
         self.block_far.fill(0.0);

@@ -103,7 +103,7 @@ impl<'a> PreparedView<'a> {
         let corners = mesh.triangles[triangle].map(|i| mesh.positions[i as usize]);
         let clip_from_model = (self.view.clip_from_world() * instance.world_from_model).as_mat4();
         let mut vertices = [ScreenVertex::default(); 3];
-        let level = vitral_math::lanes::Level::fallback();
+        let level = vitral_math::lanes::Level::new();
         vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
         let draw = Draw {
             positions: &corners,

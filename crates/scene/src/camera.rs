@@ -61,9 +61,9 @@ impl Camera {
     pub fn view_from_world(&self) -> DMat4 {
         let forward = (self.focal_point - self.position).try_normalize().unwrap_or(DVec3::NEG_Z);
         let side = |up: DVec3| forward.cross(up).try_normalize().filter(|s| s.is_finite());
-        let right = [self.view_up.normalize_or_zero(), DVec3::Y, DVec3::Z].into_iter().find_map(|up| {
-            side(up).filter(|_| forward.cross(up).length_squared() > 1e-12)
-        });
+        let right = [self.view_up.normalize_or_zero(), DVec3::Y, DVec3::Z]
+            .into_iter()
+            .find_map(|up| side(up).filter(|_| forward.cross(up).length_squared() > 1e-12));
         let right = right.unwrap_or(DVec3::X);
         let up = right.cross(forward);
         let rows = [right, up, -forward].map(|r| DVec4::from((r, -r.dot(self.position))));

@@ -1,12 +1,31 @@
 //! Floor 1: what there is to see. Meshes (model space), nodes and instances (world space), cameras (view and clip space).
 #![forbid(unsafe_code)]
 
+mod buckets;
+pub mod builtin;
 mod camera;
+mod camera_moves;
+mod corner_fans;
+mod default_lights;
+mod edge_table;
+pub mod edges;
+pub mod extent;
+pub mod framing;
+pub mod lab;
 mod mesh;
+pub mod normals;
 mod scene;
+pub mod spaces;
+pub mod topology;
+pub mod weld;
 mod world;
 
 pub use camera::{Camera, Projection, ViewTransform};
+pub use default_lights::default_lights;
+pub use edges::{Edge, EdgeKind};
+pub use extent::{Extent1, Extent2};
+pub use framing::{Axis, Lens, View, depth_range, frame};
 pub use mesh::{Attribute, Corners, Faces, Mesh, Part};
 pub use scene::{Node, NodeTransform, Scene};
+pub use topology::{Solidity, Topology, is_closed};
 pub use world::{Instance, World, WorldError};

@@ -157,10 +157,11 @@ impl Mesh {
     /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
     pub fn check(&self) -> Result<(), String> {
         let vertices = self.positions.len();
-        let in_range = |what: &str, indices: &[u32], count: usize| match indices.iter().position(|&i| i as usize >= count) {
-            Some(k) => Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k])),
-            None => Ok(()),
-        };
+        let in_range =
+            |what: &str, indices: &[u32], count: usize| match indices.iter().position(|&i| i as usize >= count) {
+                Some(k) => Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k])),
+                None => Ok(()),
+            };
         in_range("triangle corner", self.triangles.as_flattened(), vertices)?;
         in_range("line end", self.lines.as_flattened(), vertices)?;
         in_range("point", &self.points, vertices)?;

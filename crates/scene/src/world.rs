@@ -16,6 +16,8 @@ pub struct Instance {
     pub node: u32,
     /// Placement.
     pub world_from_model: DMat4,
+    /// The box round the mesh, model space.
+    pub model_bounds: Aabb,
     /// The box round it, world space.
     pub bounds: Aabb,
     /// Surface id of its first face.
@@ -87,13 +89,15 @@ impl World {
             let world_from_node = world_from_parent * node.transform.matrix();
             if let Some(m) = node.mesh {
                 let mesh = scene.meshes.get(m as usize).ok_or(bad("mesh", m, scene.meshes.len()))?;
-                let bounds = bounds[m as usize].transformed(&world_from_node);
+                let model_bounds = bounds[m as usize];
+                let bounds = model_bounds.transformed(&world_from_node);
                 world.bounds = world.bounds.union(&bounds);
                 world.instances.push(Instance {
                     mesh: Arc::clone(mesh),
                     mesh_index: m,
                     node: index,
                     world_from_model: world_from_node,
+                    model_bounds,
                     bounds,
                     first_surface: surfaces as u32,
                     first_facet: facets as u32,

@@ -1,1 +1,10 @@
-//! Placeholder.
+//! Beside the house: what tests share. [`golden`] images, the [`matrix`] of SIMD levels and thread counts, and
+//! [`fixture`] files. Nothing in the house depends on this crate except its tests.
+#![forbid(unsafe_code)]
+
+pub mod fixture;
+pub mod golden;
+pub mod matrix;
+mod page;
+
+pub use golden::{Tolerance, check};

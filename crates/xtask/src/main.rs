@@ -1,2 +1,40 @@
-//! Placeholder.
-fn main() {}
+//! Developer commands: `cargo xtask test | check | bless | compare`.
+#![forbid(unsafe_code)]
+
+mod bless;
+mod check;
+mod compare;
+mod prepare;
+mod shell;
+mod tally;
+mod test;
+mod wasm;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+cargo xtask test                  install what the tests need, run all of them, close with the count
+cargo xtask check                 the floors and the rules of the house that the compiler does not know
+cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
+cargo xtask compare [--quick] [--peers-only]
+                                  install the peers, run them in turns with vitral, print ratios";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let result = match words.as_slice() {
+        ["test"] => test::run(),
+        ["check"] => check::run(),
+        ["bless"] => bless::run(None),
+        ["bless", filter] => bless::run(Some(filter)),
+        ["compare", options @ ..] => compare::run(options),
+        _ => Err(format!("usage:\n{USAGE}")),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -89,7 +89,7 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
     }
 
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let across = edges.map(|e| lane * e.a);
+    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
     let several = x0 / BLOCK != x1 / BLOCK || y0 / BLOCK != y1 / BLOCK;
     let mut masks = [0u64; 16];
     for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
@@ -101,10 +101,15 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
             }
             let mut any = 0;
             for s in 0..samples {
-                let at_block: [i32; 3] =
-                    std::array::from_fn(|i| constants[s][i] + edges[i].a * bx as i32 + edges[i].b * by as i32);
-                masks[s] = if several { corner_test(&edges, at_block) } else { None }
-                    .unwrap_or_else(|| mask_rows(simd, &edges, &across, at_block, rows.clone()));
+                let mut at_block = constants[s];
+                for i in 0..3 {
+                    at_block[i] += edges[i].a * bx as i32 + edges[i].b * by as i32;
+                }
+                let known = if several { corner_test(&edges, at_block) } else { None };
+                masks[s] = match known {
+                    Some(mask) => mask,
+                    None => mask_rows(simd, &edges, &across, at_block, rows.clone()),
+                };
                 any |= masks[s];
             }
             if any != 0 {
@@ -139,7 +144,10 @@ fn mask_rows<S: Simd>(
     rows: Range<usize>,
 ) -> u64 {
     let zero = I32x8::splat(simd, 0);
-    let mut e: [I32x8<S>; 3] = std::array::from_fn(|i| across[i] + (at_block[i] + edges[i].b * rows.start as i32));
+    let mut e = *across;
+    for i in 0..3 {
+        e[i] += at_block[i] + edges[i].b * rows.start as i32;
+    }
     let mut mask = 0;
     for row in rows {
         let inside = (e[0] | e[1] | e[2]).simd_ge(zero).to_bitmask();

@@ -4,7 +4,7 @@ use super::FrameConstants;
 use super::geometry::{Viewing, surface};
 use super::group::slots;
 use super::phong::interpolated_normal;
-use super::points::{NO_POINT, Points, visible_part};
+use super::points::{Points, Source};
 use crate::Channels;
 use crate::marks::MarkColors;
 use crate::visible::TileSink;
@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
-use vitral_raster::{Layer, NO_FACET, TILE, TILE_PIXELS, Tile};
+use vitral_raster::{Layer, NO_FACET, TILE_PIXELS, Tile};
 
 /// The wanted planes of one tile, row by row; unwanted ones stay empty.
 #[derive(Debug, Default)]
@@ -56,7 +56,7 @@ impl TileSink for ChannelSink<'_> {
             planes.normal = vec![[0.0; 3]; TILE_PIXELS];
             let mut points = Points::default();
             points.collect(tile, &[], self.constants, &MarkColors::default());
-            dispatch!(self.level, simd => normals(simd, &points, tile, self.constants, &mut planes.normal));
+            dispatch!(self.level, simd => normals(simd, &points, self.constants, &mut planes.normal));
         }
         *self.tiles[index].lock().expect("data planes") = planes;
     }
@@ -92,7 +92,6 @@ impl ChannelSink<'_> {
 fn normals<S: Simd>(
     simd: S,
     points: &Points,
-    tile: &Tile,
     constants: &FrameConstants<'_>,
     out: &mut [[f32; 3]],
 ) {
@@ -111,7 +110,7 @@ fn normals<S: Simd>(
         for eight in points.order[group.start as usize..group.end as usize].chunks(LANES) {
             let slots = slots(points, eight, world_instance.first_facet);
             let n = interpolated_normal(&surface(simd, mesh, instance, &slots, viewing));
-            let soa = [n.x, n.y, n.z].map(|c| c.to_array());
+            let soa = [n.x.to_array(), n.y.to_array(), n.z.to_array()];
             for (lane, &p) in eight.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
                 // The inverse of a rotation is its transpose.
@@ -120,13 +119,9 @@ fn normals<S: Simd>(
             }
         }
     }
-    let (width, height) = visible_part(tile, constants);
-    for y in 0..height {
-        for pixel in y * TILE..y * TILE + width {
-            let point = points.of_sample[pixel];
-            if point != NO_POINT {
-                out[pixel] = of_point[point as usize];
-            }
+    for pixel in &points.pixels {
+        if let Source::Point(point) = pixel.source {
+            out[pixel.index as usize] = of_point[point as usize];
         }
     }
 }

@@ -6,7 +6,7 @@
 //! Source: [Porter & Duff 1984] for the operator.
 
 use super::FrameConstants;
-use super::points::{NO_POINT, Points, visible_part};
+use super::points::{NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd};
@@ -15,8 +15,10 @@ use vitral_raster::{TILE, Tile};
 /// Memory of one tile's composition.
 #[derive(Default)]
 pub(crate) struct Composer {
-    /// Premultiplied, for each pixel.
-    pixels: Vec<[f32; 4]>,
+    /// Pixels that are not plain background.
+    places: Vec<u32>,
+    /// Their colours, premultiplied.
+    colors: Vec<[f32; 4]>,
 }
 
 impl Composer {
@@ -31,27 +33,56 @@ impl Composer {
         marks: &MarkColors,
         out: &mut [[u8; 4]],
     ) {
-        let samples = constants.view.pattern.len();
         let (width, height) = visible_part(tile, constants);
-        let mut layers = points.layers.as_slice();
         for y in 0..height {
-            let row = tile.y as usize + y;
-            let background = constants.background[row];
-            self.pixels.clear();
-            let mut plain = true;
-            for x in 0..width {
-                let pixel = y * TILE + x;
-                let sources = &points.of_sample[pixel * samples..(pixel + 1) * samples];
-                let behind = |source: u32| if source == NO_POINT { background } else { colors[source as usize] };
-                let end = ((pixel + 1) * samples) as u32;
-                let in_front = layers.iter().take_while(|l| l.sample < end).count();
-                let color = if in_front > 0 {
-                    let mine = &layers[..in_front];
-                    layers = &layers[in_front..];
+            out[y * TILE..y * TILE + width].fill(constants.background_bytes[tile.y as usize + y]);
+        }
+        self.places.clear();
+        self.colors.clear();
+        self.mix(tile, points, colors, constants, marks);
+        encode(simd, &self.places, &self.colors, constants.raw, out);
+    }
+
+    /// Mixes the samples of every pixel that shows more than the background.
+    fn mix(
+        &mut self,
+        tile: &Tile,
+        points: &Points,
+        colors: &[[f32; 4]],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
+        let samples = constants.view.pattern.len();
+        let (mut pixels, mut layers) = (points.pixels.as_slice(), points.layers.as_slice());
+        loop {
+            // The next pixel in either list.
+            let of_layer = layers.first().map_or(u32::MAX, |l| l.sample / samples as u32);
+            let of_surface = pixels.first().map_or(u32::MAX, |p| p.index);
+            let index = of_layer.min(of_surface);
+            if index == u32::MAX {
+                return;
+            }
+            let background = constants.background[tile.y as usize + index as usize / TILE];
+            let behind = |point: u32| if point == NO_POINT { background } else { colors[point as usize] };
+            let mut source = Source::Point(NO_POINT);
+            if of_surface == index {
+                source = pixels[0].source;
+                pixels = &pixels[1..];
+            }
+            let point_of = |s: usize| match source {
+                Source::Point(point) => point,
+                Source::Mixed(start) => points.mixed[start as usize + s],
+            };
+            let in_front = layers.iter().take_while(|l| l.sample / samples as u32 == index).count();
+            let (mine, rest) = layers.split_at(in_front);
+            layers = rest;
+            let color = match source {
+                Source::Point(point) if mine.is_empty() => behind(point),
+                _ => {
                     let mut sum = [0.0; 4];
-                    for (s, &source) in sources.iter().enumerate() {
-                        let mut color = behind(source);
-                        let sample = (pixel * samples + s) as u32;
+                    for s in 0..samples {
+                        let mut color = behind(point_of(s));
+                        let sample = index * samples as u32 + s as u32;
                         for layer in mine.iter().filter(|l| l.sample == sample) {
                             let source = layer.source as usize;
                             over(&mut color, if layer.is_mark { marks.color(source) } else { colors[source] });
@@ -59,22 +90,10 @@ impl Composer {
                         add(&mut sum, color);
                     }
                     sum.map(|c| c / samples as f32)
-                } else if sources.iter().all(|&s| s == sources[0]) {
-                    behind(sources[0])
-                } else {
-                    let mut sum = [0.0; 4];
-                    sources.iter().for_each(|&s| add(&mut sum, behind(s)));
-                    sum.map(|c| c / samples as f32)
-                };
-                plain &= in_front == 0 && sources.iter().all(|&s| s == NO_POINT);
-                self.pixels.push(color);
-            }
-            let out = &mut out[y * TILE..y * TILE + width];
-            if plain {
-                out.fill(constants.background_bytes[row]);
-            } else {
-                encode_row(simd, &self.pixels, constants.raw, out);
-            }
+                }
+            };
+            self.places.push(index);
+            self.colors.push(color);
         }
     }
 }
@@ -92,32 +111,40 @@ fn over(below: &mut [f32; 4], above: [f32; 4]) {
     }
 }
 
-/// Premultiplied colours to display bytes with straight alpha.
+/// Premultiplied colours to display bytes with straight alpha, put in their places.
 #[inline(always)]
-fn encode_row<S: Simd>(simd: S, pixels: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
-    for (pixels, out) in pixels.chunks(LANES).zip(out.chunks_mut(LANES)) {
+fn encode<S: Simd>(simd: S, places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
+    for (places, pixels) in places.chunks(LANES).zip(colors.chunks(LANES)) {
         let mut soa = [[0.0f32; LANES]; 4];
         for (lane, p) in pixels.iter().enumerate() {
             for k in 0..4 {
                 soa[k][lane] = p[k];
             }
         }
-        let [r, g, b, a] = [0, 1, 2, 3].map(|k| F32x8::from_slice(simd, &soa[k]));
+        let load = lanes::inlined(
+            #[inline(always)]
+            |k: usize| F32x8::from_slice(simd, &soa[k]),
+        );
+        let (r, g, b, a) = (load(0), load(1), load(2), load(3));
         let zero = F32x8::from_slice(simd, &[0.0; LANES]);
-        let one = zero + 1.0;
         let visible = lanes::Lanes::lt(zero, a);
-        let straight = lanes::Lanes::select(visible, one / a, zero);
-        let byte = |c: F32x8<S>, curve: bool| {
-            let c = lanes::Lanes::saturate(c);
-            let c = if curve { lanes::Lanes::srgb_from_linear(c) } else { c };
-            let bytes: lanes::I32x8<S> = (c * 255.0 + 0.5).to_int();
-            bytes.to_array()
-        };
-        let bytes = [byte(r * straight, !raw), byte(g * straight, !raw), byte(b * straight, !raw), byte(a, false)];
-        for (lane, o) in out.iter_mut().enumerate() {
-            *o = [0, 1, 2, 3].map(|k| bytes[k][lane] as u8);
+        let straight = lanes::Lanes::select(visible, (zero + 1.0) / a, zero);
+        let curve = !raw;
+        let bytes =
+            [byte(r * straight, curve), byte(g * straight, curve), byte(b * straight, curve), byte(a, false)];
+        for (lane, &place) in places.iter().enumerate() {
+            out[place as usize] = [bytes[0][lane] as u8, bytes[1][lane] as u8, bytes[2][lane] as u8, bytes[3][lane] as u8];
         }
     }
+}
+
+/// Display bytes of eight values, through the sRGB curve or as they are.
+#[inline(always)]
+fn byte<S: Simd>(value: F32x8<S>, curve: bool) -> [i32; LANES] {
+    let value = lanes::Lanes::saturate(value);
+    let value = if curve { lanes::Lanes::srgb_from_linear(value) } else { value };
+    let bytes: lanes::I32x8<S> = (value * 255.0 + 0.5).to_int();
+    bytes.to_array()
 }
 
 #[cfg(test)]
@@ -136,10 +163,10 @@ mod tests {
     }
 
     #[test]
-    fn rows_encode_with_straight_alpha() {
+    fn colors_encode_with_straight_alpha() {
         let mut out = [[9; 4]; 3];
         lanes::dispatch!(lanes::Level::new(), simd => {
-            encode_row(simd, &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out)
+            encode(simd, &[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out)
         });
         assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
     }

@@ -7,7 +7,7 @@
 //! Source: [Foley et al. 1990], 16.2.1.
 
 use super::frame_constants::InstanceConstants;
-use super::geometry::{Slots, Surface, gather};
+use super::geometry::{Slots, Surface, affine, gather, linear};
 use super::group::{Coefficients, Lighting};
 use vitral_light::Reflected;
 use vitral_math::lanes::{F32x8, Lanes, Simd, V3};
@@ -51,19 +51,19 @@ pub(crate) fn shade<S: Simd>(
     let [a, b, c] = surface.positions;
     if faces.centers_and_normals.is_empty() {
         let third = a.x.splat(1.0 / 3.0);
-        return lighting.reflect(simd, (a + b + c).scale(third), surface.facet_normal, coefficients);
+        return lighting.reflect(simd, &(a + b + c).scale(third), &surface.facet_normal, coefficients);
     }
-    let [center, normal, _] = gather(simd, |lane| {
-        let [center, normal] = faces.centers_and_normals[mesh.face_of_triangle(slots.triangle[lane] as usize)];
-        [center, normal, [0.0; 3]]
-    });
-    let m = &instance.view_from_model;
-    let row = |r: usize| center[0] * m[r][0] + center[1] * m[r][1] + center[2] * m[r][2] + m[r][3];
-    let position = V3::new(row(0), row(1), row(2));
-    let n = &instance.view_from_model_normal;
-    let row = |r: usize| normal[0] * n[r][0] + normal[1] * n[r][1] + normal[2] * n[r][2];
-    let normal = V3::new(row(0), row(1), row(2)).normalize();
+    let [center, normal, _] = gather(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [center, normal] = faces.centers_and_normals[mesh.face_of_triangle(slots.triangle[lane] as usize)];
+            [center, normal, [0.0; 3]]
+        },
+    );
+    let position = affine(&instance.view_from_model, &center);
+    let normal = linear(&instance.view_from_model_normal, &normal).normalize();
     // The facet's own normal has been turned to the viewer where both sides are seen: follow it.
     let behind = normal.dot(surface.facet_normal).lt(a.x.splat(0.0));
-    lighting.reflect(simd, position, V3::select(behind, -normal, normal), coefficients)
+    lighting.reflect(simd, &position, &V3::select(behind, -normal, normal), coefficients)
 }

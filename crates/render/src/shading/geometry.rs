@@ -33,7 +33,7 @@ pub(crate) fn constant<S: Simd>(simd: S, value: f32) -> F<S> {
     <F<S> as SimdBase<S>>::splat(simd, value)
 }
 
-/// Gathers three values with `N` components for each lane.
+/// Gathers three values with `N` components for each lane: `[corner][component]`.
 #[inline(always)]
 pub(crate) fn gather<S: Simd, const N: usize>(simd: S, corners: impl Fn(usize) -> [[f32; N]; 3]) -> [[F<S>; N]; 3] {
     let mut soa = [[[0.0f32; LANES]; N]; 3];
@@ -45,7 +45,13 @@ pub(crate) fn gather<S: Simd, const N: usize>(simd: S, corners: impl Fn(usize) -
             }
         }
     }
-    soa.map(|c| c.map(|k| F32x8::from_slice(simd, &k)))
+    let mut lanes = [[constant(simd, 0.0); N]; 3];
+    for c in 0..3 {
+        for k in 0..N {
+            lanes[c][k] = F32x8::from_slice(simd, &soa[c][k]);
+        }
+    }
+    lanes
 }
 
 /// `Σ weight * value` over the three corners.
@@ -57,8 +63,11 @@ pub(crate) fn blend<S: Simd>(weights: &[F<S>; 3], values: [F<S>; 3]) -> F<S> {
 /// `Σ weight * vector` over the three corners.
 #[inline(always)]
 pub(crate) fn blend3<S: Simd>(weights: &[F<S>; 3], v: &[V3<F<S>>; 3]) -> V3<F<S>> {
-    let component = |f: fn(&V3<F<S>>) -> F<S>| blend(weights, [f(&v[0]), f(&v[1]), f(&v[2])]);
-    V3::new(component(|v| v.x), component(|v| v.y), component(|v| v.z))
+    V3::new(
+        blend(weights, [v[0].x, v[1].x, v[2].x]),
+        blend(weights, [v[0].y, v[1].y, v[2].y]),
+        blend(weights, [v[0].z, v[1].z, v[2].z]),
+    )
 }
 
 /// The corners of each lane's facet, and the point's weights.
@@ -71,10 +80,9 @@ pub(crate) struct Surface<S: Simd> {
     pub facet_normal: V3<F<S>>,
     /// Barycentric coordinates of the point, not negative, sum 1.
     pub weights: [F<S>; 3],
-    /// The same one pixel to the right and one pixel down (may leave `0..=1`), for texture derivatives.
-    pub weights_right: [F<S>; 3],
-    /// See `weights_right`.
-    pub weights_down: [F<S>; 3],
+    screen: [V3<F<S>>; 3],
+    place: (F<S>, F<S>),
+    interpolation: Interpolation,
 }
 
 /// What a frame says about points and viewer.
@@ -86,8 +94,56 @@ pub(crate) struct Viewing {
     pub double_sided: bool,
 }
 
-/// Builds the surface under each lane's point.
+/// A row of an affine map times `(p, 1)`.
 #[inline(always)]
+fn affine_row<S: Simd>(m: &[f32; 4], p: &[F<S>; 3]) -> F<S> {
+    p[0] * m[0] + p[1] * m[1] + p[2] * m[2] + m[3]
+}
+
+/// An affine map of a point.
+#[inline(always)]
+pub(crate) fn affine<S: Simd>(m: &[[f32; 4]; 3], p: &[F<S>; 3]) -> V3<F<S>> {
+    V3::new(affine_row(&m[0], p), affine_row(&m[1], p), affine_row(&m[2], p))
+}
+
+/// A linear map of a vector.
+#[inline(always)]
+pub(crate) fn linear<S: Simd>(m: &[[f32; 3]; 3], p: &[F<S>; 3]) -> V3<F<S>> {
+    V3::new(
+        p[0] * m[0][0] + p[1] * m[0][1] + p[2] * m[0][2],
+        p[0] * m[1][0] + p[1] * m[1][1] + p[2] * m[1][2],
+        p[0] * m[2][0] + p[1] * m[2][1] + p[2] * m[2][2],
+    )
+}
+
+/// The edge functions of corners `(X, Y, W)` at a point of the screen.
+#[inline(always)]
+fn edges_at<S: Simd>(screen: &[V3<F<S>>; 3], x: F<S>, y: F<S>, interpolation: Interpolation) -> [F<S>; 3] {
+    let [ax, bx, cx] = [screen[0].x - x * screen[0].z, screen[1].x - x * screen[1].z, screen[2].x - x * screen[2].z];
+    let [ay, by, cy] = [screen[0].y - y * screen[0].z, screen[1].y - y * screen[1].z, screen[2].y - y * screen[2].z];
+    let e = [bx * cy - cx * by, cx * ay - ax * cy, ax * by - bx * ay];
+    match interpolation {
+        Interpolation::Perspective => e,
+        Interpolation::Linear => [e[0] * screen[0].z, e[1] * screen[1].z, e[2] * screen[2].z],
+    }
+}
+
+/// Scales numbers to a sum of 1; a third each where the sum is 0.
+#[inline(always)]
+fn normalized<S: Simd>(e: [F<S>; 3]) -> [F<S>; 3] {
+    let sum = e[0] + e[1] + e[2];
+    let (zero, one) = (lanes::Lanes::splat(sum, 0.0), lanes::Lanes::splat(sum, 1.0));
+    let usable = lanes::Lanes::lt(zero, lanes::Lanes::abs(sum));
+    let inverse = one / sum;
+    let third = lanes::Lanes::splat(sum, 1.0 / 3.0);
+    [
+        usable.select(e[0] * inverse, third),
+        usable.select(e[1] * inverse, third),
+        usable.select(e[2] * inverse, third),
+    ]
+}
+
+/// Builds the surface under each lane's point.
 pub(crate) fn surface<S: Simd>(
     simd: S,
     mesh: &Mesh,
@@ -95,75 +151,88 @@ pub(crate) fn surface<S: Simd>(
     slots: &Slots,
     viewing: Viewing,
 ) -> Surface<S> {
-    let model = gather(simd, |lane| {
-        mesh.triangles[slots.triangle[lane] as usize].map(|i| mesh.positions[i as usize])
-    });
-    let affine = |m: &[[f32; 4]; 3], p: &[F<S>; 3]| {
-        let row = |r: usize| p[0] * m[r][0] + p[1] * m[r][1] + p[2] * m[r][2] + m[r][3];
-        V3::new(row(0), row(1), row(2))
-    };
-    let linear = |m: &[[f32; 3]; 3], p: &[F<S>; 3]| {
-        let row = |r: usize| p[0] * m[r][0] + p[1] * m[r][1] + p[2] * m[r][2];
-        V3::new(row(0), row(1), row(2))
-    };
+    simd.vectorize(
+        #[inline(always)]
+        || surface_inlined(simd, mesh, instance, slots, viewing),
+    )
+}
+
+#[inline(always)]
+fn surface_inlined<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    instance: &InstanceConstants,
+    slots: &Slots,
+    viewing: Viewing,
+) -> Surface<S> {
+    let model = gather(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [a, b, c] = mesh.triangles[slots.triangle[lane] as usize];
+            [mesh.positions[a as usize], mesh.positions[b as usize], mesh.positions[c as usize]]
+        },
+    );
 
     // Weigh the corners.
-    let screen: [V3<F<S>>; 3] = std::array::from_fn(|c| affine(&instance.screen_from_model, &model[c]));
+    let to_screen = &instance.screen_from_model;
+    let screen = [affine(to_screen, &model[0]), affine(to_screen, &model[1]), affine(to_screen, &model[2])];
     let (x, y) = (F32x8::from_slice(simd, &slots.x), F32x8::from_slice(simd, &slots.y));
-    let edges_at = |x: F<S>, y: F<S>| {
-        let relative: [(F<S>, F<S>); 3] =
-            std::array::from_fn(|c| (screen[c].x - x * screen[c].z, screen[c].y - y * screen[c].z));
-        let cross = |a: usize, b: usize| relative[a].0 * relative[b].1 - relative[b].0 * relative[a].1;
-        let mut e = [cross(1, 2), cross(2, 0), cross(0, 1)];
-        if viewing.interpolation == Interpolation::Linear {
-            for c in 0..3 {
-                e[c] = e[c] * screen[c].z;
-            }
-        }
-        e
-    };
-    let (zero, one) = (constant(simd, 0.0), constant(simd, 1.0));
-    let normalized = |e: [F<S>; 3]| {
-        let sum = e[0] + e[1] + e[2];
-        let usable = lanes::Lanes::lt(zero, lanes::Lanes::abs(sum));
-        let inverse = usable.select(one / sum, zero);
-        let third = constant(simd, 1.0 / 3.0);
-        e.map(|e| usable.select(e * inverse, third))
-    };
-    let weights = normalized(edges_at(x, y));
+    let w = normalized(edges_at(&screen, x, y, viewing.interpolation));
     // Snapping may put a sample a hair outside the facet: stay on it.
-    let weights = normalized(weights.map(|w| lanes::Lanes::positive(w)));
-    let weights_right = normalized(edges_at(x + 1.0, y));
-    let weights_down = normalized(edges_at(x, y + 1.0));
+    let zero = constant(simd, 0.0);
+    let weights = normalized([
+        lanes::Lanes::max(w[0], zero),
+        lanes::Lanes::max(w[1], zero),
+        lanes::Lanes::max(w[2], zero),
+    ]);
 
     // Bring corners and normals to view space.
-    let positions: [V3<F<S>>; 3] = std::array::from_fn(|c| affine(&instance.view_from_model, &model[c]));
+    let to_view = &instance.view_from_model;
+    let positions = [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
     let geometric = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
     let geometric = if instance.mirrored { -geometric } else { geometric };
-    let mut normals = match &mesh.normals {
-        Some(attribute) => {
-            let values = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
-            std::array::from_fn(|c| linear(&instance.view_from_model_normal, &values[c]).normalize())
+    let mut normals = [geometric; 3];
+    if let Some(attribute) = &mesh.normals {
+        let corners = attribute.corners.as_deref().unwrap_or(&mesh.triangles);
+        let values = gather(
+            simd,
+            #[inline(always)]
+            |lane| {
+                let [a, b, c] = corners[slots.triangle[lane] as usize];
+                [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
+            },
+        );
+        for c in 0..3 {
+            let n = linear(&instance.view_from_model_normal, &values[c]).normalize();
+            // A zero normal in the file falls back to the facet's.
+            normals[c] = V3::select(lanes::Lanes::lt(zero, n.dot(n)), n, geometric);
         }
-        None => [geometric; 3],
-    };
-    // A zero normal in the file falls back to the facet's.
-    for n in &mut normals {
-        let usable = lanes::Lanes::lt(zero, n.dot(*n));
-        *n = V3::select(usable, *n, geometric);
     }
 
     // Where both sides are seen, turn normals to the viewer's side of the facet.
     let mut facet_normal = geometric;
     if instance.two_sided || viewing.double_sided {
-        let point = blend3(&weights, &positions);
-        let towards = if viewing.perspective { geometric.dot(-point) } else { geometric.z };
-        let away = lanes::Lanes::lt(towards, zero);
-        facet_normal = V3::select(away, -geometric, geometric);
-        for n in &mut normals {
-            let behind = lanes::Lanes::lt(n.dot(facet_normal), zero);
-            *n = V3::select(behind, -*n, *n);
+        let towards =
+            if viewing.perspective { geometric.dot(-blend3(&weights, &positions)) } else { geometric.z };
+        facet_normal = V3::select(lanes::Lanes::lt(towards, zero), -geometric, geometric);
+        for c in 0..3 {
+            let behind = lanes::Lanes::lt(normals[c].dot(facet_normal), zero);
+            normals[c] = V3::select(behind, -normals[c], normals[c]);
         }
     }
-    Surface { positions, normals, facet_normal, weights, weights_right, weights_down }
+    Surface { screen, place: (x, y), interpolation: viewing.interpolation, positions, normals, facet_normal, weights }
+}
+
+impl<S: Simd> Surface<S> {
+    /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives; they may leave
+    /// `0..=1`.
+    #[inline(always)]
+    pub(crate) fn neighbours(&self) -> [[F<S>; 3]; 2] {
+        let (x, y) = self.place;
+        [
+            normalized(edges_at(&self.screen, x + 1.0, y, self.interpolation)),
+            normalized(edges_at(&self.screen, x, y + 1.0, self.interpolation)),
+        ]
+    }
 }

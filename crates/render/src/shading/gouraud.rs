@@ -14,7 +14,7 @@
 use super::geometry::{Surface, blend3};
 use super::group::{Coefficients, Lighting};
 use vitral_light::Reflected;
-use vitral_math::lanes::{F32x8, Simd};
+use vitral_math::lanes::{self, F32x8, Simd};
 
 /// Illuminates the three corners of each point's facet and interpolates.
 #[inline(always)]
@@ -24,9 +24,13 @@ pub(crate) fn shade<S: Simd>(
     lighting: &Lighting<'_>,
     corner_coefficients: &[Coefficients<S>; 3],
 ) -> Reflected<F32x8<S>> {
-    let [a, b, c]: [Reflected<F32x8<S>>; 3] = std::array::from_fn(|k| {
-        lighting.reflect(simd, surface.positions[k], surface.normals[k].normalize(), &corner_coefficients[k])
-    });
+    let at = lanes::inlined(
+        #[inline(always)]
+        |k: usize| {
+            lighting.reflect(simd, &surface.positions[k], &surface.normals[k].normalize(), &corner_coefficients[k])
+        },
+    );
+    let (a, b, c) = (at(0), at(1), at(2));
     Reflected {
         diffuse: blend3(&surface.weights, &[a.diffuse, b.diffuse, c.diffuse]),
         specular: blend3(&surface.weights, &[a.specular, b.specular, c.specular]),

@@ -12,7 +12,7 @@ use vitral_light::{
 };
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
-use vitral_scene::Mesh;
+use vitral_scene::{Attribute, Mesh};
 
 /// What a material's points go through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,24 +53,31 @@ pub(crate) struct Lighting<'a> {
 
 impl Lighting<'_> {
     /// Light reflected towards the viewer; position and unit normal in view space.
-    #[inline(always)]
     pub(crate) fn reflect<S: Simd>(
         &self,
         simd: S,
-        position: V3<F<S>>,
-        n: V3<F<S>>,
+        position: &V3<F<S>>,
+        n: &V3<F<S>>,
         coefficients: &Coefficients<S>,
     ) -> Reflected<F<S>> {
-        let one = constant(simd, 1.0);
-        let v = if self.perspective { (-position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
-        let surface = vitral_light::Surface { position, n, v };
-        let lit = |_| one;
-        match coefficients {
-            Coefficients::Empirical(k) => {
-                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit)
-            }
-            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let one = constant(simd, 1.0);
+                let v = if self.perspective { (-*position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
+                let surface = vitral_light::Surface { position: *position, n: *n, v };
+                let lit = lanes::inlined(
+                    #[inline(always)]
+                    |_: usize| one,
+                );
+                match coefficients {
+                    Coefficients::Empirical(k) => {
+                        vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit)
+                    }
+                    Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
+                }
+            },
+        )
     }
 }
 
@@ -86,10 +93,7 @@ pub(crate) fn shade_all<S: Simd>(simd: S, points: &Points, constants: &FrameCons
                     colors[p as usize] = constants.background[row.min(constants.background.len() - 1)];
                 }
             } else {
-                simd.vectorize(
-                    #[inline(always)]
-                    || shade_eight(simd, points, group, eight, constants, colors),
-                );
+                shade_eight(simd, points, group, eight, constants, colors);
             }
         }
     }
@@ -107,8 +111,23 @@ pub(crate) fn slots(points: &Points, eight: &[u32], first_facet: u32) -> Slots {
     slots
 }
 
-#[inline(always)]
+/// One instruction-set function: kept out of line, so that each level compiles it once.
 fn shade_eight<S: Simd>(
+    simd: S,
+    points: &Points,
+    group: &Group,
+    eight: &[u32],
+    constants: &FrameConstants<'_>,
+    colors: &mut [[f32; 4]],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || shade_eight_inlined(simd, points, group, eight, constants, colors),
+    );
+}
+
+#[inline(always)]
+fn shade_eight_inlined<S: Simd>(
     simd: S,
     points: &Points,
     group: &Group,
@@ -156,7 +175,12 @@ fn shade_eight<S: Simd>(
                 flat::shade(simd, mesh, faces, instance, &slots, &surface, &lighting, &k)
             }
             Shading::Gouraud => {
-                let corners = std::array::from_fn(|c| looks.coefficients(simd, material, looks.corner_colors[c]));
+                let colors = &looks.corner_colors;
+                let corners = [
+                    looks.coefficients(simd, material, colors[0]),
+                    looks.coefficients(simd, material, colors[1]),
+                    looks.coefficients(simd, material, colors[2]),
+                ];
                 let r = gouraud::shade(simd, &surface, &lighting, &corners);
                 Reflected { diffuse: r.diffuse.times(looks.texture), specular: r.specular }
             }
@@ -169,9 +193,9 @@ fn shade_eight<S: Simd>(
         _ => looks.emission,
     };
     let color = (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha);
-    let soa = [color.x, color.y, color.z, looks.alpha].map(|c| c.to_array());
+    let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
     for (lane, &p) in eight.iter().enumerate() {
-        colors[p as usize] = [0, 1, 2, 3].map(|k| soa[k][lane]);
+        colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
     }
 }
 
@@ -202,28 +226,38 @@ impl<S: Simd> Looks<S> {
     ) -> Self {
         let one = constant(simd, 1.0);
         let white = V3::new(one, one, one);
-        let lookup = |texture: &Option<TextureConstants<'_>>| {
-            texture.as_ref().and_then(|t| sample(simd, mesh, slots, surface, t))
-        };
-        let rgb = |t: &[F<S>; 4]| V3::new(t[0], t[1], t[2]);
+        let lookup = lanes::inlined(
+            #[inline(always)]
+            |texture: &Option<TextureConstants<'_>>| match texture {
+                Some(t) => sample(simd, mesh, slots, surface, t),
+                None => None,
+            },
+        );
 
         // Vertex colours are kept linear; the raw colour space wants them as they were in the file.
         let (mut corner_colors, mut vertex_color, mut alpha) = ([white; 3], white, one);
         if let Some(attribute) = &mesh.colors {
-            let corners = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
-            let encode = |c: F<S>| if raw { lanes::Lanes::srgb_from_linear(c) } else { c };
-            corner_colors = corners.map(|c| V3::new(c[0], c[1], c[2]).map(encode));
+            let corners = gather_attribute(simd, attribute, mesh, slots);
+            for c in 0..3 {
+                let [r, g, b, _] = corners[c];
+                corner_colors[c] = V3::new(r, g, b);
+                if raw {
+                    let encode = lanes::Lanes::srgb_from_linear;
+                    corner_colors[c] = V3::new(encode(r), encode(g), encode(b));
+                }
+            }
             vertex_color = super::geometry::blend3(&surface.weights, &corner_colors);
             alpha = blend(&surface.weights, [corners[0][3], corners[1][3], corners[2][3]]);
         }
 
         let base_texture = lookup(&material.base);
-        let texture = base_texture.as_ref().map_or(white, rgb);
+        let mut texture = white;
         if let Some(t) = &base_texture {
-            alpha = alpha * t[3];
+            texture = V3::new(t[0], t[1], t[2]);
+            alpha *= t[3];
         }
         if let Some(t) = lookup(&material.opacity) {
-            alpha = alpha * t[0];
+            alpha *= t[0];
         }
         let alpha = lanes::Lanes::saturate(alpha * material.material.opacity);
         let alpha = match (material.cutoff, material.blend) {
@@ -234,18 +268,26 @@ impl<S: Simd> Looks<S> {
             (None, true) => alpha,
             (None, false) => one,
         };
-        let emission = V3::splat(one, material.material.emission);
-        let emission = lookup(&material.emission).map_or(emission, |t| emission.times(rgb(&t)));
-        let specular = lookup(&material.specular).map_or(white, |t| rgb(&t));
-        let metallic_roughness = lookup(&material.metallic_roughness);
+        let mut emission = V3::splat(one, material.material.emission);
+        if let Some([r, g, b, _]) = lookup(&material.emission) {
+            emission = emission.times(V3::new(r, g, b));
+        }
+        let mut specular = white;
+        if let Some([r, g, b, _]) = lookup(&material.specular) {
+            specular = V3::new(r, g, b);
+        }
+        let (mut metallic_factor, mut roughness_factor) = (one, one);
+        if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
+            (metallic_factor, roughness_factor) = (b, g);
+        }
         Self {
             texture,
             base: texture.times(vertex_color),
             corner_colors,
             specular,
             emission,
-            metallic_factor: metallic_roughness.as_ref().map_or(one, |t| t[2]),
-            roughness_factor: metallic_roughness.as_ref().map_or(one, |t| t[1]),
+            metallic_factor,
+            roughness_factor,
             alpha,
         }
     }
@@ -261,16 +303,22 @@ impl<S: Simd> Looks<S> {
     }
 
     /// Coefficients for the material's model, with `color` multiplying the diffuse or base colour.
-    #[inline(always)]
     fn coefficients(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.coefficients_inlined(simd, material, color),
+        )
+    }
+
+    #[inline(always)]
+    fn coefficients_inlined(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
         let one = constant(simd, 1.0);
-        let splat = |c: Rgb| V3::splat(one, c);
         match (material.material.reflectance, material.model) {
             (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
                 let k = Phong {
-                    ka: splat(ka).times(color),
-                    kd: splat(kd).times(color),
-                    ks: splat(ks).times(self.specular),
+                    ka: V3::splat(one, ka).times(color),
+                    kd: V3::splat(one, kd).times(color),
+                    ks: V3::splat(one, ks).times(self.specular),
                     shininess: constant(simd, shininess),
                 };
                 match model {
@@ -280,7 +328,7 @@ impl<S: Simd> Looks<S> {
             }
             (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
                 let m = Microfacet {
-                    base_color: splat(base_color).times(color),
+                    base_color: V3::splat(one, base_color).times(color),
                     metallic: self.metallic_factor * metallic,
                     roughness: self.roughness_factor * roughness,
                 };
@@ -293,7 +341,6 @@ impl<S: Simd> Looks<S> {
     }
 
     /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates.
-    #[inline(always)]
     fn mapped_normal(
         &self,
         simd: S,
@@ -303,9 +350,25 @@ impl<S: Simd> Looks<S> {
         material: &MaterialConstants<'_>,
     ) -> Option<V3<F<S>>> {
         let texture = material.normal.as_ref()?;
+        simd.vectorize(
+            #[inline(always)]
+            || self.bend_normal(simd, mesh, slots, surface, material, texture),
+        )
+    }
+
+    #[inline(always)]
+    fn bend_normal(
+        &self,
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        texture: &TextureConstants<'_>,
+    ) -> Option<V3<F<S>>> {
         let texel = sample(simd, mesh, slots, surface, texture)?;
         let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
-        let uv = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
+        let uv = gather_attribute(simd, attribute, mesh, slots);
         let n = phong::interpolated_normal(surface);
 
         // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
@@ -324,9 +387,41 @@ impl<S: Simd> Looks<S> {
     }
 }
 
-/// Looks a texture up at eight points; `None` if the mesh has no such texture coordinates.
+/// The values of an attribute at the corners of each lane's facet.
 #[inline(always)]
+fn gather_attribute<S: Simd, const N: usize>(
+    simd: S,
+    attribute: &Attribute<[f32; N]>,
+    mesh: &Mesh,
+    slots: &Slots,
+) -> [[F<S>; N]; 3] {
+    let corners = attribute.corners.as_deref().unwrap_or(&mesh.triangles);
+    gather(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [a, b, c] = corners[slots.triangle[lane] as usize];
+            [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
+        },
+    )
+}
+
+/// Looks a texture up at eight points; `None` if the mesh has no such texture coordinates.
 fn sample<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<S>,
+    t: &TextureConstants<'_>,
+) -> Option<[F<S>; 4]> {
+    simd.vectorize(
+        #[inline(always)]
+        || sample_inlined(simd, mesh, slots, surface, t),
+    )
+}
+
+#[inline(always)]
+fn sample_inlined<S: Simd>(
     simd: S,
     mesh: &Mesh,
     slots: &Slots,
@@ -335,19 +430,27 @@ fn sample<S: Simd>(
 ) -> Option<[F<S>; 4]> {
     let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
     let m = &t.reference.transform;
-    let corners = gather(simd, |lane| attribute.at(slots.triangle[lane] as usize, &mesh.triangles));
-    let [u, v] = [0, 1].map(|r| corners.map(|c| c[0] * m[r][0] + c[1] * m[r][1] + m[r][2]));
-    let at = |weights: &[F<S>; 3]| (blend(weights, u), blend(weights, v));
-    let (here, right, down) = (at(&surface.weights), at(&surface.weights_right), at(&surface.weights_down));
+    let corners = gather_attribute(simd, attribute, mesh, slots);
+    let coordinate = lanes::inlined(
+        #[inline(always)]
+        |r: usize, c: usize| corners[c][0] * m[r][0] + corners[c][1] * m[r][1] + m[r][2],
+    );
+    let u = [coordinate(0, 0), coordinate(0, 1), coordinate(0, 2)];
+    let v = [coordinate(1, 0), coordinate(1, 1), coordinate(1, 2)];
+    let here = (blend(&surface.weights, u), blend(&surface.weights, v));
 
     // Level of detail: the longer side of the pixel's footprint, in texels.
     let base = t.texture.levels.first()?;
     let (w, h) = (base.width() as f32, base.height() as f32);
-    let length2 = |p: (F<S>, F<S>)| {
-        let (du, dv) = ((p.0 - here.0) * w, (p.1 - here.1) * h);
-        du * du + dv * dv
-    };
-    let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(right), length2(down))) * 0.5;
+    let [right, down] = surface.neighbours();
+    let length2 = lanes::inlined(
+        #[inline(always)]
+        |weights: &[F<S>; 3]| {
+            let (du, dv) = ((blend(weights, u) - here.0) * w, (blend(weights, v) - here.1) * h);
+            du * du + dv * dv
+        },
+    );
+    let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(&right), length2(&down))) * 0.5;
     let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
     let mut soa = [[0.0f32; LANES]; 4];
     for lane in 0..LANES {
@@ -356,5 +459,10 @@ fn sample<S: Simd>(
             soa[k][lane] = texel[k];
         }
     }
-    Some(soa.map(|c| F32x8::from_slice(simd, &c)))
+    Some([
+        F32x8::from_slice(simd, &soa[0]),
+        F32x8::from_slice(simd, &soa[1]),
+        F32x8::from_slice(simd, &soa[2]),
+        F32x8::from_slice(simd, &soa[3]),
+    ])
 }

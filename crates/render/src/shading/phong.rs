@@ -19,7 +19,7 @@ pub(crate) fn shade<S: Simd>(
 ) -> Reflected<F32x8<S>> {
     let position = blend3(&surface.weights, &surface.positions);
     let normal = normal.unwrap_or_else(|| interpolated_normal(surface));
-    lighting.reflect(simd, position, normal, coefficients)
+    lighting.reflect(simd, &position, &normal, coefficients)
 }
 
 /// The unit normal between the corners'.

@@ -11,9 +11,11 @@ pub(crate) struct Points {
     pub facet: Vec<u32>,
     /// Where it is illuminated, in pixels of the picture.
     pub place: Vec<[f32; 2]>,
-    /// For each sample of the tile (`pixel * samples + sample`), its opaque point or [`NO_POINT`].
-    pub of_sample: Vec<u32>,
-    /// Layers from far to near, sorted by pixel: sample index (as `of_sample`), point or mark, and whether it is a mark.
+    /// Pixels with an opaque surface, in order.
+    pub pixels: Vec<Pixel>,
+    /// The points of the samples of mixed pixels, or [`NO_POINT`].
+    pub mixed: Vec<u32>,
+    /// Layers sorted by pixel and sample, at each sample from far to near.
     pub layers: Vec<LayerPoint>,
     /// Points in the order of their groups.
     pub order: Vec<u32>,
@@ -28,6 +30,24 @@ pub(crate) struct Points {
 
 /// A sample without an opaque surface.
 pub(crate) const NO_POINT: u32 = u32::MAX;
+
+/// A pixel with an opaque surface.
+#[derive(Clone, Copy)]
+pub(crate) struct Pixel {
+    /// Its number in the tile, row by row.
+    pub index: u32,
+    /// The point that fills it, or where its samples start in [`Points::mixed`].
+    pub source: Source,
+}
+
+/// What fills a pixel.
+#[derive(Clone, Copy)]
+pub(crate) enum Source {
+    /// One point.
+    Point(u32),
+    /// Samples from this place in [`Points::mixed`].
+    Mixed(u32),
+}
 
 /// A layer at a sample.
 #[derive(Clone, Copy)]
@@ -65,8 +85,12 @@ impl Points {
         self.facet.clear();
         self.place.clear();
         self.layers.clear();
-        self.covered_pixels = 0;
-        self.collect_opaque(tile, constants);
+        self.pixels.clear();
+        self.mixed.clear();
+        if tile.touched {
+            self.collect_opaque(tile, constants);
+        }
+        self.covered_pixels = self.pixels.len() as u64;
         if !layers.is_empty() {
             self.collect_layers(tile, layers, constants, marks);
         }
@@ -74,41 +98,51 @@ impl Points {
     }
 
     fn collect_opaque(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
-        let pattern = &constants.view.pattern;
-        let samples = pattern.len();
-        self.of_sample.clear();
-        self.of_sample.resize(TILE_PIXELS * samples, NO_POINT);
+        let samples = constants.view.pattern.len();
         let (width, height) = visible_part(tile, constants);
         for y in 0..height {
+            let row = y * TILE;
             for x in 0..width {
-                let pixel = y * TILE + x;
+                let pixel = row + x;
                 let first = tile.facet[pixel];
-                let same = |s: usize| tile.facet[s * TILE_PIXELS + pixel] == first;
-                let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                if (1..samples).all(same) {
-                    // The common case: one facet, or none, fills the pixel.
-                    if first != NO_FACET {
-                        let point = self.push(first, [place[0] + 0.5, place[1] + 0.5]);
-                        self.of_sample[pixel * samples..(pixel + 1) * samples].fill(point);
-                        self.covered_pixels += 1;
-                    }
-                    continue;
-                }
-                self.covered_pixels += 1;
                 let facet_of = |s: usize| tile.facet[s * TILE_PIXELS + pixel];
-                for s in 0..samples {
-                    let facet = facet_of(s);
-                    if facet == NO_FACET || self.of_sample[pixel * samples + s] != NO_POINT {
+                let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
+                let source = if (1..samples).all(|s| facet_of(s) == first) {
+                    // The common case: one facet, or none, fills the pixel.
+                    if first == NO_FACET {
                         continue;
                     }
-                    let mask = (s..samples).filter(|&t| facet_of(t) == facet).fold(0, |m, t| m | 1 << t);
-                    let point = self.push(facet, middle(place, mask, constants));
-                    for t in (s..samples).filter(|t| mask >> t & 1 == 1) {
-                        self.of_sample[pixel * samples + t] = point;
-                    }
-                }
+                    Source::Point(self.push(first, [place[0] + 0.5, place[1] + 0.5]))
+                } else {
+                    self.mix(samples, facet_of, place, constants)
+                };
+                self.pixels.push(Pixel { index: pixel as u32, source });
             }
         }
+    }
+
+    /// One point for each facet among a pixel's samples.
+    fn mix(
+        &mut self,
+        samples: usize,
+        facet_of: impl Fn(usize) -> u32,
+        place: [f32; 2],
+        constants: &FrameConstants<'_>,
+    ) -> Source {
+        let start = self.mixed.len();
+        self.mixed.resize(start + samples, NO_POINT);
+        for s in 0..samples {
+            let facet = facet_of(s);
+            if facet == NO_FACET || self.mixed[start + s] != NO_POINT {
+                continue;
+            }
+            let mask = (s..samples).filter(|&t| facet_of(t) == facet).fold(0, |m, t| m | 1 << t);
+            let point = self.push(facet, middle(place, mask, constants));
+            for t in (s..samples).filter(|t| mask >> t & 1 == 1) {
+                self.mixed[start + t] = point;
+            }
+        }
+        Source::Mixed(start as u32)
     }
 
     fn collect_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>, marks: &MarkColors) {

@@ -1,4 +1,12 @@
 //! Textures: a pyramid of images (mipmaps), and the sampler that says how to look things up in it.
+//!
+//! `pyramid.rs` builds the levels, `sample.rs` looks them up. Texture coordinates: `(0, 0)` is the top
+//! left corner of the image and `(1, 1)` the bottom right one; texel `i` of `n` covers `i/n .. (i+1)/n`.
+
+mod pyramid;
+mod sample;
+
+pub use sample::decode_table;
 
 use crate::Plane;
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,135 @@
+//! The command line as typed: verbs, and the options of all verbs but `render`.
+
+use crate::render_args::RenderArgs;
+use crate::values;
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Renders 3D models to pictures, without GPU, display or GL driver.
+///
+/// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`.
+#[derive(Debug, Parser)]
+#[command(name = "vitral", version, arg_required_else_help = true, disable_help_subcommand = true, max_term_width = 120)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// The end of every help text.
+pub(crate) const EXIT_CODES: &str = "Exit codes: 0 done, 1 other failure, 2 usage, 3 input missing or malformed, \
+    4 format or feature not supported, 5 cannot write, 6 images differ, 7 a limit was reached, 130 interrupted";
+
+/// What `vitral` can do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Make a picture of one or more models
+    Render(Box<RenderArgs>),
+    /// Tell what is in a model file
+    Info(InfoArgs),
+    /// Compare two pictures; exit code 6 when they differ
+    Compare(CompareArgs),
+    /// List the algorithms
+    Algorithms(ListArgs),
+    /// List the formats that are read and written
+    Formats(ListArgs),
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    Man,
+}
+
+/// Options of `vitral info`.
+#[derive(Args, Debug)]
+pub(crate) struct InfoArgs {
+    /// Model files, `builtin:NAME`, or `-` for standard input
+    #[arg(required = true, value_name = "MODEL")]
+    pub(crate) models: Vec<PathBuf>,
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Let models name files outside their folder
+    #[arg(long)]
+    pub(crate) allow_external: bool,
+    /// Threads; 0 means as many as the process may use
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+    /// No warnings
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of `vitral compare`.
+#[derive(Args, Debug)]
+pub(crate) struct CompareArgs {
+    /// The expected picture, or `-` for standard input
+    #[arg(value_name = "A")]
+    pub(crate) first: PathBuf,
+    /// The actual picture, or `-` for standard input
+    #[arg(value_name = "B")]
+    pub(crate) second: PathBuf,
+    /// How far a channel may be apart, 0 to 1 of its range, before a pixel counts as different
+    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::share)]
+    pub(crate) threshold: f64,
+    /// Write a picture of the difference: the first one in grey, differing pixels in red
+    #[arg(long, value_name = "OUT")]
+    pub(crate) diff: Option<PathBuf>,
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of the lists.
+#[derive(Args, Debug)]
+pub(crate) struct ListArgs {
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`.
+pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
+    let Some(first) = arguments.get(1).and_then(|a| a.to_str()) else { return arguments };
+    let general = ["-h", "--help", "-V", "--version"].contains(&first);
+    let is_verb = crate::unbuilt::verb(first) || Cli::command().get_subcommands().any(|c| c.get_name() == first);
+    if !general && !is_verb {
+        arguments.insert(1, "render".into());
+    }
+    arguments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn render_is_the_verb_where_none_is_typed() {
+        let with = |words: &[&str]| {
+            let typed = std::iter::once("vitral").chain(words.iter().copied()).map(Into::into).collect();
+            with_verb(typed).get(1).and_then(|w| w.to_str().map(str::to_owned))
+        };
+        assert_eq!(with(&[]), None);
+        for (words, expected) in [
+            (&["a.obj", "-o", "b.png"][..], "render"),
+            (&["-o", "b.png", "a.obj"], "render"),
+            (&["-"], "render"),
+            (&["info", "a.obj"], "info"),
+            (&["draw", "a.obj"], "draw"),
+            (&["--help"], "--help"),
+        ] {
+            assert_eq!(with(words).as_deref(), Some(expected));
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Ctrl-C: asks the work to stop, and ends the process if it does not soon.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Exit code of an interrupted process.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// How long the work may take to notice. A file that is being written is finished within this time.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Sets `cancelled` at the first Ctrl-C. Where no handler can be set, the system's default ends the process.
+pub(crate) fn listen(cancelled: Arc<AtomicBool>) {
+    let handler = move || {
+        cancelled.store(true, Ordering::Relaxed);
+        std::thread::sleep(PATIENCE);
+        std::process::exit(i32::from(INTERRUPTED));
+    };
+    if ctrlc::set_handler(handler).is_err() {
+        crate::report::line("warning: Ctrl-C is not handled");
+    }
+}

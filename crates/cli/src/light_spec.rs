@@ -1,0 +1,234 @@
+//! Lights as users type them: `point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1`.
+//!
+//! A kind, a colon, then fields `key=value`. Values may hold commas: what has no `=` belongs to the field before it.
+//!
+//! | kind | its fields |
+//! |---|---|
+//! | `ambient` | – |
+//! | `directional` | `direction` |
+//! | `point` | `position` |
+//! | `spot` | `position`, `direction`, `cutoff` and `inner` (half angles in degrees), `exponent` |
+//! | `area` | `center`, `normal`, `radius` for a disc; `corners` (three numbers each) for a polygon |
+//!
+//! All: `name`, `ambient`, `diffuse`, `specular` (one number or three), `shadow`; those with a place: `attenuation`,
+//! which is `none`, `inverse-square`, `c1,c2,c3` for the course's `min(1 / (c1 + c2 d + c3 d²), 1)`,
+//! `gl,constant,linear,quadratic`, or `range,distance`.
+
+use crate::values::{direction, not_negative, number, numbers, positive, switch, vector};
+use vitral::light::{AreaShape, Attenuation, Light, LightKind};
+use vitral::math::DVec3;
+
+/// Half angle of a spot light's cone in degrees where none is given.
+const CUTOFF: f64 = 30.0;
+
+/// The fields that have not been used yet.
+struct Fields<'a> {
+    kind: &'a str,
+    fields: Vec<(&'a str, String)>,
+}
+
+/// Reads a light.
+pub(crate) fn parse(text: &str) -> Result<Light, String> {
+    let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+    let mut fields = Fields::split(kind, rest)?;
+    let kind = fields.kind_of_light()?;
+    let attenuation = match kind {
+        LightKind::Ambient | LightKind::Directional { .. } => Attenuation::None,
+        LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Area { .. } => {
+            fields.take("attenuation", attenuation)?.unwrap_or_default()
+        }
+    };
+    let is_ambient = kind == LightKind::Ambient;
+    let mut light = Light { kind, attenuation, ..Light::default() };
+
+    // A light of one colour is the common case: specular follows diffuse, and an ambient light has ambient alone.
+    if let Some(name) = fields.take("name", |text| Ok(text.to_owned()))? {
+        light.name = name;
+    }
+    light.ambient = fields.take("ambient", intensity)?.unwrap_or([if is_ambient { 0.2 } else { 0.0 }; 3]);
+    light.diffuse = fields.take("diffuse", intensity)?.unwrap_or([if is_ambient { 0.0 } else { 1.0 }; 3]);
+    light.specular = fields.take("specular", intensity)?.unwrap_or(light.diffuse);
+    if let Some(shadow) = fields.take("shadow", shadow)? {
+        light.shadow = shadow;
+    }
+    fields.finish()?;
+    Ok(light)
+}
+
+impl<'a> Fields<'a> {
+    /// Cuts `a=1,2,b=3` at the commas before a key.
+    fn split(kind: &'a str, text: &'a str) -> Result<Self, String> {
+        let mut fields: Vec<(&str, String)> = Vec::new();
+        for piece in text.split(',').filter(|piece| !piece.is_empty()) {
+            match (piece.split_once('='), fields.last_mut()) {
+                (Some((key, _)), _) if fields.iter().any(|f| f.0 == key) => return Err(format!("`{key}` is given twice")),
+                (Some((key, value)), _) => fields.push((key, value.to_owned())),
+                (None, Some((_, value))) => {
+                    value.push(',');
+                    value.push_str(piece);
+                }
+                (None, None) => return Err(format!("`{piece}` has no key: key=value is required")),
+            }
+        }
+        Ok(Self { kind, fields })
+    }
+
+    /// Takes a field out and reads it.
+    fn take<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, String> {
+        let Some(index) = self.fields.iter().position(|f| f.0 == key) else { return Ok(None) };
+        let (_, value) = self.fields.swap_remove(index);
+        read(&value).map(Some).map_err(|why| format!("{key}: {why}"))
+    }
+
+    /// As [`Self::take`], for a field that the kind must have.
+    fn need<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
+        let missing = format!("a light of kind `{}` needs `{key}`", self.kind);
+        self.take(key, read)?.ok_or(missing)
+    }
+
+    fn kind_of_light(&mut self) -> Result<LightKind, String> {
+        match self.kind {
+            "ambient" => Ok(LightKind::Ambient),
+            "directional" => Ok(LightKind::Directional { direction: self.need("direction", direction)? }),
+            "point" => Ok(LightKind::Point { position: self.need("position", vector)? }),
+            "spot" => {
+                let cutoff = self.take("cutoff", half_angle)?.unwrap_or(CUTOFF.to_radians());
+                Ok(LightKind::Spot {
+                    position: self.need("position", vector)?,
+                    direction: self.need("direction", direction)?,
+                    cutoff,
+                    inner: self.take("inner", half_angle)?.unwrap_or(cutoff).min(cutoff),
+                    exponent: self.take("exponent", not_negative)?.unwrap_or(0.0),
+                })
+            }
+            "area" => Ok(LightKind::Area { shape: self.area_shape()? }),
+            other => Err(format!("`{other}` is no kind of light: ambient, directional, point, spot, area")),
+        }
+    }
+
+    fn area_shape(&mut self) -> Result<AreaShape, String> {
+        if let Some(corners) = self.take("corners", corners)? {
+            return Ok(AreaShape::Polygon { corners });
+        }
+        if self.fields.iter().all(|f| f.0 != "center") {
+            return Err("a light of kind `area` needs `center`, `normal`, `radius`, or `corners`".to_owned());
+        }
+        Ok(AreaShape::Disc {
+            center: self.need("center", vector)?,
+            normal: self.need("normal", direction)?,
+            radius: self.need("radius", positive)?,
+        })
+    }
+
+    /// Fails if a field was not used.
+    fn finish(self) -> Result<(), String> {
+        match self.fields.first() {
+            None => Ok(()),
+            Some((key, _)) => Err(format!("a light of kind `{}` has no `{key}`", self.kind)),
+        }
+    }
+}
+
+/// One number for grey light, or red, green and blue.
+fn intensity(text: &str) -> Result<[f32; 3], String> {
+    let rgb = if text.contains(',') { numbers::<3>(text)? } else { [number(text)?; 3] };
+    if rgb.iter().any(|&c| c < 0.0) {
+        return Err("intensities of at least 0 are required".to_owned());
+    }
+    Ok(rgb.map(|c| c as f32))
+}
+
+fn half_angle(text: &str) -> Result<f64, String> {
+    let degrees = number(text)?;
+    if !(0.0..=90.0).contains(&degrees) {
+        return Err("a half angle from 0 to 90 degrees is required".to_owned());
+    }
+    Ok(degrees.to_radians())
+}
+
+fn corners(text: &str) -> Result<Vec<DVec3>, String> {
+    let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+    let (corners, rest) = values.as_chunks::<3>();
+    if corners.len() < 3 || !rest.is_empty() {
+        return Err(format!("three numbers for each of at least three corners are required, not {}", values.len()));
+    }
+    Ok(corners.iter().map(|&c| DVec3::from_array(c)).collect())
+}
+
+fn attenuation(text: &str) -> Result<Attenuation, String> {
+    let (form, rest) = text.split_once(',').unwrap_or((text, ""));
+    let terms = |text: &str| -> Result<[f64; 3], String> {
+        let terms = numbers::<3>(text)?;
+        let sound = terms.iter().all(|&t| t >= 0.0) && terms.iter().any(|&t| t > 0.0);
+        if sound { Ok(terms) } else { Err("three terms of at least 0, not all 0, are required".to_owned()) }
+    };
+    match form {
+        "none" if rest.is_empty() => Ok(Attenuation::None),
+        "inverse-square" if rest.is_empty() => Ok(Attenuation::InverseSquare),
+        "gl" => terms(rest).map(|[constant, linear, quadratic]| Attenuation::Gl { constant, linear, quadratic }),
+        "range" => positive(rest).map(|range| Attenuation::Range { range }),
+        _ => terms(text).map(|[c1, c2, c3]| Attenuation::Clamped { c1, c2, c3 }),
+    }
+}
+
+fn shadow(text: &str) -> Result<bool, String> {
+    match switch(text)? {
+        true => Err("there is no shadow algorithm yet".to_owned()),
+        false => Ok(false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_of_the_contract() {
+        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1").unwrap();
+        assert_eq!(light.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
+        assert_eq!(light.attenuation, Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 0.1 });
+        assert_eq!((light.diffuse, light.specular, light.ambient), ([1.0; 3], [1.0; 3], [0.0; 3]));
+    }
+
+    #[test]
+    fn every_kind() {
+        assert_eq!(parse("ambient:ambient=0.3").unwrap().ambient, [0.3; 3]);
+        let light = parse("spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off").unwrap();
+        let LightKind::Spot { cutoff, inner, exponent, .. } = light.kind else { panic!("a spot light") };
+        assert_eq!((cutoff, inner, exponent), (std::f64::consts::FRAC_PI_4, cutoff, 8.0));
+        assert_eq!((light.name.as_str(), light.shadow), ("lamp", false));
+        let disc = parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0").unwrap();
+        assert!(matches!(disc.kind, LightKind::Area { shape: AreaShape::Disc { radius: 2.0, .. } }));
+        assert_eq!(disc.specular, [0.5, 0.25, 0.0], "specular follows diffuse");
+        let polygon = parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square").unwrap();
+        let LightKind::Area { shape: AreaShape::Polygon { corners } } = polygon.kind else { panic!("a polygon") };
+        assert_eq!(corners, [DVec3::ZERO, DVec3::X, DVec3::Y]);
+        assert_eq!(polygon.attenuation, Attenuation::InverseSquare);
+        assert!(matches!(parse("directional:direction=0,0,-1").unwrap().kind, LightKind::Directional { .. }));
+        let gl = parse("point:position=0,0,0,attenuation=gl,1,2,3").unwrap().attenuation;
+        assert_eq!(gl, Attenuation::Gl { constant: 1.0, linear: 2.0, quadratic: 3.0 });
+        let range = parse("point:position=0,0,0,attenuation=range,5").unwrap().attenuation;
+        assert_eq!(range, Attenuation::Range { range: 5.0 });
+    }
+
+    #[test]
+    fn errors_say_what_is_wrong() {
+        for (text, expected) in [
+            ("lamp", "`lamp` is no kind of light: ambient, directional, point, spot, area"),
+            ("point", "a light of kind `point` needs `position`"),
+            ("point:1,2,3", "`1` has no key: key=value is required"),
+            ("point:position=1,2", "position: 3 numbers are required, `1,2` has 2"),
+            ("point:position=1,2,x", "position: `x` is not a finite number"),
+            ("point:position=1,2,3,position=1,2,3", "`position` is given twice"),
+            ("point:position=1,2,3,cutoff=3", "a light of kind `point` has no `cutoff`"),
+            ("ambient:attenuation=none", "a light of kind `ambient` has no `attenuation`"),
+            ("point:position=1,2,3,shadow=on", "shadow: there is no shadow algorithm yet"),
+            ("point:position=1,2,3,diffuse=-1", "diffuse: intensities of at least 0 are required"),
+            ("spot:position=0,0,0,direction=0,0,1,cutoff=91", "cutoff: a half angle from 0 to 90 degrees is required"),
+            ("directional:direction=0,0,0", "direction: a direction of some length is required"),
+            ("area:radius=1", "a light of kind `area` needs `center`, `normal`, `radius`, or `corners`"),
+        ] {
+            assert_eq!(parse(text).unwrap_err(), expected, "{text}");
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! How far a turntable is: a bar on a terminal, lines elsewhere if they are wanted.
+
+use crate::render_args::ProgressWhen;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+
+/// Tells how many frames are done.
+pub(crate) enum Progress {
+    /// Says nothing.
+    Silent,
+    /// A bar on standard error.
+    Bar(ProgressBar),
+    /// A line a frame, for files and pipes.
+    Lines {
+        /// Frames in all.
+        total: u64,
+        /// Frames done.
+        done: u64,
+    },
+}
+
+impl Progress {
+    /// Progress over `total` frames. A single frame has none unless it is always wanted.
+    pub(crate) fn new(when: ProgressWhen, quiet: bool, total: u64) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        match when {
+            ProgressWhen::Never => Self::Silent,
+            ProgressWhen::Auto if quiet || !terminal || total < 2 => Self::Silent,
+            ProgressWhen::Always if !terminal => Self::Lines { total, done: 0 },
+            ProgressWhen::Auto | ProgressWhen::Always => {
+                let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left");
+                Self::Bar(ProgressBar::new(total).with_style(style.expect("the template is fixed and sound")))
+            }
+        }
+    }
+
+    /// One more frame is done.
+    pub(crate) fn step(&mut self) {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => bar.inc(1),
+            Self::Lines { total, done } => {
+                *done += 1;
+                crate::report::line(&format!("frame {done} of {total}"));
+            }
+        }
+    }
+
+    /// All frames are done.
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
+
+use crate::{choices, light_spec, values};
+use clap::{ArgAction, Args, ValueEnum};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use vitral::math::DVec3;
+use vitral::render::{ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
+use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
+
+/// Options of `vitral render`.
+#[derive(Args, Debug, Default)]
+#[command(after_help = crate::args::EXIT_CODES)]
+pub(crate) struct RenderArgs {
+    /// Model files, `builtin:NAME`, or `-` for standard input
+    #[arg(required = true, value_name = "MODEL")]
+    pub(crate) models: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) algorithms: AlgorithmArgs,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
+    #[command(flatten)]
+    pub(crate) process: ProcessArgs,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+/// Where pictures go.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
+    /// repeatable, one for each --channel
+    #[arg(long, short, value_name = "OUT", required = true)]
+    pub(crate) output: Vec<PathBuf>,
+    /// What is written; the n-th goes to the n-th --output [default: color]
+    #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
+    pub(crate) channel: Vec<Channel>,
+    /// N views around the model; --output needs {frame} [default: one picture]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) turntable: Option<u32>,
+    /// Only these frames of the turntable, counted from 0: 3 or 0-9
+    #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "turntable")]
+    pub(crate) frames: Option<RangeInclusive<u32>>,
+    /// Write only if the colour picture differs from this one, with exit code 6
+    #[arg(long, value_name = "IMG")]
+    pub(crate) reference: Option<PathBuf>,
+    /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
+    #[arg(long, value_name = "F", value_parser = values::share, requires = "reference")]
+    pub(crate) reference_threshold: Option<f64>,
+    /// Write what each stage of the pipeline hands on into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) dump: Option<PathBuf>,
+}
+
+/// Size, background, quality.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Picture")]
+pub(crate) struct PictureArgs {
+    /// Width and height in pixels, 1024x768 or 1024,768 [default: 1024x768]
+    #[arg(long, value_name = "WxH", value_parser = values::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Samples a pixel; 1 means no anti-aliasing [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) samples: Option<u32>,
+    /// A name, #rrggbb, or r,g,b from 0 to 1 [default: a soft gradient]
+    #[arg(long, value_name = "COLOR", value_parser = values::color, conflicts_with = "no_background")]
+    pub(crate) background_color: Option<[f32; 3]>,
+    /// Leave the background transparent
+    #[arg(long)]
+    pub(crate) no_background: bool,
+    /// What the numbers in the picture mean [default: srgb]
+    #[arg(long, value_name = "SPACE", value_parser = choices::color_space())]
+    pub(crate) color_space: Option<ColorSpace>,
+}
+
+/// How the picture is made.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Algorithms")]
+pub(crate) struct AlgorithmArgs {
+    /// How the visible surfaces are found [default: z-buffer]
+    #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
+    pub(crate) visibility: Option<String>,
+    /// What is thrown away early: a list of frustum, back-face; or none [default: frustum,back-face]
+    #[arg(long, value_name = "LIST", value_parser = values::culling)]
+    pub(crate) cull: Option<Culling>,
+    /// How light is reflected [default: auto]
+    #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]
+    pub(crate) illumination: Option<Illumination>,
+    /// Where illumination is computed [default: phong]
+    #[arg(long, value_name = "MODEL", value_parser = choices::shading())]
+    pub(crate) shading: Option<Shading>,
+    /// How values between vertices are found [default: perspective]
+    #[arg(long, value_name = "KIND", value_parser = choices::interpolation())]
+    pub(crate) interpolation: Option<Interpolation>,
+    /// How transparent surfaces are combined [default: linear]
+    #[arg(long, value_name = "MODEL", value_parser = choices::transparency())]
+    pub(crate) transparency: Option<Transparency>,
+    /// In which order they are combined [default: sorted]
+    #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
+    pub(crate) transparency_order: Option<TransparencyOrder>,
+    /// Edges alone, the hidden ones too
+    #[arg(long, group = "lines")]
+    pub(crate) wireframe: bool,
+    /// Edges alone, the visible ones
+    #[arg(long, group = "lines")]
+    pub(crate) wireframe_hidden_line: bool,
+    /// Surfaces with their edges
+    #[arg(long, group = "lines")]
+    pub(crate) edges: bool,
+    /// Which normals are used [default: file]
+    #[arg(long, value_name = "KIND", value_parser = choices::normals())]
+    pub(crate) normals: Option<Normals>,
+}
+
+/// Lights and materials.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Light and materials")]
+pub(crate) struct LightArgs {
+    /// Light sources on or off [default: on]
+    #[arg(long, value_name = "on|off", value_parser = values::switch, action = ArgAction::Set)]
+    pub(crate) lighting: Option<bool>,
+    /// A light, instead of the model's and the default ones; repeatable: KIND:key=value,... with KIND ambient,
+    /// directional, point, spot or area and the keys name, ambient, diffuse, specular, attenuation (c1,c2,c3 or
+    /// inverse-square), shadow, position, direction, cutoff (degrees), exponent, center, normal, radius, corners
+    #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
+    pub(crate) light: Vec<Light>,
+    /// Multiplies all lights [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = values::not_negative)]
+    pub(crate) light_intensity: Option<f64>,
+    /// Override a material's property, such as glass.opacity=0.5; repeatable
+    #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
+    pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// The viewer.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Camera (without any, the model is framed)")]
+pub(crate) struct CameraArgs {
+    /// The side from which the model is framed [default: iso]
+    #[arg(long, value_name = "SIDE", value_parser = choices::view())]
+    pub(crate) view: Option<View>,
+    /// Which way is up: +X -X +Y -Y +Z -Z [default: +Y, for STL +Z]
+    #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(Axis), allow_hyphen_values = true)]
+    pub(crate) up: Option<Axis>,
+    /// The model's camera of this number, counted from 0
+    #[arg(long, value_name = "N")]
+    pub(crate) camera_index: Option<usize>,
+    /// Where the viewer is
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) camera_position: Option<DVec3>,
+    /// Where the viewer looks
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) camera_focal_point: Option<DVec3>,
+    /// Upwards in the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub(crate) camera_view_up: Option<DVec3>,
+    /// Vertical angle of view in degrees [default: 30]
+    #[arg(long, value_name = "DEGREES", value_parser = values::view_angle)]
+    pub(crate) camera_view_angle: Option<f64>,
+    /// The direction in which the viewer looks, from the usual distance
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "camera_position")]
+    pub(crate) camera_direction: Option<DVec3>,
+    /// Zoom in (above 1) or out (below 1) [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
+    pub(crate) camera_zoom_factor: Option<f64>,
+    /// Walk round the model, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
+    pub(crate) camera_azimuth_angle: Option<f64>,
+    /// Climb above the model, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
+    pub(crate) camera_elevation_angle: Option<f64>,
+    /// Parallel projection
+    #[arg(long)]
+    pub(crate) camera_orthographic: bool,
+}
+
+/// Files and limits.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Files and limits")]
+pub(crate) struct ProcessArgs {
+    /// Let models name files outside their folder
+    #[arg(long)]
+    pub(crate) allow_external: bool,
+    /// Defaults from this file [default: $XDG_CONFIG_HOME/vitral/config.json]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_config")]
+    pub(crate) config: Option<PathBuf>,
+    /// No configuration file
+    #[arg(long)]
+    pub(crate) no_config: bool,
+    /// Write all choices to this file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) save_state: Option<PathBuf>,
+    /// Take all choices from this file; options override it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) load_state: Option<PathBuf>,
+    /// Threads; 0 means as many as the process may use
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+    /// Seconds until the work stops with exit code 7
+    #[arg(long, value_name = "S", value_parser = values::positive)]
+    pub(crate) time_limit: Option<f64>,
+    /// Memory allowed, such as 512M or 1G
+    #[arg(long, value_name = "B", value_parser = values::bytes)]
+    pub(crate) max_memory: Option<u64>,
+}
+
+/// What is told.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Reports")]
+pub(crate) struct ReportArgs {
+    /// Counters and times of each stage as JSON on standard error
+    #[arg(long)]
+    pub(crate) stats: bool,
+    /// The same into a file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats_file: Option<PathBuf>,
+    /// One JSON object with the results on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Tell what is done
+    #[arg(long, short, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
+    /// No warnings
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+    /// A progress bar for turntables [default: auto]
+    #[arg(long, value_name = "WHEN", value_enum)]
+    pub(crate) progress: Option<ProgressWhen>,
+}
+
+/// When a progress bar is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgressWhen {
+    /// On a terminal
+    #[default]
+    Auto,
+    /// Even where standard error is no terminal
+    Always,
+    /// Not at all
+    Never,
+}

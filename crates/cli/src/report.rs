@@ -1,0 +1,172 @@
+//! What the user is told: results on standard output, everything else on standard error, one line each.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::io::Write;
+
+/// Warnings that are shown before the rest is only counted.
+const MOST_WARNINGS: usize = 10;
+
+/// Exit code of a usage error.
+const USAGE: u8 = 2;
+
+/// Exit code for pictures that differ.
+pub(crate) const DIFFERENT: u8 = 6;
+
+/// Why `vitral` ends early.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// The exit code.
+    code: u8,
+    /// `FILE: WHERE: WHAT`; `None`: nothing is to be said.
+    message: Option<String>,
+    /// What may help.
+    hint: Option<String>,
+}
+
+impl Failure {
+    /// Something was asked for that cannot be.
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self { code: USAGE, message: Some(message.into()), hint: None }
+    }
+
+    /// With a hint.
+    #[must_use]
+    pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Standard output cannot be written. A reader that has gone away had enough, which is no failure.
+    fn standard_output(error: &std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Self { code: 0, message: None, hint: None },
+            _ => Self { code: 5, message: Some(format!("standard output: {error}")), hint: None },
+        }
+    }
+
+    /// Tells the user, and gives the exit code.
+    pub(crate) fn tell(&self) -> u8 {
+        if let Some(message) = &self.message {
+            line(message);
+        }
+        if let Some(hint) = &self.hint {
+            say("hint: ", hint);
+        }
+        self.code
+    }
+}
+
+impl From<vitral::Error> for Failure {
+    fn from(error: vitral::Error) -> Self {
+        Self { code: error.exit_code(), message: Some(error.to_string()), hint: error.hint() }
+    }
+}
+
+impl From<vitral::exec::Limit> for Failure {
+    fn from(limit: vitral::exec::Limit) -> Self {
+        vitral::Error::from(limit).into()
+    }
+}
+
+impl From<clap::Error> for Failure {
+    /// One line of what `clap` says in several, its tip as the hint.
+    fn from(error: clap::Error) -> Self {
+        let context = |kind| match error.get(kind) {
+            Some(ContextValue::String(text)) => text.as_str(),
+            _ => "",
+        };
+        let option = context(ContextKind::InvalidArg).split([' ', '=']).next().unwrap_or_default();
+        let value = context(ContextKind::InvalidValue);
+        match error.kind() {
+            ErrorKind::UnknownArgument if crate::unbuilt::option(option) => {
+                return Self::usage(format!("{option}: this option is not there yet"));
+            }
+            ErrorKind::InvalidSubcommand if crate::unbuilt::verb(context(ContextKind::InvalidSubcommand)) => {
+                let verb = context(ContextKind::InvalidSubcommand);
+                return Self::usage(format!("{verb}: this verb is not there yet"));
+            }
+            ErrorKind::InvalidValue if crate::unbuilt::value(option, value) => {
+                let there = match error.get(ContextKind::ValidValue) {
+                    Some(ContextValue::Strings(names)) => names.join(", "),
+                    _ => String::new(),
+                };
+                return Self::usage(format!("{option} {value}: this choice is not there yet"))
+                    .with_hint(format!("choose {there}"));
+            }
+            _ => {}
+        }
+
+        // The first paragraph is the message, a tip in a later one the hint.
+        let text = error.render().to_string();
+        let text = text.strip_prefix("error: ").unwrap_or(&text);
+        let (message, rest) = text.split_once("\n\n").unwrap_or((text, ""));
+        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        let tip = rest.lines().find_map(|l| l.trim().strip_prefix("tip: "));
+        let hint = tip.unwrap_or("`vitral --help` and `vitral VERB --help` tell what there is");
+        Self::usage(message).with_hint(hint)
+    }
+}
+
+/// Writes to standard output and flushes it.
+pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
+}
+
+/// Prints a value as JSON, ending with a new line.
+pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&json(value))
+}
+
+/// A value as indented JSON, ending with a new line.
+pub(crate) fn json(value: &impl serde::Serialize) -> Vec<u8> {
+    let mut text = serde_json::to_vec_pretty(value).expect("keys are strings");
+    text.push(b'\n');
+    text
+}
+
+/// A line `vitral: MESSAGE` on standard error.
+pub(crate) fn line(message: &str) {
+    say("vitral: ", message);
+}
+
+/// Shows the warnings of a model, the first ones in full.
+pub(crate) fn warnings(warnings: &[String]) {
+    for warning in warnings.iter().take(MOST_WARNINGS) {
+        line(&marked(warning));
+    }
+    if let Some(more) = warnings.len().checked_sub(MOST_WARNINGS + 1) {
+        line(&format!("warning: ... and {} more", more + 1));
+    }
+}
+
+/// `FILE: WHAT` as `FILE: warning: WHAT`.
+fn marked(warning: &str) -> String {
+    match warning.split_once(": ") {
+        Some((file, what)) => format!("{file}: warning: {what}"),
+        None => format!("warning: {warning}"),
+    }
+}
+
+/// One line on standard error. If that cannot be written there is nobody left to tell.
+fn say(mark: &str, text: &str) {
+    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let _ = writeln!(std::io::stderr().lock(), "{mark}{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_say_that_they_are_warnings_after_the_file() {
+        assert_eq!(marked("a.obj: line 3: odd"), "a.obj: warning: line 3: odd");
+        assert_eq!(marked("odd"), "warning: odd");
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_no_failure() {
+        let code = |kind: std::io::ErrorKind| Failure::standard_output(&kind.into()).code;
+        assert_eq!([code(std::io::ErrorKind::BrokenPipe), code(std::io::ErrorKind::StorageFull)], [0, 5]);
+    }
+}

@@ -1,0 +1,68 @@
+//! What the contract of the command line names and this version cannot do yet. None of it is in the help; whoever asks
+//! for it is told so, rather than that it is unknown.
+
+/// Verbs to come.
+const VERBS: [&str; 5] = ["draw", "lab", "batch", "bench", "osmesa-env"];
+
+/// Options to come.
+const OPTIONS: [&str; 13] = [
+    "--acceleration",
+    "--coherence",
+    "--global",
+    "--iterations",
+    "--light-samples",
+    "--load-radiosity",
+    "--max-depth",
+    "--panels",
+    "--patch-size",
+    "--pixel",
+    "--save-radiosity",
+    "--shadows",
+    "--trace",
+];
+
+/// Values to come, of options that are there.
+const VALUES: [(&str, &[&str]); 4] = [
+    ("--visibility", &["scan-line", "warnock", "painter", "bsp", "weiler-atherton", "ray-cast"]),
+    ("--transparency", &["kay"]),
+    ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
+    ("--channel", &["attached-shadow", "cast-shadow", "steps"]),
+];
+
+/// Whether this verb is to come.
+pub(crate) fn verb(name: &str) -> bool {
+    VERBS.contains(&name)
+}
+
+/// Whether this option is to come.
+pub(crate) fn option(name: &str) -> bool {
+    OPTIONS.contains(&name)
+}
+
+/// Whether this value of `option` is to come.
+pub(crate) fn value(option: &str, value: &str) -> bool {
+    VALUES.iter().any(|(name, values)| *name == option && values.contains(&value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn nothing_is_both_there_and_to_come() {
+        let cli = Cli::command();
+        for command in cli.get_subcommands() {
+            assert!(!verb(command.get_name()), "{}", command.get_name());
+            for argument in command.get_arguments() {
+                let Some(long) = argument.get_long() else { continue };
+                let name = format!("--{long}");
+                assert!(!option(&name), "{name}");
+                for possible in argument.get_possible_values() {
+                    assert!(!value(&name, possible.get_name()), "{name} {}", possible.get_name());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Values as users type them: sizes, colours, vectors, numbers with a range. Each parser says what it requires.
+
+use vitral::MaterialOverride;
+use vitral::math::DVec3;
+use vitral::render::Culling;
+
+/// A finite number.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{text}` is not a finite number")),
+    }
+}
+
+/// A finite number above 0.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })
+}
+
+/// A finite number of at least 0.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("a number of at least 0 is required".to_owned()) })
+}
+
+/// A share, `0..=1`.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    number(text)
+        .and_then(|v| if (0.0..=1.0).contains(&v) { Ok(v) } else { Err("a number from 0 to 1 is required".to_owned()) })
+}
+
+/// An angle of view in degrees, above 0 and below 180.
+pub(crate) fn view_angle(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| {
+        if v > 0.0 && v < 180.0 { Ok(v) } else { Err("an angle between 0 and 180 degrees is required".to_owned()) }
+    })
+}
+
+/// `N` finite numbers, separated by commas.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+    let count = values.len();
+    values.try_into().map_err(|_| format!("{N} numbers are required, `{text}` has {count}"))
+}
+
+/// A point or a direction, `x,y,z`.
+pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
+    numbers::<3>(text).map(DVec3::from_array)
+}
+
+/// A direction, `x,y,z`, not all 0.
+pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
+    let v = vector(text)?;
+    if v.try_normalize().is_some() { Ok(v) } else { Err("a direction of some length is required".to_owned()) }
+}
+
+/// `1024x768` or `1024,768`.
+pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("`{text}` is no size: two whole numbers such as 1024x768 are required");
+    let (width, height) = text.split_once(['x', 'X', ',']).ok_or_else(wrong)?;
+    match (width.trim().parse(), height.trim().parse()) {
+        (Ok(width), Ok(height)) => Ok([width, height]),
+        _ => Err(wrong()),
+    }
+}
+
+/// Names of colours that everybody knows, with their bytes: the sixteen of HTML 4 and orange.
+const COLORS: [(&str, u32); 18] = [
+    ("aqua", 0x00ffff),
+    ("black", 0x000000),
+    ("blue", 0x0000ff),
+    ("fuchsia", 0xff00ff),
+    ("gray", 0x808080),
+    ("green", 0x008000),
+    ("grey", 0x808080),
+    ("lime", 0x00ff00),
+    ("maroon", 0x800000),
+    ("navy", 0x000080),
+    ("olive", 0x808000),
+    ("orange", 0xffa500),
+    ("purple", 0x800080),
+    ("red", 0xff0000),
+    ("silver", 0xc0c0c0),
+    ("teal", 0x008080),
+    ("white", 0xffffff),
+    ("yellow", 0xffff00),
+];
+
+/// A colour in the display's encoding, `0..=1`: a name, `#rgb`, `#rrggbb` or `r,g,b`.
+pub(crate) fn color(text: &str) -> Result<[f32; 3], String> {
+    let name = text.to_ascii_lowercase();
+    if let Some((_, bytes)) = COLORS.iter().find(|c| c.0 == name) {
+        return Ok(from_bytes(*bytes));
+    }
+    if let Some(hex) = name.strip_prefix('#') {
+        let value = if hex.starts_with('+') { None } else { u32::from_str_radix(hex, 16).ok() };
+        return match (hex.len(), value) {
+            (6, Some(v)) => Ok(from_bytes(v)),
+            (3, Some(v)) => Ok(from_bytes((v >> 8 & 15) * 0x11_0000 + (v >> 4 & 15) * 0x1100 + (v & 15) * 0x11)),
+            _ => Err(format!("`{text}` is no colour: #rgb or #rrggbb is required")),
+        };
+    }
+    match numbers::<3>(text) {
+        Ok(rgb) if rgb.iter().all(|c| (0.0..=1.0).contains(c)) => Ok(rgb.map(|c| c as f32)),
+        _ => Err(format!("`{text}` is no colour: a name, #rrggbb or r,g,b from 0 to 1 is required")),
+    }
+}
+
+fn from_bytes(rgb: u32) -> [f32; 3] {
+    [rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255].map(|byte| byte as f32 / 255.0)
+}
+
+/// A number of bytes: `1000000`, `512M`, `1.5G` (powers of 1024).
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    let wrong = || format!("`{text}` is no amount of memory: a number with K, M or G behind it is required");
+    let upper = text.trim().to_ascii_uppercase();
+    let upper = upper.strip_suffix("IB").or_else(|| upper.strip_suffix('B')).unwrap_or(&upper);
+    let (digits, unit) = match upper.chars().last() {
+        Some('K') => (&upper[..upper.len() - 1], 1u64 << 10),
+        Some('M') => (&upper[..upper.len() - 1], 1 << 20),
+        Some('G') => (&upper[..upper.len() - 1], 1 << 30),
+        Some('T') => (&upper[..upper.len() - 1], 1 << 40),
+        _ => (upper, 1),
+    };
+    match number(digits) {
+        Ok(count) if count > 0.0 => Ok((count * unit as f64).min(u64::MAX as f64) as u64),
+        _ => Err(wrong()),
+    }
+}
+
+/// `frustum,back-face`, one of them, or `none`.
+pub(crate) fn culling(text: &str) -> Result<Culling, String> {
+    let mut culling = Culling { frustum: false, back_face: false };
+    for word in text.split(',') {
+        match word {
+            "frustum" => culling.frustum = true,
+            "back-face" => culling.back_face = true,
+            "none" if text == "none" => {}
+            _ => return Err(format!("`{word}` is not one of frustum, back-face; or none alone")),
+        }
+    }
+    Ok(culling)
+}
+
+/// `on` or `off`.
+pub(crate) fn switch(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("`{text}` is not one of on, off")),
+    }
+}
+
+/// Frames of a turntable: `3` or `0-9`, both ends included.
+pub(crate) fn frames(text: &str) -> Result<std::ops::RangeInclusive<u32>, String> {
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    match (first.parse(), last.parse()) {
+        (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
+        _ => Err(format!("`{text}` names no frames: one number or two such as 0-9 are required")),
+    }
+}
+
+/// A material override `NAME.PROPERTY=VALUE`.
+pub(crate) fn material(text: &str) -> Result<MaterialOverride, String> {
+    MaterialOverride::parse(text).map_err(|e| match e.hint() {
+        Some(hint) => format!("{e}; {hint}"),
+        None => e.to_string(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_amounts() {
+        assert_eq!(resolution("1024x768"), Ok([1024, 768]));
+        assert_eq!(resolution("8,9"), Ok([8, 9]));
+        assert!(["", "8", "8x", "x8", "8x9x1", "-1x2", "1.5x2"].iter().all(|t| resolution(t).is_err()));
+        assert_eq!(bytes("1G"), Ok(1 << 30));
+        assert_eq!(bytes("1.5m"), Ok(3 << 19));
+        assert_eq!(bytes("512MiB"), Ok(512 << 20));
+        assert_eq!(bytes("77"), Ok(77));
+        assert!(["", "G", "-1M", "0", "nanG", "1X"].iter().all(|t| bytes(t).is_err()));
+        assert_eq!(frames("3"), Ok(3..=3));
+        assert_eq!(frames("0-9"), Ok(0..=9));
+        assert!(frames("9-0").is_err() && frames("-").is_err());
+    }
+
+    #[test]
+    fn colors_and_vectors() {
+        assert_eq!(color("White"), Ok([1.0; 3]));
+        assert_eq!(color("#f00"), Ok([1.0, 0.0, 0.0]));
+        assert_eq!(color("#0000FF"), Ok([0.0, 0.0, 1.0]));
+        assert_eq!(color("0.5,0,1"), Ok([0.5, 0.0, 1.0]));
+        assert!(["#12", "#+12345", "#gggggg", "1,2,3", "1,1", "nowhere"].iter().all(|t| color(t).is_err()));
+        assert_eq!(vector("1,-2,3e1"), Ok(DVec3::new(1.0, -2.0, 30.0)));
+        assert!(vector("1,2").is_err() && vector("1,2,inf").is_err() && direction("0,0,0").is_err());
+    }
+
+    #[test]
+    fn culling_is_a_list_or_none() {
+        assert_eq!(culling("frustum,back-face"), Ok(Culling { frustum: true, back_face: true }));
+        assert_eq!(culling("back-face"), Ok(Culling { frustum: false, back_face: true }));
+        assert_eq!(culling("none"), Ok(Culling { frustum: false, back_face: false }));
+        assert!(culling("none,frustum").is_err() && culling("").is_err());
+    }
+}

@@ -1,0 +1,307 @@
+//! Which format a file has: by its content first, by its extension second.
+//!
+//! Formats with a magic number are certain. STL has none: a binary one is known by its length, which its triangle count
+//! fixes, an ASCII one by its first word. OBJ is known by its first statement. What nobody claims is refused with the
+//! list of what is read; formats that are known but not read are named.
+
+use crate::text::{Cursor, to_utf8};
+use crate::{Error, Place};
+
+/// A model format that is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// glTF 2.0, JSON with buffers beside or inside it.
+    Gltf,
+    /// glTF 2.0 in one binary file.
+    Glb,
+    /// Wavefront OBJ with MTL.
+    Obj,
+    /// Stereolithography, ASCII and binary.
+    Stl,
+    /// Polygon file format (Stanford), ASCII and binary.
+    Ply,
+    /// Object file format (Geomview).
+    Off,
+    /// A scene file of vitral's own.
+    SceneJson,
+}
+
+impl Format {
+    /// Every format that is read.
+    pub const ALL: [Self; 7] =
+        [Self::Gltf, Self::Glb, Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::SceneJson];
+
+    /// Its short name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gltf => "glTF",
+            Self::Glb => "GLB",
+            Self::Obj => "OBJ",
+            Self::Stl => "STL",
+            Self::Ply => "PLY",
+            Self::Off => "OFF",
+            Self::SceneJson => "scene JSON",
+        }
+    }
+
+    /// Its usual file extensions, lower case, without the dot.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Gltf => &["gltf"],
+            Self::Glb => &["glb"],
+            Self::Obj => &["obj"],
+            Self::Stl => &["stl"],
+            Self::Ply => &["ply"],
+            Self::Off => &["off"],
+            Self::SceneJson => &["json"],
+        }
+    }
+
+    /// One line for the user.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Gltf => "glTF 2.0, JSON with embedded or separate buffers and textures",
+            Self::Glb => "glTF 2.0, one binary file",
+            Self::Obj => "Wavefront OBJ with MTL materials and textures",
+            Self::Stl => "Stereolithography, ASCII and binary",
+            Self::Ply => "Polygon file format, ASCII and binary of both byte orders",
+            Self::Off => "Object file format, ASCII, with colours and normals",
+            Self::SceneJson => "vitral's own scenes: models, lights, cameras, materials",
+        }
+    }
+
+    /// The format of `bytes`, which were read from `file`.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] for an empty file, [`Error::Unsupported`] for a format that is not read or not known.
+    pub fn detect(bytes: &[u8], file: &str) -> Result<Self, Error> {
+        if bytes.is_empty() {
+            return Err(Error::malformed(file, Place::File, "empty file"));
+        }
+        if let Some(format) = by_magic(bytes) {
+            return Ok(format);
+        }
+        if let Some(name) = foreign_content(bytes) {
+            return Err(not_read(file, name));
+        }
+        let head = to_utf8(&bytes[..bytes.len().min(1 << 16)]);
+        if let Some(format) = by_text(&head, file) {
+            return Ok(format);
+        }
+
+        // The content does not tell: believe the name.
+        let extension = extension_of(file);
+        match Self::ALL.into_iter().find(|f| f.extensions().contains(&extension.as_str())) {
+            Some(format) => Ok(format),
+            None => match FOREIGN_EXTENSIONS.iter().find(|(e, _)| *e == extension) {
+                Some((_, name)) => Err(not_read(file, name)),
+                None => Err(not_read(file, "this format")),
+            },
+        }
+    }
+}
+
+/// Formats that are known and not read.
+const FOREIGN_EXTENSIONS: [(&str, &str); 26] = [
+    ("3dm", "Rhino 3DM"),
+    ("3ds", "3D Studio (3DS)"),
+    ("3mf", "3MF"),
+    ("abc", "Alembic"),
+    ("ac", "AC3D"),
+    ("ase", "3D Studio ASE"),
+    ("blend", "a Blender file"),
+    ("dae", "Collada (DAE)"),
+    ("dxf", "DXF"),
+    ("fbx", "FBX"),
+    ("iges", "IGES"),
+    ("igs", "IGES"),
+    ("lwo", "LightWave (LWO)"),
+    ("md5mesh", "MD5"),
+    ("mtl", "an MTL file (the materials of an OBJ file)"),
+    ("smd", "SMD"),
+    ("step", "STEP"),
+    ("stp", "STEP"),
+    ("usd", "USD"),
+    ("usda", "USD"),
+    ("usdc", "USD"),
+    ("usdz", "USD"),
+    ("vtk", "VTK"),
+    ("wrl", "VRML"),
+    ("x", "DirectX (X)"),
+    ("x3d", "X3D"),
+];
+
+fn not_read(file: &str, name: &str) -> Error {
+    let list: Vec<String> =
+        Format::ALL.iter().map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
+    Error::Unsupported { file: file.to_owned(), what: format!("{name} is not read; readable are {}", list.join(", ")) }
+}
+
+/// The extension of `file` in lower case, without the dot; empty if there is none.
+pub(crate) fn extension_of(file: &str) -> String {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    name.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_ascii_lowercase())
+}
+
+fn by_magic(bytes: &[u8]) -> Option<Format> {
+    match bytes {
+        [b'g', b'l', b'T', b'F', ..] => Some(Format::Glb),
+        [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..] => Some(Format::Ply),
+        _ if crate::stl::is_binary_size(bytes) => Some(Format::Stl),
+        _ => None,
+    }
+}
+
+/// The name of a format that is known by its first bytes and not read.
+fn foreign_content(bytes: &[u8]) -> Option<&'static str> {
+    const MAGIC: [(&[u8], &str); 14] = [
+        (b"PK\x03\x04", "a zip container (3MF, USDZ)"),
+        (b"Kaydara FBX", "FBX"),
+        (b"BLENDER", "a Blender file"),
+        (b"xof 0", "DirectX (X)"),
+        (b"#VRML", "VRML"),
+        (b"#X3D", "X3D"),
+        (b"#usda", "USD"),
+        (b"PXR-USDC", "USD"),
+        (b"ISO-10303", "STEP"),
+        (b"# vtk DataFile", "VTK"),
+        (b"AC3D", "AC3D"),
+        (b"MD5Version", "MD5"),
+        (b"*3DSMAX_ASCIIEXPORT", "3D Studio ASE"),
+        (b"DRACO", "a bare Draco stream"),
+    ];
+    if let Some((_, name)) = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)) {
+        return Some(name);
+    }
+
+    // 3DS: the main chunk's length is the file's.
+    if let [0x4D, 0x4D, length @ ..] = bytes
+        && let Some(length) = length.first_chunk::<4>()
+        && u32::from_le_bytes(*length) as usize == bytes.len()
+    {
+        return Some("3D Studio (3DS)");
+    }
+    let text = bytes.trim_ascii_start();
+    if !text.starts_with(b"<") {
+        return None;
+    }
+    let holds = |word: &[u8]| text[..text.len().min(4096)].windows(word.len()).any(|w| w == word);
+    match () {
+        () if holds(b"<COLLADA") => Some("Collada (DAE)"),
+        () if holds(b"<X3D") => Some("X3D"),
+        () => Some("XML"),
+    }
+}
+
+fn by_text(head: &[u8], file: &str) -> Option<Format> {
+    // JSON: glTF must have an `asset`, which no scene file has.
+    if head.trim_ascii_start().first() == Some(&b'{') {
+        let is_gltf = extension_of(file) == "gltf" || head.windows(7).any(|w| w == b"\"asset\"");
+        return Some(if is_gltf { Format::Gltf } else { Format::SceneJson });
+    }
+    let mut cursor = Cursor::new(head);
+    if !cursor.next_content() {
+        return None;
+    }
+    let word = cursor.word();
+    if crate::off::Header::parse(word).is_some() {
+        return Some(Format::Off);
+    }
+    if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {
+        return Some(Format::Stl);
+    }
+    let is_statement = crate::obj::is_statement(word) && !head.contains(&0);
+    is_statement.then_some(Format::Obj)
+}
+
+/// What a format holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FormatKind {
+    /// Meshes, materials, lights, cameras.
+    Model,
+    /// Pixels.
+    Picture,
+}
+
+/// A row of [`formats`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FormatRow {
+    /// Short name.
+    pub name: &'static str,
+    /// Extensions, lower case, without the dot.
+    pub extensions: &'static [&'static str],
+    /// One line for the user.
+    pub description: &'static str,
+    /// What it holds.
+    pub kind: FormatKind,
+    /// Whether it can be read (pictures: as textures).
+    pub read: bool,
+    /// Whether it can be written.
+    pub write: bool,
+}
+
+/// Every format that can be read or written, models first.
+pub fn formats() -> Vec<FormatRow> {
+    let model = |f: Format| FormatRow {
+        name: f.name(),
+        extensions: f.extensions(),
+        description: f.description(),
+        kind: FormatKind::Model,
+        read: true,
+        write: f == Format::SceneJson,
+    };
+    let picture = |name, extensions, description, read| FormatRow {
+        name,
+        extensions,
+        description,
+        kind: FormatKind::Picture,
+        read,
+        write: true,
+    };
+    let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
+    rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
+    rows.push(picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", true));
+    rows.push(picture("PPM", &["ppm"], "Portable pixmap, plain pixels", false));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_wins_over_the_name() {
+        let detect = |bytes: &[u8], file: &str| Format::detect(bytes, file).unwrap();
+        assert_eq!(detect(b"ply\nformat", "a.stl"), Format::Ply);
+        assert_eq!(detect(b"# c\n\nv 1 2 3", "-"), Format::Obj);
+        assert_eq!(detect(b"  SOLID x\n facet", "x.obj"), Format::Stl);
+        assert_eq!(detect(b"# c\nCNOFF 1 2 3", "x"), Format::Off);
+        assert_eq!(detect(b"glTF\x02\0\0\0", "x"), Format::Glb);
+        assert_eq!(detect(b" {\"asset\":{}}", "x"), Format::Gltf);
+        assert_eq!(detect(b"{\"nodes\":[]}", "x"), Format::SceneJson);
+        let mut stl = vec![b' '; 84 + 50];
+        stl[..5].copy_from_slice(b"solid");
+        stl[80..84].copy_from_slice(&1u32.to_le_bytes());
+        assert_eq!(detect(&stl, "x"), Format::Stl);
+        assert_eq!(detect(b"# nothing but a comment", "dir.ply/X.OBJ"), Format::Obj);
+    }
+
+    #[test]
+    fn what_is_not_read_is_named() {
+        let refuse = |bytes: &[u8], file: &str| Format::detect(bytes, file).unwrap_err().to_string();
+        assert_eq!(refuse(b"", "e.x"), "e.x: empty file");
+        assert!(refuse(b"<?xml?><COLLADA>", "m").starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), "));
+        assert!(refuse(b"PK\x03\x04", "m.3mf").contains("3MF"));
+        assert!(refuse(b"?", "m.blend").contains("Blender"));
+        assert!(refuse(b"hello", "m.txt").starts_with("m.txt: this format is not read"));
+    }
+
+    #[test]
+    fn the_table_names_every_extension_once() {
+        let mut extensions: Vec<&str> = formats().iter().flat_map(|r| r.extensions.iter().copied()).collect();
+        let count = extensions.len();
+        extensions.sort_unstable();
+        extensions.dedup();
+        assert_eq!(extensions.len(), count);
+    }
+}

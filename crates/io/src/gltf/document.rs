@@ -1,0 +1,224 @@
+//! From bytes to a checked document: the GLB container, the JSON in it, and the rules that its indices must keep.
+//!
+//! The JSON is read into the types of the `gltf` crate. Its own loader is stricter than viewers are (it refuses a
+//! `POSITION` without bounds, a scene without nodes, any required extension that it does not know) and indexes
+//! unchecked in one place, so the container is taken apart here and its validation is run with the harmless reports
+//! left out. Afterwards every index in the document points at something.
+//!
+//! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
+//! Cost: linear. Source: glTF 2.0 specification, Khronos 2021, sections 3 and 4.
+
+use crate::{Error, Place};
+use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
+
+/// Extensions that change what is read; a file may require them.
+const SUPPORTED: [&str; 7] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// A document whose indices are all in range, except those of `scene` and of image sources, which may be absent.
+#[derive(Debug)]
+pub(crate) struct Document<'a> {
+    pub(crate) root: Root,
+    /// The binary chunk of a GLB.
+    pub(crate) binary: Option<&'a [u8]>,
+    /// Optional extensions that are not read and the like.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Reads and checks glTF JSON or a GLB container.
+pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Error> {
+    let (text, binary) = if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
+    let root = parse_json(text, file)?;
+    let major = root.asset.version.split('.').next();
+    if major != Some("2") {
+        let what = format!("glTF version {}; version 2.x is read", root.asset.version);
+        return Err(Error::Unsupported { file: file.to_owned(), what });
+    }
+    let warnings = check_extensions(&root, file)?;
+    check_indices(&root, file)?;
+    Ok(Document { root, binary, warnings })
+}
+
+/// Takes a GLB apart into its JSON and binary chunks. Chunks of other kinds are passed over, as the format demands.
+fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
+    let bad = |at: usize, what: String| Error::malformed(file, Place::Byte(at as u64), what);
+    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let (Some(version), Some(length)) = (word(4), word(8)) else {
+        return Err(bad(bytes.len(), format!("a GLB header has 12 bytes, the file has {}", bytes.len())));
+    };
+    if version != 2 {
+        let what = format!("GLB version {version}; version 2 is read");
+        return Err(Error::Unsupported { file: file.to_owned(), what });
+    }
+    if length > bytes.len() {
+        return Err(bad(8, format!("the header says {length} bytes, the file has {}", bytes.len())));
+    }
+    let (mut json, mut binary, mut at) = (None, None, 12);
+    while let (Some(size), Some(kind)) = (word(at), bytes.get(at + 4..at + 8)) {
+        let start = at + 8;
+        let Some(chunk) = size.checked_add(start).and_then(|end| bytes.get(start..end)) else {
+            return Err(bad(at, format!("a chunk of {size} bytes, {} are left", bytes.len() - start)));
+        };
+        match kind {
+            b"JSON" if json.is_none() => json = Some(chunk),
+            b"BIN\0" if binary.is_none() => binary = Some(chunk),
+            _ => {}
+        }
+        at = start + size;
+        if at >= length {
+            break;
+        }
+    }
+    let json = json.ok_or_else(|| bad(12, "a GLB needs a JSON chunk".to_owned()))?;
+    Ok((json, binary))
+}
+
+/// Reads the JSON. What is only untidy (a scene without a list of nodes) is mended; a value of the wrong type is
+/// reported with its path.
+fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    if let Ok(root) = serde_json::from_slice(text) {
+        return Ok(root);
+    }
+    let mut value: serde_json::Value = serde_json::from_slice(text).map_err(|e| {
+        let what = format!("column {}: this is not JSON: {}", e.column(), plain_message(&e));
+        Error::malformed(file, Place::Line(e.line() as u64), what)
+    })?;
+    for (list, field) in [("scenes", "nodes"), ("skins", "joints")] {
+        for entry in value.get_mut(list).and_then(|v| v.as_array_mut()).into_iter().flatten() {
+            if let Some(object) = entry.as_object_mut() {
+                object.entry(field).or_insert_with(|| serde_json::Value::Array(Vec::new()));
+            }
+        }
+    }
+    serde_path_to_error::deserialize(value)
+        .map_err(|e| Error::malformed(file, Place::Json(e.path().to_string()), plain_message(e.inner())))
+}
+
+/// The message without the position, which [`Place`] gives.
+pub(crate) fn plain_message(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split(" at line ").next().unwrap_or_default().to_owned()
+}
+
+/// Refuses required extensions that are not read; names the optional ones.
+fn check_extensions(root: &Root, file: &str) -> Result<Vec<String>, Error> {
+    let unknown = |names: &[String]| -> Vec<String> {
+        names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect()
+    };
+    let required = unknown(&root.extensions_required);
+    if !required.is_empty() {
+        let what = format!("requires {}, which is not supported", required.join(", "));
+        return Err(Error::Unsupported { file: file.to_owned(), what });
+    }
+    let used = unknown(&root.extensions_used);
+    Ok(if used.is_empty() { used } else { vec![format!("{file}: extensions not read: {}", used.join(", "))] })
+}
+
+/// Runs the crate's validation, keeping the reports that would leave an index dangling or a value without meaning.
+fn check_indices(root: &Root, file: &str) -> Result<(), Error> {
+    // The crate looks POSITION up before it checks the index: do that first.
+    let accessors = root.accessors.len();
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            if let Some(index) = primitive.attributes.get(&Checked::Valid(Semantic::Positions))
+                && index.value() >= accessors
+            {
+                let place = Place::Json(format!("meshes[{m}].primitives[{p}].attributes.POSITION"));
+                let what = format!("accessor {index}, there are {accessors}");
+                return Err(Error::malformed(file, place, what));
+            }
+        }
+    }
+    let mut found: Vec<(String, validation::Error)> = Vec::new();
+    root.validate(root, Path::new, &mut |path, error| {
+        let path = path().to_string();
+        if !is_harmless(root, &path, error) {
+            found.push((path, error));
+        }
+    });
+    let Some((path, error)) = found.first() else { return Ok(()) };
+    let what = match error {
+        validation::Error::IndexOutOfBounds => "the index points at nothing".to_owned(),
+        validation::Error::Missing => "needed, but not there".to_owned(),
+        other => other.to_string().to_lowercase(),
+    };
+    let more = if found.len() > 1 { format!(" (and {} more)", found.len() - 1) } else { String::new() };
+    Err(Error::malformed(file, Place::Json(dotted(path)), what + &more))
+}
+
+/// Reports that are dealt with elsewhere, or do not matter to a picture.
+fn is_harmless(root: &Root, path: &str, error: validation::Error) -> bool {
+    match error {
+        validation::Error::Unsupported => true,
+        validation::Error::IndexOutOfBounds => path == "scene" && root.scenes.is_empty(),
+        validation::Error::Missing => {
+            let zeros = path.starts_with("accessors[") && path.ends_with("].bufferView");
+            let other_image = path.starts_with("textures[") && path.ends_with("].source");
+            zeros || other_image || path.ends_with("\"].min") || path.ends_with("\"].max")
+        }
+        validation::Error::Invalid => {
+            path.contains("<invalid semantic name>") || path.ends_with("\"].min") || path.ends_with("\"].max")
+        }
+        validation::Error::Oversize => false,
+    }
+}
+
+/// `attributes["POSITION"]` as `attributes.POSITION`.
+fn dotted(path: &str) -> String {
+    path.replace("[\"", ".").replace("\"]", "")
+}
+
+/// The name that a glTF object carries, or its kind and number.
+pub(crate) fn name_or(name: &Option<String>, kind: &str, index: usize) -> String {
+    name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| format!("{kind} {index}"))
+}
+
+/// The material index of a primitive.
+pub(crate) fn material_index(primitive: &json::mesh::Primitive) -> Option<u32> {
+    primitive.material.map(|m| m.value() as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        parse(text.as_bytes(), "a.gltf").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn places_are_told() {
+        let head = r#"{"asset":{"version":"2.0"}"#;
+        assert_eq!(error(&format!("{head},\"scene\":\"x\"}}")), "a.gltf: scene: invalid type: string \"x\", expected index into child of root");
+        assert!(error("{\n\"asset\": }").starts_with("a.gltf: line 2: column "));
+        assert!(error(r#"{"asset":{"version":"1.0"}}"#).contains("version 1.0"));
+        assert_eq!(error(&format!("{head},\"nodes\":[{{\"mesh\":7}}]}}")), "a.gltf: nodes[0].mesh: the index points at nothing");
+        let position = r#","meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}]}"#;
+        assert_eq!(error(&format!("{head}{position}")), "a.gltf: meshes[0].primitives[0].attributes.POSITION: accessor 9, there are 0");
+        let draco = r#","extensionsRequired":["KHR_draco_mesh_compression"]}"#;
+        assert_eq!(error(&format!("{head}{draco}")), "a.gltf: requires KHR_draco_mesh_compression, which is not supported");
+    }
+
+    #[test]
+    fn a_container_is_taken_apart() {
+        let json = br#"{"asset":{"version":"2.0"}}     "#;
+        let mut glb = b"glTF\x02\0\0\0".to_vec();
+        glb.extend((12 + 8 + json.len() as u32 + 8 + 4).to_le_bytes());
+        glb.extend((json.len() as u32).to_le_bytes());
+        glb.extend(b"JSON");
+        glb.extend(json);
+        glb.extend(b"\x04\0\0\0BIN\0\x01\x02\x03\x04");
+        assert_eq!(parse(&glb, "a.glb").unwrap().binary, Some(&[1, 2, 3, 4][..]));
+        for cut in 4..glb.len() {
+            assert!(parse(&glb[..cut], "a.glb").is_err(), "cut at {cut}");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Materials: metallic-roughness with the extensions that change what is seen.
+//!
+//! Source: glTF 2.0 specification, section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
+//! Departs from it: occlusion and transmission textures are left out (with a warning). A transmissive surface becomes
+//! a blended one whose opacity is what transmission leaves.
+
+use super::accessor::Source;
+use super::texture::{Reference, Wanted, transform_in};
+use crate::Error;
+use gltf::json::Material as JsonMaterial;
+use gltf::json::material::AlphaMode as JsonAlphaMode;
+use gltf::json::texture::Info;
+use gltf::json::validation::Checked;
+use vitral_frame::Encoding;
+use vitral_light::{AlphaMode, Material, Reflectance, TextureRef, Transmission};
+
+/// Reads material `index`. Its textures are asked for, not yet loaded.
+pub(crate) fn read(
+    source: &Source<'_>,
+    index: usize,
+    wanted: &mut Wanted,
+    warnings: &mut Vec<String>,
+) -> Result<Material, Error> {
+    let json = &source.root.materials[index];
+    let path = format!("materials[{index}]");
+    let pbr = &json.pbr_metallic_roughness;
+    let [r, g, b, alpha] = pbr.base_color_factor.0.map(|v| unit(v, 1.0));
+    let mut material = Material {
+        name: json.name.clone().unwrap_or_default(),
+        reflectance: Reflectance::MetallicRoughness {
+            base_color: [r, g, b],
+            metallic: unit(pbr.metallic_factor.0, 1.0),
+            roughness: unit(pbr.roughness_factor.0, 1.0),
+        },
+        double_sided: json.double_sided,
+        ..Material::default()
+    };
+    (material.alpha_mode, material.opacity) = match json.alpha_mode {
+        Checked::Valid(JsonAlphaMode::Mask) => {
+            (AlphaMode::Mask { cutoff: json.alpha_cutoff.map_or(0.5, |c| finite(c.0, 0.5)) }, alpha)
+        }
+        Checked::Valid(JsonAlphaMode::Blend) => (AlphaMode::Blend, alpha),
+        Checked::Valid(JsonAlphaMode::Opaque) | Checked::Invalid => (AlphaMode::Opaque, 1.0),
+    };
+    apply_extensions(source, json, &path, &mut material, warnings);
+
+    // Colours are sRGB in their images, all other quantities linear.
+    let mut ask = |info: &Option<Info>, encoding, name: &str| -> Option<TextureRef> {
+        let (info, path) = (info.as_ref()?, format!("{path}.{name}"));
+        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
+        let reference = Reference { texture: info.index.value(), uv_set: info.tex_coord, transform, path: &path };
+        wanted.ask(source, &reference, encoding, warnings)
+    };
+    material.base_texture = ask(&pbr.base_color_texture, Encoding::Srgb, "pbrMetallicRoughness.baseColorTexture");
+    let name = "pbrMetallicRoughness.metallicRoughnessTexture";
+    material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Encoding::Linear, name);
+    material.emission_texture = ask(&json.emissive_texture, Encoding::Srgb, "emissiveTexture");
+    if let Some(normal) = &json.normal_texture {
+        let path = format!("{path}.normalTexture");
+        let transform = match &normal.extensions {
+            Some(extensions) => transform_in(&extensions.others, &path, source)?,
+            None => None,
+        };
+        let reference = Reference { texture: normal.index.value(), uv_set: normal.tex_coord, transform, path: &path };
+        material.normal_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
+        material.normal_scale = finite(normal.scale, 1.0);
+    }
+    if json.occlusion_texture.is_some() {
+        warnings.push(format!("{}: {path}: the occlusion texture is not used", source.file));
+    }
+    Ok(material)
+}
+
+/// Emission, transmission, index of refraction, unlit.
+fn apply_extensions(source: &Source<'_>, json: &JsonMaterial, path: &str, material: &mut Material, warnings: &mut Vec<String>) {
+    let mut warn = |what: &str| warnings.push(format!("{}: {path}: {what}", source.file));
+    let extensions = json.extensions.clone().unwrap_or_default();
+    let strength = extensions.emissive_strength.map_or(1.0, |e| finite(e.emissive_strength.0, 1.0).max(0.0));
+    material.emission = json.emissive_factor.0.map(|v| finite(finite(v, 0.0).max(0.0) * strength, 0.0));
+    material.unlit = extensions.unlit.is_some();
+    if let Some(ior) = extensions.ior {
+        if ior.ior.0 >= 1.0 && ior.ior.0.is_finite() {
+            material.ior = ior.ior.0;
+        } else {
+            warn("an index of refraction below 1, 1.5 is used");
+        }
+    }
+    if let Some(transmission) = extensions.transmission {
+        let factor = unit(transmission.transmission_factor.0, 0.0);
+        match material.alpha_mode {
+            _ if factor == 0.0 => {}
+            AlphaMode::Mask { .. } => warn("a cut-out surface is not transmissive as well, transmission is not used"),
+            AlphaMode::Opaque | AlphaMode::Blend => {
+                material.opacity *= 1.0 - factor;
+                material.alpha_mode = AlphaMode::Blend;
+                material.transmission = Transmission::Transparent;
+            }
+        }
+        if transmission.transmission_texture.is_some() {
+            warn("the transmission texture is not used");
+        }
+    }
+}
+
+/// `value`, or `or` if it is not finite.
+fn finite(value: f32, or: f32) -> f32 {
+    if value.is_finite() { value } else { or }
+}
+
+/// `value` clamped to `0..=1`, or `or` if it is not finite.
+fn unit(value: f32, or: f32) -> f32 {
+    finite(value, or).clamp(0.0, 1.0)
+}

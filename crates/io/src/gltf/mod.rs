@@ -1,0 +1,189 @@
+//! glTF 2.0, as JSON with files beside it or as one GLB.
+//!
+//! The way of the data: `document.rs` takes the container apart and checks every index; `buffers.rs` fetches bytes;
+//! `accessor.rs` makes typed arrays of them; `geometry.rs`, `mesh.rs`, `normals.rs` and `deform.rs` make meshes;
+//! `texture.rs` and `material.rs` say what they look like; `node.rs` says where they are.
+//!
+//! In:   the file's bytes and a resolver for the files that it names. Out: a [`Scene`].
+//! Cost: linear in the bytes; meshes and images are made on all workers.
+//! Source: glTF 2.0 specification, Khronos 2021, and the extensions named in `document.rs`.
+
+mod accessor;
+mod buffers;
+mod deform;
+mod document;
+mod geometry;
+mod material;
+mod mesh;
+mod node;
+mod normals;
+mod texture;
+
+pub(crate) use document::plain_message;
+
+use crate::{Error, Place, Resolver};
+use accessor::Source;
+use buffers::Buffers;
+use mesh::{Plan, Pose};
+use node::Tree;
+use std::sync::Arc;
+use vitral_exec::Workers;
+use vitral_math::DMat4;
+use vitral_scene::{Node, Scene};
+
+/// Bytes that any file may unfold into.
+const FREE_BYTES: u64 = 64 << 20;
+/// Bytes that a file may unfold into for each of its own.
+const BYTES_PER_BYTE: u64 = 64;
+
+/// Reads a glTF or GLB file. `file` is its name, for messages.
+///
+/// Errors: what breaks the format is [`Error::Malformed`] at a JSON path, a buffer that cannot be had
+/// [`Error::Missing`], a required extension that is not read [`Error::Unsupported`]. Everything else that is odd (a
+/// missing image, bad normals, an empty scene) is a warning in the scene.
+pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    if bytes.is_empty() {
+        return Err(Error::malformed(file, Place::File, "empty file"));
+    }
+    let mut document = document::parse(bytes, file)?;
+    let mut warnings = std::mem::take(&mut document.warnings);
+    let buffers = Buffers::fetch(&document, file, resolver)?;
+    let source = Source { root: &document.root, buffers: &buffers, file };
+    let tree = Tree::read(&source, &mut warnings)?;
+
+    // Materials first: they know which images are wanted.
+    let mut wanted = texture::Wanted::default();
+    let count = source.root.materials.len();
+    let mut materials = (0..count)
+        .map(|i| material::read(&source, i, &mut wanted, &mut warnings))
+        .collect::<Result<Vec<_>, _>>()?;
+    let (meshes, images) =
+        workers.join(|| build_meshes(&source, &tree, workers), || wanted.load(&source, resolver, workers));
+    let (poses, meshes) = meshes?;
+    let textures = texture::settle(&mut materials, images, &mut warnings);
+
+    let mut scene = Scene { materials, textures, ..Scene::default() };
+    for (mesh, told) in meshes {
+        scene.meshes.push(Arc::new(mesh));
+        warnings.extend(told);
+    }
+    add_nodes(&source, &tree, &poses, &mut scene, &mut warnings);
+    scene.warnings = warnings;
+    Ok(scene)
+}
+
+/// A mesh with what was odd in it.
+type Built = (vitral_scene::Mesh, Vec<String>);
+
+/// Builds every mesh that is shown, once a pose, in the order in which nodes first show them.
+fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(Vec<Pose>, Vec<Built>), Error> {
+    let mut poses: Vec<Pose> = Vec::new();
+    let mut used: Vec<usize> = Vec::new();
+    let mut seen = std::collections::BTreeMap::new();
+    for pose in tree.shown.iter().filter_map(|&n| pose_of(source, n)) {
+        let bits: Vec<u32> = pose.weights.iter().map(|w| w.to_bits()).collect();
+        seen.entry((pose.mesh, pose.skin, bits)).or_insert_with(|| {
+            used.push(pose.mesh);
+            poses.push(pose);
+        });
+    }
+    used.sort_unstable();
+    used.dedup();
+
+    // Refuse what would unfold beyond measure: first by the indices, then by the vertices that they use.
+    let limit = FREE_BYTES + BYTES_PER_BYTE * source.buffers.total();
+    let check = |bytes: u64| {
+        let what = format!("the meshes unfold into more than {limit} bytes");
+        if bytes > limit { Err(Error::malformed(source.file, Place::File, what)) } else { Ok(()) }
+    };
+    check(used.iter().map(|&m| index_bytes(source, m)).sum())?;
+    let plans = workers.map(used.len(), |i| Plan::new(source, used[i])).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let plan_of = |pose: &Pose| used.binary_search(&pose.mesh).map(|i| &plans[i]);
+    check(poses.iter().filter_map(|p| plan_of(p).ok()).map(Plan::bytes).sum())?;
+
+    let skins = source
+        .root
+        .skins
+        .iter()
+        .enumerate()
+        .map(|(s, skin)| {
+            let wanted = poses.iter().any(|p| p.skin == Some(s));
+            if wanted { deform::joint_matrices(source, skin, s, &tree.worlds) } else { Ok(Vec::new()) }
+        })
+        .collect::<Result<Vec<Vec<DMat4>>, _>>()?;
+    let built = workers.map(poses.len(), |i| match plan_of(&poses[i]) {
+        Ok(plan) => plan.build(source, &poses[i], poses[i].skin.map(|s| skins[s].as_slice())),
+        Err(_) => Ok(Built::default()),
+    });
+    let mut built = built.into_iter().collect::<Result<Vec<_>, _>>()?;
+
+    // What was odd in a mesh as such is told once, however many poses it has.
+    for (&m, plan) in used.iter().zip(plans) {
+        if let Some(i) = poses.iter().position(|p| p.mesh == m) {
+            built[i].1.splice(0..0, plan.warnings);
+        }
+    }
+    Ok((poses, built))
+}
+
+/// The mesh that a node shows, and how.
+fn pose_of(source: &Source<'_>, node: usize) -> Option<Pose> {
+    let node = &source.root.nodes[node];
+    let mesh = node.mesh?.value();
+    let weights = node.weights.as_ref().or(source.root.meshes[mesh].weights.as_ref());
+    let weights = weights.filter(|w| w.iter().any(|&w| w != 0.0)).cloned().unwrap_or_default();
+    Some(Pose { mesh, weights, skin: node.skin.map(|s| s.value()) })
+}
+
+/// Bytes that the topology of a mesh takes at most.
+fn index_bytes(source: &Source<'_>, mesh: usize) -> u64 {
+    let primitives = &source.root.meshes[mesh].primitives;
+    let count = |accessor: usize| source.root.accessors[accessor].count.0;
+    primitives.iter().filter_map(|p| p.indices).map(|i| count(i.value()).saturating_mul(12)).fold(0, u64::saturating_add)
+}
+
+/// Adds the nodes that are shown, with their meshes, lights and cameras.
+fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene, warnings: &mut Vec<String>) {
+    let root = source.root;
+    let mut numbers = vec![0u32; root.nodes.len()];
+    for (number, &n) in tree.shown.iter().enumerate() {
+        numbers[n] = number as u32;
+    }
+    let mesh_numbers: std::collections::BTreeMap<_, _> =
+        poses.iter().enumerate().map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32)).collect();
+    let cameras: Vec<_> =
+        root.cameras.iter().enumerate().map(|(i, c)| node::camera(source, c, i, warnings)).collect();
+    let lights: Vec<_> = AsRef::<[_]>::as_ref(root).iter().map(node::light).collect();
+
+    let mut skinned = Vec::new();
+    for &n in &tree.shown {
+        let json = &root.nodes[n];
+        let mut node = Node {
+            name: json.name.clone().unwrap_or_default(),
+            transform: tree.transforms[n],
+            children: tree.children[n].iter().map(|&c| numbers[c]).collect(),
+            ..Node::default()
+        };
+        if let Some(pose) = pose_of(source, n) {
+            let mesh = mesh_numbers.get(&(pose.mesh, pose.skin, weight_bits(&pose))).copied();
+            if pose.skin.is_some() { skinned.push((node.name.clone(), mesh)) } else { node.mesh = mesh }
+        }
+        if let Some(camera) = json.camera.and_then(|c| cameras[c.value()]) {
+            scene.cameras.push(camera);
+            node.camera = Some(scene.cameras.len() as u32 - 1);
+        }
+        let punctual = json.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        node.light = punctual.and_then(|l| lights.get(l.light.value()).cloned());
+        scene.nodes.push(node);
+    }
+    scene.roots = tree.roots.iter().map(|&n| numbers[n]).collect();
+
+    // Skinned meshes are in world space already: they hang beside the tree.
+    for (name, mesh) in skinned {
+        scene.add_root(Node { name, mesh, ..Node::default() });
+    }
+}
+
+fn weight_bits(pose: &Pose) -> Vec<u32> {
+    pose.weights.iter().map(|w| w.to_bits()).collect()
+}

@@ -1,0 +1,148 @@
+//! Images in: PNG and JPEG, known by their content, as 8-bit RGBA with straight alpha.
+//!
+//! In:   the bytes of a file. Out: a plane, the top row first. PNG: every colour type, 16 bits reduced to 8,
+//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive.
+//! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before anything is allocated.
+
+use crate::{Error, Place};
+use std::io::Cursor;
+use vitral_frame::Plane;
+
+/// Most pixels along a side.
+pub const MAX_SIDE: u32 = 16_384;
+/// Most pixels in all.
+pub const MAX_PIXELS: u64 = 1 << 28;
+/// Bytes that a decoder may take besides its output.
+const DECODER_MEMORY: usize = 64 << 20;
+
+/// Decodes a picture. `file` is its name, for messages.
+///
+/// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
+pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    let unsupported = |what: &str| Error::Unsupported { file: file.to_owned(), what: format!("{what} is not read; PNG and JPEG are") };
+    match bytes {
+        [] => Err(Error::malformed(file, Place::File, "empty file")),
+        [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
+        [0xff, 0xd8, 0xff, ..] => decode_jpeg(bytes, file),
+        [b'G', b'I', b'F', b'8', ..] => Err(unsupported("GIF")),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Err(unsupported("WebP")),
+        [b'D', b'D', b'S', b' ', ..] => Err(unsupported("DDS")),
+        [0xab, b'K', b'T', b'X', ..] => Err(unsupported("KTX")),
+        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => Err(unsupported("BMP")),
+        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Err(unsupported("TIFF")),
+        _ if has_tga_header(bytes) => Err(unsupported("TGA")),
+        _ => Err(unsupported("this image format")),
+    }
+}
+
+/// A TGA has no magic number: look at its colour map type, image type and depth.
+fn has_tga_header(bytes: &[u8]) -> bool {
+    matches!(bytes, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..])
+        && matches!(bytes.get(16), Some(8 | 15 | 16 | 24 | 32))
+}
+
+/// Refuses pictures beyond the limits.
+pub(crate) fn check_size(width: u32, height: u32, file: &str) -> Result<(), Error> {
+    let fits = width <= MAX_SIDE && height <= MAX_SIDE && u64::from(width) * u64::from(height) <= MAX_PIXELS;
+    if width == 0 || height == 0 || !fits {
+        let what = format!("{width} x {height} pixels; 1 to {MAX_SIDE} a side and {MAX_PIXELS} in all are read");
+        return Err(Error::malformed(file, Place::File, what));
+    }
+    Ok(())
+}
+
+/// The plane of RGBA bytes that a decoder gave.
+fn plane(width: u32, height: u32, rgba: Vec<[u8; 4]>, file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    Plane::from_rows(width, height, rgba)
+        .ok_or_else(|| Error::malformed(file, Place::File, "the image ends before its last row"))
+}
+
+fn decode_png(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    let bad = |e: png::DecodingError| Error::malformed(file, Place::File, format!("PNG: {e}"));
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let header = decoder.read_header_info().map_err(bad)?;
+    let (width, height) = (header.width, header.height);
+    check_size(width, height, file)?;
+    let mut reader = decoder.read_info().map_err(bad)?;
+    let size = reader.output_buffer_size().ok_or_else(|| Error::malformed(file, Place::File, "PNG: too large"))?;
+    let mut data = vec![0; size];
+    let info = reader.next_frame(&mut data).map_err(bad)?;
+    data.truncate(info.buffer_size());
+    let rgba = match info.color_type {
+        png::ColorType::Grayscale => data.iter().map(|&l| [l, l, l, 255]).collect(),
+        png::ColorType::GrayscaleAlpha => data.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect(),
+        png::ColorType::Rgb => data.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
+        png::ColorType::Rgba => rgba_from_bytes(data),
+        png::ColorType::Indexed => return Err(Error::malformed(file, Place::File, "PNG: palette without entries")),
+    };
+    plane(width, height, rgba, file)
+}
+
+fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    use image::ImageDecoder;
+    let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("JPEG: {e}"));
+    let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes)).map_err(bad)?;
+    let (width, height) = decoder.dimensions();
+    check_size(width, height, file)?;
+    let rgba = image::DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
+    plane(width, height, rgba_from_bytes(rgba), file)
+}
+
+/// Groups bytes into pixels, without a copy where the allocation allows it.
+fn rgba_from_bytes(bytes: Vec<u8>) -> Vec<[u8; 4]> {
+    bytemuck::allocation::try_cast_vec(bytes).unwrap_or_else(|(_, bytes)| bytes.as_chunks().0.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A PNG of the given kind from raw rows.
+    fn png_of(color: png::ColorType, depth: png::BitDepth, width: u32, height: u32, data: &[u8], extra: impl Fn(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
+        let mut out = Vec::new();
+        let mut encoder = png::Encoder::new(&mut out, width, height);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        extra(&mut encoder);
+        encoder.write_header().unwrap().write_image_data(data).unwrap();
+        out
+    }
+
+    #[test]
+    fn every_png_colour_type() {
+        use png::{BitDepth, ColorType};
+        let read = |bytes: Vec<u8>| decode(&bytes, "a.png").unwrap().into_data();
+        let none = |_: &mut png::Encoder<'_, &mut Vec<u8>>| {};
+        assert_eq!(read(png_of(ColorType::Grayscale, BitDepth::One, 3, 1, &[0b1010_0000], none)), [[255; 4], [0, 0, 0, 255], [255; 4]]);
+        assert_eq!(read(png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xff], none)), [[128, 128, 128, 255]]);
+        assert_eq!(read(png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, 1, &[9, 7], none)), [[9, 9, 9, 7]]);
+        assert_eq!(read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e.set_trns(vec![0, 1, 0, 2, 0, 3]))), [[1, 2, 3, 0]]);
+        assert_eq!(read(png_of(ColorType::Rgba, BitDepth::Sixteen, 1, 1, &[1, 0, 2, 0, 3, 0, 4, 0], none)), [[1, 2, 3, 4]]);
+        let palette = |e: &mut png::Encoder<'_, &mut Vec<u8>>| {
+            e.set_palette(vec![1, 2, 3, 4, 5, 6]);
+            e.set_trns(vec![8]);
+        };
+        assert_eq!(read(png_of(ColorType::Indexed, BitDepth::Two, 2, 1, &[0b0001_0000], palette)), [[1, 2, 3, 8], [4, 5, 6, 255]]);
+    }
+
+    #[test]
+    fn sizes_are_refused_before_they_are_allocated() {
+        let mut bytes = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, 1, 1, &[0], |_| {});
+        bytes[16..20].copy_from_slice(&0x7fff_ffffu32.to_be_bytes());
+        assert!(decode(&bytes, "a.png").is_err());
+        assert!(check_size(16_384, 16_384, "x").is_ok() && check_size(16_385, 1, "x").is_err() && check_size(0, 1, "x").is_err());
+    }
+
+    #[test]
+    fn damage_is_an_error_and_strange_formats_are_named() {
+        let good = png_of(png::ColorType::Rgb, png::BitDepth::Eight, 4, 4, &[7; 48], |_| {});
+        for cut in 0..good.len() - 12 {
+            assert!(decode(&good[..cut], "a.png").is_err(), "cut at {cut}");
+        }
+        assert!(decode(b"GIF89a", "a.gif").unwrap_err().to_string().contains("GIF is not read"));
+        assert!(decode(b"\xff\xd8\xff\xe0junk", "a.jpg").is_err());
+    }
+}

@@ -1,0 +1,348 @@
+//! MTL, the material library of OBJ files.
+//!
+//! A library is a list of `newmtl NAME` blocks of statements. The illumination number (`illum`) says which of them
+//! count: 0 is the constant colour `Kd` without light, 1 has no highlights, 2 and above have them (their reflections
+//! and refractions belong to ray tracing and are left to `Ks`, `d` and `Ni`). Without `illum`, a `Ks` gives highlights.
+//!
+//! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni` 1; `Ns` below 1
+//! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are taken as linear
+//! coefficients, as they stand. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
+//! `1 - mean(Tf)`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into opaque materials.
+//!
+//! Maps: `map_Kd` (sRGB; its alpha counts only in a material that `d` makes transparent), `map_Ks` (linear), `map_Ke`
+//! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
+//! `norm` (a normal map). Of their options `-s`, `-o`, `-clamp` and `-imfchan` are obeyed; others, if they would change
+//! the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
+//! turns `v` to `1 - v`, and so scale and offset along v become `s v + 1 - s - o`.
+//!
+//! Source: Wavefront's "MTL material format", version 4.2, 1995, as given in docs/bibliography.md.
+
+use crate::text::{Cursor, to_utf8};
+use crate::textures::{Channel, Requests, Usage};
+use crate::warnings::Warnings;
+use crate::Place;
+use vitral_frame::{Sampler, Wrap};
+use vitral_light::{AlphaMode, Material, Reflectance, TextureRef};
+
+/// A `newmtl` block, as in the file. `None`: not said.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MtlMaterial {
+    pub(crate) name: String,
+    ka: Option<[f32; 3]>,
+    kd: Option<[f32; 3]>,
+    ks: Option<[f32; 3]>,
+    ke: Option<[f32; 3]>,
+    tf: Option<[f32; 3]>,
+    ns: Option<f32>,
+    d: Option<f32>,
+    tr: Option<f32>,
+    ni: Option<f32>,
+    illum: Option<i64>,
+    map_kd: Option<Map>,
+    map_ks: Option<Map>,
+    map_ke: Option<Map>,
+    map_d: Option<Map>,
+    norm: Option<Map>,
+}
+
+/// A texture statement.
+#[derive(Clone, Debug, PartialEq)]
+struct Map {
+    path: String,
+    line: u64,
+    scale: [f32; 2],
+    offset: [f32; 2],
+    clamp: bool,
+    channel: Option<Channel>,
+}
+
+/// Reads a library. Nothing in it is an error: what cannot be used is noted in `warnings`.
+pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
+    let text = to_utf8(bytes);
+    let mut cursor = Cursor::new(&text);
+    let mut materials: Vec<MtlMaterial> = Vec::new();
+    while cursor.next_content() {
+        let place = Place::Line(cursor.line());
+        let keyword = cursor.word();
+        if keyword.eq_ignore_ascii_case(b"newmtl") {
+            let name = String::from_utf8_lossy(cursor.rest_of_line()).into_owned();
+            materials.push(MtlMaterial { name, ..MtlMaterial::default() });
+        } else if let Some(material) = materials.last_mut() {
+            material.statement(keyword, &mut cursor, warnings);
+        } else {
+            warnings.note("before newmtl", place, || format!("`{}` before any newmtl", show(keyword)));
+        }
+        if cursor.take_ill_formed() {
+            warnings.note("number", Place::Line(cursor.line()), || "ill-formed number; its beginning is used".into());
+        }
+        cursor.next_line();
+    }
+    materials
+}
+
+fn show(word: &[u8]) -> String {
+    String::from_utf8_lossy(&word[..word.len().min(40)]).into_owned()
+}
+
+impl MtlMaterial {
+    fn statement(&mut self, keyword: &[u8], cursor: &mut Cursor, warnings: &mut Warnings) {
+        let line = cursor.line();
+        match keyword.to_ascii_lowercase().as_slice() {
+            b"ka" => self.ka = color(cursor, warnings).or(self.ka),
+            b"kd" => self.kd = color(cursor, warnings).or(self.kd),
+            b"ks" => self.ks = color(cursor, warnings).or(self.ks),
+            b"ke" => self.ke = color(cursor, warnings).or(self.ke),
+            b"tf" => self.tf = color(cursor, warnings).or(self.tf),
+            b"ns" => self.ns = number(cursor, warnings).or(self.ns),
+            b"d" => self.d = dissolve(cursor, warnings).or(self.d),
+            b"tr" => self.tr = number(cursor, warnings).or(self.tr),
+            b"ni" => self.ni = number(cursor, warnings).or(self.ni),
+            b"illum" => self.illum = cursor.integer().filter(|i| (0..=10).contains(i)).or_else(|| {
+                warnings.note("illum", Place::Line(line), || "illum must be 0 to 10; ignored".into());
+                self.illum
+            }),
+            b"map_kd" => self.map_kd = map(cursor, warnings),
+            b"map_ks" => self.map_ks = map(cursor, warnings),
+            b"map_ke" => self.map_ke = map(cursor, warnings),
+            b"map_d" => self.map_d = map(cursor, warnings),
+            b"norm" => self.norm = map(cursor, warnings),
+            // The ambient map follows the diffuse one; only another image would make a difference.
+            b"map_ka" => {
+                let ambient = map(cursor, warnings).map(|m| m.path);
+                if self.map_kd.as_ref().is_some_and(|m| Some(&m.path) != ambient.as_ref()) {
+                    warnings.note("map_Ka", Place::Line(line), || {
+                        "map_Ka is not used: ambient light takes map_Kd".into()
+                    });
+                }
+            }
+            b"bump" | b"map_bump" | b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl"
+            | b"map_refl" | b"map_aat" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor"
+            | b"map_pr" | b"map_pm" | b"map_ps" => {
+                warnings.note("mtl unused", Place::Line(line), || format!("`{}` is not used", show(keyword)));
+            }
+            _ => warnings.note("mtl unknown", Place::Line(line), || format!("unknown statement `{}`", show(keyword))),
+        }
+    }
+
+    /// The material, in vitral's terms. Its texture indices count `requests`.
+    pub(crate) fn build(&self, library: &str, requests: &mut Requests) -> Material {
+        let lit = self.illum != Some(0);
+        let shiny = self.illum.is_none_or(|i| i >= 2);
+        let map_ks = self.map_ks.as_ref().filter(|_| shiny);
+        let ks = if shiny { self.ks.unwrap_or(if map_ks.is_some() { [1.0; 3] } else { [0.0; 3] }) } else { [0.0; 3] };
+        let opacity = self.opacity();
+        let is_transparent = opacity < 1.0 || self.map_d.is_some();
+
+        // With a map of its own for opacity, the diffuse map's alpha must not count a second time.
+        let kd_usage = if self.map_d.is_some() { Usage::OpaqueColor } else { Usage::Color };
+        let mut texture = |map: &Option<Map>, usage: Usage| {
+            map.as_ref().map(|m| TextureRef {
+                transform: m.transform(),
+                sampler: m.sampler(),
+                ..TextureRef::new(requests.add(library, m.line, &m.path, usage))
+            })
+        };
+        let opacity_usage = Usage::Grey(self.map_d.as_ref().and_then(|m| m.channel).unwrap_or(Channel::Matte));
+        Material {
+            name: self.name.clone(),
+            reflectance: Reflectance::Phong {
+                ka: self.ka.unwrap_or([0.2; 3]),
+                kd: self.kd.unwrap_or([0.8; 3]),
+                ks,
+                shininess: self.ns.unwrap_or(10.0).max(1.0),
+            },
+            emission: self.ke.unwrap_or(if self.map_ke.is_some() { [1.0; 3] } else { [0.0; 3] }),
+            opacity,
+            alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
+            ior: self.ni.filter(|&n| n >= 0.001).unwrap_or(1.0),
+            unlit: !lit,
+            base_texture: texture(&self.map_kd, kd_usage),
+            specular_texture: texture(&map_ks.cloned(), Usage::Data),
+            emission_texture: texture(&self.map_ke, Usage::Color),
+            opacity_texture: texture(&self.map_d, opacity_usage),
+            normal_texture: texture(&self.norm, Usage::Data),
+            ..Material::default()
+        }
+    }
+
+    fn opacity(&self) -> f32 {
+        let filtered = matches!(self.illum, Some(4 | 6 | 7 | 9));
+        let from_filter = self.tf.filter(|_| filtered).map(|tf| 1.0 - (tf[0] + tf[1] + tf[2]) / 3.0);
+        self.d.or(self.tr.map(|t| 1.0 - t)).or(from_filter).unwrap_or(1.0).clamp(0.0, 1.0)
+    }
+}
+
+impl Map {
+    fn transform(&self) -> [[f32; 3]; 2] {
+        let ([su, sv], [ou, ov]) = (self.scale, self.offset);
+        [[su, 0.0, ou], [0.0, sv, 1.0 - sv - ov]]
+    }
+
+    fn sampler(&self) -> Sampler {
+        let wrap = if self.clamp { Wrap::ClampToEdge } else { Wrap::Repeat };
+        Sampler { wrap_s: wrap, wrap_t: wrap, ..Sampler::default() }
+    }
+}
+
+/// One number or three; `spectral` and `xyz` colours are not read.
+fn color(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<[f32; 3]> {
+    let red = number(cursor, warnings)?;
+    if cursor.at_line_end() {
+        return Some([red; 3]);
+    }
+    let (green, blue) = (number(cursor, warnings)?, if cursor.at_line_end() { None } else { number(cursor, warnings) });
+    Some([red, green, blue.unwrap_or(green)])
+}
+
+fn number(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
+    let line = cursor.line();
+    let value = cursor.float().filter(|v| v.is_finite());
+    if value.is_none() {
+        let word = show(cursor.word());
+        warnings.note("mtl number", Place::Line(line), || format!("`{word}` is not a number; the statement is ignored"));
+    }
+    value
+}
+
+fn dissolve(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
+    let mut ahead = *cursor;
+    if ahead.word() == b"-halo" {
+        *cursor = ahead;
+        warnings.note("halo", Place::Line(cursor.line()), || "`-halo` is not used: opacity is even".into());
+    }
+    number(cursor, warnings)
+}
+
+/// A texture statement: options, then a file name that may hold blanks.
+fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
+    let line = cursor.line();
+    let mut map =
+        Map { path: String::new(), line, scale: [1.0; 2], offset: [0.0; 2], clamp: false, channel: None };
+    loop {
+        let mut ahead = *cursor;
+        let option = ahead.word();
+        let known = option.first() == Some(&b'-') && map.option(&option.to_ascii_lowercase(), &mut ahead, warnings);
+        if !known {
+            break;
+        }
+        *cursor = ahead;
+    }
+    let name = String::from_utf8_lossy(cursor.rest_of_line());
+    map.path = name.trim_matches('"').replace('\\', "/");
+    if map.path.is_empty() {
+        warnings.note("map name", Place::Line(line), || "texture statement without a file name".into());
+        return None;
+    }
+    Some(map)
+}
+
+impl Map {
+    /// Reads an option's values; false if there is no such option.
+    fn option(&mut self, option: &[u8], cursor: &mut Cursor, warnings: &mut Warnings) -> bool {
+        let place = Place::Line(cursor.line());
+        let mut unused = |changes: bool| {
+            if changes {
+                let name = show(option);
+                warnings.note("map option", place.clone(), || format!("texture option `{name}` is not used"));
+            }
+        };
+        match option {
+            b"-s" => self.scale = two(cursor, [1.0; 2]),
+            b"-o" => self.offset = two(cursor, [0.0; 2]),
+            b"-t" => unused(two(cursor, [0.0; 2]) != [0.0; 2]),
+            b"-mm" => unused(two(cursor, [0.0, 1.0]) != [0.0, 1.0]),
+            b"-clamp" => self.clamp = cursor.word().eq_ignore_ascii_case(b"on"),
+            b"-imfchan" => {
+                let name = cursor.word();
+                self.channel = Channel::from_letter(name);
+                unused(self.channel.is_none());
+            }
+            b"-blendu" | b"-blendv" => unused(!cursor.word().eq_ignore_ascii_case(b"on")),
+            b"-cc" => unused(cursor.word().eq_ignore_ascii_case(b"on")),
+            b"-bm" => unused(cursor.float().is_some_and(|b| b != 1.0)),
+            b"-boost" => unused(cursor.float().is_some_and(|b| b != 0.0)),
+            b"-texres" => unused(cursor.float().is_some()),
+            b"-type" => unused(!cursor.word().is_empty()),
+            _ => return false,
+        }
+        true
+    }
+}
+
+/// One to three numbers, of which the first two count.
+fn two(cursor: &mut Cursor, mut values: [f32; 2]) -> [f32; 2] {
+    for k in 0..3 {
+        let mut ahead = *cursor;
+        let Some(value) = ahead.float() else { break };
+        // A file name may begin with a digit: `2nd wall.png` is no number.
+        if ahead.take_ill_formed() || ahead.at_line_end() {
+            break;
+        }
+        *cursor = ahead;
+        if k < 2 && value.is_finite() {
+            values[k] = value;
+        }
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(text: &str) -> (Material, Requests, Vec<String>) {
+        let (mut warnings, mut requests) = (Warnings::default(), Requests::default());
+        let parsed = parse(text.as_bytes(), &mut warnings);
+        let material = parsed[0].build("m.mtl", &mut requests);
+        (material, requests, warnings.into_messages("m.mtl"))
+    }
+
+    #[test]
+    fn every_coefficient_arrives() {
+        let (m, _, warnings) = one(
+            "newmtl a b \r\nKa .1 .2 .3\r\nKd 0.5\r\nKs 1 1 1\r\nNs 250\r\nKe 0 1 0\r\nd 0.25\r\nNi 1.33\r\nillum 2\r\n",
+        );
+        assert_eq!(m.name, "a b");
+        assert_eq!(
+            m.reflectance,
+            Reflectance::Phong { ka: [0.1, 0.2, 0.3], kd: [0.5; 3], ks: [1.0; 3], shininess: 250.0 }
+        );
+        assert_eq!((m.emission, m.opacity, m.ior, m.alpha_mode), ([0.0, 1.0, 0.0], 0.25, 1.33, AlphaMode::Blend));
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+
+    #[test]
+    fn illumination_numbers_choose_the_formula() {
+        assert!(one("newmtl a\nillum 0").0.unlit);
+        let ks = |text: &str| match one(text).0.reflectance {
+            Reflectance::Phong { ks, .. } => ks,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(ks("newmtl a\nKs 1 1 1\nillum 1"), [0.0; 3]);
+        assert_eq!(ks("newmtl a\nKs .5 .5 .5"), [0.5; 3]);
+        assert_eq!(one("newmtl a\nTf 1 1 1\nillum 2").0.opacity, 1.0);
+        assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 4").0.opacity, 0.5);
+        assert_eq!(one("newmtl a\nTr .75").0.opacity, 0.25);
+    }
+
+    #[test]
+    fn map_options_turn_with_v() {
+        let (m, requests, warnings) =
+            one("newmtl a\nmap_Kd -s 2 3 1 -o .5 .25 -clamp on -mm 0 1 .\\my wood 1.png\nmap_d -imfchan r x.png\nbump b.png");
+        let base = m.base_texture.unwrap();
+        assert_eq!(base.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
+        assert_eq!(base.sampler.wrap_s, Wrap::ClampToEdge);
+        assert_eq!(requests.paths(), ["./my wood 1.png", "x.png"]);
+        assert_eq!(warnings, ["m.mtl: line 4: `bump` is not used"]);
+        assert_eq!(one("newmtl a\nmap_Kd -s 1 2 2nd.png").1.paths(), ["2nd.png"]);
+        assert_eq!(one("newmtl a\nmap_Kd -strange.png").1.paths(), ["-strange.png"]);
+    }
+
+    #[test]
+    fn nonsense_is_told_and_passed_over() {
+        let (m, _, warnings) = one("Kd 1 1 1\nnewmtl a\nKd red\nillum 99\nfoo\nmap_Kd\nKa nan 1 1");
+        assert!(m.base_texture.is_none());
+        assert_eq!(warnings.len(), 5, "{warnings:?}");
+        assert!(warnings[1].contains("line 3: `red` is not a number"));
+    }
+}

@@ -1,0 +1,113 @@
+//! Wavefront OBJ: polygons with separate indices for positions, texture coordinates and normals.
+//!
+//! The text is cut at line ends into pieces of equal size, which are read independently ([`chunk`]): each gathers the
+//! vertices and faces of its lines. Positive indices are absolute; negative ones count back from the vertices read so
+//! far, of which a piece only knows its own, so they are kept relative to the piece's beginning. When all pieces are
+//! read, their vertex counts give the bases, and the faces are put together and cut into triangles, again piece by
+//! piece ([`stitch`]); materials and textures are read at the same time ([`materials`]).
+//!
+//! The file becomes one mesh and one node; each run of faces with one group (or object) and one material is a part.
+//!
+//! * `v x y z [w]`: `w` is left out. Six or seven numbers: a colour `r g b` follows (sRGB, `0..=1`; `0..=255` if any
+//!   value exceeds 1). `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
+//! * `f`, `fo`: any number of corners, `v`, `v/vt`, `v//vn`, `v/vt/vn`. Fewer than three corners: warning, left out.
+//!   Corners without texture coordinates get `(0, 0)`; corners without a normal, in a file that has some, the face's.
+//! * `l`, `p`: free lines and points; all take the material of the first. A file of vertices alone is a point cloud.
+//! * `o`, `g`, `s`, `usemtl`, `mtllib`. An unknown material is the default one, with a warning.
+//! * A number with something glued to it (`3.1+e2`) counts up to there, with a warning; a word that is no number, and
+//!   an index that leads nowhere, is an error that names the line.
+//! * Free-form curves and surfaces are left out, with a warning.
+//!
+//! In:   UTF-8 or UTF-16 text. Out: a scene in model space, right-handed, any orientation of axes.
+//! Cost: `O(bytes)`; the memory of the mesh twice, for a moment.
+//! Source: Wavefront's "Advanced Visualizer" manual, appendix B1; see docs/bibliography.md.
+
+mod chunk;
+mod materials;
+mod stitch;
+
+use crate::text::{cut_at_lines, to_utf8};
+use crate::warnings::Warnings;
+use crate::{Error, Place, Resolver};
+use chunk::{Chunk, Statement};
+use vitral_exec::Workers;
+use vitral_scene::Scene;
+
+/// Bytes of a piece. Small files are one piece.
+const PIECE: usize = 1 << 20;
+
+/// Reads an OBJ file. `resolver` gives its material libraries and textures; missing ones are warnings.
+///
+/// # Errors
+/// [`Error::Malformed`] with the line of an index out of range, or of a statement that has no number where one is due.
+pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    load_in_pieces(bytes, file, resolver, workers, PIECE)
+}
+
+/// Whether `word` begins one of the usual statements of an OBJ file.
+pub(crate) fn is_statement(word: &[u8]) -> bool {
+    !matches!(Statement::of(word), Statement::Unknown | Statement::Unused | Statement::FreeForm)
+}
+
+fn load_in_pieces(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+    piece: usize,
+) -> Result<Scene, Error> {
+    let text = to_utf8(bytes);
+    let pieces = cut_at_lines(&text, piece);
+    let mut chunks = workers.map(pieces.len(), |i| Chunk::read(pieces[i]));
+
+    // Gather what was said, and refuse what cannot be read.
+    let (mut warnings, mut lines, mut understood) = (Warnings::default(), 0, false);
+    let mut first_lines = Vec::with_capacity(chunks.len());
+    let mut error = None;
+    for chunk in &mut chunks {
+        first_lines.push(lines);
+        warnings.append(std::mem::take(&mut chunk.warnings), lines);
+        if let Some((line, what)) = chunk.error.take() {
+            error = error.or(Some(Error::malformed(file, Place::Line(line + lines), what)));
+        }
+        lines += chunk.line_count;
+        understood |= chunk.understood;
+    }
+    if !understood && let Some(line) = chunks.iter().zip(&first_lines).find_map(|(c, l)| Some(c.first_unknown? + l)) {
+        return Err(Error::malformed(file, Place::Line(line), "no statement of an OBJ file"));
+    }
+
+    // Put the geometry together while the materials are read.
+    let events = materials::Events::new(&chunks, &pieces, &first_lines);
+    let totals = stitch::Totals::new(&chunks, file)?;
+    if let Some(wrong) = stitch::first_bad_index(&chunks, &totals, &pieces, &first_lines, file) {
+        return Err(earlier(error, wrong));
+    }
+    if let Some(error) = error {
+        return Err(error);
+    }
+    let (mut mesh, library) = workers.join(
+        || stitch::stitch(chunks, &totals, &mut warnings, workers),
+        || materials::load(&events, file, resolver, workers),
+    );
+    events.apply(&mut mesh, &library.index);
+    mesh.name = crate::stem(file);
+    let mut scene = Scene { materials: library.materials, textures: library.textures, ..Scene::default() };
+    scene.warnings = warnings.into_messages(file);
+    scene.warnings.extend(library.warnings);
+    Ok(crate::finish(mesh, scene, file))
+}
+
+fn earlier(a: Option<Error>, b: Error) -> Error {
+    let line = |e: &Error| match e {
+        Error::Malformed { place: Place::Line(line), .. } => *line,
+        _ => u64::MAX,
+    };
+    match a {
+        Some(a) if line(&a) <= line(&b) => a,
+        _ => b,
+    }
+}
+
+#[cfg(test)]
+mod tests;

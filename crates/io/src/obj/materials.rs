@@ -1,0 +1,213 @@
+//! The state changes of an OBJ file in order, and the materials and textures behind them.
+
+use super::chunk::{Change, Chunk};
+use crate::mtl::{self, MtlMaterial};
+use crate::textures::Requests;
+use crate::warnings::Warnings;
+use crate::{Place, Resolver};
+use std::collections::HashMap;
+use std::sync::Arc;
+use vitral_exec::Workers;
+use vitral_frame::Texture;
+use vitral_light::Material;
+use vitral_scene::{Mesh, Part};
+
+/// A stretch of triangles with one name and one material.
+#[derive(Debug)]
+struct Run<'a> {
+    name: &'a [u8],
+    /// Index into `Events::used`; `None` before the first `usemtl`.
+    material: Option<usize>,
+    first_triangle: u32,
+}
+
+/// The changes of all pieces.
+#[derive(Debug, Default)]
+pub(super) struct Events<'a> {
+    runs: Vec<Run<'a>>,
+    /// Smoothing group from this face on.
+    smoothing: Vec<(u32, u32)>,
+    /// `mtllib` lines.
+    libraries: Vec<(u64, &'a [u8])>,
+    /// Materials in order of their first use, with its line.
+    used: Vec<(u64, &'a [u8])>,
+    /// The material of the first free line or point.
+    line_material: Option<usize>,
+}
+
+impl<'a> Events<'a> {
+    /// Walks the changes of all pieces.
+    pub(super) fn new(chunks: &[Chunk], pieces: &[&'a [u8]], first_lines: &[u64]) -> Self {
+        let mut events = Self::default();
+        let mut number: HashMap<&[u8], usize> = HashMap::new();
+        let (mut faces, mut triangles, mut has_free) = (0, 0, false);
+        let mut name: &[u8] = b"";
+        let mut material = None;
+        events.start_run(name, material, 0);
+        for ((chunk, &text), first_line) in chunks.iter().zip(pieces).zip(first_lines) {
+            for event in &chunk.events {
+                let line = event.line + first_line;
+                match &event.change {
+                    Change::Name(range) => name = &text[range.clone()],
+                    Change::Material(range) => {
+                        let wanted = &text[range.clone()];
+                        material = Some(*number.entry(wanted).or_insert_with(|| {
+                            events.used.push((line, wanted));
+                            events.used.len() - 1
+                        }));
+                    }
+                    Change::Smoothing(group) => events.smoothing.push((faces + event.face, *group)),
+                    Change::Library(range) => events.libraries.push((line, &text[range.clone()])),
+                    Change::FreeElement if !has_free => {
+                        has_free = true;
+                        events.line_material = material;
+                    }
+                    Change::FreeElement => {}
+                }
+                events.start_run(name, material, triangles + event.triangle);
+            }
+            faces += chunk.faces.count as u32;
+            triangles += chunk.faces.triangles() as u32;
+        }
+        events
+    }
+
+    /// Begins a run, unless it goes on with what there is; a run without triangles is overwritten.
+    fn start_run(&mut self, name: &'a [u8], material: Option<usize>, first_triangle: u32) {
+        if self.runs.last().is_some_and(|r| r.first_triangle == first_triangle) {
+            self.runs.pop();
+        }
+        if self.runs.last().is_none_or(|r| r.name != name || r.material != material) {
+            self.runs.push(Run { name, material, first_triangle });
+        }
+    }
+
+    /// Gives the mesh its parts and smoothing groups. `index`: the scene's material for each one used.
+    pub(super) fn apply(&self, mesh: &mut Mesh, index: &[Option<u32>]) {
+        let total = mesh.triangles.len() as u32;
+        let material = |m: Option<usize>| m.and_then(|m| index[m]);
+        let ends = self.runs.iter().skip(1).map(|r| r.first_triangle).chain([total]);
+        let parts = self.runs.iter().zip(ends).map(|(run, end)| Part {
+            name: String::from_utf8_lossy(run.name).into_owned(),
+            triangles: run.first_triangle..end,
+            material: material(run.material),
+        });
+        mesh.parts = parts.filter(|p| !p.triangles.is_empty()).collect();
+        mesh.line_material = material(self.line_material);
+
+        // Each group reaches to the next statement.
+        if !self.smoothing.is_empty() {
+            let mut groups = vec![0; mesh.face_count()];
+            let ends = self.smoothing.iter().skip(1).map(|s| s.0 as usize).chain([groups.len()]).collect::<Vec<_>>();
+            for (&(first, group), end) in self.smoothing.iter().zip(ends) {
+                groups[first as usize..end].fill(group);
+            }
+            mesh.smoothing_groups = Some(groups);
+        }
+    }
+}
+
+/// What was found for the materials that the file uses.
+#[derive(Debug, Default)]
+pub(super) struct Library {
+    pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Arc<Texture>>,
+    /// For each used material, its index in `materials`.
+    pub(super) index: Vec<Option<u32>>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// Reads the libraries and makes the materials that are used, with their textures. Materials that no face asks for are
+/// left in their library.
+pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers: &Workers) -> Library {
+    let mut library = Library::default();
+    let mut warnings = Warnings::default();
+    let mut known: HashMap<String, (String, MtlMaterial)> = HashMap::new();
+    for &(line, names) in &events.libraries {
+        for (name, bytes) in read_libraries(line, names, resolver, &mut warnings) {
+            let mut own = Warnings::default();
+            for material in mtl::parse(&bytes, &mut own) {
+                known.entry(material.name.clone()).or_insert((name.clone(), material));
+            }
+            library.warnings.extend(own.into_messages(&name));
+        }
+    }
+
+    let mut requests = Requests::default();
+    for &(line, name) in &events.used {
+        let name = String::from_utf8_lossy(name);
+        library.index.push(known.get(name.as_ref()).map(|(source, material)| {
+            library.materials.push(material.build(source, &mut requests));
+            library.materials.len() as u32 - 1
+        }));
+        if library.index.last() == Some(&None) {
+            warnings.note("material", Place::Line(line), || {
+                format!("unknown material `{name}`; the default one is used")
+            });
+        }
+    }
+
+    // Replace requests by textures; a material does without one that cannot be had.
+    let loaded = requests.load(resolver, workers);
+    for material in &mut library.materials {
+        replace_textures(material, &loaded.index);
+    }
+    library.textures = loaded.textures;
+    library.warnings.splice(0..0, warnings.into_messages(file));
+    library.warnings.extend(loaded.warnings);
+    library
+}
+
+fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
+    for slot in [
+        &mut material.base_texture,
+        &mut material.specular_texture,
+        &mut material.emission_texture,
+        &mut material.opacity_texture,
+        &mut material.normal_texture,
+    ] {
+        if let Some(texture) = slot {
+            match index[texture.texture as usize] {
+                Some(found) => texture.texture = found,
+                None => *slot = None,
+            }
+        }
+    }
+}
+
+/// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words.
+fn read_libraries(
+    line: u64,
+    names: &[u8],
+    resolver: &dyn Resolver,
+    warnings: &mut Warnings,
+) -> Vec<(String, Vec<u8>)> {
+    let text = String::from_utf8_lossy(names).replace('\\', "/");
+    let whole = text.trim_matches('"');
+    let mut missing = |name: &str, why: &crate::ResolveError| {
+        warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
+    };
+    let why = match resolver.read(whole) {
+        Ok(bytes) => return vec![(whole.to_owned(), bytes)],
+        Err(why) => why,
+    };
+    let words: Vec<&str> = whole.split_ascii_whitespace().collect();
+    let mut found = Vec::new();
+    let mut failures = Vec::new();
+    if words.len() > 1 {
+        for word in words {
+            match resolver.read(word) {
+                Ok(bytes) => found.push((word.to_owned(), bytes)),
+                Err(why) => failures.push((word.to_owned(), why)),
+            }
+        }
+    }
+
+    // Tell what is missing: the words, where some of them were found, else the whole.
+    if found.is_empty() {
+        missing(whole, &why);
+    } else {
+        failures.iter().for_each(|(word, why)| missing(word, why));
+    }
+    found
+}

@@ -1,0 +1,306 @@
+//! Puts the pieces of an OBJ file together: bases for the indices, one array of each kind, triangles.
+
+use super::chunk::{Chunk, NONE, unpack};
+use crate::triangulate::triangulate;
+use crate::warnings::Warnings;
+use crate::{Error, Place};
+use vitral_exec::Workers;
+use vitral_math::color::linear_from_srgb;
+use vitral_scene::{Attribute, Corners, Faces, Mesh};
+
+/// How many values of each kind come before a piece.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    v: usize,
+    vt: usize,
+    vn: usize,
+    faces: usize,
+    corners: usize,
+    triangles: usize,
+    bare: usize,
+}
+
+/// What the pieces hold together.
+#[derive(Debug)]
+pub(super) struct Totals {
+    /// For each piece what comes before it; then the sum of all.
+    bases: Vec<Counts>,
+    has_colors: bool,
+    has_uvs: bool,
+    has_normals: bool,
+    all_triangles: bool,
+    /// Whether texture coordinates and normals take the positions' indices throughout.
+    uvs_like_positions: bool,
+    normals_like_positions: bool,
+}
+
+impl Totals {
+    /// Adds the pieces up.
+    pub(super) fn new(chunks: &[Chunk], file: &str) -> Result<Self, Error> {
+        let mut sum = Counts::default();
+        let mut bases = vec![sum];
+        for chunk in chunks {
+            sum.v += chunk.positions.len();
+            sum.vt += chunk.uvs.len();
+            sum.vn += chunk.normals.len();
+            sum.faces += chunk.faces.count;
+            sum.corners += chunk.faces.v.len();
+            sum.triangles += chunk.faces.triangles();
+            sum.bare += chunk.faces.bare;
+            bases.push(sum);
+        }
+        if [sum.v, sum.vt, sum.vn, sum.corners].iter().any(|&n| n > 1 << 31) {
+            return Err(Error::malformed(file, Place::File, "more than 2147483648 vertices or corners"));
+        }
+        let all = |f: fn(&Chunk) -> bool| chunks.iter().all(f);
+        let same_base = |vt: fn(&Counts) -> usize| {
+            // Relative indices mean the same only where as many values of both kinds came before.
+            let relative = chunks.iter().zip(&bases).filter(|(c, _)| c.has_relative);
+            vt(&sum) == sum.v && relative.into_iter().all(|(_, b)| vt(b) == b.v)
+        };
+        Ok(Self {
+            has_colors: !all(|c| c.colors.is_empty()),
+            has_uvs: !all(|c| c.faces.vt.is_empty()),
+            has_normals: !all(|c| c.faces.vn.is_empty()),
+            all_triangles: all(|c| c.faces.sizes.is_empty()),
+            uvs_like_positions: all(|c| c.faces.vt_like_v) && same_base(|c| c.vt),
+            normals_like_positions: all(|c| c.faces.vn_like_v) && same_base(|c| c.vn),
+            bases,
+        })
+    }
+
+    fn sum(&self) -> Counts {
+        self.bases[self.bases.len() - 1]
+    }
+}
+
+/// The first index in the file that leads nowhere, as an error.
+pub(super) fn first_bad_index(
+    chunks: &[Chunk],
+    totals: &Totals,
+    pieces: &[&[u8]],
+    first_lines: &[u64],
+    file: &str,
+) -> Option<Error> {
+    let sum = totals.sum();
+    for (i, chunk) in chunks.iter().enumerate() {
+        let base = totals.bases[i];
+        let bad = |packed: &u32, base: usize, total: usize| !(0..total as i64).contains(&unpack(*packed, base as u32));
+        let kinds: [(&str, &[u32], usize, usize); 3] = [
+            ("vertices", &chunk.faces.v, base.v, sum.v),
+            ("texture coordinates", &chunk.faces.vt, base.vt, sum.vt),
+            ("normals", &chunk.faces.vn, base.vn, sum.vn),
+        ];
+        let in_faces = kinds.into_iter().filter_map(|(what, packed, base, total)| {
+            let corner = packed.iter().position(|p| *p != NONE && bad(p, base, total))?;
+            Some((Chunk::line_of_corner(pieces[i], corner), what, unpack(packed[corner], base as u32), total))
+        });
+        let ends = chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
+        let in_free = ends
+            .filter(|(packed, _)| bad(packed, base.v, sum.v))
+            .map(|(packed, line)| (line, "vertices", unpack(packed, base.v as u32), sum.v));
+        if let Some((line, what, index, total)) = in_faces.chain(in_free).min_by_key(|found| found.0) {
+            let what = if index < 0 {
+                format!("the index counts back {} {what} beyond the first", -index)
+            } else {
+                format!("index {}, the file has {total} {what}", index + 1)
+            };
+            return Some(Error::malformed(file, Place::Line(line + first_lines[i]), what));
+        }
+    }
+    None
+}
+
+/// The parts of the mesh's arrays that one piece fills.
+struct Job<'a> {
+    chunk: Chunk,
+    base: Counts,
+    triangles: &'a mut [Corners],
+    uv_corners: Option<&'a mut [Corners]>,
+    normal_corners: Option<&'a mut [Corners]>,
+    /// Normals of faces that have none, behind the file's own.
+    flat_normals: &'a mut [[f32; 3]],
+    outline: Option<(&'a mut [u32], &'a mut [u32])>,
+}
+
+/// Makes the mesh. All indices must have been checked.
+pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Mesh {
+    let sum = totals.sum();
+    let colors = totals.has_colors.then(|| linear_colors(&mut chunks, totals, warnings, workers));
+    let positions = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.positions)), sum.v, workers);
+    let mut uvs = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.uvs)), sum.vt, workers);
+    let mut normals = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.normals)), sum.vn, workers);
+    let (mut lines, mut points) = (Vec::new(), Vec::new());
+    for (chunk, base) in chunks.iter().zip(&totals.bases) {
+        let vertex = |packed: u32| unpack(packed, base.v as u32) as u32;
+        lines.extend(chunk.lines.iter().map(|(ends, _)| ends.map(vertex)));
+        points.extend(chunk.points.iter().map(|&(p, _)| vertex(p)));
+    }
+
+    // Deal the arrays to be filled to the pieces, and let each fill its own.
+    let has_uv_corners = totals.has_uvs && !totals.uvs_like_positions;
+    let has_normal_corners = totals.has_normals && !totals.normals_like_positions;
+    let mut triangles = vec![[0u32; 3]; sum.triangles];
+    let mut uv_corners = has_uv_corners.then(|| vec![[0u32; 3]; sum.triangles]);
+    let mut normal_corners = has_normal_corners.then(|| vec![[0u32; 3]; sum.triangles]);
+    let is_mixed = !totals.all_triangles;
+    let mut starts = if is_mixed { vec![0u32; sum.faces + 1] } else { Vec::new() };
+    let mut corners = if is_mixed { vec![0u32; sum.corners] } else { Vec::new() };
+    let mut flat_normals = vec![[0.0f32; 3]; if has_normal_corners { sum.bare } else { 0 }];
+    {
+        let mut triangles = triangles.as_mut_slice();
+        let mut uv_corners = uv_corners.as_deref_mut();
+        let mut normal_corners = normal_corners.as_deref_mut();
+        let mut flat_normals = flat_normals.as_mut_slice();
+        let mut outline = is_mixed.then(|| (&mut starts[1..], corners.as_mut_slice()));
+        let jobs = chunks.into_iter().zip(&totals.bases).map(|(chunk, &base)| {
+            let count = chunk.faces.triangles();
+            let bare = if has_normal_corners { chunk.faces.bare } else { 0 };
+            Job {
+                triangles: front(&mut triangles, count),
+                uv_corners: uv_corners.as_mut().map(|c| front(c, count)),
+                normal_corners: normal_corners.as_mut().map(|c| front(c, count)),
+                flat_normals: front(&mut flat_normals, bare),
+                outline: outline.as_mut().map(|(s, c)| (front(s, chunk.faces.count), front(c, chunk.faces.v.len()))),
+                chunk,
+                base,
+            }
+        });
+        workers.for_each(jobs.collect(), |job| job.fill(&positions, sum));
+    }
+
+    // Faces without texture coordinates take (0, 0).
+    if has_uv_corners {
+        uvs.push([0.0; 2]);
+    }
+    normals.extend(flat_normals);
+    let no_elements = sum.faces == 0 && lines.is_empty() && points.is_empty();
+    let cloud_normals = no_elements && sum.vn == sum.v && sum.v > 0;
+    Mesh {
+        triangles,
+        faces: if is_mixed { Faces::Polygons { starts, corners } } else { Faces::Triangles },
+        uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
+        normals: (totals.has_normals || cloud_normals).then_some(Attribute { values: normals, corners: normal_corners }),
+        colors: colors.map(Attribute::per_vertex),
+        lines,
+        points: if no_elements { (0..sum.v as u32).collect() } else { points },
+        positions,
+        ..Mesh::default()
+    }
+}
+
+/// Takes the first `count` elements off a slice.
+fn front<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (front, rest) = std::mem::take(slice).split_at_mut(count);
+    *slice = rest;
+    front
+}
+
+/// One array from many; each is given back to the allocator as soon as it is copied.
+fn concatenate<T: Copy + Default + Send>(parts: impl Iterator<Item = Vec<T>>, total: usize, workers: &Workers) -> Vec<T>
+where
+    Vec<T>: Send,
+{
+    let parts: Vec<Vec<T>> = parts.collect();
+    if parts.len() == 1 {
+        return parts.into_iter().next().unwrap_or_default();
+    }
+    let mut whole = vec![T::default(); total];
+    let mut rest = whole.as_mut_slice();
+    let jobs: Vec<_> = parts.into_iter().map(|part| (front(&mut rest, part.len()), part)).collect();
+    workers.for_each(jobs, |(slice, part)| slice.copy_from_slice(&part));
+    whole
+}
+
+/// Vertex colours as linear RGBA; vertices without a colour are white.
+fn linear_colors(
+    chunks: &mut [Chunk],
+    totals: &Totals,
+    warnings: &mut Warnings,
+    workers: &Workers,
+) -> Vec<[f32; 4]> {
+    let largest = chunks.iter().flat_map(|c| c.colors.as_flattened()).fold(0.0f32, |m, &c| m.max(c));
+    let scale = if largest > 1.0 { 255.0 } else { 1.0 };
+    if largest > 1.0 {
+        warnings.note("", Place::File, || "vertex colours exceed 1 and are read as 0 to 255".to_owned());
+    }
+    let mut colors = vec![[1.0f32; 4]; totals.sum().v];
+    let mut rest = colors.as_mut_slice();
+    let jobs: Vec<_> = chunks
+        .iter_mut()
+        .map(|c| (front(&mut rest, c.positions.len()), std::mem::take(&mut c.colors)))
+        .collect();
+    workers.for_each(jobs, |(slice, encoded)| {
+        for (out, rgb) in slice.iter_mut().zip(encoded) {
+            let [r, g, b] = rgb.map(|c| if c.is_finite() { linear_from_srgb((c / scale).clamp(0.0, 1.0)) } else { 1.0 });
+            *out = [r, g, b, 1.0];
+        }
+    });
+    colors
+}
+
+impl Job<'_> {
+    fn fill(mut self, positions: &[[f32; 3]], sum: Counts) {
+        let faces = std::mem::take(&mut self.chunk.faces);
+        let vertex = |corner: usize| unpack(faces.v[corner], self.base.v as u32) as u32;
+
+        // The common case: triangles, all with the same attributes.
+        if faces.sizes.is_empty() && self.outline.is_none() && self.normal_corners.is_none() {
+            for (t, out) in self.triangles.iter_mut().enumerate() {
+                *out = [vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)];
+            }
+            if let Some(out) = self.uv_corners {
+                for (t, out) in out.iter_mut().enumerate() {
+                    *out = [0, 1, 2].map(|k| texture(&faces.vt, 3 * t + k, self.base.vt, sum.vt));
+                }
+            }
+            return;
+        }
+
+        let (mut corner, mut triangle, mut bare) = (0, 0, 0);
+        let (mut polygon, mut cut) = (Vec::new(), Vec::new());
+        for f in 0..faces.count {
+            let size = faces.sizes.get(f).map_or(3, |&s| s as usize);
+            polygon.clear();
+            polygon.extend((corner..corner + size).map(vertex));
+            if let Some((starts, corners)) = &mut self.outline {
+                corners[corner..corner + size].copy_from_slice(&polygon);
+                starts[f] = (self.base.corners + corner + size) as u32;
+            }
+            cut.clear();
+            triangulate(positions, &polygon, &mut cut);
+
+            // A face with a corner that has no normal gets one of its own.
+            let flat = self.normal_corners.is_some()
+                && (faces.vn.is_empty() || faces.vn[corner..corner + size].contains(&NONE));
+            if flat {
+                self.flat_normals[bare] = crate::triangulate::polygon_normal(positions, &polygon);
+            }
+            for local in &cut {
+                self.triangles[triangle] = local.map(|k| polygon[k as usize]);
+                if let Some(out) = &mut self.uv_corners {
+                    out[triangle] = local.map(|k| texture(&faces.vt, corner + k as usize, self.base.vt, sum.vt));
+                }
+                if let Some(out) = &mut self.normal_corners {
+                    let own = (sum.vn + self.base.bare + bare) as u32;
+                    out[triangle] = local.map(|k| match faces.vn.get(corner + k as usize) {
+                        Some(&packed) if packed != NONE => unpack(packed, self.base.vn as u32) as u32,
+                        _ => own,
+                    });
+                }
+                triangle += 1;
+            }
+            bare += usize::from(flat);
+            corner += size;
+        }
+    }
+}
+
+/// The texture coordinate of a corner; `total`, behind the file's own, where it has none.
+#[inline(always)]
+fn texture(packed: &[u32], corner: usize, base: usize, total: usize) -> u32 {
+    match packed.get(corner) {
+        Some(&packed) if packed != NONE => unpack(packed, base as u32) as u32,
+        _ => total as u32,
+    }
+}

@@ -1,0 +1,192 @@
+use super::*;
+use crate::{NoFiles, ResolveError};
+use proptest::prelude::*;
+use vitral_light::Reflectance;
+use vitral_scene::{Faces, Mesh};
+
+fn read(text: &str) -> Scene {
+    let scene = load(text.as_bytes(), "t.obj", &NoFiles, &Workers::single()).unwrap();
+    scene.meshes.iter().for_each(|m| m.check().unwrap());
+    scene
+}
+
+fn mesh(text: &str) -> Mesh {
+    Mesh::clone(&read(text).meshes[0])
+}
+
+fn refusal(text: &str) -> String {
+    load(text.as_bytes(), "t.obj", &NoFiles, &Workers::single()).unwrap_err().to_string()
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn a_polygon_keeps_its_outline() {
+    let m = mesh(&format!("{SQUARE}f 1 2 3 4\nf 1 2 -1"));
+    assert_eq!(m.faces, Faces::Polygons { starts: vec![0, 4, 7], corners: vec![0, 1, 2, 3, 0, 1, 3] });
+    assert_eq!(m.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 3]]);
+    assert!(m.normals.is_none() && m.uvs.is_empty() && m.smoothing_groups.is_none());
+}
+
+#[test]
+fn attributes_have_indices_of_their_own_only_where_they_differ() {
+    let corners = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1";
+    let m = mesh(&format!("{SQUARE}{corners}"));
+    assert_eq!(m.uvs[0].corners, None);
+    assert_eq!(m.uvs[0].values, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]);
+    assert_eq!(m.normals.unwrap().corners, Some(vec![[0; 3]; 2]));
+}
+
+#[test]
+fn gaps_in_attributes_are_filled() {
+    let m = mesh(&format!("{SQUARE}vt .5 .5\nvn 1 0 0\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4"));
+    let (uv, normals) = (&m.uvs[0], m.normals.as_ref().unwrap());
+    assert_eq!((uv.at(0, &m.triangles), uv.at(1, &m.triangles)), ([[0.5; 2]; 3], [[0.0; 2]; 3]));
+    assert_eq!(normals.at(1, &m.triangles), [[0.0, 0.0, 1.0]; 3]);
+}
+
+#[test]
+fn groups_materials_and_smoothing_make_runs() {
+    let m = mesh(&format!(
+        "{SQUARE}o box\nf 1 2 3\nusemtl red\ng top\ns 1\nf 1 2 4\nusemtl red\nf 2 3 4\ns off\ng top\nf 1 3 4"
+    ));
+    let parts: Vec<_> = m.parts.iter().map(|p| (p.name.as_str(), p.triangles.clone())).collect();
+    assert_eq!(parts, [("box", 0..1), ("top", 1..4)]);
+    assert_eq!(m.smoothing_groups, Some(vec![0, 1, 1, 0]));
+}
+
+#[test]
+fn lines_and_points_stand_free() {
+    let m = mesh(&format!("{SQUARE}l 1 2/1 3\np 4 -1\n"));
+    assert_eq!((m.lines, m.points, m.triangles.len()), (vec![[0, 1], [1, 2]], vec![3, 3], 0));
+    let cloud = mesh("vn 0 0 1\nv 0 0 0\nvn 0 1 0\nv 1 1 1");
+    assert_eq!((cloud.points, cloud.normals.unwrap().values.len()), (vec![0, 1], 2));
+}
+
+#[test]
+fn vertex_colours_are_linear() {
+    let m = mesh("v 0 0 0 1 0 0.5\nv 1 0 0\nv 0 1 0 0 1 0 1\nf 1 2 3");
+    let colors = m.colors.unwrap().values;
+    assert_eq!((colors[0][0], colors[1], colors[2]), (1.0, [1.0; 4], [0.0, 1.0, 0.0, 1.0]));
+    assert!((colors[0][2] - 0.2140).abs() < 1e-4);
+    let bytes = read("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3");
+    assert_eq!(bytes.meshes[0].colors.as_ref().unwrap().values[1], [0.0, 1.0, 0.0, 1.0]);
+    assert_eq!(bytes.warnings, ["t.obj: vertex colours exceed 1 and are read as 0 to 255"]);
+}
+
+#[test]
+fn oddities_are_told_with_their_line() {
+    let s = read(&format!("{SQUARE}f\nf 1 2\nv 3.1+e2 0 0\ncurv 0 1\nlod 3\nfoo\nusemtl none\nf 1 2 3\nmtllib a b.mtl"));
+    assert_eq!(
+        s.warnings,
+        [
+            "t.obj: line 5: a face with 0 corners, three are required; it is left out (and 1 more of the kind)",
+            "t.obj: line 7: ill-formed number; only its beginning counts",
+            "t.obj: line 8: free-form curves and surfaces are not read",
+            "t.obj: line 9: `lod` is not used",
+            "t.obj: line 10: unknown statement `foo`",
+            "t.obj: line 13: material library `a b.mtl` is left out: there is no such file",
+            "t.obj: line 11: unknown material `none`; the default one is used",
+        ]
+    );
+    assert_eq!(s.meshes[0].positions[4][0], 3.1);
+}
+
+#[test]
+fn indices_that_lead_nowhere_are_errors() {
+    assert_eq!(refusal(&format!("{SQUARE}\nf 1 2 5")), "t.obj: line 6: index 5, the file has 4 vertices");
+    assert!(refusal(&format!("{SQUARE}f 1 2 -5")).starts_with("t.obj: line 5: the index counts back 1 vertices"));
+    assert!(refusal(&format!("{SQUARE}f 1 2 0")).starts_with("t.obj: line 5: vertex index 0: indices begin with 1"));
+    assert_eq!(refusal(&format!("{SQUARE}f 1/1 2/1 3/1")), "t.obj: line 5: index 1, the file has 0 texture coordinates");
+    assert_eq!(refusal(&format!("{SQUARE}f 1 2 9\nf 1 x 2")), "t.obj: line 5: index 9, the file has 4 vertices");
+    assert_eq!(refusal(&format!("{SQUARE}f 1 x 2\nf 1 2 9")), "t.obj: line 5: `x` is not a vertex index");
+    assert_eq!(refusal(&format!("{SQUARE}l 1 2\n l 3 7")), "t.obj: line 6: index 7, the file has 4 vertices");
+    assert_eq!(refusal("v 1 2"), "t.obj: line 1: a vertex has 2 coordinates, three are required");
+    assert_eq!(refusal("# c\nhello world"), "t.obj: line 2: no statement of an OBJ file");
+}
+
+#[test]
+fn text_may_come_in_many_ways() {
+    let plain = mesh(&format!("{SQUARE}f 1 2 3 4\n"));
+    assert_eq!(mesh(&format!("\u{feff}{SQUARE}f 1 2 3 4").replace('\n', "\r\n")), plain);
+    assert_eq!(mesh(&format!("{SQUARE}f 1 2 \\\n 3 \\\r\n 4 # end")), plain);
+    let wide: Vec<u8> = format!("\u{feff}{SQUARE}f 1 2 3 4").encode_utf16().flat_map(u16::to_be_bytes).collect();
+    assert_eq!(*load(&wide, "t.obj", &NoFiles, &Workers::single()).unwrap().meshes[0], plain);
+}
+
+/// Files by name.
+struct Folder(&'static [(&'static str, &'static str)]);
+
+impl Resolver for Folder {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        let file = self.0.iter().find(|(name, _)| *name == path).ok_or(ResolveError::NotFound)?;
+        Ok(file.1.as_bytes().to_vec())
+    }
+}
+
+#[test]
+fn materials_come_from_all_libraries() {
+    let folder = Folder(&[
+        ("sub/my lib.mtl", "newmtl a b\nKd 1 0 0\nmap_Kd gone.png"),
+        ("two.mtl", "newmtl c\nKd 0 1 0\nnewmtl unused"),
+    ]);
+    let text = format!("mtllib sub\\my lib.mtl\nmtllib one.mtl two.mtl\n{SQUARE}usemtl c\nf 1 2 3\nusemtl a b\nf 1 3 4");
+    let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+    let kd = |i: usize| match s.materials[i].reflectance {
+        Reflectance::Phong { kd, .. } => kd,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((s.materials.len(), kd(0), kd(1)), (2, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
+    assert_eq!(s.meshes[0].parts.iter().map(|p| p.material).collect::<Vec<_>>(), [Some(0), Some(1)]);
+    assert_eq!(
+        s.warnings,
+        [
+            "t.obj: line 2: material library `one.mtl` is left out: there is no such file",
+            "sub/my lib.mtl: line 3: texture `gone.png` is left out: there is no such file",
+        ]
+    );
+}
+
+#[test]
+fn a_file_without_anything_is_an_empty_scene() {
+    let s = read("# nothing\n");
+    assert!(s.meshes.is_empty());
+    assert_eq!(s.warnings, ["t.obj: the file holds nothing to show"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Pieces of any size give the same scene, and the same error.
+    #[test]
+    fn pieces_do_not_show(
+        lines in proptest::collection::vec(
+            prop_oneof![
+                4 => (any::<i8>(), any::<i8>()).prop_map(|(x, y)| format!("v {x} {y} 0.5")),
+                2 => any::<i8>().prop_map(|x| format!("vt {x} 1")),
+                1 => Just("vn 0 0 1".to_owned()),
+                4 => proptest::collection::vec(prop_oneof![-6i32..0, 1i32..9], 0..6)
+                    .prop_map(|c| format!("f{}", c.iter().map(|i| format!(" {i}")).collect::<String>())),
+                2 => (-3i32..0, -3i32..0, -2i32..0).prop_map(|(a, b, c)| format!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")),
+                1 => (0u32..3).prop_map(|g| format!("s {g}")),
+                1 => (0u32..3).prop_map(|g| format!("g {g}")),
+                1 => (0u32..3).prop_map(|g| format!("usemtl m{g}")),
+                1 => Just("l -1 -2".to_owned()),
+            ],
+            0..60,
+        ),
+        piece in 1usize..200,
+    ) {
+        let text = format!("{SQUARE}vt 0 0\nvn 1 0 0\n{}", lines.join("\n"));
+        let whole = load(text.as_bytes(), "t.obj", &NoFiles, &Workers::single());
+        let pieces = load_in_pieces(text.as_bytes(), "t.obj", &NoFiles, &Workers::single(), piece);
+        match (whole, pieces) {
+            (Ok(a), Ok(b)) => {
+                a.meshes[0].check().unwrap();
+                prop_assert_eq!(&a.meshes, &b.meshes);
+                prop_assert_eq!(a.warnings, b.warnings);
+            }
+            (a, b) => prop_assert_eq!(a.map(|_| ()), b.map(|_| ())),
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! The data of a text PLY file: one line an element.
+
+use super::header::{Element, Kind, Type};
+use super::{Content, Layout, Reading, Role, Row, Target, slot};
+use crate::text::{Cursor, is_blank, to_utf8};
+use crate::warnings::Warnings;
+use crate::{Error, Place};
+
+/// Reads all elements.
+pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -> Result<(), Error> {
+    let text = to_utf8(&bytes[reading.header.data..]);
+    let mut cursor = Cursor::at_line(&text, reading.header.data_line);
+    let mut row = Row::default();
+    for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
+        // Elements without properties have no data; every other one has a line.
+        if element.properties.is_empty() {
+            continue;
+        }
+        let room = cursor.remaining() as u64 / 2 + 1;
+        if element.count > room {
+            let what = format!(
+                "{} elements `{}` are announced, the file has {} bytes left",
+                element.count,
+                element.name,
+                cursor.remaining()
+            );
+            return Err(Error::malformed(reading.file, Place::Line(cursor.line()), what));
+        }
+        for n in 0..element.count {
+            if !next_row(&mut cursor) {
+                let what = format!(
+                    "the file ends here: {} elements `{}` are announced, {n} are there",
+                    element.count, element.name
+                );
+                return Err(Error::malformed(reading.file, Place::Line(cursor.line()), what));
+            }
+            let place = Place::Line(cursor.line());
+            let result = read_row(&mut cursor, element, layout, &mut row, reading.warnings)
+                .and_then(|()| content.push(layout.role, &row, || place.clone(), reading.warnings));
+            if let Err(what) = result {
+                return Err(Error::malformed(reading.file, place, what));
+            }
+            if cursor.take_ill_formed() {
+                reading.warnings.note("number", place, || "ill-formed number; only its beginning counts".to_owned());
+            }
+            cursor.next_line();
+        }
+    }
+    if next_row(&mut cursor) {
+        let place = Place::Line(cursor.line());
+        reading.warnings.note("", place, || "what follows the last element is left out".to_owned());
+    }
+    Ok(())
+}
+
+/// Goes to the next line that is not blank.
+fn next_row(cursor: &mut Cursor) -> bool {
+    loop {
+        cursor.skip_blanks();
+        if cursor.at_end() {
+            return false;
+        }
+        if cursor.peek() != b'\n' {
+            return true;
+        }
+        cursor.next_line();
+    }
+}
+
+fn read_row(
+    cursor: &mut Cursor,
+    element: &Element,
+    layout: &Layout,
+    row: &mut Row,
+    warnings: &mut Warnings,
+) -> Result<(), String> {
+    row.slots = [0.0; slot::COUNT];
+    row.slots[slot::COLOR + 3] = 1.0;
+    row.corners.clear();
+    for (property, &target) in element.properties.iter().zip(&layout.targets) {
+        match property.kind {
+            Kind::Scalar(kind) => {
+                let value = number(cursor, kind).ok_or_else(|| missing(cursor, &property.name))?;
+                if let Target::Slot(slot) = target {
+                    let is_color = (slot::COLOR..slot::UV).contains(&slot);
+                    row.slots[slot] = if is_color { value / kind.full_scale() } else { value };
+                }
+            }
+            Kind::List { item, .. } => {
+                cursor.skip_blanks();
+                if cursor.peek() == b'\n' {
+                    let line = cursor.line();
+                    warnings.note("no list", Place::Line(line), || {
+                        format!("the line ends before the list `{}`; taken as empty", property.name)
+                    });
+                    continue;
+                }
+                let Some(count @ 0..) = cursor.integer() else {
+                    return Err(missing(cursor, &property.name));
+                };
+                for _ in 0..count {
+                    let value = number(cursor, item).ok_or_else(|| missing(cursor, &property.name))?;
+                    if target == Target::Corners {
+                        row.corners.push(whole(value)?);
+                    }
+                }
+            }
+        }
+    }
+    cursor.skip_blanks();
+    if cursor.peek() != b'\n' && layout.role != Role::Unknown {
+        let line = cursor.line();
+        warnings.note("row tail", Place::Line(line), || "more values than the element has; left out".to_owned());
+    }
+    Ok(())
+}
+
+#[cold]
+fn missing(cursor: &mut Cursor, property: &str) -> String {
+    match cursor.word() {
+        b"" => format!("the line ends before `{property}`"),
+        word => {
+            let seen = String::from_utf8_lossy(&word[..word.len().min(40)]).into_owned();
+            format!("`{seen}` is no number, `{property}` is required")
+        }
+    }
+}
+
+/// A number of the wanted type; integers may be written with a point.
+fn number(cursor: &mut Cursor, kind: Type) -> Option<f64> {
+    if !kind.is_float() {
+        let mut ahead = *cursor;
+        let value = ahead.integer();
+        if value.is_some() && (is_blank(ahead.peek()) || ahead.peek() == b'\n') {
+            *cursor = ahead;
+            return value.map(|v| v as f64);
+        }
+    }
+    cursor.float().map(f64::from)
+}
+
+/// A list item as an index.
+pub(super) fn whole(value: f64) -> Result<i64, String> {
+    let index = value as i64;
+    if index as f64 == value { Ok(index) } else { Err(format!("{value} is not an index")) }
+}

@@ -1,0 +1,175 @@
+//! The types of the scene file, field by field as in `docs/scene-format.md`.
+
+use crate::{Error, Place};
+use serde::{Deserialize, Serialize};
+use vitral_frame::Encoding;
+use vitral_light::{Light, Material};
+use vitral_scene::Camera;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct SceneForm {
+    pub(super) vitral_scene: u32,
+    #[serde(default)]
+    pub(super) meshes: Vec<MeshForm>,
+    #[serde(default)]
+    pub(super) materials: Vec<Material>,
+    #[serde(default)]
+    pub(super) textures: Vec<TextureForm>,
+    pub(super) nodes: Option<Vec<NodeForm>>,
+    pub(super) roots: Option<Vec<u32>>,
+    #[serde(default)]
+    pub(super) lights: Vec<Light>,
+    #[serde(default)]
+    pub(super) cameras: Vec<Camera>,
+    #[serde(default)]
+    pub(super) ambient: [f32; 3],
+}
+
+/// A mesh with its arrays, or a reference to a model.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct MeshForm {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) builtin: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) material: Option<u32>,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub(super) name: String,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) positions: Vec<[Coordinate; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) faces: Option<Vec<Vec<u32>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) triangles: Option<Vec<[u32; 3]>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) parts: Option<Vec<PartForm>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) normals: Option<AttributeForm<[f32; 3]>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) uvs: Vec<AttributeForm<[f32; 2]>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) colors: Option<AttributeForm<[f32; 4]>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) lines: Vec<[u32; 2]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) points: Vec<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) line_material: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) smoothing_groups: Option<Vec<u32>>,
+}
+
+/// A coordinate. JSON knows no infinity and no NaN: `null` stands for them.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(from = "Option<f32>", into = "Option<f32>")]
+pub(super) struct Coordinate(pub(super) f32);
+
+impl From<Option<f32>> for Coordinate {
+    fn from(value: Option<f32>) -> Self {
+        Self(value.unwrap_or(f32::NAN))
+    }
+}
+
+impl From<Coordinate> for Option<f32> {
+    fn from(value: Coordinate) -> Self {
+        value.0.is_finite().then_some(value.0)
+    }
+}
+
+/// A run of faces or triangles with one material.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct PartForm {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(super) name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) faces: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) triangles: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) material: Option<u32>,
+}
+
+/// Values at corners.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct AttributeForm<T> {
+    pub(super) values: Vec<T>,
+    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
+    pub(super) corners: Option<Vec<[u32; 3]>>,
+}
+
+/// A texture in a file or as a data URI.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct TextureForm {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) data: Option<String>,
+    #[serde(default = "srgb")]
+    pub(super) encoding: Encoding,
+}
+
+fn srgb() -> Encoding {
+    Encoding::Srgb
+}
+
+/// A node of the scene graph.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct NodeForm {
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub(super) name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) matrix: Option<[f64; 16]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) translation: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) rotation: Option<[f64; 4]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) scale: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) children: Vec<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mesh: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) light: Option<Light>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) camera: Option<u32>,
+}
+
+/// Parses the text. What is wrong is told with its line, its column and its JSON path.
+pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let form: SceneForm = match serde_json::from_slice(text) {
+        Ok(form) => form,
+        Err(_) => {
+            // Only a failure pays for following the path.
+            let mut deserializer = serde_json::Deserializer::from_slice(text);
+            let parsed = serde_path_to_error::deserialize(&mut deserializer).map_err(|e| {
+                let (path, inner) = (e.path().to_string(), e.inner());
+                let path = if path == "." { String::new() } else { format!("{path}: ") };
+                let what = format!("column {}: {path}{}", inner.column(), crate::gltf::plain_message(inner));
+                Error::malformed(file, Place::Line(inner.line() as u64), what)
+            });
+            let form = parsed?;
+            deserializer.end().map_err(|e| {
+                let what = format!("column {}: {}", e.column(), crate::gltf::plain_message(&e));
+                Error::malformed(file, Place::Line(e.line() as u64), what)
+            })?;
+            form
+        }
+    };
+    if form.vitral_scene != super::VERSION {
+        let what = format!("version {} of the scene file; version {} is read", form.vitral_scene, super::VERSION);
+        return Err(Error::Unsupported { file: file.to_owned(), what });
+    }
+    Ok(form)
+}

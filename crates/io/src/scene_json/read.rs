@@ -1,0 +1,382 @@
+//! From the scene file's form to a scene.
+//!
+//! Meshes, materials and textures come first. Then the nodes; a node whose mesh is a reference gets the nodes of that
+//! model as children, each time it is used a copy of the nodes, never of the meshes.
+
+use super::form::{self, MeshForm, NodeForm, TextureForm};
+use super::mesh;
+use super::reference::Origin;
+use crate::uri::{self, Target};
+use crate::{Error, Place, image};
+use std::ops::Range;
+use std::sync::Arc;
+use vitral_frame::Texture;
+use vitral_light::{Light, Material, Reflectance};
+use vitral_math::{DMat4, DQuat, DVec3, DVec4};
+use vitral_scene::{Camera, Node, NodeTransform, Projection, Scene};
+
+/// Most nodes, meshes, materials, textures or cameras of a scene.
+const MAX_ENTRIES: usize = 1 << 20;
+
+/// What an entry of `meshes` became.
+enum Entry {
+    /// A mesh of the scene.
+    Mesh(u32),
+    /// A model that nodes bring in.
+    Model(Model),
+}
+
+/// A model that is named in `meshes`.
+struct Model {
+    scene: Arc<Scene>,
+    /// Material for all of it.
+    material: Option<u32>,
+    /// Its nodes and its roots in the scene, once it has been brought in.
+    placed: Option<(Range<u32>, Vec<u32>)>,
+}
+
+/// Errors of one file.
+struct Report<'a> {
+    file: &'a str,
+}
+
+impl Report<'_> {
+    fn at(&self, path: impl Into<String>, what: impl Into<String>) -> Error {
+        Error::malformed(self.file, Place::Json(path.into()), what)
+    }
+
+    /// An index into `count` things.
+    fn index(&self, path: impl Into<String>, what: &str, index: u32, count: usize) -> Result<(), Error> {
+        if (index as usize) < count { Ok(()) } else { Err(self.at(path, format!("{what} {index}, there are {count}"))) }
+    }
+}
+
+/// Reads a scene file that stands at `origin`.
+pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scene, Error> {
+    let form = form::parse(bytes, file)?;
+    let report = Report { file };
+    let mut scene =
+        Scene { lights: form.lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
+    check_values(&scene, &report)?;
+    let places = add_textures(form.textures, &mut scene, &report, origin)?;
+    scene.materials = form.materials;
+    settle_materials(&mut scene, &places, &report)?;
+    let mut entries = add_meshes(form.meshes, &mut scene, &report, origin)?;
+
+    // Without a list of nodes every mesh is shown once, where it is.
+    let nodes = form.nodes.unwrap_or_else(|| {
+        (0..entries.len() as u32).map(|m| NodeForm { mesh: Some(m), ..NodeForm::default() }).collect()
+    });
+    let used = add_nodes(nodes, form.roots, &mut scene, &entries, &report)?;
+    for (node, entry) in used {
+        if let Entry::Model(model) = &mut entries[entry] {
+            let children = place(model, &mut scene, &report)?;
+            scene.nodes[node].children.extend(children);
+        }
+    }
+    Ok(scene)
+}
+
+/// Lights, cameras and the ambient light must have usable numbers.
+fn check_values(scene: &Scene, report: &Report<'_>) -> Result<(), Error> {
+    for (i, light) in scene.lights.iter().enumerate() {
+        check_light(light, &format!("lights[{i}]"), report)?;
+    }
+    for (i, camera) in scene.cameras.iter().enumerate() {
+        check_camera(camera, &format!("cameras[{i}]"), report)?;
+    }
+    if !scene.ambient.iter().all(|c| c.is_finite()) {
+        return Err(report.at("ambient", "a number is not finite"));
+    }
+    Ok(())
+}
+
+fn check_light(light: &Light, path: &str, report: &Report<'_>) -> Result<(), Error> {
+    let colors = [light.ambient, light.diffuse, light.specular];
+    if colors.as_flattened().iter().all(|c| c.is_finite()) { Ok(()) } else { Err(report.at(path, "a number is not finite")) }
+}
+
+fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), Error> {
+    let (lens, field) = match camera.projection {
+        Projection::Perspective { view_angle } => (view_angle > 0.0 && view_angle < std::f64::consts::PI, "0 < view-angle < 3.14159"),
+        Projection::Parallel { height } => (height > 0.0, "0 < height"),
+    };
+    if !lens {
+        return Err(report.at(format!("{path}.projection"), format!("{field} is needed")));
+    }
+    let perspective = matches!(camera.projection, Projection::Perspective { .. });
+    match camera.clip {
+        Some((near, far)) if near >= far || (perspective && near <= 0.0) => {
+            Err(report.at(format!("{path}.clip"), "near < far is needed, and 0 < near for a perspective"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Reads all textures at once. Gives each entry's place in the scene; an image that cannot be had is a warning.
+fn add_textures(
+    forms: Vec<TextureForm>,
+    scene: &mut Scene,
+    report: &Report<'_>,
+    origin: &Origin<'_>,
+) -> Result<Vec<Option<u32>>, Error> {
+    let sources = forms
+        .iter()
+        .enumerate()
+        .map(|(i, form)| match (&form.file, &form.data) {
+            (Some(file), None) => Ok((file.clone(), origin.read(file).map_err(|e| e.to_string()))),
+            (None, Some(data)) => match uri::resolve(data) {
+                Ok(Target::Inline(bytes)) => Ok((format!("texture {i}"), Ok(bytes))),
+                Ok(Target::File(_)) => Err(report.at(format!("textures[{i}].data"), "this is no data URI")),
+                Err(what) => Err(report.at(format!("textures[{i}].data"), what)),
+            },
+            _ => Err(report.at(format!("textures[{i}]"), "either `file` or `data` is needed")),
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let loaded = origin.workers.map(forms.len(), |i| {
+        let (source, bytes) = &sources[i];
+        let plane = image::decode(bytes.as_ref().map_err(String::clone)?, source).map_err(|e| e.to_string())?;
+        let name = forms[i].name.clone().unwrap_or_else(|| source.clone());
+        Ok::<_, String>(Texture::new(name, plane, forms[i].encoding))
+    });
+    let mut places = Vec::with_capacity(loaded.len());
+    for (i, texture) in loaded.into_iter().enumerate() {
+        match texture {
+            Ok(texture) => {
+                places.push(Some(scene.textures.len() as u32));
+                scene.textures.push(Arc::new(texture));
+            }
+            Err(why) => {
+                places.push(None);
+                let name = &sources[i].0;
+                scene.warnings.push(format!("{}: textures[{i}]: `{name}` is left out: {why}", report.file));
+            }
+        }
+    }
+    Ok(places)
+}
+
+/// Checks the materials and gives their textures the final numbers.
+fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'_>) -> Result<(), Error> {
+    for (i, material) in scene.materials.iter_mut().enumerate() {
+        let path = format!("materials[{i}]");
+        if !is_finite(material) {
+            return Err(report.at(path, "a number is not finite"));
+        }
+        for texture in material.textures_mut() {
+            report.index(path.as_str(), "texture", texture.texture, places.len())?;
+            if texture.uv_set > 1 {
+                return Err(report.at(path, format!("uv-set {}, there are 0 and 1", texture.uv_set)));
+            }
+        }
+        let slots = [
+            &mut material.base_texture,
+            &mut material.specular_texture,
+            &mut material.emission_texture,
+            &mut material.opacity_texture,
+            &mut material.metallic_roughness_texture,
+            &mut material.normal_texture,
+        ];
+        for slot in slots {
+            *slot = slot.and_then(|mut r| {
+                r.texture = places[r.texture as usize]?;
+                Some(r)
+            });
+        }
+    }
+    Ok(())
+}
+
+fn is_finite(m: &Material) -> bool {
+    let mut numbers = vec![m.opacity, m.ior, m.normal_scale];
+    numbers.extend(m.emission);
+    match m.reflectance {
+        Reflectance::Phong { ka, kd, ks, shininess } => {
+            numbers.extend([ka, kd, ks].concat());
+            numbers.push(shininess);
+        }
+        Reflectance::MetallicRoughness { base_color, metallic, roughness } => {
+            numbers.extend(base_color);
+            numbers.extend([metallic, roughness]);
+        }
+    }
+    let mut m = m.clone();
+    numbers.extend(m.textures_mut().flat_map(|t| t.transform.concat()));
+    numbers.iter().all(|n| n.is_finite())
+}
+
+/// Makes meshes of inline entries and loads the models that the others name.
+fn add_meshes(
+    forms: Vec<MeshForm>,
+    scene: &mut Scene,
+    report: &Report<'_>,
+    origin: &Origin<'_>,
+) -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::with_capacity(forms.len());
+    for (i, form) in forms.into_iter().enumerate() {
+        let path = format!("meshes[{i}]");
+        let materials = scene.materials.len();
+        let parts = form.parts.iter().flatten().filter_map(|p| p.material);
+        for material in parts.chain(form.material).chain(form.line_material) {
+            report.index(path.as_str(), "material", material, materials)?;
+        }
+        let inline = !form.positions.is_empty() || form.faces.is_some() || form.triangles.is_some() || form.parts.is_some();
+        let model = match (&form.file, &form.builtin) {
+            (Some(_), Some(_)) => return Err(report.at(path, "either `file` or `builtin`")),
+            (Some(_), None) | (None, Some(_)) if inline => {
+                return Err(report.at(path, "a reference has no arrays of its own"));
+            }
+            (Some(file), None) => origin.model(file, report.file, &Place::Json(path))?,
+            (None, Some(name)) => origin.builtin(name, report.file, Place::Json(path))?,
+            (None, None) => {
+                let mesh = mesh::from_form(form, origin.workers).map_err(|what| report.at(path, what))?;
+                scene.meshes.push(Arc::new(mesh));
+                entries.push(Entry::Mesh(scene.meshes.len() as u32 - 1));
+                continue;
+            }
+        };
+        entries.push(Entry::Model(Model { scene: model, material: form.material, placed: None }));
+    }
+    Ok(entries)
+}
+
+/// Adds the nodes; gives those that show a model, with its entry.
+fn add_nodes(
+    forms: Vec<NodeForm>,
+    roots: Option<Vec<u32>>,
+    scene: &mut Scene,
+    entries: &[Entry],
+    report: &Report<'_>,
+) -> Result<Vec<(usize, usize)>, Error> {
+    if forms.len() > MAX_ENTRIES {
+        return Err(report.at("nodes", format!("{} nodes, at most {MAX_ENTRIES} are read", forms.len())));
+    }
+    let has_parent = check_tree(&forms, report)?;
+    let roots = roots.unwrap_or_else(|| (0..forms.len() as u32).filter(|&n| !has_parent[n as usize]).collect());
+    let mut listed = vec![false; forms.len()];
+    for (k, &root) in roots.iter().enumerate() {
+        let path = format!("roots[{k}]");
+        report.index(path.as_str(), "node", root, forms.len())?;
+        if has_parent[root as usize] || std::mem::replace(&mut listed[root as usize], true) {
+            return Err(report.at(path, format!("node {root} is in the tree already")));
+        }
+    }
+    scene.roots = roots;
+    let mut models = Vec::new();
+    for (i, form) in forms.into_iter().enumerate() {
+        let path = format!("nodes[{i}]");
+        let transform = transform(&form).map_err(|what| report.at(path.as_str(), what))?;
+        let mut node = Node { name: form.name, transform, children: form.children, light: form.light, ..Node::default() };
+        if let Some(light) = &node.light {
+            check_light(light, &format!("{path}.light"), report)?;
+        }
+        if let Some(camera) = form.camera {
+            report.index(format!("{path}.camera"), "camera", camera, scene.cameras.len())?;
+            node.camera = Some(camera);
+        }
+        if let Some(mesh) = form.mesh {
+            report.index(format!("{path}.mesh"), "mesh", mesh, entries.len())?;
+            match entries[mesh as usize] {
+                Entry::Mesh(index) => node.mesh = Some(index),
+                Entry::Model(_) => models.push((i, mesh as usize)),
+            }
+        }
+        scene.nodes.push(node);
+    }
+    Ok(models)
+}
+
+/// Checks that no node has two parents or is its own ancestor; tells which ones have a parent.
+fn check_tree(forms: &[NodeForm], report: &Report<'_>) -> Result<Vec<bool>, Error> {
+    let mut has_parent = vec![false; forms.len()];
+    for (i, form) in forms.iter().enumerate() {
+        for (k, &child) in form.children.iter().enumerate() {
+            let path = format!("nodes[{i}].children[{k}]");
+            report.index(path.as_str(), "node", child, forms.len())?;
+            if std::mem::replace(&mut has_parent[child as usize], true) {
+                return Err(report.at(path, format!("node {child} has a parent already")));
+            }
+        }
+    }
+    // Whoever is not reached from a node without parent lies on a cycle.
+    let mut stack: Vec<usize> = (0..forms.len()).filter(|&n| !has_parent[n]).collect();
+    let mut reached = vec![false; forms.len()];
+    while let Some(n) = stack.pop() {
+        reached[n] = true;
+        stack.extend(forms[n].children.iter().map(|&c| c as usize));
+    }
+    match reached.iter().position(|r| !r) {
+        Some(n) => Err(report.at(format!("nodes[{n}]"), "the node is its own ancestor")),
+        None => Ok(has_parent),
+    }
+}
+
+/// A node's placement: a matrix, or translation, rotation and scale.
+fn transform(form: &NodeForm) -> Result<NodeTransform, String> {
+    let parts = form.translation.is_some() || form.rotation.is_some() || form.scale.is_some();
+    match form.matrix {
+        Some(_) if parts => Err("either `matrix` or `translation`, `rotation`, `scale`".to_owned()),
+        Some(columns) => {
+            let matrix = DMat4::from_cols_array(&columns);
+            if matrix.row(3) == DVec4::W {
+                Ok(NodeTransform::Matrix(matrix))
+            } else {
+                Err("the matrix, column by column, needs 0 0 0 1 as its last row".to_owned())
+            }
+        }
+        None if parts => {
+            let rotation = DVec4::from_array(form.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+            // What is unit already keeps its digits.
+            let unit = (rotation.length_squared() - 1.0).abs() < 1e-9;
+            let rotation = if unit { Some(rotation) } else { rotation.try_normalize() };
+            Ok(NodeTransform::Parts {
+                translation: DVec3::from_array(form.translation.unwrap_or_default()),
+                rotation: DQuat::from_vec4(rotation.ok_or("the rotation, a quaternion x y z w, is zero")?),
+                scale: DVec3::from_array(form.scale.unwrap_or([1.0; 3])),
+            })
+        }
+        None => Ok(NodeTransform::default()),
+    }
+}
+
+/// Brings a model in, the first time with all it has, later as copies of its nodes. Gives the roots of this copy.
+fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Vec<u32>, Error> {
+    let (was, more) = (sizes(scene), sizes(&model.scene));
+    let total = |k: usize| was[k] + more[k];
+    if (0..was.len()).any(|k| total(k) > MAX_ENTRIES) {
+        let what = format!("with all references there are more than {MAX_ENTRIES} nodes, meshes, materials, textures or cameras");
+        return Err(report.at("meshes", what));
+    }
+    if let Some((nodes, roots)) = &model.placed {
+        let shift = scene.nodes.len() as u32 - nodes.start;
+        for n in nodes.clone() {
+            let mut node = scene.nodes[n as usize].clone();
+            node.children.iter_mut().for_each(|c| *c += shift);
+            scene.nodes.push(node);
+        }
+        return Ok(roots.iter().map(|r| r + shift).collect());
+    }
+
+    // Lights of the model as a whole become nodes, so that they are placed with it.
+    let mut incoming = Scene::clone(&model.scene);
+    for light in std::mem::take(&mut incoming.lights) {
+        incoming.add_root(Node { name: light.name.clone(), light: Some(light), ..Node::default() });
+    }
+    let (first_node, first_root, first_mesh) = (scene.nodes.len(), scene.roots.len(), scene.meshes.len());
+    scene.append(incoming);
+    if let Some(material) = model.material {
+        for mesh in &mut scene.meshes[first_mesh..] {
+            let mesh = Arc::make_mut(mesh);
+            mesh.parts.iter_mut().for_each(|p| p.material = Some(material));
+            mesh.line_material = mesh.line_material.map(|_| material);
+        }
+    }
+    let roots = scene.roots.split_off(first_root);
+    model.placed = Some((first_node as u32..scene.nodes.len() as u32, roots.clone()));
+    Ok(roots)
+}
+
+fn sizes(scene: &Scene) -> [usize; 5] {
+    let nodes = scene.nodes.len() + scene.lights.len();
+    [nodes, scene.meshes.len(), scene.materials.len(), scene.textures.len(), scene.cameras.len()]
+}

@@ -1,0 +1,45 @@
+//! The folder of shared models, and a resolver over it.
+#![allow(dead_code)]
+
+use std::path::{Path, PathBuf};
+use vitral_io::{ResolveError, Resolver};
+
+/// Files below a folder.
+pub struct Folder(pub PathBuf);
+
+impl Resolver for Folder {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        if Path::new(path).is_absolute() || path.split('/').any(|part| part == "..") {
+            return Err(ResolveError::Outside);
+        }
+        std::fs::read(self.0.join(path)).map_err(|_| ResolveError::NotFound)
+    }
+}
+
+/// The shared models, or `None` with a printed line where they are absent.
+pub fn models() -> Option<PathBuf> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/models"));
+    if path.is_dir() {
+        return Some(path);
+    }
+    println!("skipped: the shared models are absent ({})", path.display());
+    None
+}
+
+/// All files below `folder`, sorted, as paths relative to it.
+pub fn files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut stack = vec![folder.to_path_buf()];
+    while let Some(at) = stack.pop() {
+        for entry in std::fs::read_dir(&at).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                stack.push(path);
+            } else {
+                found.push(path.strip_prefix(folder).unwrap().to_string_lossy().replace('\\', "/"));
+            }
+        }
+    }
+    found.sort();
+    found
+}

@@ -1,0 +1,361 @@
+//! Framing: a camera that shows a whole box from a standard side, filling the picture.
+//!
+//! Idea: a corner of the box at sideways offset `x` and height `y` from the line of view is inside the picture if it
+//! is at least `|x| / tan(horizontal half angle)` and `|y| / tan(vertical half angle)` in front of the eye. Each of
+//! the eight corners so tells how far back the eye must be; the largest answer fits the box exactly, where the
+//! sphere round the box would leave much of the picture empty.
+//!
+//! In:   a box in world space, which way is up, the side to look from, the shape of the picture.
+//! Out:  a [`Camera`] with its focal point in the middle of the box.
+//! Cost: constant; linear in the points where points are fitted.
+//! Source: elementary geometry. The names of the views are those of technical drawing.
+
+use crate::{Camera, Projection};
+use vitral_math::{Aabb, DVec3, func};
+
+/// The part of the picture's width or height that a framed box fills.
+pub const FILL: f64 = 0.9;
+
+/// A coordinate axis with a direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Axis {
+    /// +X.
+    PlusX,
+    /// -X.
+    MinusX,
+    /// +Y.
+    #[default]
+    PlusY,
+    /// -Y.
+    MinusY,
+    /// +Z.
+    PlusZ,
+    /// -Z.
+    MinusZ,
+}
+
+/// A text that names no axis.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no axis: one of +X -X +Y -Y +Z -Z is required")]
+pub struct AxisError(String);
+
+impl std::str::FromStr for Axis {
+    type Err = AxisError;
+
+    /// Reads `+X`, `x`, `-z`, ...
+    fn from_str(text: &str) -> Result<Self, AxisError> {
+        let (minus, letter) = match text.strip_prefix('-') {
+            Some(rest) => (true, rest),
+            None => (false, text.strip_prefix('+').unwrap_or(text)),
+        };
+        match (letter, minus) {
+            ("x" | "X", false) => Ok(Self::PlusX),
+            ("x" | "X", true) => Ok(Self::MinusX),
+            ("y" | "Y", false) => Ok(Self::PlusY),
+            ("y" | "Y", true) => Ok(Self::MinusY),
+            ("z" | "Z", false) => Ok(Self::PlusZ),
+            ("z" | "Z", true) => Ok(Self::MinusZ),
+            _ => Err(AxisError(text.to_owned())),
+        }
+    }
+}
+
+impl std::fmt::Display for Axis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::PlusX => "+X",
+            Self::MinusX => "-X",
+            Self::PlusY => "+Y",
+            Self::MinusY => "-Y",
+            Self::PlusZ => "+Z",
+            Self::MinusZ => "-Z",
+        })
+    }
+}
+
+impl Axis {
+    /// Unit vector along the axis.
+    pub fn vector(self) -> DVec3 {
+        match self {
+            Self::PlusX => DVec3::X,
+            Self::MinusX => DVec3::NEG_X,
+            Self::PlusY => DVec3::Y,
+            Self::MinusY => DVec3::NEG_Y,
+            Self::PlusZ => DVec3::Z,
+            Self::MinusZ => DVec3::NEG_Z,
+        }
+    }
+
+    /// The direction from a model's middle to its front where this axis is up: +Z, but -Y and +Y where Z is up or down.
+    pub fn front(self) -> DVec3 {
+        match self {
+            Self::PlusZ => DVec3::NEG_Y,
+            Self::MinusZ => DVec3::Y,
+            _ => DVec3::Z,
+        }
+    }
+}
+
+/// The side that a camera looks from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum View {
+    /// From the front, the right and above, at equal angles to all three axes.
+    #[default]
+    Iso,
+    /// From the front, with the model's right side on the right.
+    Front,
+    /// From behind.
+    Back,
+    /// From the model's left (the left of the front view).
+    Left,
+    /// From the model's right.
+    Right,
+    /// From above, the front side below in the picture.
+    Top,
+    /// From below, the front side above in the picture.
+    Bottom,
+}
+
+impl View {
+    /// Unit vector from the model to the eye, and which way is up in the picture.
+    pub fn eye_and_up(self, up: Axis) -> (DVec3, DVec3) {
+        let (up, front) = (up.vector(), up.front());
+        let right = up.cross(front);
+        match self {
+            Self::Iso => ((front + right + up).normalize(), up),
+            Self::Front => (front, up),
+            Self::Back => (-front, up),
+            Self::Left => (-right, up),
+            Self::Right => (right, up),
+            Self::Top => (up, -front),
+            Self::Bottom => (-up, front),
+        }
+    }
+}
+
+/// How a framed view is projected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Perspective with this vertical angle of view in radians, `0..π`.
+    Perspective {
+        /// The angle.
+        view_angle: f64,
+    },
+    /// Parallel, as high as the box needs.
+    Parallel,
+}
+
+impl Default for Lens {
+    /// 30 degrees, a moderate telephoto lens: little distortion.
+    fn default() -> Self {
+        Self::Perspective { view_angle: std::f64::consts::FRAC_PI_6 }
+    }
+}
+
+/// A camera that shows all of `bounds` from a standard side; the box fills [`FILL`] of the picture.
+/// `aspect = width / height` of the picture.
+pub fn frame(bounds: &Aabb, view: View, up: Axis, lens: Lens, aspect: f64) -> Camera {
+    let (eye, picture_up) = view.eye_and_up(up);
+    frame_from(bounds, eye, picture_up, lens, aspect, FILL)
+}
+
+/// As [`frame`], looking from the direction `eye` (from the box to the eye, any length) with `view_up` upwards; the
+/// box fills `fill` (0 to 1, more zooms in) of the picture. An empty or single-point box is shown as a unit sphere's.
+pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Camera {
+    let bounds = presentable(bounds);
+    fit(bounds.corners(), &bounds, eye, view_up, lens, aspect, fill)
+}
+
+/// As [`frame_from`], fitting `points` (world space; those that are not finite are passed over) instead of the
+/// corners of `bounds`, the box round them: closer where the model leaves the corners of its box empty.
+pub fn frame_points(
+    points: impl IntoIterator<Item = DVec3>,
+    bounds: &Aabb,
+    eye: DVec3,
+    view_up: DVec3,
+    lens: Lens,
+    aspect: f64,
+    fill: f64,
+) -> Camera {
+    let visible = presentable(bounds);
+    if visible != *bounds {
+        return frame_from(bounds, eye, view_up, lens, aspect, fill);
+    }
+    fit(points.into_iter().filter(|p| p.is_finite()), bounds, eye, view_up, lens, aspect, fill)
+}
+
+/// Fits `points` round the middle of `bounds`.
+fn fit(
+    points: impl IntoIterator<Item = DVec3>,
+    bounds: &Aabb,
+    eye: DVec3,
+    view_up: DVec3,
+    lens: Lens,
+    aspect: f64,
+    fill: f64,
+) -> Camera {
+    let fill = if fill.is_finite() && fill > 0.0 { fill } else { FILL };
+    let (aspect, angle) = (sane_aspect(aspect), lens.view_angle());
+    let center = bounds.center();
+    let eye = eye.try_normalize().unwrap_or(DVec3::Z);
+    let mut camera = Camera {
+        position: center + eye,
+        focal_point: center,
+        view_up,
+        projection: Projection::Perspective { view_angle: angle },
+        clip: None,
+    };
+
+    // The points as seen from the middle of the box: to the right, up, and towards the eye. All on the line of view
+    // would need no room at all: keep some.
+    let view = camera.view_from_world();
+    let (least, seen) = (1e-3 * bounds.diagonal(), points.into_iter().map(|p| view.transform_vector3(p - center)));
+    if lens == Lens::Parallel {
+        let half = seen.fold(least, |h, p| h.max(p.y.abs()).max(p.x.abs() / aspect));
+        camera.position = center + eye * bounds.diagonal();
+        camera.projection = Projection::Parallel { height: 2.0 * half / fill };
+        return camera;
+    }
+    let (high, wide) = (1.0 / (func::tan(angle * 0.5) * fill), 1.0 / (func::tan(angle * 0.5) * fill * aspect));
+    let distance = seen.fold(least * high, |d, p| d.max(p.z + (p.y.abs() * high).max(p.x.abs() * wide)));
+    camera.position = center + eye * distance.max(least);
+    camera
+}
+
+/// A camera for pictures in which the model turns about `up` through the middle of the box: the framed view of the box
+/// of everything that the turning box sweeps, so that no corner leaves the picture and the size does not pulse.
+pub fn frame_turning(bounds: &Aabb, view: View, up: Axis, lens: Lens, aspect: f64) -> Camera {
+    let bounds = presentable(bounds);
+    let (axis, half) = (up.vector(), bounds.size() * 0.5);
+    let height = half.dot(axis.abs());
+    let radius = (half - axis.abs() * height).length();
+    let reach = axis.abs() * height + (DVec3::ONE - axis.abs()) * radius;
+    let center = bounds.center();
+    frame(&Aabb { min: center - reach, max: center + reach }, view, up, lens, aspect)
+}
+
+/// Distances along the direction of view to the nearest and farthest corner of `bounds`, for [`Camera::transform`].
+/// Negative behind the eye; `(0, 0)` for an empty box.
+pub fn depth_range(camera: &Camera, bounds: &Aabb) -> (f64, f64) {
+    if bounds.is_empty() {
+        return (0.0, 0.0);
+    }
+    let view = camera.view_from_world();
+    let depths = bounds.corners().map(|c| -view.transform_point3(c).z);
+    depths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), &d| (near.min(d), far.max(d)))
+}
+
+impl Lens {
+    /// The angle of view, a sensible one where there is none or one beyond what a picture can show.
+    fn view_angle(self) -> f64 {
+        match self {
+            Self::Perspective { view_angle } if view_angle > 1e-6 && view_angle < 3.1 => view_angle,
+            _ => std::f64::consts::FRAC_PI_6,
+        }
+    }
+}
+
+fn sane_aspect(aspect: f64) -> f64 {
+    if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
+}
+
+/// The box, or one of size 2 round its middle if it has no extent.
+fn presentable(bounds: &Aabb) -> Aabb {
+    let sound = !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite();
+    let center = if sound { bounds.center() } else { DVec3::ZERO };
+    let visible = sound && bounds.diagonal() > 0.0;
+    if visible { *bounds } else { Aabb { min: center - 1.0, max: center + 1.0 } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const VIEWS: [View; 7] = [View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
+    const AXES: [Axis; 6] = [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
+
+    /// The largest |x| and |y| of the box's corners in the picture; 1 is its border.
+    fn reach(camera: &Camera, bounds: &Aabb, aspect: f64) -> f64 {
+        let transform = camera.transform(aspect, depth_range(camera, bounds));
+        let clip = transform.clip_from_world();
+        bounds.corners().iter().fold(0.0, |most: f64, c| {
+            let p = clip * c.extend(1.0);
+            assert!(p.w > 0.0 && p.z >= 0.0 && p.z <= p.w, "in front of the eye and within the depth range: {p}");
+            most.max((p.x / p.w).abs()).max((p.y / p.w).abs())
+        })
+    }
+
+    #[test]
+    fn axes_are_read_and_written() {
+        for axis in AXES {
+            assert_eq!(axis.to_string().parse(), Ok(axis));
+            assert_eq!(axis.vector().dot(axis.front()), 0.0);
+        }
+        assert_eq!("y".parse(), Ok(Axis::PlusY));
+        for bad in ["", "+", "+W", "--X", "XY"] {
+            assert!(bad.parse::<Axis>().is_err());
+        }
+    }
+
+    #[test]
+    fn standard_views_look_from_where_they_say() {
+        assert_eq!(View::Front.eye_and_up(Axis::PlusY), (DVec3::Z, DVec3::Y));
+        assert_eq!(View::Right.eye_and_up(Axis::PlusY), (DVec3::X, DVec3::Y));
+        assert_eq!(View::Front.eye_and_up(Axis::PlusZ), (DVec3::NEG_Y, DVec3::Z));
+        assert_eq!(View::Right.eye_and_up(Axis::PlusZ), (DVec3::X, DVec3::Z));
+        assert_eq!(View::Top.eye_and_up(Axis::PlusZ), (DVec3::Z, DVec3::Y));
+    }
+
+    #[test]
+    fn fitting_the_points_of_a_ball_shows_it_larger_than_its_box_would() {
+        let ball = crate::builtin::solids::sphere(1.0, 64, 32);
+        let points = || ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+        let bounds = ball.bounds();
+        for lens in [Lens::default(), Lens::Parallel] {
+            let (eye, up) = View::Iso.eye_and_up(Axis::PlusY);
+            let camera = frame_points(points(), &bounds, eye, up, lens, 1.0, FILL);
+            let clip = camera.transform(1.0, depth_range(&camera, &bounds)).clip_from_world();
+            let reach =
+                points().map(|p| clip * p.extend(1.0)).fold(0.0f64, |r, p| r.max(p.x.abs() / p.w).max(p.y.abs() / p.w));
+            assert!((reach - FILL).abs() < 1e-6, "{lens:?}: {reach}");
+        }
+    }
+
+    #[test]
+    fn boxes_without_extent_and_odd_numbers_still_give_a_camera() {
+        let point = Aabb { min: DVec3::ONE, max: DVec3::ONE };
+        for bounds in [Aabb::EMPTY, point, Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }] {
+            for lens in [Lens::default(), Lens::Parallel, Lens::Perspective { view_angle: f64::NAN }] {
+                let camera = frame_from(&bounds, DVec3::ZERO, DVec3::ZERO, lens, f64::NAN, -1.0);
+                assert!(camera.view_from_world().is_finite());
+                assert!(camera.position.distance(camera.focal_point) > 0.1);
+            }
+        }
+        assert_eq!(depth_range(&frame(&point, View::Iso, Axis::PlusY, Lens::Parallel, 1.0), &Aabb::EMPTY), (0.0, 0.0));
+    }
+
+    proptest! {
+        #[test]
+        fn p3_a_framed_box_fills_exactly_its_part_of_the_picture(
+            min in prop::array::uniform3(-10.0f64..10.0), size in prop::array::uniform3(0.01f64..20.0),
+            view in 0usize..7, axis in 0usize..6, aspect in 0.2f64..5.0, angle in 0.1f64..2.0, parallel: bool,
+        ) {
+            let min = DVec3::from_array(min);
+            let bounds = Aabb { min, max: min + DVec3::from_array(size) };
+            let lens = if parallel { Lens::Parallel } else { Lens::Perspective { view_angle: angle } };
+            let camera = frame(&bounds, VIEWS[view], AXES[axis], lens, aspect);
+            prop_assert!((reach(&camera, &bounds, aspect) - FILL).abs() < 1e-6);
+            let (near, far) = depth_range(&camera, &bounds);
+            prop_assert!(0.0 < near && near <= far);
+        }
+
+        #[test]
+        fn a_turning_box_stays_in_the_picture(size in prop::array::uniform3(0.1f64..9.0), turn in 0.0f64..6.3) {
+            let half = DVec3::from_array(size) * 0.5;
+            let bounds = Aabb { min: -half, max: half };
+            let camera = frame_turning(&bounds, View::Iso, Axis::PlusY, Lens::default(), 1.5);
+            prop_assert!(reach(&camera.azimuth(turn), &bounds, 1.5) <= FILL + 1e-9);
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! Shading normals for meshes that come without, or with some of them missing.
+//!
+//! Idea: the normal of a vertex is the average of the normals of the faces round it. Each *polygon* counts once, with
+//! its own (Newell) normal, however many triangles it was cut into; it is weighted by its angle at the vertex, so that
+//! a surface gets the same normals whether a file holds it as quads or as triangles. Plain averaging over triangles
+//! would lean towards the side that happens to be cut through the vertex. Faces that meet at more than the crease
+//! angle are not averaged; where the file has smoothing groups, these decide instead of the angle: faces of one group
+//! (not 0) are smooth together, all others have creases between them.
+//!
+//! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
+//! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
+//! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see [`crate::corner_fans`]).
+//! Source: Gouraud 1971 (the average); Thürmer & Wüthrich 1998 (the angle as weight); Newell's normal after
+//! Sutherland, Sproull & Schumacker 1974; arc tangent: Abramowitz & Stegun 4.4.49.
+//!
+//! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial normal. Where the
+//! faces of a vertex cancel each other (two sheets back to back, smoothed together), it gets its first face's normal.
+
+use crate::corner_fans::{Rule, fan_normals};
+use crate::weld::Weld;
+use crate::{Attribute, Corners, Faces, Mesh};
+use std::f64::consts::{FRAC_PI_2, PI};
+use vitral_exec::Workers;
+use vitral_math::DVec3;
+
+/// The normal of a vertex without any face that has one.
+pub(crate) const DEFAULT_NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
+/// Sums shorter than this (they are weighted by radians) have cancelled out.
+pub(crate) const CANCELLED: f32 = 1e-5;
+/// Faces or corners that are worked on together.
+const BATCH: usize = 1 << 14;
+
+/// Makes the normals that `mesh` lacks: all, or those that are zero or not finite. Does nothing where none is missing.
+///
+/// `crease_angle` in radians: faces whose normals differ by more are not averaged. `π` (or NaN) is smooth everywhere,
+/// `0` gives each face its own normal. The mesh must be sound ([`Mesh::check`]).
+pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
+    let missing = |n: &[f32; 3]| *n == [0.0; 3] || n.iter().any(|c| !c.is_finite());
+    if mesh.triangles.is_empty() || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing)) {
+        return;
+    }
+    let made = all_normals(mesh, crease_angle, workers);
+    mesh.normals = Some(match mesh.normals.take() {
+        None => made,
+        Some(given) => fill_gaps(given, made, &mesh.triangles, missing),
+    });
+}
+
+/// The unit normal of face `face`, counter-clockwise outlines towards the viewer; zero for a face without area.
+pub fn face_normal(mesh: &Mesh, face: usize) -> [f32; 3] {
+    outline_normal(mesh, mesh.face_corners(face)).as_vec3().to_array()
+}
+
+/// The unit normals of all faces; zero for faces without area.
+pub fn face_normals(mesh: &Mesh, workers: &Workers) -> Vec<[f32; 3]> {
+    let mut normals = vec![[0.0; 3]; mesh.face_count()];
+    workers.for_each_chunk(&mut normals, BATCH, |batch, normals| {
+        for (k, normal) in normals.iter_mut().enumerate() {
+            *normal = face_normal(mesh, batch * BATCH + k);
+        }
+    });
+    normals
+}
+
+/// What the faces say to their vertices.
+pub(crate) struct FaceData {
+    /// Unit normal of each face; zero without area.
+    pub(crate) normals: Vec<[f32; 3]>,
+    /// Angle of the face at each of its corners, radians.
+    pub(crate) weights: Vec<f32>,
+}
+
+/// The outlines of all faces, one after the other.
+pub(crate) fn face_corner_list(mesh: &Mesh) -> &[u32] {
+    match &mesh.faces {
+        Faces::Triangles => mesh.triangles.as_flattened(),
+        Faces::Polygons { corners, .. } => corners,
+    }
+}
+
+/// Where face `f` begins in [`face_corner_list`].
+fn first_corner(mesh: &Mesh, f: usize) -> usize {
+    match &mesh.faces {
+        Faces::Triangles => 3 * f,
+        Faces::Polygons { starts, .. } => starts[f] as usize,
+    }
+}
+
+fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> Attribute<[f32; 3]> {
+    let weld = Weld::new(&mesh.positions, workers);
+    let faces = face_data(mesh, workers);
+    let rule = match &mesh.smoothing_groups {
+        Some(groups) if groups.len() == mesh.face_count() => Rule::Groups(groups),
+        _ if crease_angle.is_nan() || crease_angle >= PI => {
+            return Attribute::per_vertex(smooth(mesh, &weld, &faces, workers));
+        }
+        _ => Rule::within(crease_angle),
+    };
+    match fan_normals(mesh, &weld, &faces, rule, workers) {
+        (values, None) => Attribute::per_vertex(values),
+        (values, Some(of_corner)) => Attribute { values, corners: Some(triangle_corners(mesh, &of_corner, workers)) },
+    }
+}
+
+/// Normals and angles of all faces.
+fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
+    let faces = mesh.face_count();
+    let mut normals = vec![[0.0; 3]; faces];
+    let mut weights = vec![0.0; face_corner_list(mesh).len()];
+
+    // Cut both arrays at the same faces, so that each batch writes to its own piece of both.
+    let mut batches = Vec::new();
+    let mut rest = weights.as_mut_slice();
+    for (batch, normals) in normals.chunks_mut(BATCH).enumerate() {
+        let first = batch * BATCH;
+        let corners = first_corner(mesh, first + normals.len()) - first_corner(mesh, first);
+        let (weights, after) = rest.split_at_mut(corners);
+        rest = after;
+        batches.push((first, normals, weights));
+    }
+    workers.for_each(batches, |(first, normals, mut weights)| {
+        for (k, normal) in normals.iter_mut().enumerate() {
+            let outline = mesh.face_corners(first + k);
+            let (mine, after) = weights.split_at_mut(outline.len());
+            *normal = measure(mesh, outline, mine).as_vec3().to_array();
+            weights = after;
+        }
+    });
+    FaceData { normals, weights }
+}
+
+/// The normal of one outline, and its interior angles into `angles`; all zero without area.
+fn measure(mesh: &Mesh, outline: &[u32], angles: &mut [f32]) -> DVec3 {
+    if let (&[a, b, c], [at_a, at_b, at_c]) = (outline, &mut *angles) {
+        let [a, b, c] = [a, b, c].map(|i| point(mesh, i));
+        let (normal, of) = measure_triangle(b - a, c - a);
+        (*at_a, *at_b, *at_c) = (of[0], of[1], of[2]);
+        return normal;
+    }
+    let normal = outline_normal(mesh, outline);
+    if normal == DVec3::ZERO {
+        return normal;
+    }
+    let n = outline.len();
+    for k in 0..n {
+        let at = point(mesh, outline[k]);
+        let forth = point(mesh, outline[if k + 1 == n { 0 } else { k + 1 }]) - at;
+        let back = point(mesh, outline[if k == 0 { n - 1 } else { k - 1 }]) - at;
+        let cross = forth.cross(back);
+        let angle = angle_from(cross.length(), forth.dot(back));
+        let reflex = cross.dot(normal) < 0.0;
+        angles[k] = if reflex { 2.0 * PI - angle } else { angle } as f32;
+    }
+    normal
+}
+
+/// The same for a triangle given by two sides from its first corner: all three angles share one cross product.
+fn measure_triangle(ab: DVec3, ac: DVec3) -> (DVec3, [f32; 3]) {
+    let cross = ab.cross(ac);
+    let length = cross.length();
+    if !has_area(length, ab.length_squared().max(ac.length_squared())) {
+        return (DVec3::ZERO, [0.0; 3]);
+    }
+    let at_a = angle_from(length, ab.dot(ac));
+    let at_b = angle_from(length, ab.dot(ab - ac));
+    let at_c = (PI - at_a - at_b).max(0.0);
+    (cross / length, [at_a as f32, at_b as f32, at_c as f32])
+}
+
+/// Newell's normal as a fan of cross products from the first corner, unit; zero without area or with bad coordinates.
+fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
+    let origin = point(mesh, outline[0]);
+    let (mut sum, mut longest) = (DVec3::ZERO, 0.0f64);
+    let mut previous = point(mesh, outline[1]) - origin;
+    for &corner in &outline[2..] {
+        let next = point(mesh, corner) - origin;
+        sum += previous.cross(next);
+        longest = longest.max(previous.length_squared()).max(next.length_squared());
+        previous = next;
+    }
+    let length = sum.length();
+    if has_area(length, longest) { sum / length } else { DVec3::ZERO }
+}
+
+/// Whether a normal of this length, before it is made unit, means anything, for the largest squared distance between
+/// corners. A sliver only as wide as the rounding of its coordinates has no direction worth averaging.
+fn has_area(length: f64, longest_squared: f64) -> bool {
+    length.is_finite() && length > 1e-7 * longest_squared
+}
+
+fn point(mesh: &Mesh, i: u32) -> DVec3 {
+    let [x, y, z] = mesh.positions[i as usize];
+    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+}
+
+/// The angle in `0..=π` whose sine and cosine are proportional to `y >= 0` and `x`; 0 for the zero vector. Absolute
+/// error below 2e-8.
+fn angle_from(y: f64, x: f64) -> f64 {
+    let (low, high) = (y.min(x.abs()), y.max(x.abs()));
+    if high == 0.0 {
+        return 0.0;
+    }
+    let t = low / high;
+    let t2 = t * t;
+    let mut p = 0.002_866_225_7;
+    for c in [
+        -0.016_165_736_7,
+        0.042_909_613_8,
+        -0.075_289_640_0,
+        0.106_562_639_3,
+        -0.142_088_994_4,
+        0.199_935_508_5,
+        -0.333_331_452_8,
+        1.0,
+    ] {
+        p = p * t2 + c;
+    }
+    let first_octant = p * t;
+    let quadrant = if y > x.abs() { FRAC_PI_2 - first_octant } else { first_octant };
+    if x < 0.0 { PI - quadrant } else { quadrant }
+}
+
+/// One normal per vertex, all faces averaged.
+fn smooth(mesh: &Mesh, weld: &Weld, faces: &FaceData, workers: &Workers) -> Vec<[f32; 3]> {
+    // Every thread owns a range of vertices and reads all faces: each sum is in the order of the faces, whatever the
+    // number of threads.
+    let mut normals = vec![[0.0f32; 3]; mesh.positions.len()];
+    let share = mesh.positions.len().div_ceil(workers.threads()).max(1);
+    workers.for_each_chunk(&mut normals, share, |k, sums| {
+        let first = (k * share) as u32;
+        for_each_corner(mesh, |face, corner, vertex| {
+            let v = weld.representative[vertex as usize].wrapping_sub(first) as usize;
+            if let Some(sum) = sums.get_mut(v) {
+                let (n, w) = (faces.normals[face], faces.weights[corner]);
+                *sum = [sum[0] + n[0] * w, sum[1] + n[1] * w, sum[2] + n[2] * w];
+            }
+        });
+        sums.iter_mut().for_each(|sum| *sum = unit(*sum).unwrap_or([0.0; 3]));
+    });
+
+    // Where a sum has cancelled out, the first face with a normal decides.
+    if normals.contains(&[0.0; 3]) {
+        for_each_corner(mesh, |face, _, vertex| {
+            let normal = &mut normals[weld.representative[vertex as usize] as usize];
+            if *normal == [0.0; 3] {
+                *normal = faces.normals[face];
+            }
+        });
+        normals.iter_mut().filter(|n| **n == [0.0; 3]).for_each(|n| *n = DEFAULT_NORMAL);
+    }
+    if weld.distinct < normals.len() {
+        for (v, &first) in weld.representative.iter().enumerate() {
+            normals[v] = normals[first as usize];
+        }
+    }
+    normals
+}
+
+/// Calls `f(face, place in the corner list, vertex)` for every corner of every face.
+#[inline]
+fn for_each_corner(mesh: &Mesh, mut f: impl FnMut(usize, usize, u32)) {
+    match &mesh.faces {
+        Faces::Triangles => {
+            for (t, corners) in mesh.triangles.iter().enumerate() {
+                (0..3).for_each(|k| f(t, 3 * t + k, corners[k]));
+            }
+        }
+        Faces::Polygons { starts, corners } => {
+            for (face, ends) in starts.windows(2).enumerate() {
+                (ends[0] as usize..ends[1] as usize).for_each(|c| f(face, c, corners[c]));
+            }
+        }
+    }
+}
+
+/// `v` with length 1, unless it has cancelled out.
+pub(crate) fn unit(v: [f32; 3]) -> Option<[f32; 3]> {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    (length > CANCELLED).then(|| v.map(|c| c / length))
+}
+
+/// From the normals at the corners of faces to those at the corners of triangles.
+fn triangle_corners(mesh: &Mesh, of_corner: &[u32], workers: &Workers) -> Vec<Corners> {
+    if matches!(mesh.faces, Faces::Triangles) {
+        return of_corner.as_chunks().0.to_vec();
+    }
+    let batches = workers.map(mesh.face_count().div_ceil(BATCH), |batch| {
+        let mut triangles = Vec::new();
+        let mut sorted = Vec::new();
+        for face in batch * BATCH..mesh.face_count().min((batch + 1) * BATCH) {
+            let outline = mesh.face_corners(face);
+            let normals = &of_corner[first_corner(mesh, face)..][..outline.len()];
+
+            // A polygon's triangles name vertices: look up which corner that is. Long outlines are sorted for it.
+            sorted.clear();
+            if outline.len() > 16 {
+                sorted.extend(outline.iter().copied().zip(normals.iter().copied()));
+                sorted.sort_unstable();
+            }
+            let find = |vertex: u32| {
+                if sorted.is_empty() {
+                    outline.iter().position(|&v| v == vertex).map_or(normals[0], |k| normals[k])
+                } else {
+                    sorted[sorted.partition_point(|s| s.0 < vertex).min(sorted.len() - 1)].1
+                }
+            };
+            triangles.extend(mesh.triangles[mesh.face_triangles(face)].iter().map(|t| t.map(find)));
+        }
+        triangles
+    });
+    batches.concat()
+}
+
+/// The given normals, with the made ones at the corners where a given one is missing.
+fn fill_gaps(
+    mut given: Attribute<[f32; 3]>,
+    made: Attribute<[f32; 3]>,
+    triangles: &[Corners],
+    missing: impl Fn(&[f32; 3]) -> bool,
+) -> Attribute<[f32; 3]> {
+    let first = given.values.len() as u32;
+    let mut corners = given.corners.take().unwrap_or_else(|| triangles.to_vec());
+    let made_corners = made.corners.as_deref().unwrap_or(triangles);
+    for (mine, other) in corners.as_flattened_mut().iter_mut().zip(made_corners.as_flattened()) {
+        if missing(&given.values[*mine as usize]) {
+            *mine = first + other;
+        }
+    }
+    // The bad values are no longer referred to, but must not trip a reader who looks at all of them.
+    given.values.iter_mut().filter(|n| missing(n)).for_each(|n| *n = DEFAULT_NORMAL);
+    given.values.extend(made.values);
+    Attribute { values: given.values, corners: Some(corners) }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,128 @@
+//! Welding: vertices at one place become one vertex, for everything that asks who is next to whom.
+//!
+//! Idea: file formats repeat a position at every seam of normals or texture coordinates. The mesh keeps its vertices;
+//! neighbourhood is asked of *representatives*: of all vertices with one position, the first. Positions are equal if
+//! their coordinates are (`-0 = 0`); there is no tolerance, so welding is transitive and never closes a real gap.
+//!
+//! In:   positions, model space.
+//! Out:  for each vertex the first vertex with the same position.
+//! Cost: expected `O(n)`: dealt into buckets by a hash, then one open-addressing table a bucket, small enough for the
+//!       cache.
+//! Source: Knuth, The Art of Computer Programming 3, 6.4 (linear probing).
+
+use crate::buckets::{Buckets, Source, shift_and_count};
+use std::ops::Range;
+use vitral_exec::Workers;
+
+/// Which vertices are at one place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Weld {
+    /// For each vertex the lowest index of a vertex at the same position.
+    pub representative: Vec<u32>,
+    /// Number of different positions.
+    pub distinct: usize,
+}
+
+impl Weld {
+    /// Finds equal positions. NaN is equal to itself here, bit for bit.
+    pub fn new(positions: &[[f32; 3]], workers: &Workers) -> Self {
+        let (_, count) = shift_and_count(positions.len());
+        let source = Hashed { positions, count: count as u64 };
+        let buckets = Buckets::deal(&source, count, workers);
+        let repeated = workers.map(count, |b| repeated_in_bucket(positions, &buckets, b));
+
+        // Write down the repeated ones, bucket by bucket: each vertex is in one bucket only.
+        let mut representative: Vec<u32> = (0..positions.len() as u32).collect();
+        let mut distinct = positions.len();
+        for [vertex, first] in repeated.iter().flatten() {
+            representative[*vertex as usize] = *first;
+            distinct -= 1;
+        }
+        Self { representative, distinct }
+    }
+}
+
+/// A position as bits, with -0 made 0.
+fn key(p: [f32; 3]) -> [u32; 3] {
+    p.map(|c| (c + 0.0).to_bits())
+}
+
+/// A well-mixed hash of a position.
+fn hash(p: [f32; 3]) -> u64 {
+    let [x, y, z] = key(p).map(u64::from);
+    let mut h = (x | y << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    h = (h ^ h >> 32 ^ z).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    h ^ h >> 32
+}
+
+/// Vertices with the upper half of their hash, dealt by the lower half.
+struct Hashed<'a> {
+    positions: &'a [[f32; 3]],
+    count: u64,
+}
+
+impl Source<[u32; 2]> for Hashed<'_> {
+    fn items(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, [u32; 2])) {
+        for i in range {
+            let h = hash(self.positions[i]);
+            let bucket = ((h & 0xffff_ffff) * self.count) >> 32;
+            put(bucket as usize, [i as u32, (h >> 32) as u32]);
+        }
+    }
+}
+
+/// Pairs of a vertex and the first vertex at its position, for every vertex of bucket `b` that is not the first.
+fn repeated_in_bucket(positions: &[[f32; 3]], buckets: &Buckets<[u32; 2]>, b: usize) -> Vec<[u32; 2]> {
+    const FREE: u32 = u32::MAX;
+    let total: usize = buckets.pieces(b).map(<[_]>::len).sum();
+    let mask = (total * 2).next_power_of_two() - 1;
+    let mut table = vec![FREE; mask + 1];
+    let mut repeated = Vec::new();
+    for &[vertex, h] in buckets.pieces(b).flatten() {
+        let position = key(positions[vertex as usize]);
+        let mut slot = h as usize & mask;
+        loop {
+            let seen = table[slot];
+            if seen == FREE {
+                table[slot] = vertex;
+                break;
+            }
+            if key(positions[seen as usize]) == position {
+                repeated.push([vertex, seen]);
+                break;
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+    repeated
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_of_equal_positions_stands_for_all() {
+        let p = [[0.0, 1.0, 2.0], [3.0, 0.0, 0.0], [-0.0, 1.0, 2.0], [3.0, -0.0, 0.0], [0.0, 1.0, 2.5]];
+        let weld = Weld::new(&p, &Workers::single());
+        assert_eq!(weld.representative, [0, 1, 0, 1, 4]);
+        assert_eq!(weld.distinct, 3);
+        assert_eq!(Weld::new(&[], &Workers::single()).distinct, 0);
+        let nan = Weld::new(&[[f32::NAN; 3]; 2], &Workers::single());
+        assert_eq!(nan.representative, [0, 0]);
+    }
+
+    #[test]
+    fn many_vertices_are_welded_the_same_by_any_number_of_threads() {
+        // 90000 vertices, each position three times.
+        let p: Vec<[f32; 3]> = (0..90_000).map(|i| [(i % 30_000) as f32, (i % 173) as f32 * 0.0, 1.0]).collect();
+        let one = Weld::new(&p, &Workers::single());
+        assert_eq!(one.distinct, 30_000);
+        assert!(one.representative.iter().enumerate().all(|(i, &r)| r as usize == i % 30_000));
+        assert_eq!(one, Weld::new(&p, &Workers::new(3)));
+    }
+}

@@ -1,0 +1,70 @@
+//! Where test models are.
+//!
+//! Small ones live in the repository (`examples/`, `crates/*/fixtures`). The large corpus lies beside the checkout, in
+//! `../shared/models`, and may be absent: a test that needs it says so with one printed line and passes. `cargo xtask
+//! test` counts tests that print such a line as skipped.
+
+use std::path::{Path, PathBuf};
+
+/// What a line of a test's output starts with when the test could not run. `cargo xtask test` looks for it.
+pub const SKIPPED: &str = "skipped: ";
+
+/// The repository's top folder.
+pub fn repository() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.ancestors().nth(2).unwrap_or(here).to_path_buf()
+}
+
+/// A file of the shared corpus, such as `classics/utah-teapot.obj`; prints a skip line and gives `None` if it is absent.
+pub fn shared_model(path: &str) -> Option<PathBuf> {
+    let found = repository().join("../shared/models").join(path);
+    if found.exists() {
+        return Some(found);
+    }
+    println!("{SKIPPED}../shared/models/{path} is not there");
+    None
+}
+
+/// All files of the shared corpus below `folder` whose extension (in lower case) is in `extensions`, sorted by path.
+/// Empty, with a skip line, if the folder is absent.
+pub fn shared_models(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders: Vec<_> = shared_model(folder).into_iter().collect();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+            if path.is_dir() {
+                folders.push(path);
+            } else if extension.is_some_and(|e| extensions.contains(&e.as_str())) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_repository_is_found() {
+        assert!(repository().join("Cargo.toml").exists() && repository().join("crates/testkit").exists());
+    }
+
+    #[test]
+    fn an_absent_model_is_none() {
+        assert_eq!(shared_model("no/such/model.obj"), None);
+        assert!(shared_models("no/such/folder", &["obj"]).is_empty());
+    }
+
+    #[test]
+    fn models_are_found_by_extension() {
+        let Some(_) = shared_model("classics") else { return };
+        let found = shared_models("classics", &["obj"]);
+        assert!(found.len() >= 5 && found.is_sorted(), "{found:?}");
+        assert!(found.iter().all(|p| p.extension().is_some_and(|e| e == "obj")));
+    }
+}

@@ -1,0 +1,43 @@
+//! Besides the picture: depth, ids of surfaces, objects and materials, and normals, as pictures and as numbers.
+//!
+//! `cargo run --release -p vitral --example 05_channels [FOLDER]`
+
+use std::path::PathBuf;
+use vitral::{Channel, Error, Frame, Renderer, load_builtin, picture};
+
+fn main() -> Result<(), Error> {
+    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or("target/examples".to_owned()));
+    std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
+
+    let mut renderer = Renderer::new(load_builtin("scene0")?)?;
+    renderer.camera = renderer.world().cameras.first().copied();
+    for (channel, ..) in Channel::ALL {
+        channel.request(&mut renderer.settings.channels);
+    }
+    let frame = renderer.render()?.frame;
+
+    for (channel, name, description) in Channel::ALL {
+        println!("{name}: {description}");
+        for extension in ["png", "npy"] {
+            let path = folder.join(format!("05_channels_{name}.{extension}"));
+            match picture::save(&path, &frame, channel) {
+                Ok(()) => println!("  wrote {}", path.display()),
+                Err(error) if error.exit_code() == 4 => println!("  {error}"),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    // The planes can be read directly. What is in the middle of the picture?
+    let (x, y) = (frame.width / 2, frame.height / 2);
+    if let (Some(objects), Some(depths)) = (&frame.object, &frame.depth) {
+        match *objects.at(x, y) {
+            Frame::BACKGROUND => println!("in the middle: nothing"),
+            object => {
+                let instance = &renderer.world().instances[object as usize];
+                println!("in the middle: `{}`, depth {}", instance.mesh.name, depths.at(x, y));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,207 @@
+//! Files: read up to a limit, written whole or not at all, and a model's folder that the model cannot leave.
+
+use crate::Error;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use vitral_io::{ResolveError, Resolver};
+
+/// The files beside a model. Paths that are absolute, climb with `..`, or pass through a link that leaves the folder
+/// are refused, unless external files were allowed; so are devices, pipes, and files above the limit.
+#[derive(Clone, Debug)]
+pub struct FolderResolver {
+    folder: PathBuf,
+    allow_external: bool,
+    max_file_bytes: u64,
+}
+
+impl FolderResolver {
+    /// The files in `folder` and below, each at most `max_file_bytes` long.
+    pub fn new(folder: impl Into<PathBuf>, allow_external: bool, max_file_bytes: u64) -> Self {
+        let folder: PathBuf = folder.into();
+        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+        Self { folder, allow_external, max_file_bytes }
+    }
+
+    /// Where `path` is, if the model may go there.
+    fn locate(&self, path: &str) -> Result<PathBuf, ResolveError> {
+        let relative = Path::new(path);
+        // `C:/x` and `C:x` are absolute for the model's author, wherever this runs.
+        let drive = matches!(path.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic());
+        let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+        if !self.allow_external && (drive || path.starts_with('\\') || !plain) {
+            return Err(ResolveError::Outside);
+        }
+        let found = fs::canonicalize(self.folder.join(relative)).map_err(|e| told(&e))?;
+        if !self.allow_external {
+            let folder = fs::canonicalize(&self.folder).map_err(|e| told(&e))?;
+            if !found.starts_with(folder) {
+                return Err(ResolveError::Outside);
+            }
+        }
+        Ok(found)
+    }
+}
+
+fn told(error: &std::io::Error) -> ResolveError {
+    match error.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => ResolveError::NotFound,
+        _ => ResolveError::Other(error.to_string()),
+    }
+}
+
+impl Resolver for FolderResolver {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        let found = self.locate(path)?;
+        // Opening a pipe would wait for its writer.
+        if !fs::metadata(&found).map_err(|e| told(&e))?.is_file() {
+            return Err(ResolveError::Other("it is not a regular file".to_owned()));
+        }
+        let file = File::open(&found).map_err(|e| told(&e))?;
+        match read_up_to(file, self.max_file_bytes) {
+            Ok(Some(bytes)) => Ok(bytes),
+            Ok(None) => Err(ResolveError::Other(format!("it has more than {} bytes", self.max_file_bytes))),
+            Err(e) => Err(told(&e)),
+        }
+    }
+}
+
+/// Everything that `file` holds; `None` if that is more than `limit` bytes.
+fn read_up_to(file: File, limit: u64) -> std::io::Result<Option<Vec<u8>>> {
+    // Devices claim a length of 0 and never end: the limit holds for what is read, not for what is claimed.
+    let claimed = file.metadata()?.len();
+    if claimed > limit {
+        return Ok(None);
+    }
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(claimed as usize + 1).map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
+
+/// Reads a file that the user named; `-` is standard input.
+///
+/// # Errors
+/// [`Error::Read`]; [`Error::TooLarge`] for one with more than `limit` bytes.
+pub fn read(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, Error> {
+    let path = path.as_ref();
+    if path.as_os_str() == "-" {
+        return read_standard_input(limit);
+    }
+    let failed = |source| Error::Read { path: path.to_owned(), source };
+    let file = File::open(path).map_err(failed)?;
+    if file.metadata().map_err(failed)?.is_dir() {
+        return Err(failed(std::io::Error::from(ErrorKind::IsADirectory)));
+    }
+    read_up_to(file, limit).map_err(failed)?.ok_or_else(|| Error::TooLarge { path: path.to_owned(), limit })
+}
+
+/// Reads standard input to its end.
+fn read_standard_input(limit: u64) -> Result<Vec<u8>, Error> {
+    let path = || PathBuf::from("standard input");
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|source| Error::Read { path: path(), source })?;
+    if bytes.len() as u64 > limit { Err(Error::TooLarge { path: path(), limit }) } else { Ok(bytes) }
+}
+
+/// Writes a file so that it appears complete or not at all: into a new file beside it, which then takes its name.
+/// What is no regular file (a pipe, `/dev/stdout`) is written to directly. A link keeps pointing where it did.
+///
+/// # Errors
+/// [`Error::Write`]; nothing is left behind then.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let failed = |source| Error::Write { path: path.to_owned(), source };
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    match fs::metadata(&target) {
+        Ok(old) if old.is_dir() => return Err(failed(std::io::Error::from(ErrorKind::IsADirectory))),
+        Ok(old) if !old.is_file() => return fs::write(&target, bytes).map_err(failed),
+        _ => {}
+    }
+    let (temporary, mut file) = new_file_beside(&target).map_err(failed)?;
+    let written = file.write_all(bytes);
+    drop(file);
+    written.and_then(|()| fs::rename(&temporary, &target)).map_err(|source| {
+        // The first failure is the one to tell; that this one fails too says nothing new.
+        let _ = fs::remove_file(&temporary);
+        failed(source)
+    })
+}
+
+/// Makes a file in the same folder that nobody else has.
+fn new_file_beside(target: &Path) -> std::io::Result<(PathBuf, File)> {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let name = target.file_name().ok_or_else(|| std::io::Error::from(ErrorKind::InvalidInput))?.to_string_lossy();
+    loop {
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let temporary = target.with_file_name(format!(".{name}.{}-{number}.part", std::process::id()));
+        match File::create_new(&temporary) {
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+            made => return made.map(|file| (temporary, file)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A new folder for one test.
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("vitral-files-{name}-{}", std::process::id()));
+        fs::create_dir_all(folder.join("model/textures")).unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_model_cannot_leave_its_folder() {
+        let folder = folder("leave");
+        fs::write(folder.join("secret.png"), b"secret").unwrap();
+        fs::write(folder.join("model/textures/a b.png"), b"texture").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(folder.join("secret.png"), folder.join("model/link.png")).unwrap();
+        let closed = FolderResolver::new(folder.join("model"), false, 100);
+        assert_eq!(closed.read("textures/a b.png").unwrap(), b"texture");
+        assert_eq!(closed.read("./textures/a b.png").unwrap(), b"texture");
+        assert_eq!(closed.read("nothing.png"), Err(ResolveError::NotFound));
+        let absolute = folder.join("secret.png").to_string_lossy().into_owned();
+        for path in ["../secret.png", "textures/../../secret.png", &absolute, "C:/secret.png", "\\\\host\\x"] {
+            assert_eq!(closed.read(path), Err(ResolveError::Outside), "{path}");
+        }
+        #[cfg(unix)]
+        assert_eq!(closed.read("link.png"), Err(ResolveError::Outside));
+        let open = FolderResolver::new(folder.join("model"), true, 100);
+        assert_eq!(open.read("../secret.png").unwrap(), b"secret");
+        assert_eq!(open.read(&absolute).unwrap(), b"secret");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn limits_hold_for_files_and_devices() {
+        let folder = folder("limits");
+        fs::write(folder.join("model/a"), b"12345").unwrap();
+        assert!(matches!(read(folder.join("model/a"), 4), Err(Error::TooLarge { limit: 4, .. })));
+        assert_eq!(read(folder.join("model/a"), 5).unwrap(), b"12345");
+        assert!(matches!(read(&folder, 5), Err(Error::Read { .. })));
+        #[cfg(unix)]
+        assert!(matches!(read("/dev/zero", 1000), Err(Error::TooLarge { .. })));
+        let closed = FolderResolver::new(folder.join("model"), false, 4);
+        assert!(closed.read("a").unwrap_err().to_string().contains("more than 4"));
+        assert!(closed.read("textures").unwrap_err().to_string().contains("regular"));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn writing_replaces_the_whole_file_and_leaves_nothing_beside() {
+        let folder = folder("write");
+        let path = folder.join("a.png");
+        write(&path, b"first").unwrap();
+        write(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert!(matches!(write(&folder.join("none/a.png"), b"x"), Err(Error::Write { .. })));
+        assert!(matches!(write(&folder, b"x"), Err(Error::Write { .. })));
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "the folder `model` and the picture");
+        fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -1,0 +1,388 @@
+//! What is in a scene: sizes, materials, lights, cameras, and whether its surfaces are closed.
+
+use serde::Serialize;
+use std::fmt;
+use vitral_exec::Workers;
+use vitral_light::{AlphaMode, LightKind, Material, Reflectance};
+use vitral_math::Aabb;
+use vitral_scene::{Mesh, Projection, Scene, Topology, World};
+
+/// A scene in numbers. Meshes are counted once, however many instances they have, except where it says otherwise.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Info {
+    /// Nodes of the scene graph.
+    pub nodes: usize,
+    /// Meshes at places.
+    pub instances: usize,
+    /// Faces as in the file, of all instances.
+    pub faces: u64,
+    /// Triangles of all instances.
+    pub triangles: u64,
+    /// Vertices of all meshes.
+    pub vertices: u64,
+    /// Free line segments of all meshes.
+    pub lines: u64,
+    /// Free points of all meshes.
+    pub points: u64,
+    /// The box round everything, world space; none for an empty scene.
+    pub bounds: Option<Bounds>,
+    /// Every mesh with triangles is closed, and there is one.
+    pub closed: bool,
+    /// The meshes.
+    pub meshes: Vec<MeshInfo>,
+    /// The materials.
+    pub materials: Vec<MaterialInfo>,
+    /// The textures.
+    pub textures: Vec<TextureInfo>,
+    /// The lights, world space.
+    pub lights: Vec<LightInfo>,
+    /// The cameras.
+    pub cameras: Vec<CameraInfo>,
+    /// Global ambient light.
+    pub ambient: [f32; 3],
+    /// What was odd in the files.
+    pub warnings: Vec<String>,
+}
+
+/// A box.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Bounds {
+    /// The corner with the smallest coordinates.
+    pub min: [f64; 3],
+    /// The corner with the largest coordinates.
+    pub max: [f64; 3],
+}
+
+impl Bounds {
+    fn of(bounds: &Aabb) -> Option<Self> {
+        (!bounds.is_empty()).then(|| Self { min: bounds.min.to_array(), max: bounds.max.to_array() })
+    }
+}
+
+/// A mesh in numbers. Edges are counted after equal positions are welded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MeshInfo {
+    /// Its name; may be empty.
+    pub name: String,
+    /// How often it is shown.
+    pub instances: usize,
+    /// Faces as in the file.
+    pub faces: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Vertices as in the file.
+    pub vertices: usize,
+    /// Vertices at different places that triangles use.
+    pub distinct_vertices: usize,
+    /// Free line segments.
+    pub lines: usize,
+    /// Free points.
+    pub points: usize,
+    /// Runs of faces with one material.
+    pub parts: usize,
+    /// It has normals (of the file, or made after loading).
+    pub normals: bool,
+    /// Sets of texture coordinates.
+    pub texture_coordinate_sets: usize,
+    /// It has vertex colours.
+    pub colors: bool,
+    /// The box round it, model space.
+    pub bounds: Option<Bounds>,
+    /// Every edge has exactly two triangles.
+    pub closed: bool,
+    /// Neighbours agree about which side is outside.
+    pub consistent_winding: bool,
+    /// Edges of triangles.
+    pub edges: usize,
+    /// Edges with one triangle.
+    pub boundary_edges: usize,
+    /// Edges with more than two triangles.
+    pub non_manifold_edges: usize,
+    /// Edges at which neighbours disagree about which side is outside.
+    pub inconsistent_edges: usize,
+    /// Triangles without area.
+    pub degenerate_triangles: usize,
+    /// Triangles that repeat another one.
+    pub duplicate_triangles: usize,
+    /// Sets of connected triangles.
+    pub bodies: usize,
+    /// Vertices with a coordinate that is NaN or infinite: what uses them is not drawn.
+    pub non_finite_vertices: usize,
+}
+
+impl MeshInfo {
+    fn of(mesh: &Mesh, instances: usize, workers: &Workers) -> Self {
+        let topology = Topology::of(mesh, workers);
+        Self {
+            name: mesh.name.clone(),
+            instances,
+            faces: mesh.face_count(),
+            triangles: mesh.triangles.len(),
+            vertices: mesh.positions.len(),
+            distinct_vertices: topology.vertices,
+            lines: mesh.lines.len(),
+            points: mesh.points.len(),
+            parts: mesh.parts.len(),
+            normals: mesh.normals.is_some(),
+            texture_coordinate_sets: mesh.uvs.len(),
+            colors: mesh.colors.is_some(),
+            bounds: Bounds::of(&mesh.bounds()),
+            closed: topology.closed,
+            consistent_winding: topology.is_consistent(),
+            edges: topology.edges,
+            boundary_edges: topology.boundary_edges,
+            non_manifold_edges: topology.non_manifold_edges,
+            inconsistent_edges: topology.inconsistent_edges,
+            degenerate_triangles: topology.degenerate_triangles,
+            duplicate_triangles: topology.duplicate_triangles,
+            bodies: topology.components,
+            non_finite_vertices: mesh.positions.iter().filter(|p| p.iter().any(|c| !c.is_finite())).count(),
+        }
+    }
+}
+
+/// A material in a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MaterialInfo {
+    /// Its name; may be empty.
+    pub name: String,
+    /// `phong` or `metallic-roughness`: the form of its coefficients.
+    pub form: &'static str,
+    /// Diffuse or base colour.
+    pub color: [f32; 3],
+    /// 1 opaque, 0 invisible.
+    pub opacity: f32,
+    /// `opaque`, `mask` or `blend`.
+    pub alpha_mode: &'static str,
+    /// Number of textures.
+    pub textures: usize,
+}
+
+impl MaterialInfo {
+    fn of(material: &Material) -> Self {
+        let (form, color) = match material.reflectance {
+            Reflectance::Phong { kd, .. } => ("phong", kd),
+            Reflectance::MetallicRoughness { base_color, .. } => ("metallic-roughness", base_color),
+        };
+        Self {
+            name: material.name.clone(),
+            form,
+            color,
+            opacity: material.opacity,
+            alpha_mode: match material.alpha_mode {
+                AlphaMode::Opaque => "opaque",
+                AlphaMode::Mask { .. } => "mask",
+                AlphaMode::Blend => "blend",
+            },
+            textures: material.clone().textures_mut().count(),
+        }
+    }
+}
+
+/// A texture in a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct TextureInfo {
+    /// Where it came from.
+    pub name: String,
+    /// Texels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A light in a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct LightInfo {
+    /// Its name; may be empty.
+    pub name: String,
+    /// `ambient`, `directional`, `point`, `spot` or `area`.
+    pub kind: &'static str,
+    /// Diffuse intensity.
+    pub diffuse: [f32; 3],
+    /// Switched on.
+    pub enabled: bool,
+}
+
+/// A camera in a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct CameraInfo {
+    /// `perspective` or `parallel`.
+    pub projection: &'static str,
+    /// Where it is, world space.
+    pub position: [f64; 3],
+    /// Where it looks, world space.
+    pub focal_point: [f64; 3],
+}
+
+/// Counts what is in a scene.
+///
+/// # Errors
+/// A scene graph that is not sound.
+pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
+    let world = World::new(scene).map_err(vitral_render::Error::from)?;
+    let shown = |index: usize| world.instances.iter().filter(|i| i.mesh_index as usize == index).count();
+    let mesh = |(index, mesh): (usize, &std::sync::Arc<Mesh>)| MeshInfo::of(mesh, shown(index), workers);
+    let meshes: Vec<MeshInfo> = scene.meshes.iter().enumerate().map(mesh).collect();
+    let solid = |m: &&MeshInfo| m.triangles > 0;
+    let sum = |count: fn(&MeshInfo) -> usize| meshes.iter().map(|m| count(m) as u64).sum();
+    Ok(Info {
+        nodes: scene.nodes.len(),
+        instances: world.instances.len(),
+        faces: u64::from(world.surface_count),
+        triangles: u64::from(world.facet_count),
+        vertices: sum(|m| m.vertices),
+        lines: sum(|m| m.lines),
+        points: sum(|m| m.points),
+        bounds: Bounds::of(&world.bounds),
+        closed: meshes.iter().any(|m| m.triangles > 0) && meshes.iter().filter(solid).all(|m| m.closed),
+        materials: scene.materials.iter().map(MaterialInfo::of).collect(),
+        textures: scene.textures.iter().map(|t| texture_info(t)).collect(),
+        lights: world.lights.iter().map(light_info).collect(),
+        cameras: world.cameras.iter().map(camera_info).collect(),
+        ambient: scene.ambient,
+        warnings: warnings(scene, &meshes),
+        meshes,
+    })
+}
+
+fn texture_info(texture: &vitral_frame::Texture) -> TextureInfo {
+    let (width, height) = texture.levels.first().map_or((0, 0), |l| (l.width(), l.height()));
+    TextureInfo { name: texture.name.clone(), width, height }
+}
+
+fn light_info(light: &vitral_light::Light) -> LightInfo {
+    let kind = match light.kind {
+        LightKind::Ambient => "ambient",
+        LightKind::Directional { .. } => "directional",
+        LightKind::Point { .. } => "point",
+        LightKind::Spot { .. } => "spot",
+        LightKind::Area { .. } => "area",
+    };
+    LightInfo { name: light.name.clone(), kind, diffuse: light.diffuse, enabled: light.enabled }
+}
+
+fn camera_info(camera: &vitral_scene::Camera) -> CameraInfo {
+    let projection = match camera.projection {
+        Projection::Perspective { .. } => "perspective",
+        Projection::Parallel { .. } => "parallel",
+    };
+    let (position, focal_point) = (camera.position.to_array(), camera.focal_point.to_array());
+    CameraInfo { projection, position, focal_point }
+}
+
+/// The loader's warnings, and what the numbers say.
+fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
+    let mut warnings = scene.warnings.clone();
+    for mesh in meshes {
+        let mut warn = |count: usize, what: &str| {
+            if count > 0 {
+                warnings.push(format!("mesh `{}`: {count} {what}", mesh.name));
+            }
+        };
+        warn(mesh.degenerate_triangles, "triangles without area");
+        warn(mesh.duplicate_triangles, "triangles that repeat another one");
+        warn(mesh.non_manifold_edges, "edges with more than two triangles");
+        warn(mesh.inconsistent_edges, "edges at which neighbours disagree about the outside");
+        warn(mesh.boundary_edges, "boundary edges: it is open, so its back faces are drawn too");
+    }
+    warnings
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} triangles in {} faces, {} vertices", self.triangles, self.faces, self.vertices)?;
+        if self.lines + self.points > 0 {
+            writeln!(f, "{} lines, {} points", self.lines, self.points)?;
+        }
+        writeln!(f, "{} meshes, {} instances, {} nodes", self.meshes.len(), self.instances, self.nodes)?;
+        if let Some(bounds) = &self.bounds {
+            let size = [0, 1, 2].map(|k| bounds.max[k] - bounds.min[k]);
+            writeln!(f, "bounds {} to {}, size {}", triple(bounds.min), triple(bounds.max), triple(size))?;
+        }
+        writeln!(f, "{}", if self.closed { "closed" } else { "not closed" })?;
+        for mesh in &self.meshes {
+            write_mesh(f, mesh)?;
+        }
+        for m in &self.materials {
+            let color = triple(m.color.map(f64::from));
+            write!(f, "material {}: {}, colour {color}", quoted(&m.name), m.form)?;
+            if m.alpha_mode != "opaque" {
+                write!(f, ", {} with opacity {}", m.alpha_mode, m.opacity)?;
+            }
+            writeln!(f, "{}", if m.textures > 0 { format!(", {} textures", m.textures) } else { String::new() })?;
+        }
+        for t in &self.textures {
+            writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
+        }
+        for l in &self.lights {
+            let off = if l.enabled { "" } else { ", off" };
+            writeln!(f, "light {}: {}, {}{off}", quoted(&l.name), l.kind, triple(l.diffuse.map(f64::from)))?;
+        }
+        for c in &self.cameras {
+            writeln!(f, "camera: {}, at {} looking at {}", c.projection, triple(c.position), triple(c.focal_point))?;
+        }
+        self.warnings.iter().try_for_each(|w| writeln!(f, "warning: {w}"))
+    }
+}
+
+fn write_mesh(f: &mut fmt::Formatter<'_>, m: &MeshInfo) -> fmt::Result {
+    write!(f, "mesh {}: {} triangles in {} faces, {} vertices", quoted(&m.name), m.triangles, m.faces, m.vertices)?;
+    if m.instances != 1 {
+        write!(f, ", shown {} times", m.instances)?;
+    }
+    if m.triangles > 0 {
+        let closed = if m.closed { "closed".to_owned() } else { format!("{} boundary edges", m.boundary_edges) };
+        write!(f, "; {closed}, {} {}", m.bodies, if m.bodies == 1 { "body" } else { "bodies" })?;
+    }
+    if m.non_finite_vertices > 0 {
+        write!(f, ", {} vertices with a NaN or infinite coordinate", m.non_finite_vertices)?;
+    }
+    writeln!(f)
+}
+
+fn quoted(name: &str) -> String {
+    if name.is_empty() { "without name".to_owned() } else { format!("`{name}`") }
+}
+
+/// Three numbers with four significant digits or so.
+fn triple(v: [f64; 3]) -> String {
+    let short = |x: f64| if x == 0.0 || (1e-3..1e6).contains(&x.abs()) { format!("{}", (x * 1e4).round() / 1e4) } else { format!("{x:.3e}") };
+    format!("({}, {}, {})", short(v[0]), short(v[1]), short(v[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_builtin;
+
+    #[test]
+    fn eight_cubes_are_counted() {
+        let info = info(&load_builtin("cubs").unwrap(), &Workers::single()).unwrap();
+        assert_eq!((info.meshes.len(), info.faces, info.triangles, info.closed), (8, 48, 96, true));
+        assert_eq!((info.lights.len(), info.cameras.len(), info.materials.len()), (2, 1, 8));
+        let cube = &info.meshes[0];
+        assert_eq!((cube.edges, cube.boundary_edges, cube.bodies, cube.consistent_winding), (18, 0, 1, true));
+        assert!(info.warnings.is_empty());
+        let text = info.to_string();
+        assert!(text.starts_with("96 triangles in 48 faces") && text.contains("; closed, 1 body"), "{text}");
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!((&json["meshes"][0]["boundary-edges"], &json["bounds"]["min"][0]), (&0.into(), &(-1.2).into()));
+    }
+
+    #[test]
+    fn an_open_mesh_and_bad_vertices_are_told() {
+        let mut mesh = vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1);
+        mesh.positions[0][1] = f32::NAN;
+        let info = info(&Scene::from_mesh(mesh), &Workers::single()).unwrap();
+        assert!(!info.closed && info.meshes[0].non_finite_vertices == 1);
+        assert!(info.to_string().contains("1 vertices with a NaN") && info.warnings[0].contains("open"));
+        assert!(super::info(&Scene::default(), &Workers::single()).unwrap().bounds.is_none());
+    }
+}

@@ -1,0 +1,170 @@
+//! From a path to a scene: read, understand, and make the normals that the file lacks.
+
+use crate::files::{self, FolderResolver};
+use crate::{Axis, Error, Scene, Workers};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+use vitral_io::{NoFiles, Resolver};
+use vitral_scene::{Mesh, builtin, lab, normals};
+
+/// Meshes with fewer triangles get their normals side by side, larger ones share the threads one after the other.
+const SMALL_MESH: usize = 1 << 16;
+
+/// How a model is read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct LoadOptions {
+    /// The model may name files outside its folder.
+    pub allow_external: bool,
+    /// Where normals are made: faces that differ by more than this angle have an edge between them, radians.
+    pub crease_angle: f64,
+    /// Make the normals that the file lacks; otherwise such meshes are shaded facet by facet.
+    pub make_normals: bool,
+    /// Which normals are used.
+    pub normals: Normals,
+    /// Longest file that is read, the model's own and those that it names, in bytes.
+    pub max_file_bytes: u64,
+}
+
+impl Default for LoadOptions {
+    /// Files of the model's folder up to 4 GiB; a crease angle of 40 degrees, which keeps the rims of a 9-sided
+    /// cylinder smooth and the edges of an octagonal prism sharp.
+    fn default() -> Self {
+        Self {
+            allow_external: false,
+            crease_angle: 40.0f64.to_radians(),
+            make_normals: true,
+            normals: Normals::File,
+            max_file_bytes: 4 << 30,
+        }
+    }
+}
+
+/// Which normals are used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Normals {
+    /// The file's, or made ones.
+    #[default]
+    File,
+    /// None are given: `(0, 0, 1)` in model space for every vertex, as OpenGL does without glNormal (exercise 5.2).
+    None,
+}
+
+/// Reads a model: a file, `builtin:NAME`, or `-` for standard input (which can name no other files).
+///
+/// # Errors
+/// A file that is missing, malformed, not of a known format or above the limit.
+pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
+    let path = path.as_ref();
+    let name = path.to_string_lossy();
+    if let Some(builtin) = name.strip_prefix("builtin:") {
+        let mut scene = load_builtin(builtin)?;
+        finish(&mut scene, options, workers);
+        return Ok(scene);
+    }
+    let bytes = files::read(path, options.max_file_bytes)?;
+    if name == "-" {
+        return load_bytes(&bytes, "standard input", &NoFiles, options, workers);
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+    load_bytes(&bytes, &name, &resolver, options, workers)
+}
+
+/// Reads a model from memory. `name` is for messages, and its extension decides where the content leaves a doubt;
+/// `resolver` finds the files that the model names.
+///
+/// # Errors
+/// Content that is malformed or not of a known format.
+pub fn load_bytes(
+    bytes: &[u8],
+    name: &str,
+    resolver: &dyn Resolver,
+    options: &LoadOptions,
+    workers: &Workers,
+) -> Result<Scene, Error> {
+    let mut scene = vitral_io::load(bytes, name, resolver, workers)?;
+    finish(&mut scene, options, workers);
+    Ok(scene)
+}
+
+/// A scene that needs no file.
+///
+/// # Errors
+/// [`Error::Read`] for a name that no scene has; the hint lists the names.
+pub fn load_builtin(name: &str) -> Result<Scene, Error> {
+    let missing = || Error::Read { path: format!("builtin:{name}").into(), source: std::io::ErrorKind::NotFound.into() };
+    builtin::scene(name).ok_or_else(missing)
+}
+
+/// The upward axis that models of this name usually have: +Z for STL, +Y for all others.
+pub fn default_up(path: impl AsRef<Path>) -> Axis {
+    let stl = path.as_ref().extension().is_some_and(|e| e.eq_ignore_ascii_case("stl"));
+    if stl { Axis::PlusZ } else { Axis::PlusY }
+}
+
+/// Sees to the normals.
+fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
+    match options.normals {
+        Normals::None => lab::exercise_5_2(scene),
+        Normals::File if options.make_normals => make_normals(scene, options.crease_angle, workers),
+        Normals::File => {}
+    }
+}
+
+/// Makes missing normals, small meshes in parallel, large ones in parallel within.
+fn make_normals(scene: &mut Scene, crease_angle: f64, workers: &Workers) {
+    let (large, small): (Vec<_>, Vec<_>) =
+        scene.meshes.iter_mut().filter(|m| lacks_normals(m)).partition(|m| m.triangles.len() >= SMALL_MESH);
+    for mesh in large {
+        normals::generate(Arc::make_mut(mesh), crease_angle, workers);
+    }
+    workers.for_each(small, |mesh| normals::generate(Arc::make_mut(mesh), crease_angle, &Workers::single()));
+}
+
+/// Whether a normal is missing, so that sound meshes that are shared are not copied.
+fn lacks_normals(mesh: &Mesh) -> bool {
+    let missing = |n: &[f32; 3]| *n == [0.0; 3] || n.iter().any(|c| !c.is_finite());
+    !mesh.triangles.is_empty() && mesh.normals.as_ref().is_none_or(|n| n.values.iter().any(missing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+    fn square(options: &LoadOptions) -> Scene {
+        load_bytes(SQUARE, "square.obj", &NoFiles, options, &Workers::single()).unwrap()
+    }
+
+    #[test]
+    fn missing_normals_are_made_if_wanted() {
+        let made = square(&LoadOptions::default());
+        assert!(made.meshes[0].normals.as_ref().unwrap().values.iter().all(|n| *n == [0.0, 0.0, 1.0]));
+        let plain = square(&LoadOptions { make_normals: false, ..LoadOptions::default() });
+        assert!(plain.meshes[0].normals.is_none());
+    }
+
+    #[test]
+    fn l22_no_normals_means_the_current_normal() {
+        let mut cube = load("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() }, &Workers::single());
+        let mesh = cube.as_mut().unwrap().meshes.swap_remove(0);
+        assert_eq!(mesh.normals.as_ref().unwrap().at(7, &mesh.triangles), [[0.0, 0.0, 1.0]; 3]);
+    }
+
+    #[test]
+    fn names_that_are_not_there() {
+        let error = load("builtin:nothing", &LoadOptions::default(), &Workers::single()).unwrap_err();
+        assert_eq!((error.exit_code(), error.hint().unwrap().contains("teapot")), (3, true));
+        let error = load("no/such/file.obj", &LoadOptions::default(), &Workers::single()).unwrap_err();
+        assert!(error.to_string().starts_with("no/such/file.obj: ") && error.exit_code() == 3);
+    }
+
+    #[test]
+    fn stl_files_stand_on_z() {
+        assert_eq!([default_up("a/b.STL"), default_up("b.obj"), default_up("builtin:cubs")], [Axis::PlusZ, Axis::PlusY, Axis::PlusY]);
+    }
+}

@@ -1,0 +1,305 @@
+//! Changing one property of one material by name: `glass.ior=1.5`.
+
+use crate::Error;
+use crate::names::list;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use vitral_light::{AlphaMode, Material, Reflectance, Transmission};
+use vitral_math::color::linear_from_srgb;
+use vitral_scene::Scene;
+
+/// One change of a material.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct MaterialOverride {
+    /// Name of the material; `*`: all; `default`: what has none.
+    pub material: String,
+    /// Name of the property.
+    pub property: String,
+    /// The value as text.
+    pub value: String,
+}
+
+impl MaterialOverride {
+    /// Takes `NAME.PROPERTY=VALUE` apart; the name may have dots.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a text without dot or equals sign.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let parts = text.split_once('=').and_then(|(left, value)| Some((left.rsplit_once('.')?, value)));
+        let ((material, property), value) = parts.ok_or_else(|| {
+            Error::usage(format!("`{text}` changes no material"), "NAME.PROPERTY=VALUE is required, like glass.ior=1.5")
+        })?;
+        Ok(Self { material: material.into(), property: property.into(), value: value.trim().into() })
+    }
+
+    /// Changes the scene.
+    ///
+    /// # Errors
+    /// As [`override_material`].
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), Error> {
+        override_material(scene, &self.material, &self.property, &self.value)
+    }
+}
+
+/// Sets a property from its text.
+type Setter = fn(&mut Material, &str) -> Result<(), Failure>;
+
+/// Why a setter refused.
+enum Failure {
+    /// The text is no such value; what would be one.
+    Value(&'static str),
+    /// The material is described in the other form.
+    Form,
+}
+
+/// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
+const PROPERTIES: [(&str, &str, Setter); 18] = [
+    ("color", "diffuse and ambient, or base colour", set_color),
+    ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
+    ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
+    ("ks", "specular coefficient", |m, v| phong(m, |_, _, ks, _| ks, v)),
+    ("shininess", "specular exponent", set_shininess),
+    ("base-color", "albedo, or a metal's specular colour", set_base_color),
+    ("metallic", "0 dielectric, 1 metal", |m, v| microfacet(m, |metallic, _| metallic, v)),
+    ("roughness", "0 mirror, 1 rough", |m, v| microfacet(m, |_, roughness| roughness, v)),
+    ("emission", "light sent out", |m, v| put(&mut m.emission, color(v))),
+    ("opacity", "1 opaque, 0 invisible", |m, v| set_opacity(m, unit(v)?)),
+    ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
+    ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
+    ("transmission", "transparent, translucent", set_transmission),
+    ("ior", "index of refraction, 1 or more", set_ior),
+    ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
+    ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
+    ("normal-scale", "strength of the normal texture", |m, v| put(&mut m.normal_scale, number(v))),
+    ("textures", "false drops them", set_textures),
+];
+
+/// Sets `property` of the materials called `name` (all with `*`; `default` stands for surfaces without material) to
+/// what the text `value` says.
+///
+/// # Errors
+/// [`Error::Usage`] for a name, property or value that is not there; the hint lists what there is.
+pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &str) -> Result<(), Error> {
+    let Some((_, meaning, set)) = PROPERTIES.iter().find(|(p, ..)| *p == property) else {
+        let hint = format!("there are {}", list(PROPERTIES.iter().map(|(p, ..)| *p)));
+        return Err(Error::usage(format!("materials have no property `{property}`"), hint));
+    };
+    let found = find(scene, name)?;
+    let mut changed = 0;
+    for &index in &found {
+        let material = &mut scene.materials[index];
+        match set(material, value) {
+            Ok(()) => changed += 1,
+            Err(Failure::Value(required)) => {
+                let what = format!("`{name}.{property}={value}`: {required} is required");
+                return Err(Error::usage(what, format!("{property}: {meaning}")));
+            }
+            // Of several materials, those are meant that have the property.
+            Err(Failure::Form) => {}
+        }
+    }
+    if changed == 0 {
+        let hint = match scene.materials[found[0]].reflectance {
+            Reflectance::Phong { .. } => "it has color, ka, kd, ks, shininess",
+            Reflectance::MetallicRoughness { .. } => "it has color, base-color, metallic, roughness",
+        };
+        return Err(Error::usage(format!("material `{name}` has no `{property}`"), hint));
+    }
+    Ok(())
+}
+
+/// The materials of this name; at least one.
+fn find(scene: &mut Scene, name: &str) -> Result<Vec<usize>, Error> {
+    let found: Vec<usize> = (0..scene.materials.len()).filter(|&i| name == "*" || scene.materials[i].name == name).collect();
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let bare = scene.meshes.iter().any(|m| m.parts.iter().any(|p| p.material.is_none()));
+    if bare && matches!(name, "default" | "*") {
+        // Give surfaces without material one that can be changed.
+        let index = scene.add_material(Material { name: "default".to_owned(), ..Material::default() });
+        for mesh in scene.meshes.iter_mut().filter(|m| m.parts.iter().any(|p| p.material.is_none())) {
+            let mesh = Arc::make_mut(mesh);
+            mesh.parts.iter_mut().for_each(|p| p.material = p.material.or(Some(index)));
+        }
+        return Ok(vec![index as usize]);
+    }
+    let mut names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).filter(|n| !n.is_empty()).collect();
+    names.extend(bare.then_some("default"));
+    let hint = if names.is_empty() { "the scene has no named materials".to_owned() } else { format!("there are {}", list(names)) };
+    Err(Error::usage(format!("there is no material `{name}`"), hint))
+}
+
+fn put<T>(place: &mut T, value: Result<T, Failure>) -> Result<(), Failure> {
+    *place = value?;
+    Ok(())
+}
+
+fn number(text: &str) -> Result<f32, Failure> {
+    text.trim().parse().ok().filter(|n: &f32| n.is_finite()).ok_or(Failure::Value("a number"))
+}
+
+fn unit(text: &str) -> Result<f32, Failure> {
+    number(text).ok().filter(|n| (0.0..=1.0).contains(n)).ok_or(Failure::Value("a number from 0 to 1"))
+}
+
+fn boolean(text: &str) -> Result<bool, Failure> {
+    match text {
+        "true" | "on" | "yes" | "1" => Ok(true),
+        "false" | "off" | "no" | "0" => Ok(false),
+        _ => Err(Failure::Value("true or false")),
+    }
+}
+
+/// One number for all channels, three numbers, or `#rrggbb`.
+fn color(text: &str) -> Result<[f32; 3], Failure> {
+    const REQUIRED: Failure = Failure::Value("a colour, r,g,b from 0 to 1 or #rrggbb,");
+    if let Some(hex) = text.strip_prefix('#') {
+        let value = u32::from_str_radix(hex, 16).ok().filter(|_| hex.len() == 6).ok_or(REQUIRED)?;
+        return Ok([16, 8, 0].map(|shift| linear_from_srgb((value >> shift & 255) as f32 / 255.0)));
+    }
+    let numbers: Result<Vec<f32>, Failure> = text.split(',').map(number).collect();
+    match numbers.map_err(|_| REQUIRED)?[..] {
+        [grey] if grey >= 0.0 => Ok([grey; 3]),
+        [r, g, b] if r >= 0.0 && g >= 0.0 && b >= 0.0 => Ok([r, g, b]),
+        _ => Err(REQUIRED),
+    }
+}
+
+/// The coefficients of the empirical form: ka, kd, ks, shininess.
+type Chosen<'a> = &'a mut [f32; 3];
+
+fn phong(
+    material: &mut Material,
+    choose: for<'a> fn(Chosen<'a>, Chosen<'a>, Chosen<'a>, &'a mut f32) -> Chosen<'a>,
+    value: &str,
+) -> Result<(), Failure> {
+    match &mut material.reflectance {
+        Reflectance::Phong { ka, kd, ks, shininess } => put(choose(ka, kd, ks, shininess), color(value)),
+        Reflectance::MetallicRoughness { .. } => Err(Failure::Form),
+    }
+}
+
+fn set_shininess(material: &mut Material, value: &str) -> Result<(), Failure> {
+    let n = number(value).ok().filter(|n| *n >= 0.0).ok_or(Failure::Value("a number from 0 up"))?;
+    match &mut material.reflectance {
+        Reflectance::Phong { shininess, .. } => put(shininess, Ok(n)),
+        Reflectance::MetallicRoughness { .. } => Err(Failure::Form),
+    }
+}
+
+fn microfacet(
+    material: &mut Material,
+    choose: for<'a> fn(&'a mut f32, &'a mut f32) -> &'a mut f32,
+    value: &str,
+) -> Result<(), Failure> {
+    match &mut material.reflectance {
+        Reflectance::MetallicRoughness { metallic, roughness, .. } => put(choose(metallic, roughness), unit(value)),
+        Reflectance::Phong { .. } => Err(Failure::Form),
+    }
+}
+
+fn set_base_color(material: &mut Material, value: &str) -> Result<(), Failure> {
+    match &mut material.reflectance {
+        Reflectance::MetallicRoughness { base_color, .. } => put(base_color, color(value)),
+        Reflectance::Phong { .. } => Err(Failure::Form),
+    }
+}
+
+fn set_color(material: &mut Material, value: &str) -> Result<(), Failure> {
+    let wanted = color(value)?;
+    match &mut material.reflectance {
+        Reflectance::Phong { ka, kd, .. } => [*ka, *kd] = [wanted; 2],
+        Reflectance::MetallicRoughness { base_color, .. } => *base_color = wanted,
+    }
+    Ok(())
+}
+
+/// An opaque material becomes a blended one, so that its opacity shows.
+fn set_opacity(material: &mut Material, opacity: f32) -> Result<(), Failure> {
+    material.opacity = opacity;
+    if opacity < 1.0 && material.alpha_mode == AlphaMode::Opaque {
+        material.alpha_mode = AlphaMode::Blend;
+    }
+    Ok(())
+}
+
+fn set_alpha_mode(material: &mut Material, value: &str) -> Result<(), Failure> {
+    material.alpha_mode = match value {
+        "opaque" => AlphaMode::Opaque,
+        "blend" => AlphaMode::Blend,
+        "mask" => AlphaMode::Mask { cutoff: 0.5 },
+        _ => return Err(Failure::Value("opaque, mask or blend")),
+    };
+    Ok(())
+}
+
+fn set_transmission(material: &mut Material, value: &str) -> Result<(), Failure> {
+    material.transmission = match value {
+        "transparent" => Transmission::Transparent,
+        "translucent" => Transmission::Translucent,
+        _ => return Err(Failure::Value("transparent or translucent")),
+    };
+    Ok(())
+}
+
+fn set_ior(material: &mut Material, value: &str) -> Result<(), Failure> {
+    let ior = number(value).ok().filter(|n| *n >= 1.0).ok_or(Failure::Value("a number from 1 up"))?;
+    put(&mut material.ior, Ok(ior))
+}
+
+fn set_textures(material: &mut Material, value: &str) -> Result<(), Failure> {
+    if boolean(value)? {
+        return Err(Failure::Value("false"));
+    }
+    let bare = Material { base_texture: None, specular_texture: None, emission_texture: None, ..material.clone() };
+    *material = Material { opacity_texture: None, metallic_roughness_texture: None, normal_texture: None, ..bare };
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_builtin;
+
+    fn change(scene: &mut Scene, text: &str) -> Result<(), Error> {
+        MaterialOverride::parse(text)?.apply(scene)
+    }
+
+    #[test]
+    fn properties_are_set_by_name() {
+        let mut scene = load_builtin("sphere").unwrap();
+        for text in ["ball.ior=1.7", "ball.kd=0.1,0.2,0.3", "*.shininess=5", "ball.kt=0.25", "ball.emission=#ff0000"] {
+            change(&mut scene, text).unwrap();
+        }
+        let ball = &scene.materials[0];
+        assert_eq!((ball.ior, ball.opacity, ball.alpha_mode), (1.7, 0.75, AlphaMode::Blend));
+        assert_eq!(ball.emission, [1.0, 0.0, 0.0]);
+        let Reflectance::Phong { kd, shininess, .. } = ball.reflectance else { panic!("the form stays") };
+        assert_eq!((kd, shininess), ([0.1, 0.2, 0.3], 5.0));
+    }
+
+    #[test]
+    fn what_is_not_there_is_listed() {
+        let mut scene = load_builtin("sphere").unwrap();
+        let hint = |scene: &mut Scene, text: &str| {
+            let error = change(scene, text).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{error}");
+            error.hint().unwrap()
+        };
+        assert!(hint(&mut scene, "glass.ior=1.5").contains("ball"));
+        assert!(hint(&mut scene, "ball.glow=1").contains("shininess"));
+        assert!(hint(&mut scene, "ball.metallic=1").contains("ks"));
+        assert!(hint(&mut scene, "ball.ior=0.5").contains("refraction"));
+        assert!(hint(&mut scene, "ball").contains("NAME.PROPERTY=VALUE"));
+    }
+
+    #[test]
+    fn surfaces_without_material_can_get_one() {
+        let mut scene = Scene::from_mesh(vitral_scene::builtin::solids::cuboid(vitral_math::DVec3::ONE));
+        change(&mut scene, "default.color=#ffffff").unwrap();
+        change(&mut scene, "default.shininess=9").unwrap();
+        assert_eq!((scene.materials.len(), scene.meshes[0].parts[0].material), (1, Some(0)));
+    }
+}

@@ -1,0 +1,298 @@
+//! From a frame to a file: channels and picture formats.
+
+use crate::names::list;
+use crate::{Error, Frame, files};
+use std::path::Path;
+use std::str::FromStr;
+use vitral_frame::Plane;
+use vitral_io::encode::{self, PngOptions};
+use vitral_render::Channels;
+
+/// A plane of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// The picture.
+    #[default]
+    Color,
+    /// 1 on the near plane, 0 on the far plane and behind everything. 16-bit grey in PNG, floats in NPY.
+    Depth,
+    /// Ids of the file's faces. Colours in pictures, unsigned integers in NPY, 4294967295 where nothing is.
+    Id,
+    /// Instances, likewise.
+    Object,
+    /// Materials, likewise.
+    Material,
+    /// World-space normals: -1..1 as 0..255 in pictures, `(height, width, 3)` floats in NPY.
+    Normal,
+}
+
+impl Channel {
+    /// All channels with their names and a line each, the default first.
+    pub const ALL: [(Self, &'static str, &'static str); 6] = [
+        (Self::Color, "color", "the picture"),
+        (Self::Depth, "depth", "1 near, 0 far: 16-bit grey in PNG, float32 in NPY"),
+        (Self::Id, "id", "surface ids: uint32 in NPY (4294967295 is background), colours in pictures"),
+        (Self::Object, "object", "instances, likewise"),
+        (Self::Material, "material", "materials, likewise"),
+        (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(c, ..)| *c == self).map_or("color", |(_, name, _)| name)
+    }
+
+    /// Asks for this channel's plane, besides those that are already wanted.
+    pub fn request(self, channels: &mut Channels) {
+        match self {
+            Self::Color => channels.color = true,
+            Self::Depth => channels.depth = true,
+            Self::Id => channels.surface = true,
+            Self::Object => channels.object = true,
+            Self::Material => channels.material = true,
+            Self::Normal => channels.normal = true,
+        }
+    }
+}
+
+impl FromStr for Channel {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        let found = Self::ALL.iter().find(|(_, n, _)| *n == name).map(|(channel, ..)| *channel);
+        let hint = || format!("choose {}", list(Self::ALL.map(|(_, n, _)| n)));
+        found.ok_or_else(|| Error::usage(format!("there is no channel `{name}`"), hint()))
+    }
+}
+
+/// A file format for planes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PictureFormat {
+    /// Lossless, with transparency.
+    #[default]
+    Png,
+    /// Small and lossy.
+    Jpeg,
+    /// Plain pixels.
+    Ppm,
+    /// Numbers for numpy; every channel but colour.
+    Npy,
+}
+
+impl PictureFormat {
+    /// All formats, each with its name and extensions.
+    pub const ALL: [(Self, &'static str, &'static [&'static str]); 4] = [
+        (Self::Png, "PNG", &["png"]),
+        (Self::Jpeg, "JPEG", &["jpg", "jpeg"]),
+        (Self::Ppm, "PPM", &["ppm"]),
+        (Self::Npy, "NPY", &["npy"]),
+    ];
+
+    /// The format that a path's extension names.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for any other extension, or none.
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        Self::from_extension(&extension).ok_or_else(|| Error::Unsupported {
+            what: format!("{}: pictures are not written as `.{extension}`", path.display()),
+            hint: format!("choose .{}", Self::ALL.iter().flat_map(|f| f.2.iter().copied()).collect::<Vec<_>>().join(", .")),
+        })
+    }
+
+    /// The format of an extension in lower case, without the dot.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.iter().find(|f| f.2.contains(&extension)).map(|f| f.0)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|f| f.0 == self).map_or("PNG", |f| f.1)
+    }
+}
+
+/// Details of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EncodeOptions {
+    /// The colour bytes are sRGB; false for the raw colour space, whose PNG names no colour space.
+    pub srgb: bool,
+    /// 1 (small) to 100 (good).
+    pub jpeg_quality: u8,
+}
+
+impl Default for EncodeOptions {
+    fn default() -> Self {
+        Self { srgb: true, jpeg_quality: 92 }
+    }
+}
+
+/// One channel of a frame as a file, with the default [`EncodeOptions`].
+///
+/// # Errors
+/// As [`encode_with`].
+pub fn encode(frame: &Frame, channel: Channel, format: PictureFormat) -> Result<Vec<u8>, Error> {
+    encode_with(frame, channel, format, &EncodeOptions::default())
+}
+
+/// One channel of a frame as a file.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one that the frame has not.
+pub fn encode_with(
+    frame: &Frame,
+    channel: Channel,
+    format: PictureFormat,
+    options: &EncodeOptions,
+) -> Result<Vec<u8>, Error> {
+    let missing = || Error::usage(format!("the channel {} was not rendered", channel.name()), "");
+    let impossible = |instead: &str| Error::Unsupported {
+        what: format!("the channel {} cannot be written as {}", channel.name(), format.name()),
+        hint: format!("choose {instead}"),
+    };
+    let numbers = PngOptions { srgb: false };
+    let ids = |plane: &Option<Plane<u32>>| {
+        let plane = plane.as_ref().ok_or_else(missing)?;
+        match format {
+            PictureFormat::Npy => Ok(encode::npy_u32(plane)),
+            _ => picture(&plane.map(|&id| id_color(id)), format, numbers, options),
+        }
+    };
+    match channel {
+        Channel::Color if format == PictureFormat::Npy => Err(impossible(".png, .jpg or .ppm")),
+        Channel::Color => {
+            let plane = frame.color.as_ref().ok_or_else(missing)?;
+            picture(plane, format, PngOptions { srgb: options.srgb }, options)
+        }
+        Channel::Depth => {
+            let plane = frame.depth.as_ref().ok_or_else(missing)?;
+            match format {
+                PictureFormat::Npy => Ok(encode::npy_f32(plane)),
+                PictureFormat::Png => Ok(encode::png16_gray(&plane.map(|&z| word_from_unit(z)))?),
+                PictureFormat::Jpeg | PictureFormat::Ppm => Err(impossible(".png or .npy")),
+            }
+        }
+        Channel::Id => ids(&frame.surface),
+        Channel::Object => ids(&frame.object),
+        Channel::Material => ids(&frame.material),
+        Channel::Normal => {
+            let plane = frame.normal.as_ref().ok_or_else(missing)?;
+            match format {
+                PictureFormat::Npy => Ok(encode::npy_f32x3(plane)),
+                _ => picture(&plane.map(|&n| normal_color(n)), format, numbers, options),
+            }
+        }
+    }
+}
+
+/// Colours in a format for pictures.
+fn picture(
+    plane: &Plane<[u8; 4]>,
+    format: PictureFormat,
+    png: PngOptions,
+    options: &EncodeOptions,
+) -> Result<Vec<u8>, Error> {
+    Ok(match format {
+        PictureFormat::Png => encode::png(plane, png)?,
+        PictureFormat::Jpeg => encode::jpeg(plane, options.jpeg_quality)?,
+        PictureFormat::Ppm => encode::ppm(plane)?,
+        PictureFormat::Npy => unreachable!("callers write numbers themselves"),
+    })
+}
+
+fn word_from_unit(value: f32) -> u16 {
+    (value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16
+}
+
+/// A colour that tells an id from its neighbours: three bytes of a multiplicative hash, none of them very dark.
+/// Background is transparent black.
+fn id_color(id: u32) -> [u8; 4] {
+    if id == Frame::BACKGROUND {
+        return [0; 4];
+    }
+    let mut hash = id.wrapping_add(1).wrapping_mul(0x9e37_79b9);
+    hash = (hash ^ hash >> 15).wrapping_mul(0x85eb_ca6b);
+    hash ^= hash >> 13;
+    let [r, g, b, _] = hash.to_le_bytes();
+    [r / 4 * 3 + 64, g / 4 * 3 + 64, b / 4 * 3 + 64, 255]
+}
+
+/// -1..1 as 0..255; no normal is transparent black.
+fn normal_color(normal: [f32; 3]) -> [u8; 4] {
+    if normal == [0.0; 3] {
+        return [0; 4];
+    }
+    let [r, g, b] = normal.map(|c| vitral_math::color::byte_from_unit(c * 0.5 + 0.5));
+    [r, g, b, 255]
+}
+
+/// Writes a file so that it appears complete or not at all (by renaming).
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
+    files::write(path.as_ref(), bytes)
+}
+
+/// Encodes one channel in the format that the path names, and writes it.
+///
+/// # Errors
+/// As [`encode_with`] and [`write`].
+pub fn save(path: impl AsRef<Path>, frame: &Frame, channel: Channel) -> Result<(), Error> {
+    let path = path.as_ref();
+    write(path, &encode(frame, channel, PictureFormat::from_path(path)?)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> Frame {
+        Frame {
+            width: 2,
+            height: 1,
+            color: Plane::from_rows(2, 1, vec![[1, 2, 3, 255], [0; 4]]),
+            depth: Plane::from_rows(2, 1, vec![0.5, 0.0]),
+            surface: Plane::from_rows(2, 1, vec![7, Frame::BACKGROUND]),
+            object: None,
+            material: None,
+            normal: Plane::from_rows(2, 1, vec![[0.0, 0.0, 1.0], [0.0; 3]]),
+        }
+    }
+
+    #[test]
+    fn channels_go_into_the_formats_that_can_hold_them() {
+        let frame = frame();
+        let code = |channel, format| encode(&frame, channel, format).map_or_else(|e| e.exit_code(), |_| 0);
+        use {Channel as C, PictureFormat as P};
+        for (channel, codes) in [
+            (C::Color, [0, 0, 0, 4]),
+            (C::Depth, [0, 4, 4, 0]),
+            (C::Id, [0, 0, 0, 0]),
+            (C::Normal, [0, 0, 0, 0]),
+            (C::Object, [2, 2, 2, 2]),
+        ] {
+            assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), codes, "{}", channel.name());
+        }
+    }
+
+    #[test]
+    fn names_and_extensions() {
+        for (channel, name, _) in Channel::ALL {
+            assert_eq!((name.parse::<Channel>().unwrap(), channel.name()), (channel, name));
+        }
+        assert!("alpha".parse::<Channel>().unwrap_err().hint().unwrap().contains("normal"));
+        assert_eq!(PictureFormat::from_path("a/b.JPG").unwrap(), PictureFormat::Jpeg);
+        let error = PictureFormat::from_path("a.bmp").unwrap_err();
+        assert_eq!((error.exit_code(), error.hint().unwrap().contains(".npy")), (4, true));
+    }
+
+    #[test]
+    fn neighbouring_ids_have_different_colours() {
+        let colors: std::collections::HashSet<_> = (0..1000).map(id_color).collect();
+        assert_eq!(colors.len(), 1000);
+        assert_eq!(id_color(Frame::BACKGROUND), [0; 4]);
+        assert_eq!(normal_color([0.0, -1.0, 1.0]), [128, 0, 255, 255]);
+        assert_eq!([word_from_unit(1.0), word_from_unit(0.5), word_from_unit(-3.0)], [65_535, 32_768, 0]);
+    }
+}

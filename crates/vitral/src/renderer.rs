@@ -1,0 +1,234 @@
+//! The short way from a scene to pictures.
+
+use crate::{Error, SystemClock};
+use std::sync::Arc;
+use vitral_exec::{Budget, Workers};
+use vitral_light::{Light, Rgb};
+use vitral_math::lanes::level_from_environment;
+use vitral_math::{DQuat, DVec3};
+use vitral_render::{Execution, Rendered, Session, Settings, Shot, render};
+use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, framing};
+
+/// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
+#[derive(Debug)]
+pub struct Renderer {
+    /// Size, algorithms, background, channels.
+    pub settings: Settings,
+    /// The viewer; `None`: framed from the side [`view`](Self::view).
+    pub camera: Option<Camera>,
+    /// The side from which a framed model is seen.
+    pub view: View,
+    /// Which way is up: for framing and turntables.
+    pub up: Axis,
+    /// Projection of a framed camera.
+    pub lens: Lens,
+    /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has none.
+    pub lights: Option<Vec<Light>>,
+    /// Multiplies all lights.
+    pub light_intensity: f32,
+    /// Global ambient light, on top of the scene's own.
+    pub ambient: Rgb,
+    session: Session,
+    execution: Execution,
+}
+
+/// An execution with the machine's clock and `threads` threads (0: as many as the process may use). The environment
+/// variable `VITRAL_SIMD` may name another instruction set than the best.
+///
+/// # Errors
+/// [`Error::Usage`] if it names one that is not there.
+pub fn execution(threads: usize) -> Result<Execution, Error> {
+    let level = level_from_environment().map_err(|what| Error::usage(what, ""))?;
+    let budget = Budget::new(Arc::new(SystemClock::default()));
+    Ok(Execution { workers: Workers::new(threads), level, budget })
+}
+
+impl Renderer {
+    /// Takes a scene, with [`execution`]`(0)` and everything else at its default.
+    ///
+    /// # Errors
+    /// A scene whose parts do not fit together.
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        Self::with_execution(scene, execution(0)?)
+    }
+
+    /// Takes a scene, and how to compute.
+    ///
+    /// # Errors
+    /// A scene whose parts do not fit together.
+    pub fn with_execution(scene: Scene, execution: Execution) -> Result<Self, Error> {
+        Ok(Self {
+            settings: Settings::default(),
+            camera: None,
+            view: View::default(),
+            up: Axis::default(),
+            lens: Lens::default(),
+            lights: None,
+            light_intensity: 1.0,
+            ambient: [0.0; 3],
+            session: Session::new(Arc::new(scene))?,
+            execution,
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        self.session.scene()
+    }
+
+    /// The scene flattened: instances, lights and cameras in world space.
+    pub fn world(&self) -> &World {
+        self.session.world()
+    }
+
+    /// What is known of the scene, for the algorithms of [`crate::render`].
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// How pictures are computed.
+    pub fn execution(&self) -> &Execution {
+        &self.execution
+    }
+
+    /// How pictures are computed, to set a budget.
+    pub fn execution_mut(&mut self) -> &mut Execution {
+        &mut self.execution
+    }
+
+    /// Takes another scene and keeps all choices.
+    ///
+    /// # Errors
+    /// A scene whose parts do not fit together; the old one stays.
+    pub fn set_scene(&mut self, scene: Scene) -> Result<(), Error> {
+        self.session = Session::new(Arc::new(scene))?;
+        Ok(())
+    }
+
+    /// Width by height of the picture.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.settings.width.max(1)) / f64::from(self.settings.height.max(1))
+    }
+
+    /// The viewer of the next picture: the chosen camera, or the framed one.
+    pub fn frame_camera(&self) -> Camera {
+        let framed = || framing::frame(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
+        self.camera.unwrap_or_else(framed)
+    }
+
+    /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with
+    /// [`light_intensity`](Self::light_intensity) applied.
+    pub fn frame_lights(&self, camera: &Camera) -> Vec<Light> {
+        let mut lights = match &self.lights {
+            Some(lights) => lights.clone(),
+            None if self.world().lights.is_empty() => default_lights(camera),
+            None => self.world().lights.clone(),
+        };
+        for light in &mut lights {
+            for color in [&mut light.ambient, &mut light.diffuse, &mut light.specular] {
+                *color = color.map(|c| c * self.light_intensity);
+            }
+        }
+        lights
+    }
+
+    /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient).
+    pub fn frame_ambient(&self) -> Rgb {
+        let own = self.scene().ambient;
+        [0, 1, 2].map(|k| own[k] + self.ambient[k])
+    }
+
+    /// Renders the picture that [`frame_camera`](Self::frame_camera) sees.
+    ///
+    /// # Errors
+    /// Settings that cannot be carried out, or a limit that was reached.
+    pub fn render(&mut self) -> Result<Rendered, Error> {
+        let camera = self.frame_camera();
+        self.render_from(&camera)
+    }
+
+    /// Renders the picture that `camera` sees.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render).
+    pub fn render_from(&mut self, camera: &Camera) -> Result<Rendered, Error> {
+        let lights = self.frame_lights(camera);
+        let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
+        Ok(render(&mut self.session, &shot, &self.settings, &self.execution)?)
+    }
+
+    /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
+    /// from above. A framed camera keeps its distance, far enough for all of them.
+    pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {
+        let framed = || framing::frame_turning(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
+        let first = self.camera.unwrap_or_else(framed);
+        let turned = |i: usize| {
+            let angle = std::f64::consts::TAU * i as f64 / count as f64;
+            turned_about(&first, self.up.vector(), angle)
+        };
+        (0..count).map(turned).collect()
+    }
+
+    /// Renders `count` views around the model and hands each to `take` with its number.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render), and those of `take`.
+    pub fn turntable(
+        &mut self,
+        count: usize,
+        mut take: impl FnMut(usize, Rendered) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        for (i, camera) in self.turntable_cameras(count).iter().enumerate() {
+            let rendered = self.render_from(camera)?;
+            take(i, rendered)?;
+        }
+        Ok(())
+    }
+}
+
+/// The camera after a turn about an axis through its focal point.
+fn turned_about(camera: &Camera, axis: DVec3, angle: f64) -> Camera {
+    let turn = DQuat::from_axis_angle(axis, angle);
+    let position = camera.focal_point + turn * (camera.position - camera.focal_point);
+    Camera { position, view_up: turn * camera.view_up, ..*camera }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_builtin;
+
+    fn small(name: &str) -> Renderer {
+        let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
+        (renderer.settings.width, renderer.settings.height) = (48, 36);
+        renderer
+    }
+
+    #[test]
+    fn default_lights_are_for_scenes_without_lights() {
+        let mut renderer = small("teapot");
+        let camera = renderer.frame_camera();
+        assert_eq!(renderer.frame_lights(&camera), default_lights(&camera));
+        renderer.lights = Some(Vec::new());
+        assert!(renderer.frame_lights(&camera).is_empty(), "no lights were asked for");
+        let mut lab = small("sphere");
+        lab.light_intensity = 0.5;
+        let lights = lab.frame_lights(&camera);
+        assert_eq!(lights.len(), 2);
+        assert_eq!(lights[0].diffuse[0], lab.world().lights[0].diffuse[0] * 0.5);
+    }
+
+    #[test]
+    fn a_turntable_goes_round_once() {
+        let mut renderer = small("teapot");
+        renderer.view = View::Front;
+        let cameras = renderer.turntable_cameras(4);
+        let away = |i: usize| (cameras[i].position - cameras[i].focal_point).normalize();
+        assert!(away(0).abs_diff_eq(DVec3::Z, 1e-12) && away(1).abs_diff_eq(DVec3::X, 1e-12));
+        let mut seen = Vec::new();
+        renderer.turntable(3, |i, rendered| { seen.push((i, rendered.frame.color.is_some())); Ok(()) }).unwrap();
+        assert_eq!(seen, [(0, true), (1, true), (2, true)]);
+        let stop = renderer.turntable(3, |_, _| Err(Error::usage("stop", "")));
+        assert_eq!(stop.unwrap_err().to_string(), "stop");
+    }
+}

@@ -1,0 +1,206 @@
+//! Everything that makes a picture, as one JSON form for the command line, the Lab and configuration files.
+//!
+//! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
+//! state; so is `{}`. Unknown fields are errors, told with line and column.
+
+use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
+use crate::load::{default_up, load};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The version of the form.
+pub const VERSION: u32 = 1;
+
+/// See the module.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct State {
+    /// The form's version, [`VERSION`].
+    pub vitral: u32,
+    /// The models, together one scene: paths, or `builtin:NAME`.
+    pub models: Vec<String>,
+    /// How they are read.
+    pub load: LoadOptions,
+    /// Changes of materials, in order.
+    pub materials: Vec<MaterialOverride>,
+    /// From where the scene is seen.
+    pub viewpoint: Viewpoint,
+    /// The lights, world space; `null`: the scene's, or default ones.
+    pub lights: Option<Vec<Light>>,
+    /// Multiplies all lights.
+    pub light_intensity: f32,
+    /// Global ambient light on top of the scene's own.
+    pub ambient: [f32; 3],
+    /// How pictures are made.
+    pub settings: Settings,
+    /// Number of views around the model; `null`: one picture.
+    pub turntable: Option<usize>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            vitral: VERSION,
+            models: Vec::new(),
+            load: LoadOptions::default(),
+            materials: Vec::new(),
+            viewpoint: Viewpoint::default(),
+            lights: None,
+            light_intensity: 1.0,
+            ambient: [0.0; 3],
+            settings: Settings::default(),
+            turntable: None,
+        }
+    }
+}
+
+impl State {
+    /// The state as JSON, indented, with every field.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("every field has a JSON form");
+        text.push('\n');
+        text
+    }
+
+    /// Reads a state; fields that are left out get their defaults. `file` is for messages.
+    ///
+    /// # Errors
+    /// [`Error::State`] with line and column.
+    pub fn from_json(text: &str, file: &str) -> Result<Self, Error> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let read: Result<Self, _> = serde_path_to_error::deserialize(&mut deserializer);
+        let state = read.map_err(|e| {
+            let path = Some(e.path().to_string()).filter(|p| p != ".");
+            broken(file, path, e.inner())
+        })?;
+        deserializer.end().map_err(|e| broken(file, None, &e))?;
+        if state.vitral != VERSION {
+            let what = format!("version {} is not known, only {VERSION}", state.vitral);
+            return Err(Error::State { file: file.to_owned(), place: "vitral: ".to_owned(), what });
+        }
+        Ok(state)
+    }
+
+    /// Takes the fields that `text` has and keeps all others: how configuration files are laid over each other. Lists
+    /// are replaced as wholes, and so are choices that carry their own fields (the background, for one).
+    ///
+    /// # Errors
+    /// [`Error::State`] with line and column; nothing is changed then.
+    pub fn overlay(&mut self, text: &str, file: &str) -> Result<(), Error> {
+        // Read it alone first: errors in the merged form would have no line.
+        Self::from_json(text, file)?;
+        let unreadable = |e: serde_json::Error| broken(file, None, &e);
+        let mut merged = serde_json::to_value(&*self).map_err(unreadable)?;
+        merge(&mut merged, serde_json::from_str(text).map_err(unreadable)?);
+        *self = serde_json::from_value(merged).map_err(unreadable)?;
+        Ok(())
+    }
+
+    /// Reads the models into one scene and changes its materials.
+    ///
+    /// # Errors
+    /// A model that cannot be read; an override that names what is not there; no model at all.
+    pub fn load_scene(&self, workers: &Workers) -> Result<Scene, Error> {
+        let mut scenes = self.models.iter().map(|model| load(model, &self.load, workers));
+        let mut scene = scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
+        for other in scenes {
+            scene.append(other?);
+        }
+        self.materials.iter().try_for_each(|change| change.apply(&mut scene))?;
+        Ok(scene)
+    }
+
+    /// Sets all that a renderer decides: settings, viewpoint, lights.
+    ///
+    /// # Errors
+    /// A viewpoint without sense.
+    pub fn apply(&self, renderer: &mut Renderer) -> Result<(), Error> {
+        renderer.settings = self.settings.clone();
+        renderer.lights.clone_from(&self.lights);
+        renderer.light_intensity = self.light_intensity;
+        renderer.ambient = self.ambient;
+        let usual_up = self.models.first().map(default_up).unwrap_or_default();
+        self.viewpoint.apply(renderer, usual_up)
+    }
+}
+
+/// An error with its place in the text; serde_json says the place at the end of its message.
+fn broken(file: &str, path: Option<String>, error: &serde_json::Error) -> Error {
+    let message = error.to_string();
+    let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what).to_owned();
+    let line = match error.line() {
+        0 => String::new(),
+        line => format!("line {line}, column {}: ", error.column()),
+    };
+    let place = line + &path.map_or(String::new(), |p| format!("{p}: "));
+    Error::State { file: file.to_owned(), place, what }
+}
+
+/// Lays `over` on `base`, object by object. An object that names its kind replaces what was there.
+fn merge(base: &mut Value, over: Value) {
+    const KINDS: [&str; 4] = ["type", "form", "mode", "shape"];
+    match (base, over) {
+        (Value::Object(base), Value::Object(over)) if !KINDS.iter().any(|k| over.contains_key(*k)) => {
+            for (key, value) in over {
+                merge(base.entry(key).or_insert(Value::Null), value);
+            }
+        }
+        (base, over) => *base = over,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_render::{Background, Shading};
+    use vitral_scene::{Axis, View};
+
+    #[test]
+    fn a_state_comes_back_from_json() {
+        let mut state = State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
+        state.viewpoint = Viewpoint { view: View::Top, up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
+        state.settings.background = Background::Color { color: [0.25, 0.5, 1.0] };
+        state.lights = Some(vitral_scene::lab::lights());
+        state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
+        assert_eq!(State::from_json(&state.to_json(), "s").unwrap(), state);
+        assert_eq!(State::from_json("{}", "s").unwrap(), State::default());
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        let tell = |text: &str| {
+            let error = State::from_json(text, "s.json").unwrap_err();
+            assert_eq!(error.exit_code(), 3);
+            error.to_string()
+        };
+        let error = tell("{\n  \"settings\": {\"widht\": 3}\n}");
+        assert!(error.starts_with("s.json: line 2, column ") && error.contains("unknown field `widht`"), "{error}");
+        assert!(tell("{\"viewpoint\": {\"view\": \"above\"}}").contains("viewpoint.view: there is no view `above`"));
+        assert!(tell("{\"vitral\": 2}").contains("version 2"));
+        assert!(tell("{} x").contains("line 1, column 4"));
+        assert!(tell("{").contains("line 1"));
+    }
+
+    #[test]
+    fn an_overlay_changes_only_what_it_names() {
+        let mut state = State { models: vec!["a.obj".into()], ..State::default() };
+        state.settings.shading = Shading::Flat;
+        let text = r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
+        state.overlay(text, "c").unwrap();
+        assert_eq!((state.settings.width, state.settings.height, state.settings.shading), (99, 768, Shading::Flat));
+        assert_eq!((state.settings.background, state.viewpoint.view), (Background::Transparent, View::Left));
+        assert_eq!(state.models, ["a.obj"]);
+        let before = state.clone();
+        assert!(state.overlay("{\"models\": 3}", "c").is_err());
+        assert_eq!(state, before);
+    }
+
+    #[test]
+    fn several_models_make_one_scene() {
+        let mut state = State { models: vec!["builtin:sphere".into(), "builtin:cubs".into()], ..State::default() };
+        state.materials.push(MaterialOverride::parse("cube 0.color=1").unwrap());
+        let scene = state.load_scene(&Workers::single()).unwrap();
+        assert_eq!((scene.meshes.len(), scene.lights.len()), (9, 4));
+        assert!(State::default().load_scene(&Workers::single()).is_err());
+    }
+}

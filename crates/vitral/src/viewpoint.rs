@@ -1,0 +1,198 @@
+//! From where a scene is seen, as users say it: a standard side or a place, then moves round the model.
+
+use crate::names::{serde_axis, serde_view};
+use crate::{Axis, Camera, Error, Lens, Projection, Renderer, View};
+use serde::{Deserialize, Serialize};
+use vitral_math::DVec3;
+
+/// The choices behind a camera. Without any, the model is framed from the default side. Angles are in degrees here,
+/// because people write this.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Viewpoint {
+    /// The side a framed model is seen from.
+    #[serde(with = "serde_view")]
+    pub view: View,
+    /// Which way is up; `None`: as is usual for the first model's format.
+    #[serde(with = "serde_axis")]
+    pub up: Option<Axis>,
+    /// Start with this camera of the scene, counted from 0, instead of framing.
+    pub camera_index: Option<usize>,
+    /// The viewer, world space.
+    pub position: Option<[f64; 3]>,
+    /// The point looked at, world space.
+    pub focal_point: Option<[f64; 3]>,
+    /// Upwards in the picture.
+    pub view_up: Option<[f64; 3]>,
+    /// The direction of view; the viewer keeps the distance from the focal point.
+    pub direction: Option<[f64; 3]>,
+    /// Vertical angle of view, degrees between 0 and 180.
+    pub view_angle: Option<f64>,
+    /// Parallel projection.
+    pub orthographic: bool,
+    /// Larger than 1 enlarges.
+    pub zoom_factor: f64,
+    /// Walk round the focal point, degrees.
+    pub azimuth_angle: f64,
+    /// Climb over the focal point, degrees.
+    pub elevation_angle: f64,
+    /// Distances of the near and far plane; `None`: fitted to the scene.
+    pub clip: Option<(f64, f64)>,
+}
+
+impl Default for Viewpoint {
+    fn default() -> Self {
+        Self {
+            view: View::default(),
+            up: None,
+            camera_index: None,
+            position: None,
+            focal_point: None,
+            view_up: None,
+            direction: None,
+            view_angle: None,
+            orthographic: false,
+            zoom_factor: 1.0,
+            azimuth_angle: 0.0,
+            elevation_angle: 0.0,
+            clip: None,
+        }
+    }
+}
+
+impl Viewpoint {
+    /// Sets view, axis, lens and camera of `renderer`. `usual_up` is the upward axis where none was chosen. A model
+    /// that is only framed leaves the camera open, so that turntables can choose their distance.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a camera that the scene has not, and for numbers without sense.
+    pub fn apply(&self, renderer: &mut Renderer, usual_up: Axis) -> Result<(), Error> {
+        self.check(renderer)?;
+        renderer.view = self.view;
+        renderer.up = self.up.unwrap_or(usual_up);
+        renderer.lens = match (self.orthographic, self.view_angle) {
+            (true, _) => Lens::Parallel,
+            (false, Some(angle)) => Lens::Perspective { view_angle: angle.to_radians() },
+            (false, None) => Lens::default(),
+        };
+        renderer.camera = None;
+        if !self.is_framed() {
+            renderer.camera = Some(self.camera(renderer));
+        }
+        Ok(())
+    }
+
+    /// Whether the model is simply framed.
+    fn is_framed(&self) -> bool {
+        let framed = Self {
+            view: self.view,
+            up: self.up,
+            view_angle: self.view_angle,
+            orthographic: self.orthographic,
+            ..Self::default()
+        };
+        *self == framed
+    }
+
+    fn check(&self, renderer: &Renderer) -> Result<(), Error> {
+        let count = renderer.world().cameras.len();
+        if let Some(index) = self.camera_index.filter(|&i| i >= count) {
+            let hint = if count == 0 { "it has none".to_owned() } else { format!("it has {count}, counted from 0") };
+            return Err(Error::usage(format!("the scene has no camera {index}"), hint));
+        }
+        let points = [self.position, self.focal_point, self.view_up, self.direction];
+        let clip = self.clip.map_or([0.0, 1.0], |(near, far)| [near, far]);
+        let numbers = [self.zoom_factor, self.azimuth_angle, self.elevation_angle, clip[0], clip[1]];
+        if !points.iter().flatten().flatten().chain(&numbers).all(|n| n.is_finite()) {
+            return Err(Error::usage("the camera has a number that is not finite", ""));
+        }
+        let angle = self.view_angle.unwrap_or(30.0);
+        if !(angle > 0.0 && angle < 180.0) {
+            return Err(Error::usage(format!("a view angle of {angle} degrees"), "it lies between 0 and 180"));
+        }
+        if self.zoom_factor <= 0.0 {
+            return Err(Error::usage(format!("a zoom factor of {}", self.zoom_factor), "it is larger than 0"));
+        }
+        let parallel = self.orthographic;
+        if clip[0] >= clip[1] || (self.clip.is_some() && !parallel && clip[0] <= 0.0) {
+            return Err(Error::usage(format!("clipping planes at {} and {}", clip[0], clip[1]), "0 < near < far is required"));
+        }
+        Ok(())
+    }
+
+    /// The camera: a framed one or the scene's, its parts replaced, then moved.
+    fn camera(&self, renderer: &Renderer) -> Camera {
+        let mut camera = match self.camera_index {
+            Some(index) => renderer.world().cameras[index],
+            None => renderer.frame_camera(),
+        };
+        let point = DVec3::from_array;
+        if let Some(focal_point) = self.focal_point.map(point) {
+            // Alone, a new focal point takes the viewer along.
+            camera.position += focal_point - camera.focal_point;
+            camera.focal_point = focal_point;
+        }
+        if let Some(position) = self.position.map(point) {
+            camera.position = position;
+        }
+        if let Some(view_up) = self.view_up.map(point) {
+            camera.view_up = view_up;
+        }
+        if let Some(direction) = self.direction.map(point) {
+            camera = camera.with_direction(direction);
+        }
+        if let (Some(angle), Projection::Perspective { .. }) = (self.view_angle, camera.projection) {
+            camera.projection = Projection::Perspective { view_angle: angle.to_radians() };
+        }
+        if self.orthographic {
+            camera = camera.orthographic();
+        }
+        camera.clip = self.clip.or(camera.clip);
+        camera
+            .azimuth(self.azimuth_angle.to_radians())
+            .elevation(self.elevation_angle.to_radians())
+            .zoomed(self.zoom_factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_builtin;
+
+    fn camera(viewpoint: Viewpoint) -> Result<Camera, Error> {
+        let mut renderer = Renderer::new(load_builtin("sphere").unwrap()).unwrap();
+        viewpoint.apply(&mut renderer, Axis::PlusY)?;
+        Ok(renderer.frame_camera())
+    }
+
+    #[test]
+    fn a_place_and_moves_give_the_camera() {
+        let place = Viewpoint { position: Some([0.0, 0.0, 5.0]), focal_point: Some([0.0; 3]), ..Viewpoint::default() };
+        let plain = camera(place.clone()).unwrap();
+        assert_eq!((plain.position, plain.focal_point), (DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO));
+        let moved = camera(Viewpoint { azimuth_angle: 90.0, zoom_factor: 2.0, ..place }).unwrap();
+        assert!(moved.position.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-12));
+        assert_eq!(moved.projection, plain.zoomed(2.0).projection);
+    }
+
+    #[test]
+    fn the_scenes_own_camera_can_be_chosen() {
+        let own = camera(Viewpoint { camera_index: Some(0), ..Viewpoint::default() }).unwrap();
+        assert!((own.position.length() - 5.0).abs() < 1e-9);
+        let error = camera(Viewpoint { camera_index: Some(7), ..Viewpoint::default() }).unwrap_err();
+        assert_eq!((error.exit_code(), error.to_string().as_str()), (2, "the scene has no camera 7"));
+    }
+
+    #[test]
+    fn numbers_without_sense_are_refused() {
+        for bad in [
+            Viewpoint { zoom_factor: 0.0, ..Viewpoint::default() },
+            Viewpoint { view_angle: Some(180.0), ..Viewpoint::default() },
+            Viewpoint { position: Some([f64::NAN; 3]), ..Viewpoint::default() },
+            Viewpoint { clip: Some((2.0, 1.0)), ..Viewpoint::default() },
+        ] {
+            assert_eq!(camera(bad).unwrap_err().exit_code(), 2);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Culling never changes a picture, and saves work (COURSE.md P10, P14).
+
+mod common;
+
+use common::{exact, exact_builtin, on_z};
+use vitral::math::{DMat4, DVec3};
+use vitral::scene::builtin::solids;
+use vitral::{Camera, Projection, Rendered, Renderer, Scene};
+
+/// The picture with the given culling.
+fn culled(renderer: &mut Renderer, frustum: bool, back_face: bool) -> Rendered {
+    (renderer.settings.cull.frustum, renderer.settings.cull.back_face) = (frustum, back_face);
+    renderer.render().unwrap()
+}
+
+/// Cameras from afar, from near, and from among the objects.
+fn cameras() -> [Camera; 4] {
+    let from = |position, focal_point| Camera { position, focal_point, ..on_z(1.0, 0.9) };
+    [
+        from(DVec3::new(3.0, 4.0, 9.0), DVec3::new(0.0, 0.5, 0.0)),
+        from(DVec3::new(2.0, 0.7, 2.5), DVec3::new(-1.0, 0.5, -1.0)),
+        from(DVec3::new(0.1, 0.5, 0.2), DVec3::new(1.0, 0.8, 1.0)),
+        Camera { projection: Projection::Parallel { height: 2.0 }, ..from(DVec3::new(5.0, 5.0, 1.0), DVec3::ZERO) },
+    ]
+}
+
+#[test]
+fn p10_p14_culling_changes_no_picture() {
+    for name in ["cubs", "sphere", "scene0", "scene1", "teapot"] {
+        let mut renderer = exact_builtin(name, 160, 120);
+        renderer.settings.samples = 4;
+        for (i, camera) in cameras().into_iter().enumerate() {
+            renderer.camera = Some(camera);
+            let reference = culled(&mut renderer, false, false).frame;
+            for (frustum, back_face) in [(true, false), (false, true), (true, true)] {
+                let frame = culled(&mut renderer, frustum, back_face).frame;
+                assert!(frame == reference, "{name}, camera {i}, frustum {frustum}, back faces {back_face}");
+            }
+        }
+    }
+}
+
+#[test]
+fn p10_one_test_rejects_a_million_triangles() {
+    let mut renderer = exact(Scene::from_mesh(solids::grid_torus(1_000_000)), 32, 32);
+    let away = Camera { focal_point: DVec3::new(0.0, 0.0, 90.0), clip: Some((1.0, 50.0)), ..on_z(20.0, 0.5) };
+    renderer.camera = Some(away);
+    let stats = culled(&mut renderer, true, true).stats;
+    assert_eq!((stats.cull.box_tests, stats.cull.instances_culled, stats.cull.triangles_culled), (1, 1, 1_000_000));
+    assert_eq!((stats.geometry.vertices, stats.geometry.triangles), (0, 0));
+    // Close by, most of it is outside the view: runs of triangles are rejected.
+    renderer.camera = Some(Camera { position: DVec3::new(1.0, 0.3, 0.6), focal_point: DVec3::new(1.0, 0.0, 0.0), ..on_z(1.0, 0.4) });
+    let near = culled(&mut renderer, true, true).stats;
+    assert!(near.cull.triangles_culled > 500_000 && near.cull.triangles_culled < 1_000_000, "{:?}", near.cull);
+    assert!(near.cull.box_tests < 2_000, "{:?}", near.cull);
+}
+
+#[test]
+fn p14_about_half_of_a_closed_mesh_faces_away() {
+    for mesh in [solids::sphere(1.0, 64, 32), solids::torus(1.0, 0.4, 64, 32), solids::cuboid(DVec3::ONE)] {
+        let name = mesh.name.clone();
+        let mut renderer = exact(Scene::from_mesh(mesh), 256, 256);
+        renderer.camera = Some(Camera { position: DVec3::new(7.0, 9.0, 11.0), ..on_z(1.0, 0.3) });
+        let stats = culled(&mut renderer, true, true).stats;
+        assert_eq!(stats.cull.back_face_culled_instances, 1, "{name}");
+        let share = stats.geometry.back_facing as f64 / stats.geometry.triangles as f64;
+        assert!((0.4..0.6).contains(&share), "{name}: {share}");
+    }
+}
+
+#[test]
+fn p14_open_and_inside_out_meshes_keep_their_back_faces() {
+    let mut inside_out = solids::cuboid(DVec3::ONE);
+    inside_out.faces = vitral::scene::Faces::Triangles;
+    inside_out.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    (inside_out.normals, inside_out.uvs) = (None, Vec::new());
+    for mesh in [solids::plane(1.0, 1.0, 2, 2), inside_out] {
+        let mut renderer = exact(Scene::from_mesh(mesh), 64, 64);
+        renderer.camera = Some(Camera { position: DVec3::new(1.0, -3.0, 2.0), ..on_z(1.0, 0.6) });
+        let rendered = culled(&mut renderer, true, true);
+        assert_eq!((rendered.stats.cull.back_face_culled_instances, rendered.stats.geometry.back_facing), (0, 0));
+        assert!(rendered.stats.picture.covered_pixels > 200, "it is seen");
+    }
+}
+
+#[test]
+fn p14_a_mirrored_instance_shows_its_outside() {
+    let mut scene = Scene::default();
+    scene.add_mesh(solids::torus(1.0, 0.4, 48, 24), DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)));
+    let mut renderer = exact(scene, 128, 128);
+    let rendered = culled(&mut renderer, true, true);
+    assert_eq!(rendered.stats.cull.back_face_culled_instances, 1);
+    assert!(rendered.frame == culled(&mut renderer, true, false).frame);
+}

@@ -1,0 +1,157 @@
+//! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
+
+mod common;
+
+use common::{all_channels, colors, exact, exact_builtin, on_z};
+use std::sync::Arc;
+use vitral::exec::{Budget, Limit};
+use vitral::math::{DMat4, DVec3};
+use vitral::scene::builtin::solids;
+use vitral::{Camera, Error, Frame, Renderer, Scene, SystemClock, Viewpoint, load_builtin};
+
+#[test]
+fn zero_lights_leave_ambient_light_alone() {
+    let mut renderer = exact_builtin("sphere", 40, 30);
+    renderer.lights = Some(Vec::new());
+    assert!(colors(&mut renderer).iter().all(|c| *c == [0, 0, 0, 255]), "no light, no picture");
+    renderer.ambient = [0.5; 3];
+    assert!(colors(&mut renderer).iter().any(|c| c[0] > 50));
+}
+
+#[test]
+fn an_empty_scene_is_all_background() {
+    let mut renderer = exact(Scene::default(), 33, 7);
+    renderer.settings.samples = 4;
+    renderer.settings.channels = all_channels();
+    let rendered = renderer.render().unwrap();
+    let frame = rendered.frame;
+    assert!(frame.color.unwrap().data().iter().all(|c| *c == [0, 0, 0, 255]));
+    assert!(frame.depth.unwrap().data().iter().all(|&z| z == 0.0));
+    assert!(frame.surface.unwrap().data().iter().all(|&id| id == Frame::BACKGROUND));
+    assert_eq!((rendered.stats.picture.pixels, rendered.stats.picture.covered_pixels), (231, 0));
+}
+
+#[test]
+fn a_camera_inside_a_model_sees_it_or_nothing_but_never_fails() {
+    // Inside a closed ball back faces are culled by right; inside an open dome they are seen.
+    let mut dome = solids::sphere(1.0, 48, 24);
+    dome.faces = vitral::scene::Faces::Triangles;
+    dome.triangles.pop();
+    (dome.normals, dome.uvs) = (None, Vec::new());
+    dome.parts[0].triangles.end -= 1;
+    let mut inside = exact(Scene::from_mesh(dome), 64, 48);
+    inside.camera = Some(Camera { position: DVec3::new(0.1, 0.0, 0.2), focal_point: DVec3::X, ..on_z(1.0, 1.2) });
+    let stats = inside.render().unwrap().stats;
+    assert_eq!(stats.picture.covered_pixels, 64 * 48, "the dome is all round");
+    let mut scene0 = exact_builtin("scene0", 64, 48);
+    for position in [DVec3::new(0.7, 0.8, 1.2), DVec3::new(-1.1, 0.7, -1.1), DVec3::ZERO] {
+        scene0.camera = Some(Camera { position, focal_point: DVec3::new(3.0, 0.0, 0.0), ..on_z(1.0, 1.2) });
+        scene0.settings.channels = all_channels();
+        let frame = scene0.render().unwrap().frame;
+        assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
+    }
+}
+
+#[test]
+fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
+    let mut mesh = solids::plane(2.0, 2.0, 4, 4);
+    mesh.positions[0][0] = f32::NAN;
+    mesh.positions[6][1] = f32::INFINITY;
+    mesh.positions[24][2] = f32::NEG_INFINITY;
+    let touched = mesh.triangles.iter().filter(|t| t.iter().any(|i| [0, 6, 24].contains(i))).count() as u64;
+    mesh.normals.as_mut().unwrap().values.push([f32::NAN; 3]);
+    let mut renderer = exact(Scene::from_mesh(mesh), 80, 60);
+    renderer.settings.samples = 4;
+    renderer.settings.channels = all_channels();
+    let rendered = renderer.render().unwrap();
+    assert_eq!(rendered.stats.geometry.not_finite, touched);
+    assert!(rendered.stats.picture.covered_pixels > 100, "the others are there");
+    assert!(rendered.frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
+    assert!(rendered.frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
+}
+
+#[test]
+fn odd_numbers_everywhere_give_a_picture_all_the_same() {
+    let mut renderer = exact_builtin("sphere", 40, 30);
+    renderer.settings.channels = all_channels();
+    let good = renderer.frame_camera();
+    for camera in [
+        Camera { position: good.focal_point, ..good },
+        Camera { view_up: good.focal_point - good.position, ..good },
+        Camera { position: DVec3::splat(f64::NAN), ..good },
+        Camera { position: DVec3::splat(1e300), ..good },
+        Camera { clip: Some((1e-300, 1e300)), ..good },
+    ] {
+        renderer.camera = Some(camera);
+        let frame = renderer.render().unwrap().frame;
+        assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)), "{camera:?}");
+    }
+    renderer.camera = Some(good);
+    renderer.light_intensity = f32::NAN;
+    assert_eq!(colors(&mut renderer).len(), 1200);
+    renderer.light_intensity = f32::INFINITY;
+    assert_eq!(colors(&mut renderer).len(), 1200);
+    // A flat object, one scaled to nothing, and one far away.
+    let mut scene = load_builtin("cubs").unwrap();
+    for (node, scale) in [(1, DVec3::new(1.0, 0.0, 1.0)), (2, DVec3::ZERO), (3, DVec3::splat(1e30))] {
+        scene.nodes[node].transform = vitral::scene::NodeTransform::Matrix(DMat4::from_scale(scale));
+    }
+    let mut renderer = exact(scene, 40, 30);
+    renderer.settings.channels = all_channels();
+    let frame = renderer.render().unwrap().frame;
+    assert!(frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
+}
+
+/// The error for a resolution and a number of samples.
+fn refusal(width: u32, height: u32, samples: u32) -> Error {
+    let mut renderer = exact_builtin("cubs", width, height);
+    renderer.settings.samples = samples;
+    renderer.render().unwrap_err()
+}
+
+#[test]
+fn sizes_that_cannot_be_are_errors() {
+    for (width, height, code) in [(0, 10, 2), (10, 0, 2), (100_000, 10, 7), (u32::MAX, u32::MAX, 7)] {
+        let error = refusal(width, height, 1);
+        assert_eq!(error.exit_code(), code, "{error}");
+        assert!(error.to_string().contains(&format!("resolution {width}x{height}")), "{error}");
+    }
+    assert!(refusal(8, 8, 17).to_string().contains("17 samples"));
+    let mut renderer = exact_builtin("cubs", 8, 8);
+    renderer.settings.visibility = "magic".to_owned();
+    assert!(renderer.render().unwrap_err().to_string().contains("choose z-buffer"));
+}
+
+#[test]
+fn limits_stop_the_work() {
+    let mut renderer = exact_builtin("cubs", 4096, 4096);
+    renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(1 << 20));
+    let error = renderer.render().unwrap_err();
+    assert!(matches!(error, Error::Render(vitral::render::Error::Limit(Limit::Memory { .. }))), "{error}");
+    assert_eq!(error.exit_code(), 7);
+    let mut renderer = exact_builtin("cubs", 64, 64);
+    let budget = Budget::new(Arc::new(SystemClock::default())).with_time_limit(Some(0.0));
+    renderer.execution_mut().budget = budget;
+    std::thread::sleep(std::time::Duration::from_millis(2));
+    assert_eq!(renderer.render().unwrap_err().exit_code(), 7);
+    renderer.execution_mut().budget = Budget::default();
+    renderer.execution().budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    assert_eq!(renderer.render().unwrap_err().exit_code(), 130);
+    // After a limit the renderer still works.
+    renderer.execution_mut().budget = Budget::default();
+    assert!(colors(&mut renderer) == colors(&mut exact_builtin("cubs", 64, 64)));
+}
+
+#[test]
+fn unsound_scenes_are_errors() {
+    let mut cyclic = load_builtin("cubs").unwrap();
+    cyclic.nodes[1].children.push(1);
+    let error = Renderer::new(cyclic).unwrap_err();
+    assert_eq!((error.exit_code(), error.to_string().contains("must be a tree")), (3, true));
+    let mut broken = load_builtin("cubs").unwrap();
+    Arc::make_mut(&mut broken.meshes[0]).triangles[0][0] = 99;
+    assert!(Renderer::new(broken).unwrap_err().to_string().contains("index 99"));
+    let mut renderer = exact_builtin("cubs", 8, 8);
+    let bad = Viewpoint { camera_index: Some(3), ..Viewpoint::default() };
+    assert_eq!(bad.apply(&mut renderer, vitral::Axis::PlusY).unwrap_err().exit_code(), 2);
+}

@@ -1,0 +1,119 @@
+//! One scene, for the test that native code and WebAssembly give the same bytes.
+//!
+//! `cargo xtask test` builds this library for `wasm32-unknown-unknown`, plain and with simd128, lets Node hash what
+//! [`render`] draws, and compares with the hash that this crate's program prints natively.
+//!
+//! What is drawn: Lab3D's scene 1 through its own camera, smooth with all data planes, then as faceted Cook-Torrance
+//! with edges. So culling, clipping, rasterising, three shading models, marks and both colour spaces take part.
+
+// Exporting a function by its name is the only way out of a WebAssembly module, and the attribute for it is unsafe
+// because two functions of one name would collide. There is no unsafe block.
+#![allow(unsafe_code)]
+
+use std::sync::{Arc, OnceLock};
+use vitral_exec::{Budget, Workers};
+use vitral_frame::Frame;
+use vitral_light::Illumination;
+use vitral_math::lanes::Level;
+use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot};
+use vitral_scene::{Camera, Projection, builtin};
+
+/// Width and height of the pictures in pixels; the last tiles are not full.
+const SIZE: (u32, u32) = (140, 100);
+
+/// The pictures: RGBA colours of all, then depths, surface ids and normals of the first, little-endian.
+pub fn picture() -> Vec<u8> {
+    draw(Level::new())
+}
+
+/// FNV-1a, 64 bits: the hash that `run.mjs` computes as well.
+pub fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+static PICTURE: OnceLock<Vec<u8>> = OnceLock::new();
+
+/// Address of the pictures' first byte, for JavaScript.
+#[unsafe(no_mangle)]
+pub extern "C" fn render() -> *const u8 {
+    PICTURE.get_or_init(picture).as_ptr()
+}
+
+/// Number of the pictures' bytes, for JavaScript.
+#[unsafe(no_mangle)]
+pub extern "C" fn length() -> usize {
+    PICTURE.get_or_init(picture).len()
+}
+
+fn draw(level: Level) -> Vec<u8> {
+    let scene = Arc::new(builtin::scene("scene1").expect("scene1 is built in"));
+    let mut session = Session::new(scene).expect("built-in scenes are sound");
+    let execution = Execution { workers: Workers::single(), level, budget: Budget::default() };
+    let camera = session.world().cameras[0];
+    let smooth = Settings {
+        width: SIZE.0,
+        height: SIZE.1,
+        channels: Channels { depth: true, surface: true, normal: true, ..Channels::default() },
+        ..Settings::default()
+    };
+    let gouraud = Settings {
+        shading: Shading::Gouraud,
+        color_space: ColorSpace::Raw,
+        channels: Channels::default(),
+        ..smooth.clone()
+    };
+    let faceted = Settings {
+        shading: Shading::Flat,
+        illumination: Illumination::CookTorrance,
+        lines: Lines::Edges,
+        samples: 1,
+        channels: Channels::default(),
+        ..smooth.clone()
+    };
+    // From close by, so that facets are clipped, too.
+    let near = Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };
+    let mut frame = |settings: &Settings, camera: Camera| {
+        let lights = session.world().lights.clone();
+        let shot = Shot { camera, lights: &lights, ambient: [0.05; 3] };
+        vitral_render::render(&mut session, &shot, settings, &execution).expect("there are no limits").frame
+    };
+    let frames = [frame(&smooth, camera), frame(&gouraud, near), frame(&faceted, camera)];
+    bytes(&frames)
+}
+
+/// The frames' planes as bytes.
+fn bytes(frames: &[Frame]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for frame in frames {
+        bytes.extend(frame.color.iter().flat_map(|plane| plane.data().as_flattened()));
+        bytes.extend(frame.depth.iter().flat_map(|plane| plane.data()).flat_map(|z| z.to_le_bytes()));
+        bytes.extend(frame.surface.iter().flat_map(|plane| plane.data()).flat_map(|id| id.to_le_bytes()));
+        let normals = frame.normal.iter().flat_map(|plane| plane.data().as_flattened());
+        bytes.extend(normals.flat_map(|n| n.to_le_bytes()));
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::lanes::available_levels;
+
+    #[test]
+    fn every_level_draws_the_same_pictures() {
+        let scalar = draw(Level::fallback());
+        for (name, level) in available_levels() {
+            assert!(draw(level) == scalar, "{name}");
+        }
+        // Three colour planes, and 4 + 4 + 12 bytes of data for each pixel of the first.
+        let pixels = (SIZE.0 * SIZE.1) as usize;
+        assert_eq!(scalar.len(), pixels * (3 * 4 + 20));
+        assert_ne!(scalar[..4], scalar[pixels * 2..][..4], "the middle differs from the corner");
+    }
+
+    #[test]
+    fn the_hash_has_its_published_values() {
+        assert_eq!(fnv1a(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
+    }
+}

@@ -1,0 +1,70 @@
+//! Installs what the tests need beside a Rust toolchain, where that is possible without asking anyone, and says plainly
+//! what is missing after that.
+
+use crate::shell::{self, command, succeeds};
+
+/// The target that everything below the faces builds for.
+pub(crate) const WASM_TARGET: &str = "wasm32-unknown-unknown";
+
+/// What is there for the WebAssembly test.
+pub(crate) struct Prepared {
+    /// Why the WebAssembly test cannot run, if it cannot.
+    pub(crate) no_wasm: Option<String>,
+}
+
+/// Looks for node and the WebAssembly target, and installs them if they are missing.
+pub(crate) fn prepare() -> Prepared {
+    let problems: Vec<String> = [wasm_target(), node()].into_iter().filter_map(Result::err).collect();
+    for problem in &problems {
+        println!("could not install: {problem}");
+    }
+    Prepared { no_wasm: (!problems.is_empty()).then(|| problems.join("; ")) }
+}
+
+/// Debian packages; installed only when we are root, since nobody is there to type a password.
+pub(crate) fn debian_packages(names: &[&str]) -> shell::Outcome {
+    let missing: Vec<&str> = names.iter().copied().filter(|name| !succeeds("dpkg", &["-s", name])).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let wanted = missing.join(" ");
+    let root = shell::output(command("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
+    if !root || !succeeds("apt-get", &["--version"]) {
+        return Err(format!("Debian packages {wanted} (needs root and apt-get)"));
+    }
+    println!("installing Debian packages {wanted}");
+    let apt = |arguments: &[&str]| {
+        let mut apt = command("apt-get");
+        apt.env("DEBIAN_FRONTEND", "noninteractive")
+            .args(["-qq", "-y", "-o", "DPkg::Lock::Timeout=120"])
+            .args(arguments);
+        shell::output(&mut apt)
+    };
+    let installed =
+        apt(&["update"]).and_then(|_| apt(&[&["install", "--no-install-recommends"], missing.as_slice()].concat()));
+    installed.map(|_| ()).map_err(|why| format!("Debian packages {wanted}: {why}"))
+}
+
+fn wasm_target() -> shell::Outcome {
+    let installed = || {
+        let root = shell::output(command("rustc").args(["--print", "sysroot"])).unwrap_or_default();
+        std::path::Path::new(root.trim()).join("lib/rustlib").join(WASM_TARGET).exists()
+    };
+    if installed() {
+        return Ok(());
+    }
+    println!("installing the Rust target {WASM_TARGET}");
+    match shell::output(command("rustup").args(["target", "add", WASM_TARGET])) {
+        Ok(_) if installed() => Ok(()),
+        Ok(_) => Err(format!("the Rust target {WASM_TARGET}: rustup serves another toolchain")),
+        Err(why) => Err(format!("the Rust target {WASM_TARGET}: {why}")),
+    }
+}
+
+fn node() -> shell::Outcome {
+    if succeeds("node", &["--version"]) {
+        return Ok(());
+    }
+    debian_packages(&["nodejs"])?;
+    if succeeds("node", &["--version"]) { Ok(()) } else { Err("node: installed, but does not run".to_owned()) }
+}

@@ -6,7 +6,6 @@ use serde_json::json;
 use std::path::Path;
 use vitral::frame::Plane;
 use vitral::frame::compare::{self, Difference, SizeMismatch};
-use vitral::io::encode::PngOptions;
 use vitral::{PictureFormat, picture};
 
 /// Largest picture file that is read, in bytes.

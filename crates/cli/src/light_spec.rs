@@ -60,8 +60,11 @@ impl<'a> Fields<'a> {
     fn split(kind: &'a str, text: &'a str) -> Result<Self, String> {
         let mut fields: Vec<(&str, String)> = Vec::new();
         for piece in text.split(',').filter(|piece| !piece.is_empty()) {
-            match (piece.split_once('='), fields.last_mut()) {
-                (Some((key, _)), _) if fields.iter().any(|f| f.0 == key) => return Err(format!("`{key}` is given twice")),
+            let pair = piece.split_once('=');
+            if let Some((key, _)) = pair.filter(|(key, _)| fields.iter().any(|f| f.0 == *key)) {
+                return Err(format!("`{key}` is given twice"));
+            }
+            match (pair, fields.last_mut()) {
                 (Some((key, value)), _) => fields.push((key, value.to_owned())),
                 (None, Some((_, value))) => {
                     value.push(',');

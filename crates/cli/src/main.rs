@@ -1,2 +1,64 @@
-//! Placeholder.
-fn main() {}
+//! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
+
+mod args;
+mod choices;
+mod compare_command;
+mod info_command;
+mod interrupt;
+mod light_spec;
+mod outputs;
+mod progress;
+mod render_args;
+mod render_command;
+mod report;
+mod resolve;
+mod tables;
+mod unbuilt;
+mod values;
+
+use args::{Cli, Verb};
+use clap::{CommandFactory, Parser};
+use clap::error::ErrorKind;
+use report::Failure;
+
+fn main() {
+    let code = run().unwrap_or_else(|failure| failure.tell());
+    // Freeing the scene piece by piece would only take time: the process ends here.
+    std::process::exit(i32::from(code));
+}
+
+fn run() -> Result<u8, Failure> {
+    let typed = args::with_verb(std::env::args_os().collect());
+    let cli = match Cli::try_parse_from(typed) {
+        Ok(cli) => cli,
+        // Help and version are results, not errors.
+        Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            let text = if use_color() { e.render().ansi().to_string() } else { e.render().to_string() };
+            return report::print(text.as_bytes()).map(|()| 0);
+        }
+        Err(e) if e.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprint!("{}", e.render());
+            return Ok(2);
+        }
+        Err(e) => return Err(e.into()),
+    };
+    match cli.verb {
+        Verb::Render(args) => render_command::run(&args),
+        Verb::Info(args) => info_command::run(&args),
+        Verb::Compare(args) => compare_command::run(&args),
+        Verb::Algorithms(args) => tables::algorithms(&args),
+        Verb::Formats(args) => tables::formats(&args),
+        Verb::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "vitral", &mut script);
+            report::print(&script).map(|()| 0)
+        }
+        Verb::Man => tables::manual().and_then(|page| report::print(&page)).map(|()| 0),
+    }
+}
+
+/// Colours on a terminal, unless `NO_COLOR` is set to something.
+fn use_color() -> bool {
+    use std::io::IsTerminal;
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}

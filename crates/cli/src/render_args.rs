@@ -13,7 +13,7 @@ use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shad
 #[command(after_help = crate::args::EXIT_CODES)]
 pub(crate) struct RenderArgs {
     /// Model files, `builtin:NAME`, or `-` for standard input
-    #[arg(required = true, value_name = "MODEL")]
+    #[arg(required_unless_present = "load_state", value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
@@ -37,7 +37,7 @@ pub(crate) struct RenderArgs {
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
     /// repeatable, one for each --channel
-    #[arg(long, short, value_name = "OUT", required = true)]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state"])]
     pub(crate) output: Vec<PathBuf>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]

@@ -29,6 +29,11 @@ impl Failure {
         Self { code: USAGE, message: Some(message.into()), hint: None }
     }
 
+    /// Anything that has no exit code of its own.
+    pub(crate) fn other(message: impl Into<String>) -> Self {
+        Self { code: 1, message: Some(message.into()), hint: None }
+    }
+
     /// With a hint.
     #[must_use]
     pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {

@@ -19,7 +19,10 @@ const DECODER_MEMORY: usize = 64 << 20;
 ///
 /// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
-    let unsupported = |what: &str| Error::Unsupported { file: file.to_owned(), what: format!("{what} is not read; PNG and JPEG are") };
+    let unsupported = |what: &str| Error::Unsupported {
+        file: file.to_owned(),
+        what: format!("{what} is not read; PNG and JPEG are"),
+    };
     match bytes {
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
@@ -37,8 +40,7 @@ pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
 
 /// A TGA has no magic number: look at its colour map type, image type and depth.
 fn has_tga_header(bytes: &[u8]) -> bool {
-    matches!(bytes, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..])
-        && matches!(bytes.get(16), Some(8 | 15 | 16 | 24 | 32))
+    matches!(bytes, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..]) && matches!(bytes.get(16), Some(8 | 15 | 16 | 24 | 32))
 }
 
 /// Refuses pictures beyond the limits.
@@ -101,7 +103,14 @@ mod tests {
     use super::*;
 
     /// A PNG of the given kind from raw rows.
-    fn png_of(color: png::ColorType, depth: png::BitDepth, width: u32, height: u32, data: &[u8], extra: impl Fn(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
+    fn png_of(
+        color: png::ColorType,
+        depth: png::BitDepth,
+        width: u32,
+        height: u32,
+        data: &[u8],
+        extra: impl Fn(&mut png::Encoder<'_, &mut Vec<u8>>),
+    ) -> Vec<u8> {
         let mut out = Vec::new();
         let mut encoder = png::Encoder::new(&mut out, width, height);
         encoder.set_color(color);
@@ -116,16 +125,31 @@ mod tests {
         use png::{BitDepth, ColorType};
         let read = |bytes: Vec<u8>| decode(&bytes, "a.png").unwrap().into_data();
         let none = |_: &mut png::Encoder<'_, &mut Vec<u8>>| {};
-        assert_eq!(read(png_of(ColorType::Grayscale, BitDepth::One, 3, 1, &[0b1010_0000], none)), [[255; 4], [0, 0, 0, 255], [255; 4]]);
-        assert_eq!(read(png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xff], none)), [[128, 128, 128, 255]]);
+        assert_eq!(
+            read(png_of(ColorType::Grayscale, BitDepth::One, 3, 1, &[0b1010_0000], none)),
+            [[255; 4], [0, 0, 0, 255], [255; 4]]
+        );
+        assert_eq!(
+            read(png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xff], none)),
+            [[128, 128, 128, 255]]
+        );
         assert_eq!(read(png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, 1, &[9, 7], none)), [[9, 9, 9, 7]]);
-        assert_eq!(read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e.set_trns(vec![0, 1, 0, 2, 0, 3]))), [[1, 2, 3, 0]]);
-        assert_eq!(read(png_of(ColorType::Rgba, BitDepth::Sixteen, 1, 1, &[1, 0, 2, 0, 3, 0, 4, 0], none)), [[1, 2, 3, 4]]);
+        assert_eq!(
+            read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e.set_trns(vec![0, 1, 0, 2, 0, 3]))),
+            [[1, 2, 3, 0]]
+        );
+        assert_eq!(
+            read(png_of(ColorType::Rgba, BitDepth::Sixteen, 1, 1, &[1, 0, 2, 0, 3, 0, 4, 0], none)),
+            [[1, 2, 3, 4]]
+        );
         let palette = |e: &mut png::Encoder<'_, &mut Vec<u8>>| {
             e.set_palette(vec![1, 2, 3, 4, 5, 6]);
             e.set_trns(vec![8]);
         };
-        assert_eq!(read(png_of(ColorType::Indexed, BitDepth::Two, 2, 1, &[0b0001_0000], palette)), [[1, 2, 3, 8], [4, 5, 6, 255]]);
+        assert_eq!(
+            read(png_of(ColorType::Indexed, BitDepth::Two, 2, 1, &[0b0001_0000], palette)),
+            [[1, 2, 3, 8], [4, 5, 6, 255]]
+        );
     }
 
     #[test]
@@ -133,7 +157,11 @@ mod tests {
         let mut bytes = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, 1, 1, &[0], |_| {});
         bytes[16..20].copy_from_slice(&0x7fff_ffffu32.to_be_bytes());
         assert!(decode(&bytes, "a.png").is_err());
-        assert!(check_size(16_384, 16_384, "x").is_ok() && check_size(16_385, 1, "x").is_err() && check_size(0, 1, "x").is_err());
+        assert!(
+            check_size(16_384, 16_384, "x").is_ok()
+                && check_size(16_385, 1, "x").is_err()
+                && check_size(0, 1, "x").is_err()
+        );
     }
 
     #[test]

@@ -15,7 +15,9 @@ pub(crate) enum Target {
 pub(crate) fn resolve(uri: &str) -> Result<Target, String> {
     if let Some(rest) = strip_scheme(uri, "data:") {
         let (head, body) = rest.split_once(',').ok_or("a data URI needs a comma between its type and its data")?;
-        let is_base64 = head.len() >= 7 && head.is_char_boundary(head.len() - 7) && head[head.len() - 7..].eq_ignore_ascii_case(";base64");
+        let is_base64 = head.len() >= 7
+            && head.is_char_boundary(head.len() - 7)
+            && head[head.len() - 7..].eq_ignore_ascii_case(";base64");
         let bytes = if is_base64 { base64(body.as_bytes())? } else { unescape(body) };
         return Ok(Target::Inline(bytes));
     }
@@ -117,9 +119,15 @@ mod tests {
 
     #[test]
     fn base64_by_the_vectors_of_rfc_4648() {
-        for (plain, coded) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")] {
+        for (plain, coded) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")]
+        {
             assert_eq!(base64(coded.as_bytes()).unwrap(), plain.as_bytes());
-            assert_eq!(base64(coded.trim_end_matches('=').as_bytes()).unwrap(), plain.as_bytes(), "padding is optional");
+            assert_eq!(
+                base64(coded.trim_end_matches('=').as_bytes()).unwrap(),
+                plain.as_bytes(),
+                "padding is optional"
+            );
             assert_eq!(to_base64(plain.as_bytes()), coded);
         }
         assert!(base64(b"Zg==Zg").is_err() && base64(b"Z").is_err() && base64(b"Z*==").is_err());

@@ -16,6 +16,8 @@ fn pictures() -> impl Strategy<Value = Plane<[u8; 4]>> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn png_is_without_loss(picture in pictures(), srgb in any::<bool>()) {
         let file = png(&picture, PngOptions { srgb }).unwrap();

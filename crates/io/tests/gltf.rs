@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use vitral_exec::Workers;
 use vitral_io::{Error, NoFiles, ResolveError, Resolver, gltf};
 use vitral_light::{AlphaMode, Attenuation, LightKind, Reflectance};
-use vitral_math::{DVec3, DVec4};
+use vitral_math::{Aabb, DVec3, DVec4};
 use vitral_scene::{Faces, NodeTransform, Projection, Scene, World};
 
 const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/models");
@@ -121,12 +121,23 @@ fn every_shared_model_loads_as_the_manifest_says() {
         check(&scene);
         let world = World::new(&scene).unwrap();
         if let Some(triangles) = entry["triangles"].as_u64() {
-            // trimesh drops some of this file's degenerate triangles.
+            // The manifest counts each primitive as a mesh; they are parts here.
             assert_eq!(u64::from(world.facet_count), triangles, "{path}");
-            assert_eq!(world.instances.len() as u64, entry["instances"].as_u64().unwrap(), "{path}");
-            assert_eq!(scene.meshes.len() as u64, entry["meshes"].as_u64().unwrap(), "{path}");
+            let parts = |meshes: &mut dyn Iterator<Item = &vitral_scene::Mesh>| {
+                meshes.map(|m| m.parts.len() as u64).sum::<u64>()
+            };
+            assert_eq!(
+                parts(&mut world.instances.iter().map(|i| &*i.mesh)),
+                entry["instances"].as_u64().unwrap(),
+                "{path}"
+            );
+            assert_eq!(parts(&mut scene.meshes.iter().map(|m| &**m)), entry["meshes"].as_u64().unwrap(), "{path}");
+            let bounds = Aabb::from_points(world.instances.iter().flat_map(|i| {
+                let positions = i.mesh.positions.iter();
+                positions.map(|p| i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))))
+            }));
             for (k, size) in entry["extent"].as_array().unwrap().iter().enumerate() {
-                let (ours, theirs) = (world.bounds.size()[k], size.as_f64().unwrap());
+                let (ours, theirs) = (bounds.size()[k], size.as_f64().unwrap());
                 assert!((ours - theirs).abs() < 1e-3 * theirs.max(1.0), "{path}: axis {k}: {ours} against {theirs}");
             }
         } else {
@@ -143,8 +154,22 @@ fn all_primitive_modes_of_the_asset_generator() {
     let Some(folder) = shared("assimp/gltf/glTF-Asset-Generator/Mesh_PrimitiveMode") else { return };
     // Points, lines and triangles of files 00 to 15, after the README beside them.
     let expected = [
-        (1024, 0, 0), (0, 4, 0), (0, 4, 0), (0, 4, 0), (0, 0, 2), (0, 0, 2), (0, 0, 2), (1024, 0, 0),
-        (0, 4, 0), (0, 4, 0), (0, 4, 0), (0, 0, 2), (0, 0, 2), (0, 0, 2), (0, 0, 2), (0, 0, 2),
+        (1024, 0, 0),
+        (0, 4, 0),
+        (0, 4, 0),
+        (0, 4, 0),
+        (0, 0, 2),
+        (0, 0, 2),
+        (0, 0, 2),
+        (1024, 0, 0),
+        (0, 4, 0),
+        (0, 4, 0),
+        (0, 4, 0),
+        (0, 0, 2),
+        (0, 0, 2),
+        (0, 0, 2),
+        (0, 0, 2),
+        (0, 0, 2),
     ];
     for (i, expected) in expected.into_iter().enumerate() {
         let scene = load_path(&folder.join(format!("Mesh_PrimitiveMode_{i:02}.gltf"))).unwrap();
@@ -162,11 +187,22 @@ fn all_primitive_modes_of_the_asset_generator() {
 #[test]
 fn three_containers_of_one_box_are_equal() {
     let Some(root) = shared("assimp/gltf") else { return };
-    let names = ["BoxTextured-glTF/BoxTextured.gltf", "BoxTextured-glTF-Embedded/BoxTextured.gltf", "BoxTextured-glTF-Binary/BoxTextured.glb"];
+    let names = [
+        "BoxTextured-glTF/BoxTextured.gltf",
+        "BoxTextured-glTF-Embedded/BoxTextured.gltf",
+        "BoxTextured-glTF-Binary/BoxTextured.glb",
+    ];
     let [a, b, c] = names.map(|n| load_path(&root.join(n)).unwrap());
+    // The first file's sampler repeats mirrored, that of the other two does not.
+    let with_default_sampler = |scene: &Scene| {
+        let mut material = scene.materials[0].clone();
+        material.textures_mut().for_each(|t| t.sampler = vitral_frame::Sampler::default());
+        material
+    };
+    assert_eq!(b.materials, c.materials);
     for other in [&b, &c] {
         assert_eq!(a.meshes, other.meshes);
-        assert_eq!(a.materials, other.materials);
+        assert_eq!(with_default_sampler(&a), with_default_sampler(other));
         assert_eq!(a.textures[0].levels, other.textures[0].levels);
         assert_eq!(a.textures[0].encoding, other.textures[0].encoding);
     }
@@ -179,7 +215,7 @@ fn the_engine_shares_its_meshes() {
     let Some(path) = shared("assimp/gltf/2CylinderEngine-glTF-Binary/2CylinderEngine.glb") else { return };
     let scene = load_path(&path).unwrap();
     let world = World::new(&scene).unwrap();
-    assert_eq!((scene.meshes.len(), world.instances.len(), world.facet_count), (34, 115, 121_496));
+    assert_eq!((scene.meshes.len(), world.instances.len(), world.facet_count), (29, 67, 121_496));
     for workers in [Workers::single(), Workers::new(3)] {
         let again = gltf::load(&std::fs::read(&path).unwrap(), "2CylinderEngine.glb", &NoFiles, &workers).unwrap();
         assert_eq!((again.meshes, again.warnings), (scene.meshes.clone(), scene.warnings.clone()));
@@ -202,7 +238,8 @@ fn cameras_of_the_shared_file() {
 fn the_texture_transform_test_points_at_its_own_marks() {
     let Some(path) = shared("assimp/gltf/textureTransform/TextureTransformTest.gltf") else { return };
     let scene = load_path(&path).unwrap();
-    let transform = |name: &str| scene.materials.iter().find(|m| m.name == name).unwrap().base_texture.unwrap().transform;
+    let transform =
+        |name: &str| scene.materials.iter().find(|m| m.name == name).unwrap().base_texture.unwrap().transform;
     // Under the mark "correct" lies the arrow's diagonal, just beyond its tip at (0.68, 0.68) of the image.
     for (name, x, y) in [("Rotation", -0.079_048_22f32, -0.516_267_5f32), ("All", -0.07, -0.25)] {
         let [u, v] = transform(name).map(|row| row[0] * (x + 0.5) + row[1] * (0.5 - y) + row[2]);
@@ -230,23 +267,35 @@ fn a_skin_in_its_bind_pose() {
 fn the_table_of_malformed_files() {
     let Some(root) = shared("malformed/gltf") else { return };
     let fails = |path: &str, parts: &[&str]| {
-        let message = load_path(&root.join(path)).map(|_| ()).unwrap_err().to_string();
+        let message = load_path(&root.join(path)).map(|_| ()).expect_err(path).to_string();
         for part in parts {
             assert!(message.contains(part), "{path}: `{message}` should contain `{part}`");
         }
     };
-    fails("IncorrectVertexArrays/Cube.gltf", &["Cube.gltf: meshes[0].primitives[0].", "elements, POSITION has"]);
-    fails("IndexOutOfRange/IndexOutOfRange.gltf", &["meshes[0].primitives[0].indices", "the primitive has 24 vertices"]);
+    fails(
+        "IncorrectVertexArrays/Cube.gltf",
+        &["Cube.gltf: meshes[1].primitives[0]: 35 vertices, TRIANGLES need a multiple of 3"],
+    );
+    fails(
+        "IndexOutOfRange/IndexOutOfRange.gltf",
+        &["meshes[0].primitives[0].indices", "the primitive has 24 vertices"],
+    );
     fails("IndexOutOfRange/AllIndicesOutOfRange.gltf", &["meshes[0].primitives[0].indices"]);
     fails("MissingBin/BoxTextured.gltf", &["BoxTextured.gltf: needs `BoxTextured0.bin`: there is no such file"]);
     fails("RecursiveNodes/RecursiveNodes.gltf", &["nodes[0]", "its own ancestor"]);
     fails("SchemaFailures/sceneWrongType.gltf", &["scene: invalid type: string"]);
-    fails("wrongTypes/badArray.gltf", &["badArray.gltf: scenes: invalid type"]);
-    fails("wrongTypes/badExtension.gltf", &["extensions"]);
-    fails("wrongTypes/badNumber.gltf", &["nodes[0].", "invalid type"]);
+    fails("wrongTypes/badArray.gltf", &["badArray.gltf: meshes[0].primitives: invalid type: map"]);
+    fails(
+        "wrongTypes/badExtension.gltf",
+        &["materials[0].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform"],
+    );
+    fails("wrongTypes/badNumber.gltf", &["materials[0].normalTexture.scale: invalid type: string"]);
     fails("wrongTypes/badObject.gltf", &["materials[0].pbrMetallicRoughness", "invalid type"]);
     fails("wrongTypes/badString.gltf", &["scenes[0].name: invalid type: integer `42`"]);
-    fails("wrongTypes/badUint.gltf", &["materials[0].pbrMetallicRoughness.baseColorTexture.index: invalid value: integer `-1`"]);
+    fails(
+        "wrongTypes/badUint.gltf",
+        &["materials[0].pbrMetallicRoughness.baseColorTexture.index: invalid type: integer `-1`"],
+    );
 
     let loads = |path: &str, part: &str| {
         let scene = load_path(&root.join(path)).unwrap_or_else(|e| panic!("{e}"));
@@ -284,7 +333,10 @@ fn primitives_share_vertices_and_read_only_what_they_use() {
     assert_eq!(mesh.positions.len(), 4, "vertices 4 to 7, once");
     assert_eq!(mesh.positions[0], [12.0, 13.0, 14.0]);
     assert_eq!((mesh.triangles.as_slice(), mesh.lines.as_slice()), (&[[0, 1, 2], [2, 1, 3]][..], &[[3, 1]][..]));
-    assert_eq!(mesh.parts.iter().map(|p| (p.triangles.clone(), p.material)).collect::<Vec<_>>(), [(0..1, Some(1)), (1..2, None)]);
+    assert_eq!(
+        mesh.parts.iter().map(|p| (p.triangles.clone(), p.material)).collect::<Vec<_>>(),
+        [(0..1, Some(1)), (1..2, None)]
+    );
     assert_eq!((&mesh.faces, mesh.line_material, mesh.normals.is_none()), (&Faces::Triangles, Some(0), true));
 }
 
@@ -309,6 +361,28 @@ fn quantised_and_normalised_attributes() {
     assert_eq!(mesh.normals.as_ref().unwrap().values[2], [0.0, 0.0, 1.0]);
     assert_eq!(mesh.uvs[0].values[0], [0.0, 1.0]);
     assert_eq!(mesh.colors.as_ref().unwrap().values[1], [1.0, 0.0, 0.2, 1.0]);
+}
+
+#[test]
+fn attribute_counts_must_agree() {
+    let two = (floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 2, "");
+    let fails = |primitive: &str, part: &str| {
+        let rest = format!(r#"{ONE_NODE},"meshes":[{{"primitives":[{primitive}]}}]"#);
+        let message = load_text(&document(&[triangle(), two.clone()], &rest)).unwrap_err().to_string();
+        assert!(message.contains(part), "{message}");
+    };
+    let differ = "meshes[0].primitives[0].attributes.NORMAL: accessor 1 has 2 elements, POSITION has 3";
+    fails(r#"{"attributes":{"POSITION":0,"NORMAL":1}}"#, differ);
+    fails(
+        r#"{"attributes":{"POSITION":0},"targets":[{},{"POSITION":1}]}"#,
+        "primitives[0].targets[1].POSITION: accessor 1",
+    );
+    fails(
+        r#"{"attributes":{"POSITION":0,"TEXCOORD_0":0}}"#,
+        "TEXCOORD_0: accessor 0 has 3 components an element, 2 are needed",
+    );
+    fails(r#"{"attributes":{"POSITION":0},"indices":0}"#, "primitives[0].indices: accessor 0 is not SCALAR");
+    fails(r#"{"attributes":{"POSITION":0},"mode":1}"#, "3 vertices, LINES need a multiple of 2");
 }
 
 #[test]
@@ -377,13 +451,22 @@ fn materials_and_their_extensions() {
     )
     .unwrap();
     let [glass, mask, blend, opaque] = &scene.materials[..] else { panic!() };
-    assert_eq!((glass.opacity, glass.alpha_mode, glass.ior, glass.emission), (0.25, AlphaMode::Blend, 1.33, [4.0, 2.0, 0.0]));
+    assert_eq!(
+        (glass.opacity, glass.alpha_mode, glass.ior, glass.emission),
+        (0.25, AlphaMode::Blend, 1.33, [4.0, 2.0, 0.0])
+    );
     assert_eq!((mask.alpha_mode, mask.opacity, mask.double_sided), (AlphaMode::Mask { cutoff: 0.25 }, 0.5, true));
     let expected = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 0.3 };
-    assert_eq!((blend.alpha_mode, blend.opacity, blend.unlit, blend.reflectance), (AlphaMode::Blend, 0.5, true, expected));
+    assert_eq!(
+        (blend.alpha_mode, blend.opacity, blend.unlit, blend.reflectance),
+        (AlphaMode::Blend, 0.5, true, expected)
+    );
     assert_eq!((opaque.alpha_mode, opaque.opacity, opaque.base_texture), (AlphaMode::Opaque, 1.0, None));
     let told = |part: &str| scene.warnings.iter().filter(|w| w.contains(part)).count();
-    assert_eq!((told("extensions not read: KHR_materials_clearcoat"), told("missing.png"), told("no nodes")), (1, 1, 1));
+    assert_eq!(
+        (told("extensions not read: KHR_materials_clearcoat"), told("missing.png"), told("no nodes")),
+        (1, 1, 1)
+    );
 }
 
 #[test]
@@ -400,7 +483,8 @@ fn samplers_and_texture_sets() {
     let scene = gltf::load(text.as_bytes(), "a.gltf", &Memory(files), &Workers::new(2)).unwrap();
     check(&scene);
     let m = &scene.materials[0];
-    let (base, rough, normal) = (m.base_texture.unwrap(), m.metallic_roughness_texture.unwrap(), m.normal_texture.unwrap());
+    let (base, rough, normal) =
+        (m.base_texture.unwrap(), m.metallic_roughness_texture.unwrap(), m.normal_texture.unwrap());
     assert_eq!(scene.textures.len(), 2, "once as colour, once as data");
     assert_eq!((base.texture, base.uv_set, rough.texture, normal.texture), (0, 1, 1, 1));
     assert_eq!((m.normal_scale, normal.uv_set, normal.transform[0][2]), (0.5, 1, 0.5));
@@ -438,7 +522,9 @@ fn lights_shine_along_minus_z() {
 
 #[test]
 fn bad_trees_and_odd_nodes() {
-    let with = |nodes: &str| load_text(&format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}]}}"#));
+    let with = |nodes: &str| {
+        load_text(&format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}]}}"#))
+    };
     let two_parents = with(r#"{"children":[1,2]},{"children":[2]},{}"#).unwrap_err().to_string();
     assert!(two_parents.contains("nodes[1].children[0]: node 2 is a child of node 0 already"), "{two_parents}");
     assert!(with(r#"{"children":[0]}"#).unwrap_err().to_string().contains("its own ancestor"));
@@ -474,7 +560,13 @@ fn rich_document() -> String {
         (vec![0u8, 1, 2, 0], 5121, "SCALAR", 3, ""),
         (vec![0u8; 12], 5121, "VEC4", 3, ""),
         (floats(&[1.0; 12]), FLOAT, "VEC4", 3, ""),
-        (floats(&[0.5; 6]), FLOAT, "VEC2", 3, r#","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":4}}"#),
+        (
+            floats(&[0.5; 6]),
+            FLOAT,
+            "VEC2",
+            3,
+            r#","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":4}}"#,
+        ),
         (floats(&[1.0; 16]), FLOAT, "MAT4", 1, ""),
     ];
     let rest = r#""scene":0,"scenes":[{"nodes":[0,2]}],
@@ -519,7 +611,7 @@ fn survives(bytes: &[u8]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_json_never_panics(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {

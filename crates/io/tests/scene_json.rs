@@ -6,7 +6,9 @@ use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_frame::{Encoding, Filter, MipFilter, Plane, Sampler, Texture, Wrap};
 use vitral_io::{Error, NoFiles, ResolveError, Resolver, scene_json};
-use vitral_light::{AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef, Transmission};
+use vitral_light::{
+    AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef, Transmission,
+};
 use vitral_math::{DMat4, DQuat, DVec3, func};
 use vitral_scene::{Attribute, Camera, Faces, Mesh, Node, NodeTransform, Part, Projection, Scene, World};
 
@@ -53,7 +55,10 @@ fn full_mesh() -> Mesh {
             Part { name: String::new(), triangles: 2..3, material: None },
         ],
         normals: Some(Attribute { values: vec![[0.0, 0.0, 1.0]; 2], corners: Some(vec![[0, 0, 1]; 3]) }),
-        uvs: vec![Attribute::per_vertex(vec![[0.1, 0.7]; 5]), Attribute { values: vec![[0.3; 2]], corners: Some(vec![[0; 3]; 3]) }],
+        uvs: vec![
+            Attribute::per_vertex(vec![[0.1, 0.7]; 5]),
+            Attribute { values: vec![[0.3; 2]], corners: Some(vec![[0; 3]; 3]) },
+        ],
         colors: Some(Attribute::per_vertex(vec![[0.1, 0.2, 0.3, 0.4]; 5])),
         lines: vec![[0, 4]],
         points: vec![2],
@@ -99,7 +104,10 @@ fn full_lights() -> Vec<Light> {
         (LightKind::Ambient, Attenuation::None),
         (LightKind::Directional { direction }, Attenuation::InverseSquare),
         (LightKind::Point { position }, Attenuation::Clamped { c1: 1.0, c2: 0.1, c3: 0.01 }),
-        (LightKind::Spot { position, direction, cutoff: 0.7, inner: 0.1, exponent: 3.0 }, Attenuation::Range { range: 9.0 }),
+        (
+            LightKind::Spot { position, direction, cutoff: 0.7, inner: 0.1, exponent: 3.0 },
+            Attenuation::Range { range: 9.0 },
+        ),
         (
             LightKind::Area { shape: AreaShape::Disc { center: position, normal: direction, radius: 2.0 } },
             Attenuation::Gl { constant: 1.0, linear: 0.3, quadratic: 0.2 },
@@ -126,7 +134,11 @@ fn full_scene() -> Scene {
     let nodes = vec![
         Node { name: "root".to_owned(), children: vec![2, 1], ..Node::default() },
         Node {
-            transform: NodeTransform::Parts { translation: DVec3::new(0.1, 0.2, 0.3), rotation: turned, scale: DVec3::splat(1.0 / 3.0) },
+            transform: NodeTransform::Parts {
+                translation: DVec3::new(0.1, 0.2, 0.3),
+                rotation: turned,
+                scale: DVec3::splat(1.0 / 3.0),
+            },
             mesh: Some(0),
             light: Some(full_lights().remove(3)),
             ..Node::default()
@@ -216,8 +228,11 @@ const SQUARE: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl r
 #[test]
 fn references_are_followed_from_folder_to_folder() {
     let files = Memory::with(&[
-        ("parts/a.json", r#"{"vitral-scene":1,"meshes":[{"file":"obj/square.obj"}],"lights":[{"name":"lamp"}],
-            "nodes":[{"mesh":0,"translation":[0,0,1]},{"mesh":0,"translation":[0,0,2]}],"ambient":[0.5,0,0]}"#),
+        (
+            "parts/a.json",
+            r#"{"vitral-scene":1,"meshes":[{"file":"obj/square.obj"}],"lights":[{"name":"lamp"}],
+            "nodes":[{"mesh":0,"translation":[0,0,1]},{"mesh":0,"translation":[0,0,2]}],"ambient":[0.5,0,0]}"#,
+        ),
         ("parts/obj/square.obj", SQUARE),
         ("parts/obj/m.mtl", "newmtl red\nKd 1 0 0\n"),
     ]);
@@ -252,13 +267,24 @@ fn circles_depth_and_floods_are_refused() {
     fails(&Memory::default(), &refer("no.obj"), "needs `no.obj`: there is no such file");
     fails(&Memory::default(), &refer("../out.obj"), "outside the model's folder");
 
-    let chain: Vec<(String, String)> = (1..12).map(|i| (format!("{i}.json"), refer(&format!("{}.json", i + 1)))).collect();
+    let chain: Vec<(String, String)> =
+        (1..12).map(|i| (format!("{i}.json"), refer(&format!("{}.json", i + 1)))).collect();
     let deep = Memory(chain.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
     fails(&deep, &refer("1.json"), "scene files are read 8 deep");
 
     // Each file shows the next one a hundred times: 10^8 nodes.
-    let many = |to: &str| format!(r#"{{"vitral-scene":1,"meshes":[{{"file":"{to}"}}],"nodes":[{}]}}"#, vec![r#"{"mesh":0}"#; 100].join(","));
-    let flood = Memory::with(&[("1.json", &many("2.json")), ("2.json", &many("3.json")), ("3.json", &many("4.json")), ("4.json", r#"{"vitral-scene":1,"nodes":[{}]}"#)]);
+    let many = |to: &str| {
+        format!(
+            r#"{{"vitral-scene":1,"meshes":[{{"file":"{to}"}}],"nodes":[{}]}}"#,
+            vec![r#"{"mesh":0}"#; 100].join(",")
+        )
+    };
+    let flood = Memory::with(&[
+        ("1.json", &many("2.json")),
+        ("2.json", &many("3.json")),
+        ("3.json", &many("4.json")),
+        ("4.json", r#"{"vitral-scene":1,"nodes":[{}]}"#),
+    ]);
     fails(&flood, &many("1.json"), "there are more than 1048576 nodes");
 }
 
@@ -272,28 +298,36 @@ fn what_is_wrong_is_told_with_its_place() {
         (r#"{"vitral-scene":1,"nodes":[{"mesh":3}]}"#, "nodes[0].mesh: mesh 3, there are 0"),
         (r#"{"vitral-scene":1,"nodes":[{"camera":0}]}"#, "nodes[0].camera: camera 0, there are 0"),
         (r#"{"vitral-scene":1,"nodes":[{"children":[0]}]}"#, "nodes[0]: the node is its own ancestor"),
-        (r#"{"vitral-scene":1,"nodes":[{"children":[2]},{"children":[2]},{}]}"#, "nodes[1].children[0]: node 2 has a parent"),
+        (
+            r#"{"vitral-scene":1,"nodes":[{"children":[2]},{"children":[2]},{}]}"#,
+            "nodes[1].children[0]: node 2 has a parent",
+        ),
         (r#"{"vitral-scene":1,"nodes":[{}],"roots":[0,0]}"#, "roots[1]: node 0 is in the tree already"),
         (r#"{"vitral-scene":1,"nodes":[{"matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}]}"#, "0 0 0 1 as its last row"),
         (r#"{"vitral-scene":1,"nodes":[{"rotation":[0,0,0,0]}]}"#, "is zero"),
-        (r#"{"vitral-scene":1,"materials":[{"opacity":1e39}]}"#, "materials[0]: a number is not finite"),
+        (r#"{"vitral-scene":1,"materials":[{"opacity":1e39}]}"#, "materials[0].opacity: number out of range"),
         (r#"{"vitral-scene":1,"materials":[{"base-texture":{"texture":0}}]}"#, "materials[0]: texture 0, there are 0"),
         (r#"{"vitral-scene":1,"meshes":[{"positions":[],"points":[0]}]}"#, "meshes[0]: "),
         (r#"{"vitral-scene":1,"meshes":[{"points":[],"material":0}]}"#, "meshes[0]: material 0, there are 0"),
         (r#"{"vitral-scene":1,"meshes":[{"builtin":"cow"}]}"#, "no built-in scene `cow`; there are cubs, sphere"),
         (r#"{"vitral-scene":1,"textures":[{}]}"#, "textures[0]: either `file` or `data`"),
-        (r#"{"vitral-scene":1,"lights":[{"diffuse":[1e39,0,0]}]}"#, "lights[0]"),
-        (r#"{"vitral-scene":1,"cameras":[{"position":[0,0,1],"focal-point":[0,0,0],"view-up":[0,1,0],"projection":{"type":"perspective","view-angle":4}}]}"#, "cameras[0].projection"),
+        (r#"{"vitral-scene":1,"lights":[{"diffuse":[1e39,0,0]}]}"#, "lights[0].diffuse[0]: number out of range"),
+        (
+            r#"{"vitral-scene":1,"cameras":[{"position":[0,0,1],"focal-point":[0,0,0],"view-up":[0,1,0],"projection":{"type":"perspective","view-angle":4}}]}"#,
+            "cameras[0].projection",
+        ),
     ] {
         let message = load(text).map(|_| ()).unwrap_err().to_string();
         assert!(message.contains(part), "{text}\n{message}");
     }
-    let missing = load(r#"{"vitral-scene":1,"textures":[{"file":"no.png"}],"materials":[{"base-texture":{"texture":0}}]}"#).unwrap();
+    let missing =
+        load(r#"{"vitral-scene":1,"textures":[{"file":"no.png"}],"materials":[{"base-texture":{"texture":0}}]}"#)
+            .unwrap();
     assert_eq!((missing.warnings.len(), missing.materials[0].base_texture, missing.textures.len()), (1, None, 0));
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_files_never_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {

@@ -12,7 +12,7 @@ use vitral_light::{AlphaMode, Material};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::geometry::Screen;
 use vitral_raster::{Batch, Draw, SamplePattern, ScreenVertex, Setup, Viewport};
-use vitral_scene::{Camera, Instance, ViewTransform};
+use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
 
 /// One instance's triangles, ready for the rasteriser.
 #[derive(Clone, Debug)]
@@ -70,9 +70,7 @@ impl<'a> PreparedView<'a> {
         for visible in frustum::cull(session, &clip_from_world, settings.cull.frustum, counters) {
             let instance = &session.world.instances[visible.instance];
             let solid = |double_sided: bool| {
-                settings.cull.back_face
-                    && !double_sided
-                    && backface::applies(session.solidity(instance.mesh_index, &execution.workers), double_sided)
+                settings.cull.back_face && !double_sided && is_solid(session, instance, camera, &view, execution)
             };
             let draws = if surfaces {
                 draws(session, instance, &visible.ranges, &clip_from_world, settings, solid)
@@ -118,6 +116,18 @@ impl<'a> PreparedView<'a> {
         batch.add(&draw, &vertices, 0..1, &self.screen);
         batch.setups().to_vec()
     }
+}
+
+/// Whether only the outside of an instance can be seen: its mesh is solid, and the near plane does not cut it open.
+pub fn is_solid(
+    session: &Session,
+    instance: &Instance,
+    camera: &Camera,
+    view: &ViewTransform,
+    execution: &Execution,
+) -> bool {
+    depth_range(camera, &instance.bounds).0 > view.near
+        && backface::applies(session.solidity(instance.mesh_index, &execution.workers))
 }
 
 /// Whether a transform turns left-handed into right-handed.
@@ -180,10 +190,4 @@ fn draws<'a>(
         }
     }
     draws
-}
-
-fn depth_range(camera: &Camera, bounds: &vitral_math::Aabb) -> (f64, f64) {
-    let m = camera.view_from_world();
-    let d = bounds.corners().map(|c| -m.transform_point3(c).z);
-    (d.iter().copied().fold(f64::INFINITY, f64::min), d.iter().copied().fold(f64::NEG_INFINITY, f64::max))
 }

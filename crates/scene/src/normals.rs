@@ -9,7 +9,7 @@
 //!
 //! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
 //! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
-//! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see [`crate::corner_fans`]).
+//! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see `corner_fans`).
 //! Source: Gouraud 1971 (the average); Thürmer & Wüthrich 1998 (the angle as weight); Newell's normal after
 //! Sutherland, Sproull & Schumacker 1974; arc tangent: Abramowitz & Stegun 4.4.49.
 //!

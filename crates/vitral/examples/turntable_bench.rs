@@ -18,7 +18,8 @@ struct Plan {
 impl Plan {
     fn from_arguments() -> Option<Self> {
         let mut arguments = std::env::args().skip(1);
-        let (model, frames, samples) = (arguments.next()?, arguments.next()?.parse().ok()?, arguments.next()?.parse().ok()?);
+        let (model, frames, samples) =
+            (arguments.next()?, arguments.next()?.parse().ok()?, arguments.next()?.parse().ok()?);
         let size = match arguments.next() {
             Some(text) => {
                 let (width, height) = text.split_once('x')?;

@@ -81,15 +81,7 @@ fn prepare<'a>(
     counters: &mut CullCounters,
 ) -> PreparedView<'a> {
     let pattern = SamplePattern::new(1);
-    PreparedView::new(
-        renderer.session(),
-        camera,
-        &renderer.settings,
-        viewport,
-        pattern,
-        renderer.execution(),
-        counters,
-    )
+    PreparedView::new(renderer.session(), camera, &renderer.settings, viewport, pattern, renderer.execution(), counters)
 }
 
 /// Rows of a matrix, as they are written on paper.
@@ -170,9 +162,7 @@ fn culled(view: &PreparedView<'_>, counters: &CullCounters) -> Value {
         };
         draws.iter().map(draw).collect::<Vec<_>>()
     };
-    let instance = |i: &vitral_render::prepare::PreparedInstance<'_>| {
-        json!({"instance": i.instance, "opaque": draws(&i.opaque), "transparent": draws(&i.layered)})
-    };
+    let instance = |i: &vitral_render::prepare::PreparedInstance<'_>| json!({"instance": i.instance, "opaque": draws(&i.opaque), "transparent": draws(&i.layered)});
     json!({"kept": view.instances.iter().map(instance).collect::<Vec<_>>(), "counters": counters})
 }
 
@@ -247,7 +237,11 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
         (renderer.settings.width, renderer.settings.height) = (64, 48);
         let mut files = BTreeMap::new();
-        dump(&mut renderer, |name, bytes| { files.insert(name.to_owned(), bytes.to_vec()); Ok(()) }).unwrap();
+        dump(&mut renderer, |name, bytes| {
+            files.insert(name.to_owned(), bytes.to_vec());
+            Ok(())
+        })
+        .unwrap();
         assert!(!renderer.settings.channels.depth, "the settings are as before");
         files
     }

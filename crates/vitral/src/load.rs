@@ -95,7 +95,8 @@ pub fn load_bytes(
 /// # Errors
 /// [`Error::Read`] for a name that no scene has; the hint lists the names.
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
-    let missing = || Error::Read { path: format!("builtin:{name}").into(), source: std::io::ErrorKind::NotFound.into() };
+    let missing =
+        || Error::Read { path: format!("builtin:{name}").into(), source: std::io::ErrorKind::NotFound.into() };
     builtin::scene(name).ok_or_else(missing)
 }
 
@@ -150,7 +151,8 @@ mod tests {
 
     #[test]
     fn l22_no_normals_means_the_current_normal() {
-        let mut cube = load("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() }, &Workers::single());
+        let mut cube =
+            load("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() }, &Workers::single());
         let mesh = cube.as_mut().unwrap().meshes.swap_remove(0);
         assert_eq!(mesh.normals.as_ref().unwrap().at(7, &mesh.triangles), [[0.0, 0.0, 1.0]; 3]);
     }
@@ -165,6 +167,9 @@ mod tests {
 
     #[test]
     fn stl_files_stand_on_z() {
-        assert_eq!([default_up("a/b.STL"), default_up("b.obj"), default_up("builtin:cubs")], [Axis::PlusZ, Axis::PlusY, Axis::PlusY]);
+        assert_eq!(
+            [default_up("a/b.STL"), default_up("b.obj"), default_up("builtin:cubs")],
+            [Axis::PlusZ, Axis::PlusY, Axis::PlusY]
+        );
     }
 }

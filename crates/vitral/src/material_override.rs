@@ -111,7 +111,8 @@ pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &
 
 /// The materials of this name; at least one.
 fn find(scene: &mut Scene, name: &str) -> Result<Vec<usize>, Error> {
-    let found: Vec<usize> = (0..scene.materials.len()).filter(|&i| name == "*" || scene.materials[i].name == name).collect();
+    let found: Vec<usize> =
+        (0..scene.materials.len()).filter(|&i| name == "*" || scene.materials[i].name == name).collect();
     if !found.is_empty() {
         return Ok(found);
     }
@@ -127,7 +128,11 @@ fn find(scene: &mut Scene, name: &str) -> Result<Vec<usize>, Error> {
     }
     let mut names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).filter(|n| !n.is_empty()).collect();
     names.extend(bare.then_some("default"));
-    let hint = if names.is_empty() { "the scene has no named materials".to_owned() } else { format!("there are {}", list(names)) };
+    let hint = if names.is_empty() {
+        "the scene has no named materials".to_owned()
+    } else {
+        format!("there are {}", list(names))
+    };
     Err(Error::usage(format!("there is no material `{name}`"), hint))
 }
 

@@ -25,7 +25,9 @@ pub fn view_name(view: View) -> &'static str {
 /// [`Error::Usage`] for any other name.
 pub fn view(name: &str) -> Result<View, Error> {
     let found = VIEWS.iter().find(|(_, n)| *n == name).map(|(v, _)| *v);
-    found.ok_or_else(|| Error::usage(format!("there is no view `{name}`"), format!("choose {}", list(VIEWS.map(|v| v.1)))))
+    found.ok_or_else(|| {
+        Error::usage(format!("there is no view `{name}`"), format!("choose {}", list(VIEWS.map(|v| v.1))))
+    })
 }
 
 /// The axis of this name: `+Y`, `-z`, `x`, ...

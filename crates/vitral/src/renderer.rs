@@ -226,7 +226,12 @@ mod tests {
         let away = |i: usize| (cameras[i].position - cameras[i].focal_point).normalize();
         assert!(away(0).abs_diff_eq(DVec3::Z, 1e-12) && away(1).abs_diff_eq(DVec3::X, 1e-12));
         let mut seen = Vec::new();
-        renderer.turntable(3, |i, rendered| { seen.push((i, rendered.frame.color.is_some())); Ok(()) }).unwrap();
+        renderer
+            .turntable(3, |i, rendered| {
+                seen.push((i, rendered.frame.color.is_some()));
+                Ok(())
+            })
+            .unwrap();
         assert_eq!(seen, [(0, true), (1, true), (2, true)]);
         let stop = renderer.turntable(3, |_, _| Err(Error::usage("stop", "")));
         assert_eq!(stop.unwrap_err().to_string(), "stop");

@@ -3,8 +3,8 @@
 //! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
-use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use crate::load::{default_up, load};
+use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -102,7 +102,8 @@ impl State {
     /// A model that cannot be read; an override that names what is not there; no model at all.
     pub fn load_scene(&self, workers: &Workers) -> Result<Scene, Error> {
         let mut scenes = self.models.iter().map(|model| load(model, &self.load, workers));
-        let mut scene = scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
+        let mut scene =
+            scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
         for other in scenes {
             scene.append(other?);
         }
@@ -158,7 +159,8 @@ mod tests {
     #[test]
     fn a_state_comes_back_from_json() {
         let mut state = State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
-        state.viewpoint = Viewpoint { view: View::Top, up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
+        state.viewpoint =
+            Viewpoint { view: View::Top, up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
         state.settings.background = Background::Color { color: [0.25, 0.5, 1.0] };
         state.lights = Some(vitral_scene::lab::lights());
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
@@ -185,7 +187,8 @@ mod tests {
     fn an_overlay_changes_only_what_it_names() {
         let mut state = State { models: vec!["a.obj".into()], ..State::default() };
         state.settings.shading = Shading::Flat;
-        let text = r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
+        let text =
+            r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
         state.overlay(text, "c").unwrap();
         assert_eq!((state.settings.width, state.settings.height, state.settings.shading), (99, 768, Shading::Flat));
         assert_eq!((state.settings.background, state.viewpoint.view), (Background::Transparent, View::Left));

@@ -115,7 +115,10 @@ impl Viewpoint {
         }
         let parallel = self.orthographic;
         if clip[0] >= clip[1] || (self.clip.is_some() && !parallel && clip[0] <= 0.0) {
-            return Err(Error::usage(format!("clipping planes at {} and {}", clip[0], clip[1]), "0 < near < far is required"));
+            return Err(Error::usage(
+                format!("clipping planes at {} and {}", clip[0], clip[1]),
+                "0 < near < far is required",
+            ));
         }
         Ok(())
     }

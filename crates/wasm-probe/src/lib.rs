@@ -71,7 +71,8 @@ fn draw(level: Level) -> Vec<u8> {
         ..smooth.clone()
     };
     // From close by, so that facets are clipped, too.
-    let near = Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };
+    let near =
+        Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };
     let mut frame = |settings: &Settings, camera: Camera| {
         let lights = session.world().lights.clone();
         let shot = Shot { camera, lights: &lights, ambient: [0.05; 3] };

@@ -48,15 +48,12 @@ fn over_white(picture: &Plane<[u8; 4]>) -> Vec<u8> {
         let a = f32::from(a) / 255.0;
         color::byte_from_unit(color::srgb_from_linear(linear[usize::from(c)] * a + (1.0 - a)))
     };
-    let mut rgb = Vec::with_capacity(picture.data().len() * 3);
-    for &[r, g, b, a] in picture.data() {
-        match a {
-            255 => rgb.extend([r, g, b]),
-            0 => rgb.extend([255; 3]),
-            _ => rgb.extend([r, g, b].map(|c| mixed(c, a))),
-        }
-    }
-    rgb
+    let pixel = |&[r, g, b, a]: &[u8; 4]| match a {
+        255 => [r, g, b],
+        0 => [255; 3],
+        _ => [r, g, b].map(|c| mixed(c, a)),
+    };
+    picture.data().iter().map(pixel).collect::<Vec<_>>().into_flattened()
 }
 
 #[cfg(test)]

@@ -45,7 +45,9 @@ mod tests {
         let file = npy_u32(&Plane::from_rows(2, 1, vec![1, 0x0102_0304]).unwrap());
         assert_eq!(&file[..10], b"\x93NUMPY\x01\x00\x76\x00");
         let text = std::str::from_utf8(&file[10..128]).unwrap();
-        assert!(text.starts_with("{'descr': '<u4', 'fortran_order': False, 'shape': (1, 2), }  ") && text.ends_with(" \n"));
+        assert!(
+            text.starts_with("{'descr': '<u4', 'fortran_order': False, 'shape': (1, 2), }  ") && text.ends_with(" \n")
+        );
         assert_eq!(&file[128..], [1, 0, 0, 0, 4, 3, 2, 1]);
         let normals = npy_f32x3(&Plane::from_rows(1, 1, vec![[1.0, 0.0, -1.0]]).unwrap());
         assert!(std::str::from_utf8(&normals[10..128]).unwrap().contains("'shape': (1, 1, 3)"));

@@ -49,7 +49,14 @@ pub fn png16_gray(plane: &Plane<u16>) -> Result<Vec<u8>, Error> {
     write(plane.width(), plane.height(), ColorType::Grayscale, BitDepth::Sixteen, data.as_flattened(), options)
 }
 
-fn write(width: u32, height: u32, color: ColorType, depth: BitDepth, data: &[u8], options: PngOptions) -> Result<Vec<u8>, Error> {
+fn write(
+    width: u32,
+    height: u32,
+    color: ColorType,
+    depth: BitDepth,
+    data: &[u8],
+    options: PngOptions,
+) -> Result<Vec<u8>, Error> {
     check_sides(width, height, i32::MAX as u32, "PNG")?;
     let failed = |e: png::EncodingError| Error::Encode { what: format!("PNG: {e}") };
     let mut out = Vec::with_capacity(data.len() / 4 + 1024);

@@ -25,7 +25,8 @@ pub fn ppm(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
 pub(crate) fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     let bad = |at: usize, what: &str| Error::malformed(file, Place::Byte(at as u64), what);
     let mut at = 2;
-    let mut number = || read_number(bytes, &mut at).ok_or_else(|| bad(at, "the header needs width, height and largest value"));
+    let mut number =
+        || read_number(bytes, &mut at).ok_or_else(|| bad(at, "the header needs width, height and largest value"));
     let (width, height, largest) = (number()?, number()?, number()?);
     check_size(width, height, file)?;
     if !(1..=65_535).contains(&largest) {
@@ -55,7 +56,11 @@ pub(crate) fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> 
 fn read_number(bytes: &[u8], at: &mut usize) -> Option<u32> {
     loop {
         match bytes.get(*at)? {
-            b'#' => while *bytes.get(*at)? != b'\n' { *at += 1 },
+            b'#' => {
+                while *bytes.get(*at)? != b'\n' {
+                    *at += 1
+                }
+            }
             b if b.is_ascii_whitespace() => *at += 1,
             _ => break,
         }

@@ -168,7 +168,8 @@ impl<'a> Source<'a> {
         };
         let component = component.0;
         if shape.multiplicity() != components {
-            let what = format!("accessor {index} has {} components an element, {components} are needed", shape.multiplicity());
+            let what =
+                format!("accessor {index} has {} components an element, {components} are needed", shape.multiplicity());
             return Err(self.error(user, what));
         }
         let count = self.count(index)?;
@@ -252,7 +253,10 @@ impl Elements<'_> {
         };
         if self.stride == N * S {
             // Without gaps the bytes are walked in one go.
-            return self.bytes[range.start * self.stride..range.end * self.stride].chunks_exact(N * S).map(one).collect();
+            return self.bytes[range.start * self.stride..range.end * self.stride]
+                .chunks_exact(N * S)
+                .map(one)
+                .collect();
         }
         range.map(|i| one(&self.bytes[i * self.stride..][..N * S])).collect()
     }
@@ -287,7 +291,8 @@ mod tests {
 
     #[test]
     fn strided_and_normalised() {
-        let accessor = r#"{"bufferView":0,"byteOffset":1,"componentType":5121,"count":3,"type":"VEC2","normalized":true}"#;
+        let accessor =
+            r#"{"bufferView":0,"byteOffset":1,"componentType":5121,"count":3,"type":"VEC2","normalized":true}"#;
         let view = r#"{"buffer":0,"byteLength":12,"byteStride":4}"#;
         with(accessor, view, |s| {
             let read = s.floats::<2>(0, 1..3, Integers::AsDeclared, "x").unwrap();
@@ -307,9 +312,8 @@ mod tests {
     #[test]
     fn nothing_is_read_beyond_the_view() {
         let count = |n: u64, offset: u64| {
-            let accessor = format!(
-                r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5125,"count":{n},"type":"SCALAR"}}"#
-            );
+            let accessor =
+                format!(r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5125,"count":{n},"type":"SCALAR"}}"#);
             with(&accessor, WHOLE, |s| s.unsigned::<1>(0, 0..0, "x").map_err(|e| e.to_string()))
         };
         assert!(count(3, 0).is_ok() && count(0, 12).is_ok());

@@ -20,7 +20,10 @@ impl<'a> Buffers<'a> {
         for (i, buffer) in document.root.buffers.iter().enumerate() {
             let place = Place::Json(format!("buffers[{i}]"));
             let bytes = match (&buffer.uri, document.binary) {
-                (Some(uri), _) => Cow::Owned(read_uri(uri, file, &place, resolver)?),
+                (Some(uri), _) => {
+                    let target = uri::resolve(uri).map_err(|what| Error::malformed(file, place.clone(), what))?;
+                    Cow::Owned(read_target(target, file, resolver)?)
+                }
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
                 (None, _) => return Err(Error::malformed(file, place, "neither a uri nor the binary chunk of a GLB")),
             };
@@ -55,12 +58,12 @@ impl<'a> Buffers<'a> {
 }
 
 /// The bytes that a URI of a model stands for.
-pub(crate) fn read_uri(uri: &str, file: &str, place: &Place, resolver: &dyn Resolver) -> Result<Vec<u8>, Error> {
-    match uri::resolve(uri).map_err(|what| Error::malformed(file, place.clone(), what))? {
+pub(crate) fn read_target(target: Target, file: &str, resolver: &dyn Resolver) -> Result<Vec<u8>, Error> {
+    match target {
         Target::Inline(bytes) => Ok(bytes),
         Target::File(path) => resolver.read(&path).map_err(|why| Error::Missing {
             file: file.to_owned(),
-            needed: path.clone(),
+            needed: path,
             why: why.to_string(),
         }),
     }

@@ -47,7 +47,12 @@ pub(crate) fn morph(
 }
 
 /// The matrices that carry a mesh's vertices with each joint, world space.
-pub(crate) fn joint_matrices(source: &Source<'_>, skin: &Skin, index: usize, worlds: &[DMat4]) -> Result<Vec<DMat4>, Error> {
+pub(crate) fn joint_matrices(
+    source: &Source<'_>,
+    skin: &Skin,
+    index: usize,
+    worlds: &[DMat4],
+) -> Result<Vec<DMat4>, Error> {
     let joints = skin.joints.len();
     let inverse_bind = match skin.inverse_bind_matrices {
         None => vec![DMat4::IDENTITY; joints],

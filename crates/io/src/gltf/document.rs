@@ -197,14 +197,26 @@ mod tests {
     #[test]
     fn places_are_told() {
         let head = r#"{"asset":{"version":"2.0"}"#;
-        assert_eq!(error(&format!("{head},\"scene\":\"x\"}}")), "a.gltf: scene: invalid type: string \"x\", expected index into child of root");
+        assert_eq!(
+            error(&format!("{head},\"scene\":\"x\"}}")),
+            "a.gltf: scene: invalid type: string \"x\", expected index into child of root"
+        );
         assert!(error("{\n\"asset\": }").starts_with("a.gltf: line 2: column "));
         assert!(error(r#"{"asset":{"version":"1.0"}}"#).contains("version 1.0"));
-        assert_eq!(error(&format!("{head},\"nodes\":[{{\"mesh\":7}}]}}")), "a.gltf: nodes[0].mesh: the index points at nothing");
+        assert_eq!(
+            error(&format!("{head},\"nodes\":[{{\"mesh\":7}}]}}")),
+            "a.gltf: nodes[0].mesh: the index points at nothing"
+        );
         let position = r#","meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}]}"#;
-        assert_eq!(error(&format!("{head}{position}")), "a.gltf: meshes[0].primitives[0].attributes.POSITION: accessor 9, there are 0");
+        assert_eq!(
+            error(&format!("{head}{position}")),
+            "a.gltf: meshes[0].primitives[0].attributes.POSITION: accessor 9, there are 0"
+        );
         let draco = r#","extensionsRequired":["KHR_draco_mesh_compression"]}"#;
-        assert_eq!(error(&format!("{head}{draco}")), "a.gltf: requires KHR_draco_mesh_compression, which is not supported");
+        assert_eq!(
+            error(&format!("{head}{draco}")),
+            "a.gltf: requires KHR_draco_mesh_compression, which is not supported"
+        );
     }
 
     #[test]

@@ -66,12 +66,18 @@ impl Attributes {
             unread.sort();
             warnings.push(format!("{}: {path}: {} not used", source.file, unread.join(", ")));
         }
-        let influences = (0..JOINT_SETS)
-            .filter_map(|set| get(Semantic::Joints(set)).zip(get(Semantic::Weights(set))))
-            .collect();
+        let influences =
+            (0..JOINT_SETS).filter_map(|set| get(Semantic::Joints(set)).zip(get(Semantic::Weights(set)))).collect();
         let targets = primitive.targets.iter().flatten();
         let targets = targets.map(|t| (t.positions.map(|a| a.value()), t.normals.map(|a| a.value()))).collect();
-        let found = Self { positions, normals: get(Semantic::Normals), uvs, colors: get(Semantic::Colors(0)), influences, targets };
+        let found = Self {
+            positions,
+            normals: get(Semantic::Normals),
+            uvs,
+            colors: get(Semantic::Colors(0)),
+            influences,
+            targets,
+        };
         found.check_counts(source, path)?;
         Ok(Some(found))
     }
@@ -119,16 +125,23 @@ impl Attributes {
 
 impl Outline {
     /// Reads the indices of a primitive and finds the vertices that it uses.
-    pub(crate) fn read(source: &Source<'_>, primitive: &Primitive, attributes: Attributes, path: &str) -> Result<Self, Error> {
+    pub(crate) fn read(
+        source: &Source<'_>,
+        primitive: &Primitive,
+        attributes: Attributes,
+        path: &str,
+    ) -> Result<Self, Error> {
         let vertices = source.count(attributes.positions)?;
         let Checked::Valid(mode) = primitive.mode else {
             return Err(source.error(format!("{path}.mode"), "unknown mode"));
         };
         let Some(accessor) = primitive.indices else {
+            check_whole(source, mode, vertices, path)?;
             return Ok(Self { attributes, mode, indices: None, used: 0..vertices });
         };
         let path = format!("{path}.indices");
         let accessor = accessor.value();
+        check_whole(source, mode, source.count(accessor)?, &path)?;
         if source.shape(accessor) != Some(Type::Scalar) {
             return Err(source.error(path, format!("accessor {accessor} is not SCALAR")));
         }
@@ -150,9 +163,8 @@ impl Outline {
         self.indices.as_ref().map_or(self.used.len(), Vec::len)
     }
 
-    /// Adds what the primitive draws to `mesh`; its vertex `start` is vertex `base` of the mesh. Gives the number of
-    /// vertices at the end that do not make a whole primitive.
-    pub(crate) fn add_to(&self, mesh: &mut Mesh, base: u32, start: u32) -> usize {
+    /// Adds what the primitive draws to `mesh`; its vertex `start` is vertex `base` of the mesh.
+    pub(crate) fn add_to(&self, mesh: &mut Mesh, base: u32, start: u32) {
         let n = self.len();
         let at = |i: usize| match &self.indices {
             Some(indices) => indices[i] - start + base,
@@ -172,11 +184,6 @@ impl Outline {
             })),
             Mode::TriangleFan => mesh.triangles.extend((2..n).map(|i| -> Corners { [at(i - 1), at(i), at(0)] })),
         }
-        match self.mode {
-            Mode::Lines => n % 2,
-            Mode::Triangles => n % 3,
-            _ => 0,
-        }
     }
 
     /// Whether the primitive is made of triangles.
@@ -190,34 +197,51 @@ impl Outline {
     }
 }
 
+/// Lines come in pairs of vertices, triangles in threes.
+fn check_whole(source: &Source<'_>, mode: Mode, vertices: usize, path: &str) -> Result<(), Error> {
+    let (of, name) = match mode {
+        Mode::Lines => (2, "LINES"),
+        Mode::Triangles => (3, "TRIANGLES"),
+        _ => return Ok(()),
+    };
+    if vertices.is_multiple_of(of) {
+        return Ok(());
+    }
+    Err(source.error(path, format!("{vertices} vertices, {name} need a multiple of {of}")))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn outline(mode: Mode, indices: Option<Vec<u32>>) -> Outline {
-        let attributes =
-            Attributes { positions: 0, normals: None, uvs: [None; 2], colors: None, influences: vec![], targets: vec![] };
+        let attributes = Attributes {
+            positions: 0,
+            normals: None,
+            uvs: [None; 2],
+            colors: None,
+            influences: vec![],
+            targets: vec![],
+        };
         Outline { attributes, mode, indices, used: 0..5 }
     }
 
-    fn drawn(mode: Mode, indices: Option<Vec<u32>>) -> (Mesh, usize) {
+    fn drawn(mode: Mode, indices: Option<Vec<u32>>) -> Mesh {
         let mut mesh = Mesh::default();
-        let left = outline(mode, indices).add_to(&mut mesh, 10, 0);
-        (mesh, left)
+        outline(mode, indices).add_to(&mut mesh, 10, 0);
+        mesh
     }
 
     #[test]
     fn every_mode_by_hand() {
-        assert_eq!(drawn(Mode::Points, None).0.points, [10, 11, 12, 13, 14]);
-        assert_eq!(drawn(Mode::Lines, None).0.lines, [[10, 11], [12, 13]]);
-        assert_eq!(drawn(Mode::Lines, None).1, 1);
-        assert_eq!(drawn(Mode::LineStrip, Some(vec![4, 0, 2])).0.lines, [[14, 10], [10, 12]]);
-        assert_eq!(drawn(Mode::LineLoop, Some(vec![4, 0, 2])).0.lines, [[14, 10], [10, 12], [12, 14]]);
-        assert_eq!(drawn(Mode::LineLoop, Some(vec![4])).0.lines, [[0; 2]; 0]);
-        assert_eq!(drawn(Mode::Triangles, None).0.triangles, [[10, 11, 12]]);
-        assert_eq!(drawn(Mode::Triangles, None).1, 2);
-        assert_eq!(drawn(Mode::TriangleStrip, None).0.triangles, [[10, 11, 12], [11, 13, 12], [12, 13, 14]]);
-        assert_eq!(drawn(Mode::TriangleFan, None).0.triangles, [[11, 12, 10], [12, 13, 10], [13, 14, 10]]);
-        assert_eq!(drawn(Mode::TriangleFan, Some(vec![])).0.triangles, [[0; 3]; 0]);
+        assert_eq!(drawn(Mode::Points, None).points, [10, 11, 12, 13, 14]);
+        assert_eq!(drawn(Mode::Lines, Some(vec![0, 1, 2, 3])).lines, [[10, 11], [12, 13]]);
+        assert_eq!(drawn(Mode::LineStrip, Some(vec![4, 0, 2])).lines, [[14, 10], [10, 12]]);
+        assert_eq!(drawn(Mode::LineLoop, Some(vec![4, 0, 2])).lines, [[14, 10], [10, 12], [12, 14]]);
+        assert_eq!(drawn(Mode::LineLoop, Some(vec![4])).lines, [[0; 2]; 0]);
+        assert_eq!(drawn(Mode::Triangles, Some(vec![4, 0, 2])).triangles, [[14, 10, 12]]);
+        assert_eq!(drawn(Mode::TriangleStrip, None).triangles, [[10, 11, 12], [11, 13, 12], [12, 13, 14]]);
+        assert_eq!(drawn(Mode::TriangleFan, None).triangles, [[11, 12, 10], [12, 13, 10], [13, 14, 10]]);
+        assert_eq!(drawn(Mode::TriangleFan, Some(vec![])).triangles, [[0; 3]; 0]);
     }
 }

@@ -44,7 +44,23 @@ pub(crate) fn read(
     };
     apply_extensions(source, json, &path, &mut material, warnings);
 
-    // Colours are sRGB in their images, all other quantities linear.
+    ask_textures(source, json, &path, &mut material, wanted, warnings)?;
+    if json.occlusion_texture.is_some() {
+        warnings.push(format!("{}: {path}: the occlusion texture is not used", source.file));
+    }
+    Ok(material)
+}
+
+/// Asks for the textures. Colours are sRGB in their images, all other quantities linear.
+fn ask_textures(
+    source: &Source<'_>,
+    json: &JsonMaterial,
+    path: &str,
+    material: &mut Material,
+    wanted: &mut Wanted,
+    warnings: &mut Vec<String>,
+) -> Result<(), Error> {
+    let pbr = &json.pbr_metallic_roughness;
     let mut ask = |info: &Option<Info>, encoding, name: &str| -> Option<TextureRef> {
         let (info, path) = (info.as_ref()?, format!("{path}.{name}"));
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
@@ -65,14 +81,17 @@ pub(crate) fn read(
         material.normal_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
         material.normal_scale = finite(normal.scale, 1.0);
     }
-    if json.occlusion_texture.is_some() {
-        warnings.push(format!("{}: {path}: the occlusion texture is not used", source.file));
-    }
-    Ok(material)
+    Ok(())
 }
 
 /// Emission, transmission, index of refraction, unlit.
-fn apply_extensions(source: &Source<'_>, json: &JsonMaterial, path: &str, material: &mut Material, warnings: &mut Vec<String>) {
+fn apply_extensions(
+    source: &Source<'_>,
+    json: &JsonMaterial,
+    path: &str,
+    material: &mut Material,
+    warnings: &mut Vec<String>,
+) {
     let mut warn = |what: &str| warnings.push(format!("{}: {path}: {what}", source.file));
     let extensions = json.extensions.clone().unwrap_or_default();
     let strength = extensions.emissive_strength.map_or(1.0, |e| finite(e.emissive_strength.0, 1.0).max(0.0));

@@ -98,7 +98,12 @@ impl Plan {
     }
 
     /// Builds the mesh in a pose. `joints` are the matrices of the pose's skin.
-    pub(crate) fn build(&self, source: &Source<'_>, pose: &Pose, joints: Option<&[DMat4]>) -> Result<(Mesh, Vec<String>), Error> {
+    pub(crate) fn build(
+        &self,
+        source: &Source<'_>,
+        pose: &Pose,
+        joints: Option<&[DMat4]>,
+    ) -> Result<(Mesh, Vec<String>), Error> {
         let mut mesh = Mesh { name: self.name.clone(), faces: Faces::Triangles, ..Mesh::default() };
         let mut warnings = Vec::new();
         self.add_topology(source, &mut mesh, &mut warnings);
@@ -115,7 +120,8 @@ impl Plan {
         let infinite = mesh.positions.iter().filter(|p| !p.iter().all(|c| c.is_finite())).count();
         if infinite > 0 {
             let total = mesh.positions.len();
-            warnings.push(format!("{label}: {infinite} of {total} positions are not finite; what uses them is not drawn"));
+            warnings
+                .push(format!("{label}: {infinite} of {total} positions are not finite; what uses them is not drawn"));
         }
         mesh.normals = normals::assemble(&self.blocks, block_normals, &mesh, &label, &mut warnings);
         Ok((mesh, warnings))
@@ -126,10 +132,7 @@ impl Plan {
         let mut line_material = None;
         for (outline, block, material) in &self.outlines {
             let (block, first) = (&self.blocks[*block], mesh.triangles.len() as u32);
-            let left = outline.add_to(mesh, block.base, block.range.start as u32);
-            if left > 0 {
-                warnings.push(format!("{}: {}: {left} vertices at the end make no whole primitive", source.file, block.path));
-            }
+            outline.add_to(mesh, block.base, block.range.start as u32);
             if outline.is_surface() {
                 let triangles = first..mesh.triangles.len() as u32;
                 mesh.parts.push(Part { name: String::new(), triangles, material: *material });
@@ -144,7 +147,12 @@ impl Plan {
     }
 
     /// Adds vertex colours and texture coordinates; blocks without them get white and the origin.
-    fn add_colors_and_uvs(&self, source: &Source<'_>, mesh: &mut Mesh, warnings: &mut Vec<String>) -> Result<(), Error> {
+    fn add_colors_and_uvs(
+        &self,
+        source: &Source<'_>,
+        mesh: &mut Mesh,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), Error> {
         let any = |f: &dyn Fn(&Attributes) -> bool| self.blocks.iter().any(|b| f(&b.attributes));
         let mut bad = 0;
         if any(&|a| a.colors.is_some()) {
@@ -164,7 +172,9 @@ impl Plan {
             for block in &self.blocks {
                 let path = format!("{}.attributes.TEXCOORD_{set}", block.path);
                 match block.attributes.uvs[set] {
-                    Some(a) => values.extend(source.floats::<2>(a, block.range.clone(), Integers::AsDeclared, &path)?),
+                    Some(a) => {
+                        values.extend(source.floats::<2>(a, block.range.clone(), Integers::AsDeclared, &path)?)
+                    }
                     None => values.resize(values.len() + block.range.len(), [0.0; 2]),
                 }
             }
@@ -173,7 +183,10 @@ impl Plan {
         }
         if bad > 0 {
             let path = self.blocks.first().map_or("", |b| &b.path);
-            warnings.push(format!("{}: {path}: {bad} colours or texture coordinates are not finite, taken as 0", source.file));
+            warnings.push(format!(
+                "{}: {path}: {bad} colours or texture coordinates are not finite, taken as 0",
+                source.file
+            ));
         }
         Ok(())
     }

@@ -54,9 +54,8 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     // Materials first: they know which images are wanted.
     let mut wanted = texture::Wanted::default();
     let count = source.root.materials.len();
-    let mut materials = (0..count)
-        .map(|i| material::read(&source, i, &mut wanted, &mut warnings))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut materials =
+        (0..count).map(|i| material::read(&source, i, &mut wanted, &mut warnings)).collect::<Result<Vec<_>, _>>()?;
     let (meshes, images) =
         workers.join(|| build_meshes(&source, &tree, workers), || wanted.load(&source, resolver, workers));
     let (poses, meshes) = meshes?;
@@ -101,16 +100,7 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
     let plan_of = |pose: &Pose| used.binary_search(&pose.mesh).map(|i| &plans[i]);
     check(poses.iter().filter_map(|p| plan_of(p).ok()).map(Plan::bytes).sum())?;
 
-    let skins = source
-        .root
-        .skins
-        .iter()
-        .enumerate()
-        .map(|(s, skin)| {
-            let wanted = poses.iter().any(|p| p.skin == Some(s));
-            if wanted { deform::joint_matrices(source, skin, s, &tree.worlds) } else { Ok(Vec::new()) }
-        })
-        .collect::<Result<Vec<Vec<DMat4>>, _>>()?;
+    let skins = skin_matrices(source, tree, &poses)?;
     let built = workers.map(poses.len(), |i| match plan_of(&poses[i]) {
         Ok(plan) => plan.build(source, &poses[i], poses[i].skin.map(|s| skins[s].as_slice())),
         Err(_) => Ok(Built::default()),
@@ -126,6 +116,17 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
     Ok((poses, built))
 }
 
+/// The joint matrices of every skin that is used.
+fn skin_matrices(source: &Source<'_>, tree: &Tree, poses: &[Pose]) -> Result<Vec<Vec<DMat4>>, Error> {
+    let skins = source.root.skins.iter().enumerate();
+    skins
+        .map(|(s, skin)| {
+            let used = poses.iter().any(|p| p.skin == Some(s));
+            if used { deform::joint_matrices(source, skin, s, &tree.worlds) } else { Ok(Vec::new()) }
+        })
+        .collect()
+}
+
 /// The mesh that a node shows, and how.
 fn pose_of(source: &Source<'_>, node: usize) -> Option<Pose> {
     let node = &source.root.nodes[node];
@@ -139,7 +140,11 @@ fn pose_of(source: &Source<'_>, node: usize) -> Option<Pose> {
 fn index_bytes(source: &Source<'_>, mesh: usize) -> u64 {
     let primitives = &source.root.meshes[mesh].primitives;
     let count = |accessor: usize| source.root.accessors[accessor].count.0;
-    primitives.iter().filter_map(|p| p.indices).map(|i| count(i.value()).saturating_mul(12)).fold(0, u64::saturating_add)
+    primitives
+        .iter()
+        .filter_map(|p| p.indices)
+        .map(|i| count(i.value()).saturating_mul(12))
+        .fold(0, u64::saturating_add)
 }
 
 /// Adds the nodes that are shown, with their meshes, lights and cameras.
@@ -151,8 +156,7 @@ fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene
     }
     let mesh_numbers: std::collections::BTreeMap<_, _> =
         poses.iter().enumerate().map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32)).collect();
-    let cameras: Vec<_> =
-        root.cameras.iter().enumerate().map(|(i, c)| node::camera(source, c, i, warnings)).collect();
+    let cameras: Vec<_> = root.cameras.iter().enumerate().map(|(i, c)| node::camera(source, c, i, warnings)).collect();
     let lights: Vec<_> = AsRef::<[_]>::as_ref(root).iter().map(node::light).collect();
 
     let mut skinned = Vec::new();

@@ -129,7 +129,12 @@ fn has_listed_ancestor(n: usize, parents: &[Option<usize>], listed: &[bool], kno
 }
 
 /// A node's placement. Numbers must be finite; a rotation is made a unit quaternion.
-fn transform(source: &Source<'_>, node: &JsonNode, index: usize, warnings: &mut Vec<String>) -> Result<NodeTransform, Error> {
+fn transform(
+    source: &Source<'_>,
+    node: &JsonNode,
+    index: usize,
+    warnings: &mut Vec<String>,
+) -> Result<NodeTransform, Error> {
     let not_finite = |name: &str| source.error(format!("nodes[{index}].{name}"), "a number is not finite");
     let mut warn = |what: &str| warnings.push(format!("{}: nodes[{index}]: {what}", source.file));
     if let Some(columns) = node.matrix {
@@ -166,7 +171,12 @@ fn transform(source: &Source<'_>, node: &JsonNode, index: usize, warnings: &mut 
 }
 
 /// A camera in its node's space, looking along -z. `None` with a warning if its numbers make no picture.
-pub(crate) fn camera(source: &Source<'_>, json: &JsonCamera, index: usize, warnings: &mut Vec<String>) -> Option<Camera> {
+pub(crate) fn camera(
+    source: &Source<'_>,
+    json: &JsonCamera,
+    index: usize,
+    warnings: &mut Vec<String>,
+) -> Option<Camera> {
     let (projection, near, far) = match (&json.type_, &json.perspective, &json.orthographic) {
         (Checked::Valid(CameraType::Perspective), Some(p), _) => {
             let view_angle = f64::from(p.yfov);

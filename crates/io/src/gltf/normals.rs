@@ -18,18 +18,7 @@ pub(crate) fn assemble(
     label: &str,
     warnings: &mut Vec<String>,
 ) -> Option<Attribute<[f32; 3]>> {
-    let bad_count = |n: &[[f32; 3]]| n.iter().filter(|n| is_bad(n)).count();
-    let mut bad = 0;
-    for (block, slot) in blocks.iter().zip(&mut normals) {
-        let Some(values) = slot else { continue };
-        let here = bad_count(values);
-        bad += here;
-        if 2 * here > values.len() {
-            *slot = None;
-        } else if here > 0 {
-            repair(values, block.base, mesh);
-        }
-    }
+    let bad = mend(blocks, &mut normals, mesh);
     if bad > 0 {
         warnings.push(format!("{label}: {bad} normals are zero or not finite and were recomputed"));
     }
@@ -57,6 +46,22 @@ pub(crate) fn assemble(
     }
     let corners = with_flat(&flat, mesh, &mut values);
     Some(Attribute { values, corners: Some(corners) })
+}
+
+/// Repairs a few bad normals, drops those of a block where most are bad; tells how many were bad.
+fn mend(blocks: &[Block], normals: &mut [Option<Vec<[f32; 3]>>], mesh: &Mesh) -> usize {
+    let mut bad = 0;
+    for (block, slot) in blocks.iter().zip(normals) {
+        let Some(values) = slot else { continue };
+        let here = values.iter().filter(|n| is_bad(n)).count();
+        bad += here;
+        if 2 * here > values.len() {
+            *slot = None;
+        } else if here > 0 {
+            repair(values, block.base, mesh);
+        }
+    }
+    bad
 }
 
 fn is_bad(n: &[f32; 3]) -> bool {

@@ -6,10 +6,10 @@
 //! Source: glTF 2.0 specification, sections 3.8 and 5.26; KHR_texture_transform.
 
 use super::accessor::Source;
-use super::buffers::read_uri;
+use super::buffers::read_target;
 use super::document::name_or;
 use crate::uri::{self, Target};
-use crate::{Error, Place, Resolver, image};
+use crate::{Error, Resolver, image};
 use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::texture::{MagFilter, MinFilter, Sampler as JsonSampler, WrappingMode};
 use gltf::json::validation::Checked;
@@ -70,7 +70,12 @@ impl Wanted {
     }
 
     /// Reads and decodes everything that was asked for. Gives, for each number, the texture or a warning.
-    pub(crate) fn load(&self, source: &Source<'_>, resolver: &dyn Resolver, workers: &Workers) -> Vec<Result<Texture, String>> {
+    pub(crate) fn load(
+        &self,
+        source: &Source<'_>,
+        resolver: &dyn Resolver,
+        workers: &Workers,
+    ) -> Vec<Result<Texture, String>> {
         workers.map(self.images.len(), |i| {
             let (image, encoding) = self.images[i];
             load_image(source, image, encoding, resolver).map_err(|e| format!("{e}; the texture is left out"))
@@ -114,17 +119,22 @@ pub(crate) fn settle(
     textures
 }
 
-fn load_image(source: &Source<'_>, index: usize, encoding: Encoding, resolver: &dyn Resolver) -> Result<Texture, Error> {
+fn load_image(
+    source: &Source<'_>,
+    index: usize,
+    encoding: Encoding,
+    resolver: &dyn Resolver,
+) -> Result<Texture, Error> {
     let entry = &source.root.images[index];
     let path = format!("images[{index}]");
-    let place = Place::Json(path.clone());
     let mut name = name_or(&entry.name, "image", index);
     let plane = match (&entry.uri, entry.buffer_view) {
         (Some(text), _) => {
-            if let Ok(Target::File(file)) = uri::resolve(text) {
-                name = file;
+            let target = uri::resolve(text).map_err(|what| source.error(path, what))?;
+            if let Target::File(file) = &target {
+                name.clone_from(file);
             }
-            image::decode(&read_uri(text, source.file, &place, resolver)?, &format!("{}: {name}", source.file))?
+            image::decode(&read_target(target, source.file, resolver)?, &format!("{}: {name}", source.file))?
         }
         (None, Some(view)) => {
             let bytes = source.buffers.view(source.root, view.value(), source.file)?;
@@ -152,7 +162,9 @@ fn sampler(s: &JsonSampler) -> Sampler {
         Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (Filter::Nearest, MipFilter::Nearest),
         Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (Filter::Linear, MipFilter::Nearest),
         Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (Filter::Nearest, MipFilter::Linear),
-        Some(Checked::Valid(MinFilter::LinearMipmapLinear) | Checked::Invalid) | None => (Filter::Linear, MipFilter::Linear),
+        Some(Checked::Valid(MinFilter::LinearMipmapLinear) | Checked::Invalid) | None => {
+            (Filter::Linear, MipFilter::Linear)
+        }
     };
     Sampler { wrap_s: wrap(&s.wrap_s), wrap_t: wrap(&s.wrap_t), magnify, minify, mip }
 }
@@ -168,7 +180,11 @@ fn matrix(t: &TextureTransform) -> [[f32; 3]; 2] {
 }
 
 /// Reads `KHR_texture_transform` where the `gltf` crate keeps it as plain JSON (normal textures).
-pub(crate) fn transform_in(others: &serde_json::Map<String, serde_json::Value>, path: &str, source: &Source<'_>) -> Result<Option<TextureTransform>, Error> {
+pub(crate) fn transform_in(
+    others: &serde_json::Map<String, serde_json::Value>,
+    path: &str,
+    source: &Source<'_>,
+) -> Result<Option<TextureTransform>, Error> {
     let Some(value) = others.get("KHR_texture_transform") else { return Ok(None) };
     match serde_json::from_value(value.clone()) {
         Ok(transform) => Ok(Some(transform)),

@@ -1,4 +1,5 @@
-//! The types of the scene file, field by field as in `docs/scene-format.md`.
+//! The types of the scene file, field by field as in `docs/scene-format.md`. Numbers that do not fit their type are
+//! refused by the parser, so whatever is read is finite, but for coordinates given as `null`.
 
 use crate::{Error, Place};
 use serde::{Deserialize, Serialize};

@@ -17,9 +17,9 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
         positions,
         faces,
         triangles,
-        normals: form.normals.map(|a| attribute("normal", a)).transpose()?,
-        uvs: form.uvs.into_iter().map(|a| attribute("texture coordinate", a)).collect::<Result<_, _>>()?,
-        colors: form.colors.map(|a| attribute("colour", a)).transpose()?,
+        normals: form.normals.map(attribute),
+        uvs: form.uvs.into_iter().map(attribute).collect(),
+        colors: form.colors.map(attribute),
         lines: form.lines,
         points: form.points,
         line_material: form.line_material,
@@ -99,11 +99,8 @@ fn parts_of(mesh: &Mesh, forms: Vec<PartForm>) -> Result<Vec<Part>, String> {
     Ok(parts)
 }
 
-fn attribute<const N: usize>(what: &str, form: AttributeForm<[f32; N]>) -> Result<Attribute<[f32; N]>, String> {
-    if let Some(i) = form.values.iter().position(|v| !v.iter().all(|c| c.is_finite())) {
-        return Err(format!("{what} {i} is not finite"));
-    }
-    Ok(Attribute { values: form.values, corners: form.corners })
+fn attribute<T>(form: AttributeForm<T>) -> Attribute<T> {
+    Attribute { values: form.values, corners: form.corners }
 }
 
 /// The form of a mesh.
@@ -172,7 +169,8 @@ mod tests {
             (r#""triangles":[[0,1,2]],"parts":[{"triangles":2}]"#, "part 0 ends at triangle 2 of 1"),
             (r#""triangles":[[0,1,2]],"parts":[{"faces":1,"triangles":1}]"#, "either `faces` or `triangles`"),
             (r#""triangles":[[0,1,2]],"parts":[]"#, "parts end at 0 of 1"),
-            (r#""normals":{"values":[[1e39,0,0]]}"#, "normal 0 is not finite"),
+            (r#""normals":{"values":[[1e39,0,0]]}"#, "number out of range"),
+            (r#""normals":{"values":[[0,0,1]]}"#, "1 normals for 4 vertices"),
             (r#""points":[7]"#, "point 0: index 7"),
         ] {
             let message = read(&format!("{{{positions},{rest}}}")).unwrap_err();

@@ -11,7 +11,6 @@ use crate::{Error, Place, image};
 use std::ops::Range;
 use std::sync::Arc;
 use vitral_frame::Texture;
-use vitral_light::{Light, Material, Reflectance};
 use vitral_math::{DMat4, DQuat, DVec3, DVec4};
 use vitral_scene::{Camera, Node, NodeTransform, Projection, Scene};
 
@@ -55,9 +54,10 @@ impl Report<'_> {
 pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scene, Error> {
     let form = form::parse(bytes, file)?;
     let report = Report { file };
-    let mut scene =
-        Scene { lights: form.lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
-    check_values(&scene, &report)?;
+    let mut scene = Scene { lights: form.lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
+    for (i, camera) in scene.cameras.iter().enumerate() {
+        check_camera(camera, &format!("cameras[{i}]"), &report)?;
+    }
     let places = add_textures(form.textures, &mut scene, &report, origin)?;
     scene.materials = form.materials;
     settle_materials(&mut scene, &places, &report)?;
@@ -77,28 +77,12 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     Ok(scene)
 }
 
-/// Lights, cameras and the ambient light must have usable numbers.
-fn check_values(scene: &Scene, report: &Report<'_>) -> Result<(), Error> {
-    for (i, light) in scene.lights.iter().enumerate() {
-        check_light(light, &format!("lights[{i}]"), report)?;
-    }
-    for (i, camera) in scene.cameras.iter().enumerate() {
-        check_camera(camera, &format!("cameras[{i}]"), report)?;
-    }
-    if !scene.ambient.iter().all(|c| c.is_finite()) {
-        return Err(report.at("ambient", "a number is not finite"));
-    }
-    Ok(())
-}
-
-fn check_light(light: &Light, path: &str, report: &Report<'_>) -> Result<(), Error> {
-    let colors = [light.ambient, light.diffuse, light.specular];
-    if colors.as_flattened().iter().all(|c| c.is_finite()) { Ok(()) } else { Err(report.at(path, "a number is not finite")) }
-}
-
+/// A camera needs an angle or a height, and planes in order.
 fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), Error> {
     let (lens, field) = match camera.projection {
-        Projection::Perspective { view_angle } => (view_angle > 0.0 && view_angle < std::f64::consts::PI, "0 < view-angle < 3.14159"),
+        Projection::Perspective { view_angle } => {
+            (view_angle > 0.0 && view_angle < std::f64::consts::PI, "0 < view-angle < 3.14159")
+        }
         Projection::Parallel { height } => (height > 0.0, "0 < height"),
     };
     if !lens {
@@ -160,9 +144,6 @@ fn add_textures(
 fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'_>) -> Result<(), Error> {
     for (i, material) in scene.materials.iter_mut().enumerate() {
         let path = format!("materials[{i}]");
-        if !is_finite(material) {
-            return Err(report.at(path, "a number is not finite"));
-        }
         for texture in material.textures_mut() {
             report.index(path.as_str(), "texture", texture.texture, places.len())?;
             if texture.uv_set > 1 {
@@ -187,24 +168,6 @@ fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'
     Ok(())
 }
 
-fn is_finite(m: &Material) -> bool {
-    let mut numbers = vec![m.opacity, m.ior, m.normal_scale];
-    numbers.extend(m.emission);
-    match m.reflectance {
-        Reflectance::Phong { ka, kd, ks, shininess } => {
-            numbers.extend([ka, kd, ks].concat());
-            numbers.push(shininess);
-        }
-        Reflectance::MetallicRoughness { base_color, metallic, roughness } => {
-            numbers.extend(base_color);
-            numbers.extend([metallic, roughness]);
-        }
-    }
-    let mut m = m.clone();
-    numbers.extend(m.textures_mut().flat_map(|t| t.transform.concat()));
-    numbers.iter().all(|n| n.is_finite())
-}
-
 /// Makes meshes of inline entries and loads the models that the others name.
 fn add_meshes(
     forms: Vec<MeshForm>,
@@ -220,7 +183,8 @@ fn add_meshes(
         for material in parts.chain(form.material).chain(form.line_material) {
             report.index(path.as_str(), "material", material, materials)?;
         }
-        let inline = !form.positions.is_empty() || form.faces.is_some() || form.triangles.is_some() || form.parts.is_some();
+        let inline =
+            !form.positions.is_empty() || form.faces.is_some() || form.triangles.is_some() || form.parts.is_some();
         let model = match (&form.file, &form.builtin) {
             (Some(_), Some(_)) => return Err(report.at(path, "either `file` or `builtin`")),
             (Some(_), None) | (None, Some(_)) if inline => {
@@ -266,10 +230,8 @@ fn add_nodes(
     for (i, form) in forms.into_iter().enumerate() {
         let path = format!("nodes[{i}]");
         let transform = transform(&form).map_err(|what| report.at(path.as_str(), what))?;
-        let mut node = Node { name: form.name, transform, children: form.children, light: form.light, ..Node::default() };
-        if let Some(light) = &node.light {
-            check_light(light, &format!("{path}.light"), report)?;
-        }
+        let mut node =
+            Node { name: form.name, transform, children: form.children, light: form.light, ..Node::default() };
         if let Some(camera) = form.camera {
             report.index(format!("{path}.camera"), "camera", camera, scene.cameras.len())?;
             node.camera = Some(camera);
@@ -344,7 +306,9 @@ fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Ve
     let (was, more) = (sizes(scene), sizes(&model.scene));
     let total = |k: usize| was[k] + more[k];
     if (0..was.len()).any(|k| total(k) > MAX_ENTRIES) {
-        let what = format!("with all references there are more than {MAX_ENTRIES} nodes, meshes, materials, textures or cameras");
+        let what = format!(
+            "with all references there are more than {MAX_ENTRIES} nodes, meshes, materials, textures or cameras"
+        );
         return Err(report.at("meshes", what));
     }
     if let Some((nodes, roots)) = &model.placed {

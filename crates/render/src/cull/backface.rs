@@ -41,9 +41,9 @@ pub fn facing_along(n: DVec3, v: DVec3) -> Facing {
     }
 }
 
-/// Whether back faces of a mesh can never be seen. `double_sided` speaks for the material.
-pub fn applies(solidity: Solidity, double_sided: bool) -> bool {
-    solidity.closed && solidity.consistent && solidity.outward && !double_sided
+/// Whether back faces of a mesh can never be seen from outside.
+pub fn applies(solidity: Solidity) -> bool {
+    solidity.closed && solidity.consistent && solidity.outward
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::FrameConstants;
 use super::points::{NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
 use vitral_raster::{TILE, Tile};
 
 /// Memory of one tile's composition.
@@ -40,7 +40,7 @@ impl Composer {
         self.places.clear();
         self.colors.clear();
         self.mix(tile, points, colors, constants, marks);
-        encode(simd, &self.places, &self.colors, constants.raw, out);
+        encode(simd, &self.places, &mut self.colors, constants.raw, out);
     }
 
     /// Mixes the samples of every pixel that shows more than the background.
@@ -111,40 +111,28 @@ fn over(below: &mut [f32; 4], above: [f32; 4]) {
     }
 }
 
-/// Premultiplied colours to display bytes with straight alpha, put in their places.
+/// Premultiplied colours to display bytes with straight alpha, put in their places; two pixels a step.
 #[inline(always)]
-fn encode<S: Simd>(simd: S, places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
-    for (places, pixels) in places.chunks(LANES).zip(colors.chunks(LANES)) {
-        let mut soa = [[0.0f32; LANES]; 4];
-        for (lane, p) in pixels.iter().enumerate() {
-            for k in 0..4 {
-                soa[k][lane] = p[k];
-            }
-        }
-        let load = lanes::inlined(
-            #[inline(always)]
-            |k: usize| F32x8::from_slice(simd, &soa[k]),
-        );
-        let (r, g, b, a) = (load(0), load(1), load(2), load(3));
-        let zero = F32x8::from_slice(simd, &[0.0; LANES]);
-        let visible = lanes::Lanes::lt(zero, a);
-        let straight = lanes::Lanes::select(visible, (zero + 1.0) / a, zero);
-        let curve = !raw;
-        let bytes =
-            [byte(r * straight, curve), byte(g * straight, curve), byte(b * straight, curve), byte(a, false)];
-        for (lane, &place) in places.iter().enumerate() {
-            out[place as usize] = [bytes[0][lane] as u8, bytes[1][lane] as u8, bytes[2][lane] as u8, bytes[3][lane] as u8];
+fn encode<S: Simd>(simd: S, places: &[u32], colors: &mut Vec<[f32; 4]>, raw: bool, out: &mut [[u8; 4]]) {
+    for color in colors.iter_mut().filter(|c| c[3] < 1.0) {
+        let straight = if color[3] > 0.0 { 1.0 / color[3] } else { 0.0 };
+        *color = [color[0] * straight, color[1] * straight, color[2] * straight, color[3]];
+    }
+    if colors.len() % 2 == 1 {
+        colors.push([0.0; 4]);
+    }
+    let alpha = Mask8::from_bitmask(simd, 0b1000_1000);
+    for (places, pair) in places.chunks(2).zip(colors.as_flattened().chunks_exact(LANES)) {
+        let value = lanes::Lanes::saturate(F32x8::from_slice(simd, pair));
+        let curve = if raw { value } else { lanes::Lanes::srgb_from_linear(value) };
+        let bytes: I32x8<S> = (alpha.select(value, curve) * 255.0 + 0.5).to_int();
+        let bytes = bytes.to_array();
+        for (k, &place) in places.iter().enumerate() {
+            let at = 4 * k;
+            out[place as usize] =
+                [bytes[at] as u8, bytes[at + 1] as u8, bytes[at + 2] as u8, bytes[at + 3] as u8];
         }
     }
-}
-
-/// Display bytes of eight values, through the sRGB curve or as they are.
-#[inline(always)]
-fn byte<S: Simd>(value: F32x8<S>, curve: bool) -> [i32; LANES] {
-    let value = lanes::Lanes::saturate(value);
-    let value = if curve { lanes::Lanes::srgb_from_linear(value) } else { value };
-    let bytes: lanes::I32x8<S> = (value * 255.0 + 0.5).to_int();
-    bytes.to_array()
 }
 
 #[cfg(test)]
@@ -166,7 +154,7 @@ mod tests {
     fn colors_encode_with_straight_alpha() {
         let mut out = [[9; 4]; 3];
         lanes::dispatch!(lanes::Level::new(), simd => {
-            encode(simd, &[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out)
+            encode(simd, &[0, 1, 2], &mut vec![[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out)
         });
         assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
     }

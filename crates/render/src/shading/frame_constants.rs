@@ -1,7 +1,7 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
 use super::group::{Model, model};
-use crate::prepare::mirrors;
+use crate::prepare::{is_solid, mirrors};
 use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Settings, Shading, Transparency};
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
@@ -146,7 +146,7 @@ fn instance_constants(view: &PreparedView<'_>, index: usize, execution: &Executi
         screen_from_model: screen.map(|r| r.as_vec4().to_array()),
         view_from_model: rows(&view_from_model),
         view_from_model_normal: [0, 1, 2].map(normal_row),
-        two_sided: !view.session.solidity(instance.mesh_index, &execution.workers).is_solid(),
+        two_sided: !is_solid(view.session, instance, &view.camera, &view.view, execution),
         mirrored,
     }
 }

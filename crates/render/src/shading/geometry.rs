@@ -216,8 +216,10 @@ fn surface_inlined<S: Simd>(
         let towards =
             if viewing.perspective { geometric.dot(-blend3(&weights, &positions)) } else { geometric.z };
         facet_normal = V3::select(lanes::Lanes::lt(towards, zero), -geometric, geometric);
+        // A normal in the facet's plane, but for rounding, is on neither side: it stays as it is.
+        let hair = constant(simd, -1e-4);
         for c in 0..3 {
-            let behind = lanes::Lanes::lt(normals[c].dot(facet_normal), zero);
+            let behind = lanes::Lanes::lt(normals[c].dot(facet_normal), hair);
             normals[c] = V3::select(behind, -normals[c], normals[c]);
         }
     }

@@ -1,5 +1,4 @@
 //! What the tests of whole pictures share.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use vitral::light::{Light, LightKind};
 use vitral::math::{DMat4, DVec2, DVec3};
@@ -7,7 +6,7 @@ use vitral::render::{Background, Channels, ColorSpace};
 use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, Scene, load_builtin};
 
 /// A renderer for exact checks: raw colours, one sample a pixel, black background, Phong's model.
-pub fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
+pub(crate) fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
     let mut renderer = Renderer::new(scene).unwrap();
     let settings = &mut renderer.settings;
     (settings.width, settings.height, settings.samples) = (width, height, 1);
@@ -18,14 +17,14 @@ pub fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
 }
 
 /// [`exact`] for a built-in scene, seen by its own camera if it has one.
-pub fn exact_builtin(name: &str, width: u32, height: u32) -> Renderer {
+pub(crate) fn exact_builtin(name: &str, width: u32, height: u32) -> Renderer {
     let mut renderer = exact(load_builtin(name).unwrap(), width, height);
     renderer.camera = renderer.world().cameras.first().copied();
     renderer
 }
 
 /// A scene with one mesh of one material.
-pub fn one(mut mesh: Mesh, material: Material) -> Scene {
+pub(crate) fn one(mut mesh: Mesh, material: Material) -> Scene {
     let mut scene = Scene::default();
     let material = Some(scene.add_material(material));
     mesh.parts.iter_mut().for_each(|p| p.material = material);
@@ -34,34 +33,29 @@ pub fn one(mut mesh: Mesh, material: Material) -> Scene {
 }
 
 /// Asks for every plane.
-pub fn all_channels() -> Channels {
+pub(crate) fn all_channels() -> Channels {
     Channels { color: true, depth: true, surface: true, object: true, material: true, normal: true }
 }
 
 /// The colour picture.
-pub fn colors(renderer: &mut Renderer) -> Vec<[u8; 4]> {
+pub(crate) fn colors(renderer: &mut Renderer) -> Vec<[u8; 4]> {
     renderer.render().unwrap().frame.color.unwrap().into_data()
 }
 
 /// A frame's colours and surface ids, pixel by pixel.
-pub fn colors_and_ids(frame: &Frame) -> impl Iterator<Item = ([u8; 4], u32)> {
+pub(crate) fn colors_and_ids(frame: &Frame) -> impl Iterator<Item = ([u8; 4], u32)> {
     let (colors, ids) = (frame.color.as_ref().unwrap(), frame.surface.as_ref().unwrap());
     colors.data().iter().copied().zip(ids.data().iter().copied())
 }
 
 /// A directional light of one intensity whose rays come from `from`.
-pub fn sun(from: DVec3, intensity: f32) -> Light {
+pub(crate) fn sun(from: DVec3, intensity: f32) -> Light {
     let colors = [intensity; 3];
-    Light {
-        kind: LightKind::Directional { direction: -from },
-        diffuse: colors,
-        specular: colors,
-        ..Light::default()
-    }
+    Light { kind: LightKind::Directional { direction: -from }, diffuse: colors, specular: colors, ..Light::default() }
 }
 
 /// A perspective camera on the z axis that looks at the origin.
-pub fn on_z(distance: f64, view_angle: f64) -> Camera {
+pub(crate) fn on_z(distance: f64, view_angle: f64) -> Camera {
     Camera {
         position: DVec3::new(0.0, 0.0, distance),
         focal_point: DVec3::ZERO,
@@ -72,7 +66,7 @@ pub fn on_z(distance: f64, view_angle: f64) -> Camera {
 }
 
 /// Where a point of the world appears, in pixels from the top left.
-pub fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
+pub(crate) fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
     let camera = renderer.frame_camera();
     let depths = vitral::scene::depth_range(&camera, &renderer.world().bounds);
     let clip = camera.transform(renderer.aspect(), depths).clip_from_world() * point.extend(1.0);
@@ -82,7 +76,7 @@ pub fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
 }
 
 /// How far apart two pictures are at most in any channel.
-pub fn largest_difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> u8 {
+pub(crate) fn largest_difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> u8 {
     assert_eq!(a.len(), b.len());
     a.as_flattened().iter().zip(b.as_flattened()).map(|(x, y)| x.abs_diff(*y)).max().unwrap_or(0)
 }

@@ -1,8 +1,6 @@
 //! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
 
-mod common;
-
-use common::{all_channels, colors, exact, exact_builtin, on_z};
+use crate::common::{all_channels, colors, exact, exact_builtin, on_z};
 use std::sync::Arc;
 use vitral::exec::{Budget, Limit};
 use vitral::math::{DMat4, DVec3};

@@ -1,8 +1,6 @@
 //! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one.
 
-mod common;
-
-use common::{all_channels, colors, exact, exact_builtin};
+use crate::common::{all_channels, colors, exact, exact_builtin};
 use vitral::exec::{Budget, Workers};
 use vitral::math::lanes::available_levels;
 use vitral::render::{Interpolation, Lines};
@@ -23,7 +21,8 @@ fn pictures(execution: &Execution) -> Vec<Frame> {
         (Shading::Flat, Illumination::CookTorrance, Lines::WireframeHiddenLine, 3),
     ] {
         let settings = &mut renderer.settings;
-        (settings.shading, settings.illumination, settings.lines, settings.samples) = (shading, illumination, lines, samples);
+        (settings.shading, settings.illumination, settings.lines, settings.samples) =
+            (shading, illumination, lines, samples);
         frames.push(renderer.render().unwrap().frame);
     }
     renderer.settings.interpolation = Interpolation::Linear;
@@ -48,7 +47,8 @@ fn equal_bytes_at_every_level_with_one_and_three_threads() {
 
 #[test]
 fn a_used_session_gives_the_pictures_of_a_fresh_one() {
-    let setups: [(u32, u32, u32, bool); 4] = [(70, 50, 4, true), (200, 130, 1, false), (70, 50, 2, true), (70, 50, 4, true)];
+    let setups: [(u32, u32, u32, bool); 4] =
+        [(70, 50, 4, true), (200, 130, 1, false), (70, 50, 2, true), (70, 50, 4, true)];
     let mut used = exact_builtin("scene0", 1, 1);
     let prepare = |renderer: &mut Renderer, (width, height, samples, perspective): (u32, u32, u32, bool)| {
         let settings = &mut renderer.settings;
@@ -76,7 +76,8 @@ fn every_number_of_samples_works_and_more_samples_come_closer() {
         .collect();
     let best = &pictures[15];
     let error = |picture: &[[u8; 4]]| {
-        let sum: u64 = picture.as_flattened().iter().zip(best.as_flattened()).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum();
+        let sum: u64 =
+            picture.as_flattened().iter().zip(best.as_flattened()).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum();
         sum as f64 / picture.len() as f64
     };
     let errors: Vec<f64> = pictures.iter().map(|p| error(p)).collect();

@@ -1,9 +1,7 @@
 //! The law of agreement, for the z-buffer: each pixel holds what looking at every facet for every pixel finds
 //! (COURSE.md P3, P4, P17). No tolerance: ids and depths are equal.
 
-mod common;
-
-use common::{all_channels, exact, exact_builtin};
+use crate::common::{all_channels, exact, exact_builtin};
 use vitral::math::DVec3;
 use vitral::raster::{SUBPIXEL, SamplePattern, Setup};
 use vitral::render::PreparedView;
@@ -20,7 +18,8 @@ fn brute_force(renderer: &Renderer) -> Vec<(u32, f32)> {
     let (camera, pattern) = (renderer.frame_camera(), SamplePattern::new(1));
     let counters = &mut CullCounters::default();
     let execution = renderer.execution();
-    let view = PreparedView::new(renderer.session(), &camera, &renderer.settings, viewport, pattern, execution, counters);
+    let view =
+        PreparedView::new(renderer.session(), &camera, &renderer.settings, viewport, pattern, execution, counters);
     let world = renderer.world();
     let setups: Vec<Setup> = (0..world.facet_count).flat_map(|facet| view.setups(facet, false)).collect();
     let center = |pixel: u32| pixel as i32 * SUBPIXEL + SUBPIXEL / 2;
@@ -51,7 +50,12 @@ fn agree(renderer: &mut Renderer, what: &str) {
         let frame = renderer.render().unwrap().frame;
         let seen = frame.surface.unwrap().into_data().into_iter().zip(frame.depth.unwrap().into_data());
         let wrong: Vec<_> = (0..).zip(seen.zip(&expected)).filter(|(_, (a, b))| a != *b).collect();
-        assert!(wrong.is_empty(), "{what}, culling {cull}: {} pixels differ: {:?}", wrong.len(), &wrong[..wrong.len().min(5)]);
+        assert!(
+            wrong.is_empty(),
+            "{what}, culling {cull}: {} pixels differ: {:?}",
+            wrong.len(),
+            &wrong[..wrong.len().min(5)]
+        );
     }
 }
 
@@ -69,7 +73,7 @@ fn p3_perspective_and_parallel_projection_have_the_same_oracle() {
         let camera = renderer.frame_camera();
         let flat = Camera { projection: Projection::Parallel { height: 5.0 }, ..camera };
         let wide = Camera { projection: Projection::Perspective { view_angle: 1.9 }, ..camera };
-        let from_below = Camera { position: DVec3::new(1.0, -4.0, 3.0), ..flat };
+        let from_below = Camera { position: DVec3::new(1.0, -4.0, 3.0), focal_point: DVec3::ZERO, ..flat };
         for (camera, what) in [(flat, "parallel"), (wide, "wide angle"), (from_below, "parallel, from below")] {
             renderer.camera = Some(camera);
             agree(&mut renderer, &format!("{name}, {what}"));

@@ -1,9 +1,7 @@
 //! Texture coordinates between vertices: as on the plane in space, or linearly on the screen, which is the classical
 //! defect.
 
-mod common;
-
-use common::{all_channels, exact, one};
+use crate::common::{all_channels, exact, one};
 use std::sync::Arc;
 use vitral::frame::{Encoding, Filter, MipFilter, Plane, Sampler, Texture};
 use vitral::light::TextureRef;
@@ -19,11 +17,19 @@ const SIDE: u32 = 200;
 fn floor() -> Renderer {
     let texel = |i: u32| if (i % 8 + i / 8) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
     let image = Plane::from_rows(8, 8, (0..64).map(texel).collect()).unwrap();
-    let sampler = Sampler { magnify: Filter::Nearest, minify: Filter::Nearest, mip: MipFilter::None, ..Sampler::default() };
+    let sampler =
+        Sampler { magnify: Filter::Nearest, minify: Filter::Nearest, mip: MipFilter::None, ..Sampler::default() };
     let texture = TextureRef { sampler, ..TextureRef::new(0) };
     let reflectance = vitral::light::Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
-    let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material { base_texture: Some(texture), reflectance, ..Material::default() });
-    scene.textures.push(Arc::new(Texture { name: "cells".to_owned(), levels: vec![image], encoding: Encoding::Linear }));
+    let mut scene = one(
+        solids::plane(4.0, 4.0, 1, 1),
+        Material { base_texture: Some(texture), reflectance, ..Material::default() },
+    );
+    scene.textures.push(Arc::new(Texture {
+        name: "cells".to_owned(),
+        levels: vec![image],
+        encoding: Encoding::Linear,
+    }));
     let mut renderer = exact(scene, SIDE, SIDE);
     renderer.settings.lighting = false;
     renderer.settings.channels = all_channels();
@@ -74,7 +80,10 @@ fn mistakes(interpolation: Interpolation) -> (usize, usize) {
 fn perspective_interpolation_gives_the_analytic_chequers() {
     let (decided, wrong) = mistakes(Interpolation::Perspective);
     assert!(decided > 8_000);
-    assert!(wrong == 0 || wrong == decided, "all as computed, up to the exchange of black and white: {wrong} of {decided}");
+    assert!(
+        wrong == 0 || wrong == decided,
+        "all as computed, up to the exchange of black and white: {wrong} of {decided}"
+    );
 }
 
 #[test]

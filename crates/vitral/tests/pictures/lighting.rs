@@ -1,8 +1,8 @@
 //! The course's checks on illumination and shading that need whole pictures (COURSE.md L1-L22, P30-P35).
 
-mod common;
-
-use common::{all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun};
+use crate::common::{
+    all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun,
+};
 use std::collections::{BTreeMap, HashSet};
 use vitral::light::{Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec2, DVec3};
@@ -139,7 +139,8 @@ fn mirror_point(light: DVec3, eye: DVec3) -> DVec3 {
 #[test]
 fn l20_highlight_lies_where_a_mirror_would_show_the_light() {
     let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
-    let mut renderer = exact(one(solids::sphere(1.0, 128, 64), Material { reflectance, ..Material::default() }), 320, 240);
+    let mut renderer =
+        exact(one(solids::sphere(1.0, 128, 64), Material { reflectance, ..Material::default() }), 320, 240);
     let eye = DVec3::new(0.5, 0.8, 5.0);
     renderer.camera = Some(vitral::Camera { position: eye, ..on_z(1.0, 0.5) });
     let mut last: Option<(DVec2, DVec2)> = None;
@@ -153,7 +154,8 @@ fn l20_highlight_lies_where_a_mirror_would_show_the_light() {
         }
         let (seen, expected) = (sum / weight, project(&renderer, mirror_point(light, eye)));
         assert!(seen.distance(expected) < 2.0, "{seen} instead of {expected}");
-        let lamp = project(&renderer, light);
+        // The lamp is behind the viewer: what counts is how it moves across the view.
+        let lamp = DVec2::new(light.x, -light.y);
         if let Some((seen_before, lamp_before)) = last {
             assert!((seen - seen_before).dot(lamp - lamp_before) > 0.0, "it moves the way the light does");
         }
@@ -209,7 +211,9 @@ fn without_normals(turn: f64) -> BTreeMap<u32, HashSet<[u8; 4]>> {
     // The floor has two materials: tell objects apart by object and material.
     let ids = frame.object.unwrap().into_data().into_iter().zip(frame.material.unwrap().into_data());
     let mut of_object: BTreeMap<u32, HashSet<[u8; 4]>> = BTreeMap::new();
-    for ((object, material), color) in ids.zip(frame.color.unwrap().into_data()).filter(|((o, _), _)| *o != Frame::BACKGROUND) {
+    for ((object, material), color) in
+        ids.zip(frame.color.unwrap().into_data()).filter(|((o, _), _)| *o != Frame::BACKGROUND)
+    {
         of_object.entry(object * 100 + material).or_default().insert(color);
     }
     of_object
@@ -262,7 +266,8 @@ fn p33_lambert_looks_the_same_from_everywhere() {
 
 /// The brightest pixel of a sphere under a light of this specular colour.
 fn highlight(reflectance: Reflectance, model: Illumination, light: [f32; 3]) -> [f32; 3] {
-    let mut renderer: Renderer = exact(one(solids::sphere(1.0, 96, 48), Material { reflectance, ..Material::default() }), 200, 200);
+    let mut renderer: Renderer =
+        exact(one(solids::sphere(1.0, 96, 48), Material { reflectance, ..Material::default() }), 200, 200);
     renderer.settings.illumination = model;
     renderer.camera = Some(on_z(5.0, 0.5));
     let sun = sun(DVec3::new(0.3, 0.4, 1.0), 1.0);

@@ -1,0 +1,36 @@
+//! `vitral info`: what is in a model file.
+
+use crate::args::InfoArgs;
+use crate::report::{self, Failure};
+use serde_json::{Value, json};
+use vitral::{LoadOptions, Workers, info, load};
+
+/// Runs the verb; gives the exit code.
+pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
+    let workers = Workers::new(args.threads);
+    // Normals that the file has not would be told as if it had.
+    let options =
+        LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
+    let mut models = Vec::new();
+    for model in &args.models {
+        let scene = load(model, &options, &workers)?;
+        if !args.quiet {
+            report::warnings(&scene.warnings);
+        }
+        let found = info::info(&scene, &workers)?;
+        if args.json {
+            let mut value = serde_json::to_value(&found).map_err(|e| Failure::other(e.to_string()))?;
+            if let Value::Object(fields) = &mut value {
+                fields.insert("file".to_owned(), json!(model.to_string_lossy()));
+            }
+            models.push(value);
+        } else {
+            let text = found.to_string();
+            report::print(format!("{}\n{}\n", model.display(), text.trim_end()).as_bytes())?;
+        }
+    }
+    if args.json {
+        report::print_json(&json!({"models": models}))?;
+    }
+    Ok(0)
+}

@@ -1,0 +1,149 @@
+//! `vitral render`: models in, pictures out.
+
+use crate::compare_command;
+use crate::interrupt::{self, INTERRUPTED};
+use crate::outputs::model_name;
+use crate::progress::Progress;
+use crate::render_args::{RenderArgs, ReportArgs};
+use crate::report::{self, DIFFERENT, Failure};
+use crate::resolve::{Plan, resolve};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+use vitral::frame::compare;
+use vitral::picture::EncodeOptions;
+use vitral::render::ColorSpace;
+use vitral::{Frame, Renderer, dump, execution};
+
+/// Runs the verb; gives the exit code.
+pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
+    let start = Instant::now();
+    let plan = resolve(args)?;
+    if let Some(file) = &args.process.save_state {
+        vitral::picture::write(file, plan.state.to_json().as_bytes())?;
+    }
+    let mut execution = execution(args.process.threads)?;
+    execution.budget =
+        execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
+    let cancelled = execution.budget.cancel_flag();
+    interrupt::listen(cancelled.clone());
+
+    let result = render(args, &plan, execution, start);
+    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
+}
+
+fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: Instant) -> Result<u8, Failure> {
+    let scene = plan.state.load_scene(&execution.workers)?;
+    let warnings = scene.warnings.clone();
+    if !args.report.quiet {
+        report::warnings(&warnings);
+    }
+    execution.budget.check("loading")?;
+    let mut renderer = Renderer::with_execution(scene, execution)?;
+    plan.state.apply(&mut renderer)?;
+    let load_seconds = start.elapsed().as_secs_f64();
+    if args.report.verbose {
+        let triangles = renderer.world().facet_count;
+        report::line(&format!("read {triangles} triangles in {load_seconds:.3} s"));
+    }
+    if let Some(folder) = &args.output.dump {
+        dump::dump_to_folder(&mut renderer, folder)?;
+    }
+    let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
+        Drawn::default()
+    } else {
+        draw(args, plan, &mut renderer)?
+    };
+
+    let stats = json!({
+        "load-seconds": load_seconds,
+        "frames": drawn.frames,
+        "total-seconds": start.elapsed().as_secs_f64(),
+    });
+    write_stats(&args.report, &stats)?;
+    if args.report.json {
+        let mut result = json!({"outputs": drawn.written, "warnings": warnings});
+        if args.report.stats {
+            result["stats"] = stats;
+        }
+        report::print_json(&result)?;
+    }
+    Ok(if drawn.different { DIFFERENT } else { 0 })
+}
+
+/// What came of the frames.
+#[derive(Default)]
+struct Drawn {
+    /// Counters and times of each frame.
+    frames: Vec<Value>,
+    /// Files that were written.
+    written: Vec<String>,
+    /// A picture differs from the reference.
+    different: bool,
+}
+
+fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer) -> Result<Drawn, Failure> {
+    let model = model_name(plan.state.models.first().map_or("", String::as_str));
+    let cameras = match plan.state.turntable {
+        Some(_) => renderer.turntable_cameras(plan.views as usize),
+        None => vec![renderer.frame_camera()],
+    };
+    let srgb = plan.state.settings.color_space == ColorSpace::Srgb;
+    let options = EncodeOptions { srgb, ..EncodeOptions::default() };
+    let count = u64::from(plan.frames.end() - plan.frames.start() + 1);
+    let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count);
+    let mut drawn = Drawn::default();
+    for number in plan.frames.clone() {
+        let rendered = renderer.render_from(&cameras[number as usize])?;
+        let encode_start = Instant::now();
+        let wanted = match &args.output.reference {
+            Some(reference) => differs(args, reference, &rendered.frame)?,
+            None => true,
+        };
+        drawn.different |= wanted && args.output.reference.is_some();
+        for output in plan.outputs.iter().filter(|_| wanted) {
+            let path = output.path(&model, number)?;
+            output.write(&path, &rendered.frame, &options)?;
+            drawn.written.push(path.to_string_lossy().into_owned());
+            if args.report.verbose && !output.is_standard() {
+                report::line(&format!("wrote {}", path.display()));
+            }
+        }
+        if args.report.stats || args.report.stats_file.is_some() {
+            let mut stats = serde_json::to_value(&rendered.stats).map_err(|e| Failure::other(e.to_string()))?;
+            stats["frame"] = json!(number);
+            stats["seconds"]["encode"] = json!(encode_start.elapsed().as_secs_f64());
+            drawn.frames.push(stats);
+        }
+        progress.step();
+    }
+    progress.finish();
+    Ok(drawn)
+}
+
+/// Whether the colour picture is farther from the reference than allowed.
+fn differs(args: &RenderArgs, reference: &Path, frame: &Frame) -> Result<bool, Failure> {
+    let expected = compare_command::read(reference)?;
+    let color = frame.color.as_ref().expect("a reference asks for colours");
+    let threshold = compare_command::threshold_byte(args.output.reference_threshold.unwrap_or(0.0));
+    let found = compare::compare(&expected, color, threshold);
+    let different = compare_command::differs(&found);
+    if different && !args.report.quiet {
+        let text = found.as_ref().map_or_else(ToString::to_string, ToString::to_string);
+        report::line(&format!("{}: {text}", reference.display()));
+    }
+    Ok(different)
+}
+
+fn write_stats(args: &ReportArgs, stats: &Value) -> Result<(), Failure> {
+    if let Some(file) = &args.stats_file {
+        vitral::picture::write(file, &report::json(stats))?;
+    }
+    if args.stats && !args.json {
+        use std::io::Write;
+        // Diagnostics that nobody can read are not worth failing for.
+        let _ = std::io::stderr().lock().write_all(&report::json(stats));
+    }
+    Ok(())
+}

@@ -1,0 +1,159 @@
+//! From options as typed to a whole plan: defaults, then the configuration file, then the state file, then the options.
+
+use crate::outputs::Output;
+use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
+use crate::report::Failure;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use vitral::render::{Background, Channels, Lines};
+use vitral::{State, Viewpoint};
+
+/// Largest configuration or state file, in bytes.
+const MAX_STATE_BYTES: u64 = 64 << 20;
+
+/// All that `vitral render` is to do.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    /// Models, viewpoint, lights, settings.
+    pub(crate) state: State,
+    /// Where the channels go.
+    pub(crate) outputs: Vec<Output>,
+    /// Which frames of how many.
+    pub(crate) frames: RangeInclusive<u32>,
+    /// Views of the whole turn; 1 without a turntable.
+    pub(crate) views: u32,
+}
+
+/// Resolves the options.
+pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
+    let mut state = State::default();
+    if let Some(config) = config_file(&args.process)? {
+        overlay(&mut state, &config)?;
+    }
+    if let Some(file) = &args.process.load_state {
+        overlay(&mut state, file)?;
+    }
+    if !args.models.is_empty() {
+        state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
+    }
+    set_picture(&mut state, &args.picture);
+    set_algorithms(&mut state, &args.algorithms);
+    set_lights(&mut state, &args.light);
+    set_viewpoint(&mut state.viewpoint, &args.camera);
+    state.load.allow_external |= args.process.allow_external;
+    if let Some(limit) = args.process.max_memory {
+        state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
+    }
+    if let Some(views) = args.output.turntable {
+        state.turntable = Some(views as usize);
+    }
+    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
+
+    // Outputs decide which channels are rendered.
+    let outputs = Output::pair(&args.output.output, &args.output.channel)?;
+    let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
+    outputs.iter().for_each(|o| o.channel.request(&mut channels));
+    state.settings.channels = channels;
+    if args.report.json && outputs.iter().any(Output::is_standard) {
+        return Err(Failure::usage("--json and --output - both want standard output"));
+    }
+
+    let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
+    let frames = args.output.frames.clone().unwrap_or(0..=views - 1);
+    if *frames.end() >= views {
+        return Err(Failure::usage(format!("--frames {}: the turntable has {views} frames", frames.end()))
+            .with_hint("they are counted from 0"));
+    }
+    if frames.end() > frames.start()
+        && let Some(one) = outputs.iter().find(|o| !o.names_frames())
+    {
+        let hint = "put {frame} or {frame:4} into its name";
+        let name = if one.is_standard() { "standard output" } else { "--output" };
+        return Err(Failure::usage(format!("{name} holds one picture, the turntable has {views}")).with_hint(hint));
+    }
+    Ok(Plan { state, outputs, frames, views })
+}
+
+/// The configuration file to use, if any: the one that was named, else the user's if it exists.
+fn config_file(args: &ProcessArgs) -> Result<Option<PathBuf>, Failure> {
+    if args.no_config {
+        return Ok(None);
+    }
+    if let Some(file) = &args.config {
+        return Ok(Some(file.clone()));
+    }
+    let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let base = folder("XDG_CONFIG_HOME").or_else(|| folder("HOME").map(|home| home.join(".config")));
+    Ok(base.map(|b| b.join("vitral").join("config.json")).filter(|f| f.is_file()))
+}
+
+fn overlay(state: &mut State, file: &Path) -> Result<(), Failure> {
+    let bytes = vitral::read(file, MAX_STATE_BYTES)?;
+    let name = file.to_string_lossy();
+    let text = String::from_utf8(bytes)
+        .map_err(|_| vitral::Error::State { file: name.clone().into_owned(), place: String::new(), what: "not UTF-8 text".to_owned() })?;
+    Ok(state.overlay(&text, &name)?)
+}
+
+fn set_picture(state: &mut State, args: &PictureArgs) {
+    let settings = &mut state.settings;
+    if let Some([width, height]) = args.resolution {
+        (settings.width, settings.height) = (width, height);
+    }
+    settings.samples = args.samples.unwrap_or(settings.samples);
+    settings.color_space = args.color_space.unwrap_or(settings.color_space);
+    if let Some(color) = args.background_color {
+        settings.background = Background::Color { color };
+    }
+    if args.no_background {
+        settings.background = Background::Transparent;
+    }
+}
+
+fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
+    let settings = &mut state.settings;
+    if let Some(name) = &args.visibility {
+        settings.visibility.clone_from(name);
+    }
+    settings.cull = args.cull.unwrap_or(settings.cull);
+    settings.illumination = args.illumination.unwrap_or(settings.illumination);
+    settings.shading = args.shading.unwrap_or(settings.shading);
+    settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
+    settings.transparency = args.transparency.unwrap_or(settings.transparency);
+    settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
+    let lines = [
+        (args.wireframe, Lines::Wireframe),
+        (args.wireframe_hidden_line, Lines::WireframeHiddenLine),
+        (args.edges, Lines::Edges),
+    ];
+    if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
+        settings.lines = chosen;
+    }
+    state.load.normals = args.normals.unwrap_or(state.load.normals);
+}
+
+fn set_lights(state: &mut State, args: &LightArgs) {
+    state.settings.lighting = args.lighting.unwrap_or(state.settings.lighting);
+    if !args.light.is_empty() {
+        state.lights = Some(args.light.clone());
+    }
+    if let Some(factor) = args.light_intensity {
+        state.light_intensity = factor as f32;
+    }
+    state.materials.extend(args.material.iter().cloned());
+}
+
+fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {
+    viewpoint.view = args.view.unwrap_or(viewpoint.view);
+    viewpoint.up = args.up.or(viewpoint.up);
+    viewpoint.camera_index = args.camera_index.or(viewpoint.camera_index);
+    viewpoint.position = args.camera_position.map(|p| p.to_array()).or(viewpoint.position);
+    viewpoint.focal_point = args.camera_focal_point.map(|p| p.to_array()).or(viewpoint.focal_point);
+    viewpoint.view_up = args.camera_view_up.map(|p| p.to_array()).or(viewpoint.view_up);
+    viewpoint.direction = args.camera_direction.map(|p| p.to_array()).or(viewpoint.direction);
+    viewpoint.view_angle = args.camera_view_angle.or(viewpoint.view_angle);
+    viewpoint.orthographic |= args.camera_orthographic;
+    viewpoint.zoom_factor = args.camera_zoom_factor.unwrap_or(viewpoint.zoom_factor);
+    viewpoint.azimuth_angle = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_angle);
+    viewpoint.elevation_angle = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_angle);
+}

@@ -1,0 +1,80 @@
+//! What there is: algorithms, formats, the manual page. All of it comes from the tables that the renderer uses.
+
+use crate::args::{Cli, ListArgs};
+use crate::report::{self, Failure};
+use clap::CommandFactory;
+use serde_json::json;
+use std::fmt::Write;
+use vitral::render::registry;
+use vitral::{Illumination, Shading};
+
+/// `vitral algorithms`.
+pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
+    if args.json {
+        let visibility: Vec<_> = registry::VISIBILITY
+            .iter()
+            .map(|a| json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision}))
+            .collect();
+        let illumination: Vec<_> =
+            Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
+        let shading: Vec<_> =
+            Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what})).collect();
+        let all = json!({"visibility": visibility, "illumination": illumination, "shading": shading});
+        return report::print_json(&all).map(|()| 0);
+    }
+    let mut text = String::from("Visible surfaces (--visibility)\n");
+    for a in registry::VISIBILITY {
+        let _ = writeln!(text, "  {:<14} {} ({} precision; {})", a.name, a.description, a.precision, a.source);
+    }
+    text.push_str("\nIllumination (--illumination)\n");
+    for m in Illumination::ALL {
+        let _ = writeln!(text, "  {:<14} {}", m.name(), m.description());
+    }
+    text.push_str("\nShading (--shading)\n");
+    for (_, name, what) in Shading::ALL {
+        let _ = writeln!(text, "  {name:<14} {what}");
+    }
+    report::print(text.as_bytes()).map(|()| 0)
+}
+
+/// `vitral formats`.
+pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
+    let rows = vitral::io::formats();
+    let kind = |row: &vitral::io::FormatRow| format!("{:?}", row.kind).to_lowercase();
+    if args.json {
+        let list: Vec<_> = rows
+            .iter()
+            .map(|r| {
+                json!({"name": r.name, "extensions": r.extensions, "description": r.description, "kind": kind(r),
+                    "read": r.read, "write": r.write})
+            })
+            .collect();
+        return report::print_json(&json!({"formats": list})).map(|()| 0);
+    }
+    let mut text = String::new();
+    for r in &rows {
+        let ways = match (r.read, r.write) {
+            (true, true) => "read, written",
+            (true, false) => "read",
+            _ => "written",
+        };
+        let extensions = r.extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" ");
+        let _ = writeln!(text, "{:<12} {:<14} {:<8} {:<14} {}", r.name, extensions, kind(r), ways, r.description);
+    }
+    report::print(text.as_bytes()).map(|()| 0)
+}
+
+/// `vitral man`: one page for the command and its verbs.
+pub(crate) fn manual() -> Result<Vec<u8>, Failure> {
+    let mut page = Vec::new();
+    let mut command = Cli::command();
+    command.build();
+    let written = clap_mangen::Man::new(command.clone()).render(&mut page).and_then(|()| {
+        command.get_subcommands().filter(|c| !c.is_hide_set()).try_for_each(|verb| {
+            let title = format!("vitral-{}", verb.get_name());
+            clap_mangen::Man::new(verb.clone()).title(title).render(&mut page)
+        })
+    });
+    written.map_err(|e| Failure::other(format!("the manual page: {e}")))?;
+    Ok(page)
+}

@@ -1,0 +1,9 @@
+//! Checks that need whole pictures: the course's (COURSE.md), the law of agreement, and what must never fail.
+
+mod agreement;
+mod common;
+mod culling;
+mod determinism;
+mod interpolation;
+mod lighting;
+mod robust;

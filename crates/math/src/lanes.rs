@@ -371,8 +371,11 @@ pub fn level_by_name(name: &str) -> Option<Level> {
 pub fn available_levels() -> Vec<(&'static str, Level)> {
     #[allow(unused_mut)]
     let mut levels: Vec<(&'static str, Level)> = Vec::new();
-    #[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64", target_feature = "simd128"))))]
+    #[cfg(feature = "scalar")]
     levels.push(("scalar", Level::fallback()));
+    // Where there is nothing else, it needs no feature.
+    #[cfg(not(any(feature = "scalar", target_arch = "x86_64", target_arch = "aarch64", target_feature = "simd128")))]
+    levels.push(("scalar", Level::new()));
     #[cfg(target_arch = "x86_64")]
     {
         let best = Level::new();

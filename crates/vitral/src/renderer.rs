@@ -112,8 +112,21 @@ impl Renderer {
 
     /// The viewer of the next picture: the chosen camera, or the framed one.
     pub fn frame_camera(&self) -> Camera {
-        let framed = || framing::frame(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
-        self.camera.unwrap_or_else(framed)
+        self.camera.unwrap_or_else(|| self.framed_camera())
+    }
+
+    /// Frames the vertices rather than the box round them, which leaves room where the box's corners are empty.
+    fn framed_camera(&self) -> Camera {
+        let world = self.world();
+        let boxed = framing::frame(&world.bounds, self.view, self.up, self.lens, self.aspect());
+        let points = world.instances.iter().flat_map(|instance| {
+            let to_world = instance.world_from_model;
+            let point = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            instance.mesh.positions.iter().map(move |p| to_world.transform_point3(point(p)))
+        });
+        let eye = boxed.position - boxed.focal_point;
+        let (lens, aspect) = (self.lens, self.aspect());
+        framing::frame_points(points, &world.bounds, eye, boxed.view_up, lens, aspect, framing::FILL)
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with

@@ -15,7 +15,7 @@ const SIDE: u32 = 200;
 
 /// A square of side 4 in the plane y = 0 with a texture of 8 x 8 black and white cells, seen at a flat angle.
 fn floor() -> Renderer {
-    let texel = |i: u32| if (i % 8 + i / 8) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
+    let texel = |i: u32| if (i % 8 + i / 8).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
     let image = Plane::from_rows(8, 8, (0..64).map(texel).collect()).unwrap();
     let sampler =
         Sampler { magnify: Filter::Nearest, minify: Filter::Nearest, mip: MipFilter::None, ..Sampler::default() };

@@ -9,7 +9,13 @@ use std::path::PathBuf;
 ///
 /// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`.
 #[derive(Debug, Parser)]
-#[command(name = "vitral", version, arg_required_else_help = true, disable_help_subcommand = true, max_term_width = 120)]
+#[command(
+    name = "vitral",
+    version,
+    arg_required_else_help = true,
+    disable_help_subcommand = true,
+    max_term_width = 120
+)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     /// What to do.

@@ -9,8 +9,7 @@ use vitral::{LoadOptions, Workers, info, load};
 pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
     let workers = Workers::new(args.threads);
     // Normals that the file has not would be told as if it had.
-    let options =
-        LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
+    let options = LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
     let mut models = Vec::new();
     for model in &args.models {
         let scene = load(model, &options, &workers)?;

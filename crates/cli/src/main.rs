@@ -17,8 +17,8 @@ mod unbuilt;
 mod values;
 
 use args::{Cli, Verb};
-use clap::{CommandFactory, Parser};
 use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
 use report::Failure;
 
 fn main() {

@@ -90,8 +90,11 @@ fn config_file(args: &ProcessArgs) -> Result<Option<PathBuf>, Failure> {
 fn overlay(state: &mut State, file: &Path) -> Result<(), Failure> {
     let bytes = vitral::read(file, MAX_STATE_BYTES)?;
     let name = file.to_string_lossy();
-    let text = String::from_utf8(bytes)
-        .map_err(|_| vitral::Error::State { file: name.clone().into_owned(), place: String::new(), what: "not UTF-8 text".to_owned() })?;
+    let text = String::from_utf8(bytes).map_err(|_| vitral::Error::State {
+        file: name.clone().into_owned(),
+        place: String::new(),
+        what: "not UTF-8 text".to_owned(),
+    })?;
     Ok(state.overlay(&text, &name)?)
 }
 

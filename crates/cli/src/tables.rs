@@ -13,7 +13,9 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     if args.json {
         let visibility: Vec<_> = registry::VISIBILITY
             .iter()
-            .map(|a| json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision}))
+            .map(
+                |a| json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision}),
+            )
             .collect();
         let illumination: Vec<_> =
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();

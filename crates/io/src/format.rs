@@ -28,8 +28,7 @@ pub enum Format {
 
 impl Format {
     /// Every format that is read.
-    pub const ALL: [Self; 7] =
-        [Self::Gltf, Self::Glb, Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::SceneJson];
+    pub const ALL: [Self; 7] = [Self::Gltf, Self::Glb, Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::SceneJson];
 
     /// Its short name.
     pub fn name(self) -> &'static str {
@@ -290,7 +289,9 @@ mod tests {
     fn what_is_not_read_is_named() {
         let refuse = |bytes: &[u8], file: &str| Format::detect(bytes, file).unwrap_err().to_string();
         assert_eq!(refuse(b"", "e.x"), "e.x: empty file");
-        assert!(refuse(b"<?xml?><COLLADA>", "m").starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), "));
+        assert!(
+            refuse(b"<?xml?><COLLADA>", "m").starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), ")
+        );
         assert!(refuse(b"PK\x03\x04", "m.3mf").contains("3MF"));
         assert!(refuse(b"?", "m.blend").contains("Blender"));
         assert!(refuse(b"hello", "m.txt").starts_with("m.txt: this format is not read"));

@@ -62,7 +62,9 @@ pub(crate) fn stem(file: &str) -> String {
 pub(crate) fn finish(mesh: Mesh, mut scene: Scene, file: &str) -> Scene {
     let broken = mesh.positions.iter().filter(|p| !p.iter().all(|c| c.is_finite())).count();
     if broken > 0 {
-        scene.warnings.push(format!("{file}: {broken} vertices have coordinates that are not finite; what they touch vanishes"));
+        scene
+            .warnings
+            .push(format!("{file}: {broken} vertices have coordinates that are not finite; what they touch vanishes"));
     }
     if mesh.triangles.is_empty() && mesh.lines.is_empty() && mesh.points.is_empty() {
         scene.warnings.push(format!("{file}: the file holds nothing to show"));

@@ -17,10 +17,10 @@
 //!
 //! Source: Wavefront's "MTL material format", version 4.2, 1995, as given in docs/bibliography.md.
 
+use crate::Place;
 use crate::text::{Cursor, to_utf8};
 use crate::textures::{Channel, Requests, Usage};
 use crate::warnings::Warnings;
-use crate::Place;
 use vitral_frame::{Sampler, Wrap};
 use vitral_light::{AlphaMode, Material, Reflectance, TextureRef};
 
@@ -97,10 +97,12 @@ impl MtlMaterial {
             b"d" => self.d = dissolve(cursor, warnings).or(self.d),
             b"tr" => self.tr = number(cursor, warnings).or(self.tr),
             b"ni" => self.ni = number(cursor, warnings).or(self.ni),
-            b"illum" => self.illum = cursor.integer().filter(|i| (0..=10).contains(i)).or_else(|| {
-                warnings.note("illum", Place::Line(line), || "illum must be 0 to 10; ignored".into());
-                self.illum
-            }),
+            b"illum" => {
+                self.illum = cursor.integer().filter(|i| (0..=10).contains(i)).or_else(|| {
+                    warnings.note("illum", Place::Line(line), || "illum must be 0 to 10; ignored".into());
+                    self.illum
+                })
+            }
             b"map_kd" => self.map_kd = map(cursor, warnings),
             b"map_ks" => self.map_ks = map(cursor, warnings),
             b"map_ke" => self.map_ke = map(cursor, warnings),
@@ -110,14 +112,13 @@ impl MtlMaterial {
             b"map_ka" => {
                 let ambient = map(cursor, warnings).map(|m| m.path);
                 if self.map_kd.as_ref().is_some_and(|m| Some(&m.path) != ambient.as_ref()) {
-                    warnings.note("map_Ka", Place::Line(line), || {
-                        "map_Ka is not used: ambient light takes map_Kd".into()
-                    });
+                    warnings
+                        .note("map_Ka", Place::Line(line), || "map_Ka is not used: ambient light takes map_Kd".into());
                 }
             }
             b"bump" | b"map_bump" | b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl"
-            | b"map_refl" | b"map_aat" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor"
-            | b"map_pr" | b"map_pm" | b"map_ps" => {
+            | b"map_refl" | b"map_aat" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr" | b"aniso"
+            | b"anisor" | b"map_pr" | b"map_pm" | b"map_ps" => {
                 warnings.note("mtl unused", Place::Line(line), || format!("`{}` is not used", show(keyword)));
             }
             _ => warnings.note("mtl unknown", Place::Line(line), || format!("unknown statement `{}`", show(keyword))),
@@ -199,7 +200,8 @@ fn number(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
     let value = cursor.float().filter(|v| v.is_finite());
     if value.is_none() {
         let word = show(cursor.word());
-        warnings.note("mtl number", Place::Line(line), || format!("`{word}` is not a number; the statement is ignored"));
+        warnings
+            .note("mtl number", Place::Line(line), || format!("`{word}` is not a number; the statement is ignored"));
     }
     value
 }
@@ -216,8 +218,7 @@ fn dissolve(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
 /// A texture statement: options, then a file name that may hold blanks.
 fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
     let line = cursor.line();
-    let mut map =
-        Map { path: String::new(), line, scale: [1.0; 2], offset: [0.0; 2], clamp: false, channel: None };
+    let mut map = Map { path: String::new(), line, scale: [1.0; 2], offset: [0.0; 2], clamp: false, channel: None };
     loop {
         let mut ahead = *cursor;
         let option = ahead.word();
@@ -327,8 +328,9 @@ mod tests {
 
     #[test]
     fn map_options_turn_with_v() {
-        let (m, requests, warnings) =
-            one("newmtl a\nmap_Kd -s 2 3 1 -o .5 .25 -clamp on -mm 0 1 .\\my wood 1.png\nmap_d -imfchan r x.png\nbump b.png");
+        let (m, requests, warnings) = one(
+            "newmtl a\nmap_Kd -s 2 3 1 -o .5 .25 -clamp on -mm 0 1 .\\my wood 1.png\nmap_d -imfchan r x.png\nbump b.png",
+        );
         let base = m.base_texture.unwrap();
         assert_eq!(base.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
         assert_eq!(base.sampler.wrap_s, Wrap::ClampToEdge);

@@ -111,7 +111,13 @@ impl Reader<'_> {
         let word = ahead.word();
         let Some(header) = Header::parse(word) else {
             if word.first().is_some_and(u8::is_ascii_digit) {
-                return Ok(Header { texture: false, color: false, normal: false, homogeneous: false, dimensions: false });
+                return Ok(Header {
+                    texture: false,
+                    color: false,
+                    normal: false,
+                    homogeneous: false,
+                    dimensions: false,
+                });
             }
             let seen = String::from_utf8_lossy(&word[..word.len().min(40)]);
             return Err(self.error(format!("`{seen}`, `OFF` is required")));
@@ -185,7 +191,8 @@ impl Reader<'_> {
         if header.color {
             // Three or four numbers, unless texture coordinates follow.
             let rgb = self.floats::<3>("colour")?;
-            let alpha = if header.texture || !self.cursor.at_line_end() { Some(self.floats::<1>("colour")?[0]) } else { None };
+            let alpha =
+                if header.texture || !self.cursor.at_line_end() { Some(self.floats::<1>("colour")?[0]) } else { None };
             lists.colors.push([rgb[0], rgb[1], rgb[2], alpha.unwrap_or(f32::NAN)]);
         }
         if header.texture {
@@ -334,8 +341,14 @@ mod tests {
     #[test]
     fn false_announcements_are_refused() {
         let refusal = |text: &str| read(text).unwrap_err().to_string();
-        assert_eq!(refusal("OFF\n3 4\n0 0 0\n"), "t.off: line 2: the numbers of vertices, faces and edges are required");
-        assert_eq!(refusal("OFF\n9999999999 0 0\n"), "t.off: line 2: 9999999999 vertices are announced, the file has 1 bytes left");
+        assert_eq!(
+            refusal("OFF\n3 4\n0 0 0\n"),
+            "t.off: line 2: the numbers of vertices, faces and edges are required"
+        );
+        assert_eq!(
+            refusal("OFF\n9999999999 0 0\n"),
+            "t.off: line 2: 9999999999 vertices are announced, the file has 1 bytes left"
+        );
         assert_eq!(refusal("OFF\n1 2 0\n0 0 0\n3 0 0 1"), "t.off: line 4: index 1, the file has 1 vertices");
         assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n3 0 0"), "t.off: line 4: 2 indices, the face has 3 corners");
         assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n"), "t.off: line 4: the file ends here, a face is required");

@@ -207,7 +207,13 @@ impl Content {
     }
 
     /// Takes an element; an `Err` says what is wrong with it.
-    fn push(&mut self, role: Role, row: &Row, place: impl Fn() -> Place, warnings: &mut Warnings) -> Result<(), String> {
+    fn push(
+        &mut self,
+        role: Role,
+        row: &Row,
+        place: impl Fn() -> Place,
+        warnings: &mut Warnings,
+    ) -> Result<(), String> {
         match role {
             Role::Vertex => self.push_vertex(row),
             Role::Face => {

@@ -70,7 +70,8 @@ mod tests {
 
     #[test]
     fn a_pentagon_and_a_triangle() {
-        let positions: Vec<[f32; 3]> = [[0, 0], [2, 0], [3, 1], [1, 3], [-1, 1]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
+        let positions: Vec<[f32; 3]> =
+            [[0, 0], [2, 0], [3, 1], [1, 3], [-1, 1]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
         let built = build(&positions, &[5, 3], vec![0, 1, 2, 3, 4, 0, 2, 4], &Workers::single());
         assert_eq!(built.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 2, 4]]);
         assert_eq!(built.per_face(&[5, 3]), [[0; 3], [0; 3], [0; 3], [1; 3]]);

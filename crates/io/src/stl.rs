@@ -64,7 +64,8 @@ fn binary(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     }
     if records.len() as u64 > count_wide || !rest.is_empty() {
         let end = HEADER as u64 + RECORD as u64 * count_wide;
-        warnings.note("", Place::Byte(end), || format!("{} bytes after the last triangle are left out", size as u64 - end));
+        warnings
+            .note("", Place::Byte(end), || format!("{} bytes after the last triangle are left out", size as u64 - end));
     }
     let records = &records[..count as usize];
     check_count(records.len(), file)?;
@@ -220,10 +221,8 @@ mod tests {
         bytes
     }
 
-    const TWO: [[[f32; 3]; 3]; 2] = [
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-0.0, 1.0, 0.0]],
-    ];
+    const TWO: [[[f32; 3]; 3]; 2] =
+        [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-0.0, 1.0, 0.0]]];
 
     fn facet(t: &[[f32; 3]; 3]) -> String {
         let v: String = t.iter().map(|p| format!("  VERTEX {} {} {:e}\n", p[0], p[1], p[2])).collect();
@@ -265,7 +264,10 @@ mod tests {
             "t.stl: byte 183: the file ends here: 2 triangles are announced, 1 are there"
         );
         assert!(refusal(&whole[..50]).starts_with("t.stl: byte 50: the file ends here: a binary"));
-        assert_eq!(refusal(b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n"), "t.stl: line 4: the file ends here, a coordinate is required");
+        assert_eq!(
+            refusal(b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n"),
+            "t.stl: line 4: the file ends here, a coordinate is required"
+        );
         assert_eq!(refusal(b"solid\n vertex"), "t.stl: line 2: `vertex`, `facet` or `endsolid` is required");
         let longer = [whole, vec![7; 60]].concat();
         assert_eq!(read(&longer).unwrap().warnings, ["t.stl: byte 184: 60 bytes after the last triangle are left out"]);

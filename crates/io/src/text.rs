@@ -243,7 +243,13 @@ impl<'a> Cursor<'a> {
         // Take the short way where it is exact.
         self.at = at;
         let value = match exact(mantissa, whole + fraction, power) {
-            Some(value) => if negative { -value } else { value },
+            Some(value) => {
+                if negative {
+                    -value
+                } else {
+                    value
+                }
+            }
             None => long_float(&self.bytes[start..at]),
         };
         let next = self.peek();

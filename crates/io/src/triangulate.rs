@@ -176,7 +176,8 @@ impl EarClipper {
         while left > 3 {
             // Out of time: a fan of what is left.
             if self.work == 0 {
-                let ring: Vec<u32> = std::iter::successors(Some(i), |&k| Some(self.next[k as usize])).take(left as usize).collect();
+                let ring: Vec<u32> =
+                    std::iter::successors(Some(i), |&k| Some(self.next[k as usize])).take(left as usize).collect();
                 return fan(&ring, out);
             }
             if self.meets(i, demand) {
@@ -289,7 +290,8 @@ mod tests {
 
     #[test]
     fn corners_on_a_straight_edge_make_no_empty_triangles() {
-        let square: Vec<[f32; 3]> = [[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
+        let square: Vec<[f32; 3]> =
+            [[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
         let triangles = cut(&square);
         assert!(triangles.iter().all(|t| areas(&square, &[*t]).0 > 0.0), "{triangles:?}");
     }

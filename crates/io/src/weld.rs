@@ -278,7 +278,8 @@ mod tests {
 
     #[test]
     fn two_triangles_share_an_edge() {
-        let soup = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, -0.0], [-0.0, 1.0, 0.0]]];
+        let soup =
+            [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, -0.0], [-0.0, 1.0, 0.0]]];
         let (positions, triangles) = weld(2, |t| soup[t], &Workers::single());
         assert_eq!((positions.len(), triangles), (4, vec![[0, 1, 2], [1, 3, 2]]));
         assert_eq!(weld(0, |_| [[0.0; 3]; 3], &Workers::single()), (vec![], vec![]));

@@ -100,10 +100,18 @@ fn tiny_malformed_files_do_what_the_table_says() {
         ("empty.obj", String::new(), Refused(&["empty file"])),
         ("empty.x", String::new(), Refused(&["empty file"])),
         ("memory.off", format!("OFF\n353535235358 6 0\n{off}"), Refused(&["line 2: 353535235358 vertices"])),
-        ("invalid.off", "OFF\n3 4\n0 0 0\n0 0 0\n0 0 0\n0\n220\n4\n".into(), Refused(&["line 2", "edges are required"])),
+        (
+            "invalid.off",
+            "OFF\n3 4\n0 0 0\n0 0 0\n0 0 0\n0\n220\n4\n".into(),
+            Refused(&["line 2", "edges are required"]),
+        ),
         ("range.obj", format!("o 1\n{vertices}f 4 12 2 1\nf 0 1 2"), Refused(&["line 10: index 12"])),
         ("zero.obj", format!("o 1\n{vertices}f 4 2 1\nf 0 1 2"), Refused(&["line 11: vertex index 0"])),
-        ("bare.obj", format!("{vertices}usemtl no\nf\nf 1 2 3"), Warned(&["line 9: unknown material", "line 10: a face"])),
+        (
+            "bare.obj",
+            format!("{vertices}usemtl no\nf\nf 1 2 3"),
+            Warned(&["line 9: unknown material", "line 10: a face"]),
+        ),
         ("nan.obj", "v nan 0 0\nv 0 1e99 0\nv 0 0 1\nf 1 2 3".into(), Warned(&["2 vertices have coordinates"])),
         ("box.3mf", "PK\u{3}\u{4}".into(), Refused(&["3MF", "readable are glTF (.gltf)"])),
         ("cut.stl", "solid s\nfacet normal 0 0 1\nouter loop\n".into(), Refused(&["line 4: the file ends here"])),
@@ -123,8 +131,16 @@ fn claimed_counts_allocate_nothing() {
     let files = [
         ("claim.stl", stl),
         ("vertices.ply", header(&format!("element vertex 4000000000\n{vertex}"))),
-        ("faces.ply", header(&format!("element vertex 0\n{vertex}element face 9000000000000000000\nproperty list uchar int vertex_index\n"))),
-        ("empty.ply", header(&format!("element none 18446744073709551615\nelement vertex 18446744073709551615\n{vertex}"))),
+        (
+            "faces.ply",
+            header(&format!(
+                "element vertex 0\n{vertex}element face 9000000000000000000\nproperty list uchar int vertex_index\n"
+            )),
+        ),
+        (
+            "empty.ply",
+            header(&format!("element none 18446744073709551615\nelement vertex 18446744073709551615\n{vertex}")),
+        ),
     ];
     for (name, bytes) in files {
         let error = load(&bytes, name, &NoFiles, &Workers::single()).unwrap_err().to_string();
@@ -141,7 +157,9 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     let mut binary_stl = vec![b' '; 80];
     binary_stl.extend(2u32.to_le_bytes());
     for _ in 0..2 {
-        binary_stl.extend([0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|f| f.to_le_bytes()));
+        binary_stl.extend(
+            [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|f| f.to_le_bytes()),
+        );
         binary_stl.extend([0; 2]);
     }
     let mut binary_ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n".as_bytes().to_vec();

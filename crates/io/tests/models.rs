@@ -70,7 +70,9 @@ fn formats_that_are_not_read_are_named() {
         ("assimp/3mf/box.3mf", "3MF"),
     ] {
         match open(path) {
-            Err(Error::Unsupported { what, .. }) => assert!(what.contains(name) && what.contains("OBJ (.obj)"), "{what}"),
+            Err(Error::Unsupported { what, .. }) => {
+                assert!(what.contains(name) && what.contains("OBJ (.obj)"), "{what}")
+            }
             other => panic!("{path}: {other:?}"),
         }
     }

@@ -151,7 +151,11 @@ impl Pen<'_, '_> {
         let ([pa, za], [pb, zb]) = (self.place(a), self.place(b));
         let along = (pb - pa).normalize_or(Vec2::X) * (STROKE * 0.5);
         let across = Vec2::new(-along.y, along.x);
-        self.quad([pa - along - across, pa - along + across, pb + along + across, pb + along - across], [za, za, zb, zb], id);
+        self.quad(
+            [pa - along - across, pa - along + across, pb + along + across, pb + along - across],
+            [za, za, zb, zb],
+            id,
+        );
     }
 
     /// A square round a point in model space.

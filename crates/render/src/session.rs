@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Workers};
 use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
-use vitral_scene::topology::Solidity;
 use vitral_scene::edges::Edge;
+use vitral_scene::topology::Solidity;
 use vitral_scene::{Scene, World};
 
 /// Who computes, with which instructions, and how much is allowed.
@@ -72,14 +72,7 @@ impl Session {
         }
         let world = World::new(&scene)?;
         let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
-        Ok(Self {
-            scene,
-            world,
-            meshes,
-            grid: None,
-            spare_vertices: Mutex::default(),
-            spare_batches: Mutex::default(),
-        })
+        Ok(Self { scene, world, meshes, grid: None, spare_vertices: Mutex::default(), spare_batches: Mutex::default() })
     }
 
     /// The scene.

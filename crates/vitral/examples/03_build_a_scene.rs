@@ -66,10 +66,10 @@ fn main() -> Result<(), Error> {
 
     let mut renderer = Renderer::new(scene)?;
     renderer.camera = Some(Camera {
-        position: DVec3::new(-3.0, 5.0, 11.0),
-        focal_point: DVec3::new(0.0, 0.5, 0.0),
+        position: DVec3::new(-6.0, 8.0, 18.0),
+        focal_point: DVec3::new(0.0, 0.3, 0.0),
         view_up: DVec3::Y,
-        projection: Projection::Perspective { view_angle: 40.0f64.to_radians() },
+        projection: Projection::Perspective { view_angle: 38.0f64.to_radians() },
         clip: None,
     });
     let path = folder.join("03_build_a_scene.png");

@@ -8,8 +8,7 @@ use vitral_testkit::golden::{Tolerance, check_everywhere};
 /// Renders `scene` as `change` wants it and compares.
 fn golden(name: &str, scene: Scene, change: impl Fn(&mut Renderer)) {
     check_everywhere(name, Tolerance::EXACT, |setting| {
-        let execution =
-            Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
+        let execution = Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
         let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap();
         (renderer.settings.width, renderer.settings.height) = (200, 150);
         change(&mut renderer);

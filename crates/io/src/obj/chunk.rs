@@ -64,7 +64,9 @@ impl Statement {
             b"usemtl" => Self::Material,
             b"mtllib" => Self::Library,
             b"vp" | b"deg" | b"bmat" | b"step" | b"cstype" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim"
-            | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"cdc" | b"cdp" | b"bzp" | b"bsp" | b"res" => Self::FreeForm,
+            | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"cdc" | b"cdp" | b"bzp" | b"bsp" | b"res" => {
+                Self::FreeForm
+            }
             b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib" | b"shadow_obj"
             | b"trace_obj" | b"ctech" | b"stech" | b"call" | b"csh" => Self::Unused,
             _ => Self::Unknown,
@@ -177,9 +179,8 @@ impl Chunk {
                 _ => self.statement(text, &mut cursor),
             }
             if cursor.take_ill_formed() {
-                self.warnings.note("number", Place::Line(line), || {
-                    "ill-formed number; only its beginning counts".to_owned()
-                });
+                self.warnings
+                    .note("number", Place::Line(line), || "ill-formed number; only its beginning counts".to_owned());
             }
             if self.faces.v.len() > corners {
                 return line;
@@ -206,9 +207,8 @@ impl Chunk {
             Statement::Library => self.event(cursor, text, Change::Library),
             Statement::Smoothing => self.smoothing(cursor),
             Statement::FreeForm => {
-                self.warnings.note("free form", Place::Line(line), || {
-                    "free-form curves and surfaces are not read".to_owned()
-                });
+                self.warnings
+                    .note("free form", Place::Line(line), || "free-form curves and surfaces are not read".to_owned());
                 Ok(())
             }
             Statement::Unused => {
@@ -364,9 +364,8 @@ impl Chunk {
             previous = Some(end);
         }
         if self.lines.len() == before {
-            self.warnings.note("short line", Place::Line(line), || {
-                "a line with fewer than two ends; it is left out".to_owned()
-            });
+            self.warnings
+                .note("short line", Place::Line(line), || "a line with fewer than two ends; it is left out".to_owned());
         }
         Ok(())
     }

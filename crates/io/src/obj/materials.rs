@@ -141,9 +141,8 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
             library.materials.len() as u32 - 1
         }));
         if library.index.last() == Some(&None) {
-            warnings.note("material", Place::Line(line), || {
-                format!("unknown material `{name}`; the default one is used")
-            });
+            warnings
+                .note("material", Place::Line(line), || format!("unknown material `{name}`; the default one is used"));
         }
     }
 
@@ -176,12 +175,7 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
 }
 
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words.
-fn read_libraries(
-    line: u64,
-    names: &[u8],
-    resolver: &dyn Resolver,
-    warnings: &mut Warnings,
-) -> Vec<(String, Vec<u8>)> {
+fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
     let text = String::from_utf8_lossy(names).replace('\\', "/");
     let whole = text.trim_matches('"');
     let mut missing = |name: &str, why: &crate::ResolveError| {

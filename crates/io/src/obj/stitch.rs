@@ -95,7 +95,8 @@ pub(super) fn first_bad_index(
             let corner = packed.iter().position(|p| *p != NONE && bad(p, base, total))?;
             Some((Chunk::line_of_corner(pieces[i], corner), what, unpack(packed[corner], base as u32), total))
         });
-        let ends = chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
+        let ends =
+            chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
         let in_free = ends
             .filter(|(packed, _)| bad(packed, base.v, sum.v))
             .map(|(packed, line)| (line, "vertices", unpack(packed, base.v as u32), sum.v));
@@ -180,7 +181,8 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
         triangles,
         faces: if is_mixed { Faces::Polygons { starts, corners } } else { Faces::Triangles },
         uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
-        normals: (totals.has_normals || cloud_normals).then_some(Attribute { values: normals, corners: normal_corners }),
+        normals: (totals.has_normals || cloud_normals)
+            .then_some(Attribute { values: normals, corners: normal_corners }),
         colors: colors.map(Attribute::per_vertex),
         lines,
         points: if no_elements { (0..sum.v as u32).collect() } else { points },
@@ -213,12 +215,7 @@ where
 }
 
 /// Vertex colours as linear RGBA; vertices without a colour are white.
-fn linear_colors(
-    chunks: &mut [Chunk],
-    totals: &Totals,
-    warnings: &mut Warnings,
-    workers: &Workers,
-) -> Vec<[f32; 4]> {
+fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Vec<[f32; 4]> {
     let largest = chunks.iter().flat_map(|c| c.colors.as_flattened()).fold(0.0f32, |m, &c| m.max(c));
     let scale = if largest > 1.0 { 255.0 } else { 1.0 };
     if largest > 1.0 {
@@ -226,13 +223,12 @@ fn linear_colors(
     }
     let mut colors = vec![[1.0f32; 4]; totals.sum().v];
     let mut rest = colors.as_mut_slice();
-    let jobs: Vec<_> = chunks
-        .iter_mut()
-        .map(|c| (front(&mut rest, c.positions.len()), std::mem::take(&mut c.colors)))
-        .collect();
+    let jobs: Vec<_> =
+        chunks.iter_mut().map(|c| (front(&mut rest, c.positions.len()), std::mem::take(&mut c.colors))).collect();
     workers.for_each(jobs, |(slice, encoded)| {
         for (out, rgb) in slice.iter_mut().zip(encoded) {
-            let [r, g, b] = rgb.map(|c| if c.is_finite() { linear_from_srgb((c / scale).clamp(0.0, 1.0)) } else { 1.0 });
+            let [r, g, b] =
+                rgb.map(|c| if c.is_finite() { linear_from_srgb((c / scale).clamp(0.0, 1.0)) } else { 1.0 });
             *out = [r, g, b, 1.0];
         }
     });

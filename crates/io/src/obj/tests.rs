@@ -76,7 +76,8 @@ fn vertex_colours_are_linear() {
 
 #[test]
 fn oddities_are_told_with_their_line() {
-    let s = read(&format!("{SQUARE}f\nf 1 2\nv 3.1+e2 0 0\ncurv 0 1\nlod 3\nfoo\nusemtl none\nf 1 2 3\nmtllib a b.mtl"));
+    let s =
+        read(&format!("{SQUARE}f\nf 1 2\nv 3.1+e2 0 0\ncurv 0 1\nlod 3\nfoo\nusemtl none\nf 1 2 3\nmtllib a b.mtl"));
     assert_eq!(
         s.warnings,
         [
@@ -97,7 +98,10 @@ fn indices_that_lead_nowhere_are_errors() {
     assert_eq!(refusal(&format!("{SQUARE}\nf 1 2 5")), "t.obj: line 6: index 5, the file has 4 vertices");
     assert!(refusal(&format!("{SQUARE}f 1 2 -5")).starts_with("t.obj: line 5: the index counts back 1 vertices"));
     assert!(refusal(&format!("{SQUARE}f 1 2 0")).starts_with("t.obj: line 5: vertex index 0: indices begin with 1"));
-    assert_eq!(refusal(&format!("{SQUARE}f 1/1 2/1 3/1")), "t.obj: line 5: index 1, the file has 0 texture coordinates");
+    assert_eq!(
+        refusal(&format!("{SQUARE}f 1/1 2/1 3/1")),
+        "t.obj: line 5: index 1, the file has 0 texture coordinates"
+    );
     assert_eq!(refusal(&format!("{SQUARE}f 1 2 9\nf 1 x 2")), "t.obj: line 5: index 9, the file has 4 vertices");
     assert_eq!(refusal(&format!("{SQUARE}f 1 x 2\nf 1 2 9")), "t.obj: line 5: `x` is not a vertex index");
     assert_eq!(refusal(&format!("{SQUARE}l 1 2\n l 3 7")), "t.obj: line 6: index 7, the file has 4 vertices");
@@ -130,7 +134,8 @@ fn materials_come_from_all_libraries() {
         ("sub/my lib.mtl", "newmtl a b\nKd 1 0 0\nmap_Kd gone.png"),
         ("two.mtl", "newmtl c\nKd 0 1 0\nnewmtl unused"),
     ]);
-    let text = format!("mtllib sub\\my lib.mtl\nmtllib one.mtl two.mtl\n{SQUARE}usemtl c\nf 1 2 3\nusemtl a b\nf 1 3 4");
+    let text =
+        format!("mtllib sub\\my lib.mtl\nmtllib one.mtl two.mtl\n{SQUARE}usemtl c\nf 1 2 3\nusemtl a b\nf 1 3 4");
     let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
     let kd = |i: usize| match s.materials[i].reflectance {
         Reflectance::Phong { kd, .. } => kd,

@@ -17,12 +17,7 @@ use vitral_math::color::{linear_from_srgb, linear_from_srgb_table};
 const BLOCK: usize = 1 << 13;
 
 /// Reads all elements.
-pub(super) fn read(
-    bytes: &[u8],
-    reading: &mut Reading,
-    content: &mut Content,
-    workers: &Workers,
-) -> Result<(), Error> {
+pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, workers: &Workers) -> Result<(), Error> {
     let big = reading.header.encoding == Encoding::BigEndian;
     let mut at = reading.header.data;
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
@@ -58,8 +53,10 @@ fn end_of_rows(bytes: &[u8], at: usize, element: &Element, stride: usize, file: 
         Some(size) if size <= room => Ok(at + size as usize),
         _ => {
             let there = room / stride.max(1) as u64;
-            let what =
-                format!("the file ends here: {} elements `{}` are announced, {there} are there", element.count, element.name);
+            let what = format!(
+                "the file ends here: {} elements `{}` are announced, {there} are there",
+                element.count, element.name
+            );
             Err(Error::malformed(file, Place::Byte(bytes.len() as u64), what))
         }
     }
@@ -152,7 +149,8 @@ impl Rows<'_> {
                 }
             } else {
                 for (out, row) in out.iter_mut().zip(rows) {
-                    let value = |f: Option<Field>| f.map_or(1.0, |(at, kind)| scalar(&row[at..], kind, self.big) as f32);
+                    let value =
+                        |f: Option<Field>| f.map_or(1.0, |(at, kind)| scalar(&row[at..], kind, self.big) as f32);
                     *out = map(fields.map(value));
                 }
             }
@@ -255,7 +253,9 @@ impl Shape {
         for (property, target) in element.properties.iter().zip(&layout.targets) {
             match property.kind {
                 Kind::Scalar(kind) => offset += kind.size(),
-                Kind::List { count, item: item @ (Type::I32 | Type::U32) } if *target == Target::Corners && shape.is_none() => {
+                Kind::List { count, item: item @ (Type::I32 | Type::U32) }
+                    if *target == Target::Corners && shape.is_none() =>
+                {
                     let corners = scalar(bytes.get(offset..)?.get(..count.size())?, count, big);
                     if !(3.0..=255.0).contains(&corners) {
                         return None;
@@ -318,8 +318,10 @@ fn read_rows(
             Error::malformed(reading.file, place(), format!("element {n} of `{}`: {what}", element.name))
         };
         let ended = || {
-            let what =
-                format!("the file ends here: {} elements `{}` are announced, {n} are there", element.count, element.name);
+            let what = format!(
+                "the file ends here: {} elements `{}` are announced, {n} are there",
+                element.count, element.name
+            );
             Error::malformed(reading.file, Place::Byte(bytes.len() as u64), what)
         };
         let take = |at: &mut usize, kind: Type| {
@@ -356,7 +358,11 @@ fn read_rows(
             }
         }
         content.push(layout.role, &row, place, reading.warnings).map_err(|what| {
-            Error::malformed(reading.file, Place::Byte(start as u64), format!("element {n} of `{}`: {what}", element.name))
+            Error::malformed(
+                reading.file,
+                Place::Byte(start as u64),
+                format!("element {n} of `{}`: {what}", element.name),
+            )
         })?;
     }
     Ok(at)

@@ -172,7 +172,9 @@ fn parse_property(words: &[&str]) -> Result<Property, String> {
         ["list", count, item, name, ..] => {
             let kind = Kind::List { count: scalar(count)?, item: scalar(item)? };
             match kind {
-                Kind::List { count, .. } if count.is_float() => Err("the length of a list must be an integer".to_owned()),
+                Kind::List { count, .. } if count.is_float() => {
+                    Err("the length of a list must be an integer".to_owned())
+                }
                 _ => Ok(Property { name: (*name).to_owned(), kind }),
             }
         }

@@ -47,7 +47,10 @@ fn strips_turn_every_second_triangle() {
 #[test]
 fn colours_of_faces_count_where_vertices_have_none() {
     let face = "element face 2\nproperty float red\nproperty float green\nproperty float blue\n";
-    let m = mesh(&text(&format!("element vertex 4\n{XYZ}{face}{LIST}"), "0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0 0 4 0 1 2 3\n0 1 0 3 0 1 2"));
+    let m = mesh(&text(
+        &format!("element vertex 4\n{XYZ}{face}{LIST}"),
+        "0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0 0 4 0 1 2 3\n0 1 0 3 0 1 2",
+    ));
     let colors = m.colors.unwrap();
     assert_eq!(colors.corners, Some(vec![[0; 3], [0; 3], [1; 3]]));
     assert_eq!(colors.values, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
@@ -55,7 +58,8 @@ fn colours_of_faces_count_where_vertices_have_none() {
 
 #[test]
 fn points_without_faces_and_missing_lists() {
-    let s = read(&text(&format!("element vertex 2\n{XYZ}{LIST}property float confidence\n"), "0 0 0 0 1\n1 1 1 0 1\n")).unwrap();
+    let s = read(&text(&format!("element vertex 2\n{XYZ}{LIST}property float confidence\n"), "0 0 0 0 1\n1 1 1 0 1\n"))
+        .unwrap();
     assert_eq!(s.meshes[0].points, [0, 1]);
     assert_eq!(s.warnings, ["t.ply: line 4: properties of `vertex` that are not used: `vertex_indices`, `confidence`"]);
     let s = read(&text(&format!("element vertex 1\n{XYZ}{LIST}"), "0 0 0\n")).unwrap();
@@ -80,7 +84,8 @@ fn false_announcements_are_refused() {
     assert_eq!(refusal(b"ply\nformat ascii 1.0\n"), "t.ply: line 3: the file ends here, `end_header` is required");
     assert_eq!(refusal(b"ply\nend_header\n"), "t.ply: line 2: the header has no `format` line");
     assert_eq!(refusal(b"ply\nformat ascii 1.0\nend_header\n"), "t.ply: the header has no element `vertex`");
-    let huge = b"ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n";
+    let huge =
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n";
     assert!(refusal(huge).contains("`vertex` must have the properties"));
 }
 
@@ -90,7 +95,10 @@ fn binary(big: bool, wide: bool, positions: &[[f32; 3]], faces: &[Vec<u32>]) -> 
     let order = if big { "big" } else { "little" };
     let mut out = format!("ply\r\nformat binary_{order}_endian 1.0\r\nelement vertex {}\r\n", positions.len());
     out += &["x", "y", "z"].map(|axis| format!("property {kind} {axis}\r\n")).concat();
-    out += &format!("element extra 2\r\nproperty list uchar short a\r\nelement face {}\r\nproperty {list} vertex_index\r\nend_header\r\n", faces.len());
+    out += &format!(
+        "element extra 2\r\nproperty list uchar short a\r\nelement face {}\r\nproperty {list} vertex_index\r\nend_header\r\n",
+        faces.len()
+    );
     let mut out = out.into_bytes();
     let mut put = |bytes: &[u8]| {
         let mut bytes = bytes.to_vec();
@@ -106,7 +114,11 @@ fn binary(big: bool, wide: bool, positions: &[[f32; 3]], faces: &[Vec<u32>]) -> 
         put(bytes);
     }
     for face in faces {
-        if wide { put(&(face.len() as u16).to_le_bytes()) } else { put(&[face.len() as u8]) }
+        if wide {
+            put(&(face.len() as u16).to_le_bytes())
+        } else {
+            put(&[face.len() as u8])
+        }
         for &i in face {
             if wide { put(&(i as u16).to_le_bytes()) } else { put(&i.to_le_bytes()) }
         }
@@ -141,11 +153,17 @@ fn broken_binary_data_are_refused_with_their_byte() {
         refusal(&bad),
         format!("t.ply: byte {}: element 1 of `face`: index 3, the file has 3 vertices", end - 13)
     );
-    assert!(refusal(&good[..end - 30]).contains("`vertex` are announced, 2 are there") || refusal(&good[..end - 30]).contains("`extra`"));
+    assert!(
+        refusal(&good[..end - 30]).contains("`vertex` are announced, 2 are there")
+            || refusal(&good[..end - 30]).contains("`extra`")
+    );
     let few = binary(false, false, &[[0.0; 3]; 3], &[vec![0, 1], vec![0, 1, 2]]);
     assert_eq!(read(&few).unwrap().meshes[0].triangles, [[0, 1, 2]]);
     let longer = [good, vec![0; 3]].concat();
-    assert_eq!(read(&longer).unwrap().warnings.last().unwrap(), &format!("t.ply: byte {end}: 3 bytes after the last element are left out"));
+    assert_eq!(
+        read(&longer).unwrap().warnings.last().unwrap(),
+        &format!("t.ply: byte {end}: 3 bytes after the last element are left out")
+    );
 }
 
 proptest! {

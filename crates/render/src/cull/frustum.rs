@@ -56,9 +56,7 @@ pub fn cull(
             match frustum.test_box(&instance.model_bounds) {
                 Containment::Outside => Vec::new(),
                 Containment::Inside => vec![all(i)],
-                Containment::Crossing => {
-                    session.tree(instance.mesh_index).visible(&frustum, &mut counters.box_tests)
-                }
+                Containment::Crossing => session.tree(instance.mesh_index).visible(&frustum, &mut counters.box_tests),
             }
         };
         if !ranges.is_empty() || !instance.mesh.lines.is_empty() || !instance.mesh.points.is_empty() {

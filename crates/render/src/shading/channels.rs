@@ -33,12 +33,7 @@ pub(crate) struct ChannelSink<'a> {
 }
 
 impl<'a> ChannelSink<'a> {
-    pub(crate) fn new(
-        constants: &'a FrameConstants<'a>,
-        wanted: Channels,
-        level: Level,
-        tile_count: usize,
-    ) -> Self {
+    pub(crate) fn new(constants: &'a FrameConstants<'a>, wanted: Channels, level: Level, tile_count: usize) -> Self {
         Self { constants, wanted, level, tiles: (0..tile_count).map(|_| Mutex::default()).collect() }
     }
 }
@@ -89,12 +84,7 @@ impl ChannelSink<'_> {
 
 /// World-space shading normals of the points, on the viewer's side where both sides are seen.
 #[inline(always)]
-fn normals<S: Simd>(
-    simd: S,
-    points: &Points,
-    constants: &FrameConstants<'_>,
-    out: &mut [[f32; 3]],
-) {
+fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, out: &mut [[f32; 3]]) {
     let rotation = constants.view.view.view_from_world.as_mat4();
     let mut of_point = vec![[0.0; 3]; points.len()];
     for group in &points.groups {

@@ -129,8 +129,7 @@ fn encode<S: Simd>(simd: S, places: &[u32], colors: &mut Vec<[f32; 4]>, raw: boo
         let bytes = bytes.to_array();
         for (k, &place) in places.iter().enumerate() {
             let at = 4 * k;
-            out[place as usize] =
-                [bytes[at] as u8, bytes[at + 1] as u8, bytes[at + 2] as u8, bytes[at + 3] as u8];
+            out[place as usize] = [bytes[at] as u8, bytes[at + 1] as u8, bytes[at + 2] as u8, bytes[at + 3] as u8];
         }
     }
 }

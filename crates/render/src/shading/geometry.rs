@@ -136,11 +136,7 @@ fn normalized<S: Simd>(e: [F<S>; 3]) -> [F<S>; 3] {
     let usable = lanes::Lanes::lt(zero, lanes::Lanes::abs(sum));
     let inverse = one / sum;
     let third = lanes::Lanes::splat(sum, 1.0 / 3.0);
-    [
-        usable.select(e[0] * inverse, third),
-        usable.select(e[1] * inverse, third),
-        usable.select(e[2] * inverse, third),
-    ]
+    [usable.select(e[0] * inverse, third), usable.select(e[1] * inverse, third), usable.select(e[2] * inverse, third)]
 }
 
 /// Builds the surface under each lane's point.
@@ -181,11 +177,8 @@ fn surface_inlined<S: Simd>(
     let w = normalized(edges_at(&screen, x, y, viewing.interpolation));
     // Snapping may put a sample a hair outside the facet: stay on it.
     let zero = constant(simd, 0.0);
-    let weights = normalized([
-        lanes::Lanes::max(w[0], zero),
-        lanes::Lanes::max(w[1], zero),
-        lanes::Lanes::max(w[2], zero),
-    ]);
+    let weights =
+        normalized([lanes::Lanes::max(w[0], zero), lanes::Lanes::max(w[1], zero), lanes::Lanes::max(w[2], zero)]);
 
     // Bring corners and normals to view space.
     let to_view = &instance.view_from_model;
@@ -213,8 +206,7 @@ fn surface_inlined<S: Simd>(
     // Where both sides are seen, turn normals to the viewer's side of the facet.
     let mut facet_normal = geometric;
     if instance.two_sided || viewing.double_sided {
-        let towards =
-            if viewing.perspective { geometric.dot(-blend3(&weights, &positions)) } else { geometric.z };
+        let towards = if viewing.perspective { geometric.dot(-blend3(&weights, &positions)) } else { geometric.z };
         facet_normal = V3::select(lanes::Lanes::lt(towards, zero), -geometric, geometric);
         // A normal in the facet's plane, but for rounding, is on neither side: it stays as it is.
         let hair = constant(simd, -1e-4);

@@ -81,7 +81,13 @@ impl Points {
     }
 
     /// Finds the points of a tile and sorts them into groups.
-    pub(crate) fn collect(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>, marks: &MarkColors) {
+    pub(crate) fn collect(
+        &mut self,
+        tile: &Tile,
+        layers: &[Layer],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
         self.facet.clear();
         self.place.clear();
         self.layers.clear();

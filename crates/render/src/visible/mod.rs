@@ -2,8 +2,8 @@
 
 pub mod zbuffer;
 
-use crate::{Execution, PreparedView};
 use crate::stats::GeometryStats;
+use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::{Batch, Layer, Tile, TileGrid};
 

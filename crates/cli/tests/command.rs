@@ -1,0 +1,282 @@
+//! The command as users meet it: a process with files, standard streams and an exit code.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A folder of its own for a test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("vitral-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    }
+
+    /// Runs `vitral` here with a small picture as the default and no configuration of the user's.
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vitral"));
+        command.args(arguments).current_dir(&self.0).stdin(Stdio::null());
+        command.env("XDG_CONFIG_HOME", &self.0).env_remove("VITRAL_SIMD");
+        command
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.0.join(name).exists()
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap_or(-1)
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+const SMALL: [&str; 2] = ["--resolution", "64x48"];
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// `vitral render ARGUMENTS --resolution 64x48`.
+fn render(folder: &Folder, arguments: &[&str]) -> Output {
+    folder.run(&[&["render"], arguments, &SMALL].concat())
+}
+
+#[test]
+fn a_model_becomes_a_picture() {
+    let folder = Folder::new("picture");
+    folder.file("a.obj", TRIANGLE);
+    for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.jpg", b"\xff\xd8\xff"), ("a.ppm", b"P6")] {
+        let output = render(&folder, &["a.obj", "-o", name]);
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        assert!(folder.read(name).starts_with(magic), "{name}");
+    }
+    // Without a verb.
+    assert_eq!(code(&folder.run(&["a.obj", "-o", "b.png", "--resolution", "64x48"])), 0);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+}
+
+#[test]
+fn exit_codes() {
+    let folder = Folder::new("codes");
+    folder.file("a.obj", TRIANGLE);
+    folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
+    folder.file("empty.stl", "");
+    folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
+    let cases: [(&[&str], i32, &str); 13] = [
+        (&["a.obj", "-o", "x.png"], 0, ""),
+        (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
+        (&["a.obj", "-o", "x.png", "--shadows", "map"], 2, "--shadows: this option is not there yet"),
+        (&["a.obj", "-o", "x.png", "--visibility", "bsp"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=on"], 2, "shadow"),
+        (&["missing.obj", "-o", "x.png"], 3, "missing.obj: "),
+        (&["bad.obj", "-o", "x.png"], 3, "bad.obj: line 2: "),
+        (&["empty.stl", "-o", "x.png"], 3, "empty file"),
+        (&["builtin:nothing", "-o", "x.png"], 3, "builtin:teapot"),
+        (&["a.dae", "-o", "x.png"], 4, "readable are glTF"),
+        (&["a.obj", "-o", "x.gif"], 4, ".gif"),
+        (&["a.obj", "-o", "no/such/folder/x.png"], 5, "no/such/folder/x.png"),
+        (&["a.obj", "-o", "x.png", "--max-memory", "1K"], 7, "limit"),
+    ];
+    for (arguments, expected, said) in cases {
+        let output = render(&folder, arguments);
+        assert_eq!(code(&output), expected, "{arguments:?}: {}", errors(&output));
+        assert!(errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
+        let first = errors(&output);
+        assert!(first.is_empty() || first.starts_with("vitral: "), "{first}");
+    }
+    assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "0x4"])), 2);
+    assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "99999x4"])), 7);
+    assert_eq!(code(&folder.run(&["draw", "a.obj", "-o", "x.svg"])), 2);
+    assert_eq!(code(&folder.run(&[])), 2);
+}
+
+#[test]
+fn options_that_are_not_built_are_not_in_the_help() {
+    let folder = Folder::new("help");
+    let output = folder.run(&["render", "--help"]);
+    let help = String::from_utf8(output.stdout).unwrap();
+    assert!(help.contains("--visibility") && help.contains("z-buffer"));
+    for unbuilt in ["--shadows", "--global", "--pixel", "--trace", "warnock", "kay", "a-buffer"] {
+        assert!(!help.contains(unbuilt), "{unbuilt}");
+    }
+    assert!(!help.contains('\u{1b}'), "no colours in a pipe");
+}
+
+#[test]
+fn standard_streams() {
+    let folder = Folder::new("streams");
+    let mut child = folder
+        .command(&["render", "-", "-o", "-", "--resolution", "64x48"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(TRIANGLE.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.stdout.starts_with(b"\x89PNG"));
+    assert_eq!(code(&output), 0);
+}
+
+#[test]
+fn channels_go_to_their_outputs() {
+    let folder = Folder::new("channels");
+    let output = render(
+        &folder,
+        &["builtin:cubs", "--json", "--channel", "depth", "-o", "d.npy", "--channel", "id", "-o", "i.npy"],
+    );
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert!(folder.read("d.npy").starts_with(b"\x93NUMPY"));
+    let ids = folder.read("i.npy");
+    let header = String::from_utf8_lossy(&ids[..128]).into_owned();
+    assert!(header.contains("'<u4'") && header.contains("(48, 64)"), "{header}");
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(said["outputs"], serde_json::json!(["d.npy", "i.npy"]));
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "--channel", "depth", "-o", "a.png", "-o", "b.png"])), 2);
+}
+
+#[test]
+fn a_turntable_names_its_frames() {
+    let folder = Folder::new("turn");
+    let output =
+        render(&folder, &["builtin:cubs", "--turntable", "4", "-o", "{model}-{frame:3}.png", "--frames", "1-2"]);
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert!(folder.has("cubs-001.png") && folder.has("cubs-002.png"));
+    assert!(!folder.has("cubs-000.png") && !folder.has("cubs-003.png"));
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "--turntable", "4", "-o", "one.png"])), 2);
+}
+
+#[test]
+fn state_and_configuration() {
+    let folder = Folder::new("state");
+    let first = ["builtin:scene0", "-o", "a.png", "--shading", "flat", "--view", "front", "--save-state", "s.json"];
+    assert_eq!(code(&render(&folder, &first)), 0);
+    assert_eq!(code(&folder.run(&["render", "--load-state", "s.json", "-o", "b.png"])), 0);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"), "a loaded state gives the same picture");
+
+    // The command line is above the state, the state above the configuration, and that above the defaults.
+    folder.file("c.json", r#"{"settings": {"shading": "gouraud", "samples": 1}}"#);
+    let saved = |arguments: &[&str]| {
+        let output = folder.run(&[&["render", "builtin:cubs", "--save-state", "t.json"], arguments].concat());
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        let state: serde_json::Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
+        (state["settings"]["shading"].clone(), state["settings"]["samples"].clone())
+    };
+    assert_eq!(saved(&["--config", "c.json"]), ("gouraud".into(), 1.into()));
+    assert_eq!(saved(&["--config", "c.json", "--load-state", "s.json"]), ("flat".into(), 4.into()));
+    assert_eq!(saved(&["--config", "c.json", "--shading", "phong"]), ("phong".into(), 1.into()));
+    folder.file("broken.json", "{\n  \"settings\": {\"shadin\": 1}\n}");
+    let output = render(&folder, &["builtin:cubs", "-o", "x.png", "--config", "broken.json"]);
+    assert!(errors(&output).contains("broken.json: line 2"), "{}", errors(&output));
+}
+
+#[test]
+fn comparing_pictures() {
+    let folder = Folder::new("compare");
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.png"])), 0);
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "b.png", "--shading", "flat", "--view", "top"])), 0);
+    assert_eq!(code(&folder.run(&["compare", "a.png", "a.png"])), 0);
+    assert_eq!(code(&folder.run(&["compare", "a.png", "b.png", "--diff", "d.png"])), 6);
+    assert!(folder.has("d.png"));
+    assert_eq!(code(&folder.run(&["compare", "a.png", "b.png", "--threshold", "1"])), 0);
+
+    // A reference that holds leaves nothing written.
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "c.png", "--reference", "a.png"])), 0);
+    assert!(!folder.has("c.png"));
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "c.png", "--reference", "b.png"])), 6);
+    assert!(folder.has("c.png"));
+}
+
+#[test]
+fn lists_and_pages() {
+    let folder = Folder::new("lists");
+    let text = |arguments: &[&str]| String::from_utf8(folder.run(arguments).stdout).unwrap();
+    assert!(text(&["algorithms"]).contains("z-buffer"));
+    assert!(text(&["formats"]).contains(".gltf"));
+    let json: serde_json::Value = serde_json::from_str(&text(&["algorithms", "--json"])).unwrap();
+    assert_eq!(json["visibility"][0]["name"], "z-buffer");
+    let json: serde_json::Value = serde_json::from_str(&text(&["formats", "--json"])).unwrap();
+    assert!(json["formats"].as_array().unwrap().len() >= 7);
+    assert!(text(&["completions", "bash"]).contains("_vitral"));
+    assert!(text(&["man"]).contains(".TH vitral"));
+    let info: serde_json::Value = serde_json::from_str(&text(&["info", "builtin:cubs", "--json"])).unwrap();
+    assert_eq!(info["models"][0]["file"], "builtin:cubs");
+    assert!(text(&["info", "builtin:teapot"]).contains("triangles"));
+}
+
+#[test]
+fn the_stages_can_be_dumped() {
+    let folder = Folder::new("dump");
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "--dump", "stages"])), 0);
+    for file in ["1-scene.json", "2-world.json", "3-cull.json", "4-lights.json", "5-view.json", "8-framebuffer.png"] {
+        assert!(folder.has(&format!("stages/{file}")), "{file}");
+    }
+}
+
+#[test]
+fn stats_are_json() {
+    let folder = Folder::new("stats");
+    let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--stats-file", "s.json", "--threads", "1"]);
+    assert_eq!(code(&output), 0);
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).unwrap();
+    assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn textures_outside_the_folder_need_permission() {
+    let folder = Folder::new("external");
+    std::fs::create_dir_all(folder.0.join("in")).unwrap();
+    folder.file("secret.mtl", "newmtl m\nKd 1 0 0\n");
+    std::fs::write(folder.0.join("in/a.obj"), format!("mtllib ../secret.mtl\nusemtl m\n{TRIANGLE}")).unwrap();
+    let refused = render(&folder, &["in/a.obj", "-o", "a.png"]);
+    assert_eq!(code(&refused), 0);
+    assert!(errors(&refused).contains("--allow-external"), "{}", errors(&refused));
+    let allowed = render(&folder, &["in/a.obj", "-o", "b.png", "--allow-external"]);
+    assert!(!errors(&allowed).contains("--allow-external"));
+    assert_ne!(folder.read("a.png"), folder.read("b.png"));
+}
+
+#[test]
+fn damaged_models_end_soon_and_small() {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models/malformed");
+    if !corpus.exists() {
+        println!("skipped: shared/models/malformed is not there");
+        return;
+    }
+    let folder = Folder::new("malformed");
+    let mut folders = vec![corpus];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).unwrap().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let model = path.to_string_lossy().into_owned();
+            let output = render(&folder, &[&model, "-o", "x.png", "--time-limit", "5"]);
+            assert!(matches!(code(&output), 0 | 3 | 4), "{model}: {} {}", code(&output), errors(&output));
+            assert!(!errors(&output).contains("panicked"), "{model}");
+        }
+    }
+}

@@ -252,7 +252,7 @@ mod tests {
         let scene = read(text.as_bytes()).unwrap();
         let parts: Vec<_> = scene.meshes[0].parts.iter().map(|p| (p.name.as_str(), p.triangles.clone())).collect();
         assert_eq!(parts, [("a", 0..1), ("c", 1..2)]);
-        assert_eq!(scene.warnings, ["t.stl: line 20: the file ends without `endsolid`"]);
+        assert_eq!(scene.warnings, ["t.stl: line 18: the file ends without `endsolid`"]);
     }
 
     #[test]

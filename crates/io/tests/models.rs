@@ -122,7 +122,8 @@ fn materials_and_textures_are_found() {
     let pool = open("furniture-cc0/poolTable/poolTable.obj").unwrap();
     assert_eq!((pool.materials.len(), pool.textures.len(), pool.warnings.len()), (27, 17, 0), "{:?}", pool.warnings);
     let spider = open("assimp/obj/spider.obj").unwrap();
-    assert_eq!((spider.materials.len(), spider.textures.len()), (5, 5), "{:?}", spider.warnings);
+    // The fifth material of its library, Brusttex, is used by no face.
+    assert_eq!((spider.materials.len(), spider.textures.len()), (4, 4), "{:?}", spider.warnings);
     let cabinet = open("furniture-cc0/glassDoorCabinet/glassDoorCabinet.obj").unwrap();
     assert_eq!(cabinet.materials.iter().filter(|m| m.opacity < 1.0).count(), 1);
 }

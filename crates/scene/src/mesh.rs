@@ -132,11 +132,23 @@ impl Mesh {
         }
     }
 
-    /// The box round all finite positions, model space.
+    /// Which vertices some triangle, line or point uses.
+    pub fn used_vertices(&self) -> Vec<bool> {
+        let mut used = vec![false; self.positions.len()];
+        let indices = self.triangles.as_flattened().iter().chain(self.lines.as_flattened()).chain(&self.points);
+        for &i in indices {
+            if let Some(used) = used.get_mut(i as usize) {
+                *used = true;
+            }
+        }
+        used
+    }
+
+    /// The box round all finite positions that something uses, model space: a stray vertex is not to be seen.
     pub fn bounds(&self) -> Aabb {
         // f32 throughout: exact, and quicker than widening each point.
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for p in &self.positions {
+        for (p, _) in self.positions.iter().zip(self.used_vertices()).filter(|(_, used)| *used) {
             if p.iter().all(|c| c.is_finite()) {
                 for k in 0..3 {
                     min[k] = min[k].min(p[k]);
@@ -232,6 +244,14 @@ mod tests {
         assert_eq!((0..4).map(|t| mesh.face_of_triangle(t)).collect::<Vec<_>>(), [0, 1, 1, 2]);
         assert_eq!(mesh.face_triangles(1), 1..3);
         assert_eq!(mesh.face_corners(1), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn stray_vertices_do_not_count() {
+        let mut mesh = strip();
+        mesh.positions[5] = [1.0, 2.0, 3.0];
+        mesh.positions.push([9.0; 3]);
+        assert_eq!(mesh.bounds().max, DVec3::new(1.0, 2.0, 3.0));
     }
 
     #[test]

@@ -122,7 +122,8 @@ impl Renderer {
         let points = world.instances.iter().flat_map(|instance| {
             let to_world = instance.world_from_model;
             let point = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            instance.mesh.positions.iter().map(move |p| to_world.transform_point3(point(p)))
+            let used = instance.mesh.positions.iter().zip(instance.mesh.used_vertices()).filter(|(_, used)| *used);
+            used.map(move |(p, _)| to_world.transform_point3(point(p)))
         });
         let eye = boxed.position - boxed.focal_point;
         let (lens, aspect) = (self.lens, self.aspect());

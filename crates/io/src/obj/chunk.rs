@@ -456,7 +456,7 @@ mod tests {
         assert_eq!(chunk.faces.vt, [NONE, 2, NONE, 6, NONE, NONE, NONE]);
         assert_eq!(chunk.faces.vn, [NONE, NONE, 4, 7, NONE, NONE, NONE]);
         assert_eq!((chunk.faces.count, chunk.faces.bare, chunk.faces.sizes), (2, 2, vec![4, 3]));
-        assert_eq!(chunk.error.unwrap(), (2, "`/` does not belong to a corner".to_owned()));
+        assert_eq!(chunk.error.unwrap(), (2, "`/` is not a normal index".to_owned()));
     }
 
     #[test]

@@ -165,7 +165,7 @@ fn material_constants<'a>(
             vitral_frame::Encoding::Srgb => &tables.srgb,
             vitral_frame::Encoding::Linear => &tables.linear,
         };
-        Some(TextureConstants { texture: &**texture, reference, decode })
+        Some(TextureConstants { texture, reference, decode })
     };
     let (cutoff, blend) = match material.alpha_mode {
         AlphaMode::Opaque => (None, false),

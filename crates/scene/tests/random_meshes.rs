@@ -113,8 +113,9 @@ proptest! {
         let points: Vec<DVec3> = mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let finite = || points.iter().copied().filter(|p| p.is_finite());
         let bounds = mesh.bounds();
-        prop_assert_eq!(bounds, Aabb::from_points(points.iter().copied()));
-        prop_assert!(finite().all(|p| bounds.contains(p)));
+        let used = || points.iter().zip(mesh.used_vertices()).filter(|(_, used)| *used).map(|(p, _)| *p);
+        prop_assert_eq!(bounds, Aabb::from_points(used()));
+        prop_assert!(used().filter(|p| p.is_finite()).all(|p| bounds.contains(p)));
         let (obb, sphere) = (Obb::from_points(&points), Sphere::from_points(&points));
         prop_assert_eq!(obb.is_some(), finite().next().is_some());
         prop_assert!(obb.is_none_or(|o| finite().all(|p| o.contains(p))));

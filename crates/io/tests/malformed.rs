@@ -195,7 +195,8 @@ proptest! {
     #[test]
     fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300), format in 0usize..7) {
         let (name, _) = seeds()[format];
-        let loaders: [fn(&[u8], &str) -> Result<Scene, Error>; 6] = [
+        type Loader = fn(&[u8], &str) -> Result<Scene, Error>;
+        let loaders: [Loader; 6] = [
             |b, n| load(b, n, &NoFiles, &Workers::single()),
             |b, n| vitral_io::obj::load(b, n, &NoFiles, &Workers::single()),
             |b, n| vitral_io::stl::load(b, n, &Workers::single()),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use vitral_io::{ResolveError, Resolver};
 
 /// Files below a folder.
-pub struct Folder(pub PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Resolver for Folder {
     fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
@@ -17,7 +17,7 @@ impl Resolver for Folder {
 }
 
 /// The shared models, or `None` with a printed line where they are absent.
-pub fn models() -> Option<PathBuf> {
+pub(crate) fn models() -> Option<PathBuf> {
     let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/models"));
     if path.is_dir() {
         return Some(path);
@@ -27,7 +27,7 @@ pub fn models() -> Option<PathBuf> {
 }
 
 /// All files below `folder`, sorted, as paths relative to it.
-pub fn files(folder: &Path) -> Vec<String> {
+pub(crate) fn files(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut stack = vec![folder.to_path_buf()];
     while let Some(at) = stack.pop() {

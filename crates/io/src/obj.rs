@@ -1,10 +1,10 @@
 //! Wavefront OBJ: polygons with separate indices for positions, texture coordinates and normals.
 //!
-//! The text is cut at line ends into pieces of equal size, which are read independently ([`chunk`]): each gathers the
+//! The text is cut at line ends into pieces of equal size, which are read independently (`chunk`): each gathers the
 //! vertices and faces of its lines. Positive indices are absolute; negative ones count back from the vertices read so
 //! far, of which a piece only knows its own, so they are kept relative to the piece's beginning. When all pieces are
 //! read, their vertex counts give the bases, and the faces are put together and cut into triangles, again piece by
-//! piece ([`stitch`]); materials and textures are read at the same time ([`materials`]).
+//! piece (`stitch`); materials and textures are read at the same time (`materials`).
 //!
 //! The file becomes one mesh and one node; each run of faces with one group (or object) and one material is a part.
 //!

@@ -1,8 +1,8 @@
 //! PLY, the polygon file format from Stanford: a header that describes the elements, then their data.
 //!
-//! The header ([`header`]) lists elements (`vertex`, `face`, …), each with a count and properties: scalars of eight
-//! types, or lists of them. The data are text, one line an element ([`ascii`]), or binary in either byte order
-//! ([`binary`]). Both hand each element to [`Content`] as a [`Row`]: a fixed set of slots for what vitral understands,
+//! The header (`header`) lists elements (`vertex`, `face`, …), each with a count and properties: scalars of eight
+//! types, or lists of them. The data are text, one line an element (`ascii`), or binary in either byte order
+//! (`binary`). Both hand each element to `Content` as a `Row`: a fixed set of slots for what vitral understands,
 //! and the list of corners. Binary data of the usual layouts go past the rows, block by block on all threads.
 //!
 //! * `vertex`: `x y z`, `nx ny nz`, `red green blue [alpha]` (sRGB; integers over their type's range, floats `0..=1`),

@@ -5,7 +5,7 @@
 //! exactly `84 + 50 n` bytes is binary. An ASCII file is one or more `solid NAME … endsolid`, each of which becomes a
 //! part of the one mesh.
 //!
-//! Corners at equal positions are welded ([`crate::weld`]), since without shared vertices there are neither edges nor
+//! Corners at equal positions are welded (`weld`), since without shared vertices there are neither edges nor
 //! smooth shading. Facet normals are left out: they follow from the corners and are wrong in many files. The attribute
 //! bits, which some programs use for colours in incompatible ways, are left out with a warning.
 //!

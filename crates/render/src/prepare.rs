@@ -1,8 +1,8 @@
 //! Prepare: from the world to draws that a visibility algorithm can take, with one numbering and one depth function.
 //!
-//! Facets are the triangles of all instances, counted in scene order before anything is culled. [`PreparedView::depth`]
-//! and [`PreparedView::covers`] say for any facet and sample what is covered and how near it is; the z-buffer's kernels
-//! compute the same in bulk.
+//! Facets are the triangles of all instances, counted in scene order before anything is culled. For any
+//! facet, [`PreparedView::setups`] gives its pieces on the screen, whose `covers` and `depth` say which samples they
+//! cover and how near they are there; the z-buffer's kernels compute the same in bulk.
 
 use crate::cull::{backface, frustum};
 use crate::stats::CullCounters;

@@ -240,7 +240,7 @@ pub fn write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
 /// Encodes one channel in the format that the path names, and writes it.
 ///
 /// # Errors
-/// As [`encode_with`] and [`write`].
+/// As [`encode_with`] and [`write()`].
 pub fn save(path: impl AsRef<Path>, frame: &Frame, channel: Channel) -> Result<(), Error> {
     let path = path.as_ref();
     write(path, &encode(frame, channel, PictureFormat::from_path(path)?)?)

@@ -17,12 +17,16 @@ pub fn repository() -> PathBuf {
 
 /// A file of the shared corpus, such as `classics/utah-teapot.obj`; prints a skip line and gives `None` if it is absent.
 pub fn shared_model(path: &str) -> Option<PathBuf> {
-    let found = repository().join("../shared/models").join(path);
-    if found.exists() {
-        return Some(found);
+    let found = find(path);
+    if found.is_none() {
+        println!("{SKIPPED}../shared/models/{path} is not there");
     }
-    println!("{SKIPPED}../shared/models/{path} is not there");
-    None
+    found
+}
+
+/// A file of the shared corpus, if it is there.
+fn find(path: &str) -> Option<PathBuf> {
+    Some(repository().join("../shared/models").join(path)).filter(|found| found.exists())
 }
 
 /// All files of the shared corpus below `folder` whose extension (in lower case) is in `extensions`, sorted by path.
@@ -56,8 +60,7 @@ mod tests {
 
     #[test]
     fn an_absent_model_is_none() {
-        assert_eq!(shared_model("no/such/model.obj"), None);
-        assert!(shared_models("no/such/folder", &["obj"]).is_empty());
+        assert_eq!(find("no/such/model.obj"), None);
     }
 
     #[test]

@@ -46,7 +46,7 @@ fn main() -> Result<(), Error> {
         let transform = NodeTransform::Matrix(turned * DMat4::from_scale(DVec3::splat(0.45)));
         scene.add_root(Node { name: format!("pyramid {i}"), transform, mesh: Some(0), ..Node::default() });
     }
-    let mut ground = solids::plane(16.0, 16.0, 1, 1);
+    let mut ground = solids::plane(13.0, 13.0, 1, 1);
     ground.parts[0].material = Some(sand);
     scene.add_mesh(ground, DMat4::IDENTITY);
 

@@ -1,0 +1,160 @@
+//! Per-fragment state.
+
+use crate::enums;
+
+/// Fog.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fog {
+    /// `FOG`.
+    pub enabled: bool,
+    /// `FOG_COLOR`.
+    pub color: [f32; 4],
+    /// `FOG_INDEX`, kept for queries alone.
+    pub index: f32,
+    /// `FOG_DENSITY`.
+    pub density: f32,
+    /// `FOG_START`.
+    pub start: f32,
+    /// `FOG_END`.
+    pub end: f32,
+    /// `FOG_MODE`.
+    pub mode: u32,
+    /// `FOG_COORD_SRC`.
+    pub source: u32,
+}
+
+impl Default for Fog {
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            color: [0.0; 4],
+            index: 0.0,
+            density: 1.0,
+            start: 0.0,
+            end: 1.0,
+            mode: enums::EXP,
+            source: enums::FRAGMENT_DEPTH,
+        }
+    }
+}
+
+/// One side's stencil state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StencilFace {
+    /// Function.
+    pub func: u32,
+    /// Reference, as given.
+    pub reference: i32,
+    /// Mask of the comparison.
+    pub value_mask: u32,
+    /// Operations: stencil fails, depth fails, depth passes.
+    pub ops: [u32; 3],
+    /// Which bits may be written.
+    pub write_mask: u32,
+}
+
+/// Stencil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StencilState {
+    /// `STENCIL_TEST`.
+    pub enabled: bool,
+    /// `STENCIL_TEST_TWO_SIDE_EXT`.
+    pub two_side: bool,
+    /// `ACTIVE_STENCIL_FACE_EXT`: 0 front, 1 back.
+    pub active_face: usize,
+    /// Front, and back (used if `two_side`, or if set apart by ATI_separate_stencil).
+    pub faces: [StencilFace; 2],
+    /// Set by the separate functions: both faces count without `two_side`.
+    pub separate: bool,
+    /// `STENCIL_CLEAR_VALUE`.
+    pub clear: i32,
+}
+
+impl Default for StencilState {
+    fn default() -> Self {
+        let face = StencilFace {
+            func: enums::ALWAYS,
+            reference: 0,
+            value_mask: u32::MAX,
+            ops: [enums::KEEP; 3],
+            write_mask: u32::MAX,
+        };
+        Self { enabled: false, two_side: false, active_face: 0, faces: [face; 2], separate: false, clear: 0 }
+    }
+}
+
+/// Depth test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthState {
+    /// `DEPTH_TEST`.
+    pub enabled: bool,
+    /// `DEPTH_FUNC`.
+    pub func: u32,
+    /// `DEPTH_WRITEMASK`.
+    pub write: bool,
+    /// `DEPTH_CLEAR_VALUE`.
+    pub clear: f64,
+}
+
+impl Default for DepthState {
+    fn default() -> Self {
+        Self { enabled: false, func: enums::LESS, write: true, clear: 1.0 }
+    }
+}
+
+/// Blending. Pairs are (colour, alpha).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blend {
+    /// `BLEND`.
+    pub enabled: bool,
+    /// Source factors.
+    pub source: [u32; 2],
+    /// Destination factors.
+    pub destination: [u32; 2],
+    /// Equations.
+    pub equation: [u32; 2],
+    /// `BLEND_COLOR`.
+    pub color: [f32; 4],
+}
+
+impl Default for Blend {
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            source: [enums::ONE; 2],
+            destination: [enums::ZERO; 2],
+            equation: [enums::FUNC_ADD; 2],
+            color: [0.0; 4],
+        }
+    }
+}
+
+/// Clear values, masks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorBuffer {
+    /// `COLOR_CLEAR_VALUE`.
+    pub clear: [f32; 4],
+    /// `INDEX_CLEAR_VALUE`, kept for queries alone.
+    pub clear_index: f32,
+    /// `COLOR_WRITEMASK`.
+    pub mask: [bool; 4],
+    /// `INDEX_WRITEMASK`, kept for queries alone.
+    pub index_mask: u32,
+    /// `ACCUM_CLEAR_VALUE`.
+    pub accum_clear: [f32; 4],
+    /// `DRAW_BUFFER` of the default framebuffer.
+    pub draw_buffer: u32,
+}
+
+impl Default for ColorBuffer {
+    fn default() -> Self {
+        Self {
+            clear: [0.0; 4],
+            clear_index: 0.0,
+            mask: [true; 4],
+            index_mask: u32::MAX,
+            accum_clear: [0.0; 4],
+            draw_buffer: enums::FRONT,
+        }
+    }
+}

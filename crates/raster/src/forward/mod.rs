@@ -1,0 +1,18 @@
+//! Forward rendering: fragments with OpenGL's per-fragment state, straight into colour, depth and stencil planes.
+//!
+//! A [`Pass`] is a list of recorded commands on one [`Target`]: draws, clears, images. Running it turns geometry into
+//! setups and tile lists in parallel, then each tile walks the commands in their order. Planes are stored tile by tile
+//! and cleared lazily. Row 0 of a plane is OpenGL's window row 0: the lowest.
+
+mod pass;
+mod plane;
+mod state;
+mod texture;
+
+pub use pass::{Clear, Command, Geometry, ImageFragments, Pass, Target};
+pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+pub use state::{
+    Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare, DepthTest,
+    EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Unit,
+};
+pub use texture::{BaseFormat, Filter, Level, Sampler, Texels, Texture, TextureKind, Wrap};

@@ -1,0 +1,281 @@
+//! What happens to a fragment: a snapshot, taken when a draw is recorded.
+
+use super::texture::Texture;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+/// `NEVER` ... `ALWAYS`: how the incoming value (left) compares with the stored one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Compare {
+    Never,
+    Less,
+    Equal,
+    LessOrEqual,
+    Greater,
+    NotEqual,
+    GreaterOrEqual,
+    Always,
+}
+
+/// Stencil operations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum StencilOp {
+    Keep,
+    Zero,
+    Replace,
+    Increment,
+    Decrement,
+    Invert,
+    IncrementWrap,
+    DecrementWrap,
+}
+
+/// Stencil test of one facing, for 8 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct StencilFace {
+    /// `(reference & mask) func (stored & mask)`.
+    pub func: Compare,
+    /// Reference, clamped to 0..=255.
+    pub reference: u8,
+    /// Mask of the comparison.
+    pub mask: u8,
+    /// When the stencil test fails.
+    pub fail: StencilOp,
+    /// When the depth test fails.
+    pub depth_fail: StencilOp,
+    /// When both pass.
+    pub pass: StencilOp,
+    /// Bits that may change.
+    pub write_mask: u8,
+}
+
+/// Stencil test, front and back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Stencil {
+    /// For front-facing polygons, points, lines, images.
+    pub front: StencilFace,
+    /// For back-facing polygons.
+    pub back: StencilFace,
+}
+
+/// Depth test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DepthTest {
+    /// `incoming func stored`.
+    pub func: Compare,
+    /// Whether depth is written.
+    pub write: bool,
+}
+
+/// Blend factors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum BlendFactor {
+    Zero,
+    One,
+    SrcColor,
+    OneMinusSrcColor,
+    DstColor,
+    OneMinusDstColor,
+    SrcAlpha,
+    OneMinusSrcAlpha,
+    DstAlpha,
+    OneMinusDstAlpha,
+    ConstantColor,
+    OneMinusConstantColor,
+    ConstantAlpha,
+    OneMinusConstantAlpha,
+    SrcAlphaSaturate,
+}
+
+/// Blend equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum BlendEquation {
+    Add,
+    Subtract,
+    ReverseSubtract,
+    Min,
+    Max,
+}
+
+/// Blending; pairs are (colour, alpha).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blend {
+    /// Source factors.
+    pub source: [BlendFactor; 2],
+    /// Destination factors.
+    pub destination: [BlendFactor; 2],
+    /// Equations.
+    pub equation: [BlendEquation; 2],
+    /// Constant colour.
+    pub color: [f32; 4],
+}
+
+/// Logical operations, in the order of their tokens from `CLEAR`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum LogicOp {
+    Clear,
+    And,
+    AndReverse,
+    Copy,
+    AndInverted,
+    Noop,
+    Xor,
+    Or,
+    Nor,
+    Equiv,
+    Invert,
+    OrReverse,
+    CopyInverted,
+    OrInverted,
+    Nand,
+    Set,
+}
+
+/// How fog grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum FogMode {
+    Linear { start: f32, end: f32 },
+    Exp { density: f32 },
+    Exp2 { density: f32 },
+}
+
+/// Fog, applied to a fragment's fog coordinate (eye distance or given).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fog {
+    /// Mode and its numbers.
+    pub mode: FogMode,
+    /// Colour, 0..=1.
+    pub color: [f32; 3],
+}
+
+/// `TEXTURE_ENV_MODE`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum EnvironmentMode {
+    Replace,
+    Modulate,
+    Decal,
+    Blend,
+    Add,
+    Combine(Combine),
+}
+
+/// `COMBINE_RGB`, `COMBINE_ALPHA`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum CombineFunction {
+    Replace,
+    Modulate,
+    Add,
+    AddSigned,
+    Interpolate,
+    Subtract,
+    Dot3Rgb,
+    Dot3Rgba,
+}
+
+/// `SOURCEn`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum CombineSource {
+    Texture,
+    /// Texture of the given unit (crossbar).
+    TextureUnit(usize),
+    Constant,
+    PrimaryColor,
+    Previous,
+}
+
+/// `OPERANDn`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum CombineOperand {
+    Color,
+    OneMinusColor,
+    Alpha,
+    OneMinusAlpha,
+}
+
+/// `COMBINE`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Combine {
+    /// RGB, alpha.
+    pub functions: [CombineFunction; 2],
+    /// RGB: three sources with operands.
+    pub rgb: [(CombineSource, CombineOperand); 3],
+    /// Alpha: three sources with operands.
+    pub alpha: [(CombineSource, CombineOperand); 3],
+    /// RGB, alpha: 1, 2 or 4.
+    pub scale: [f32; 2],
+}
+
+/// An enabled texture unit with a complete texture.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Which unit it is, for crossbar sources and texture coordinates.
+    pub index: usize,
+    /// The texture.
+    pub texture: Arc<Texture>,
+    /// Environment mode.
+    pub mode: EnvironmentMode,
+    /// Environment colour.
+    pub color: [f32; 4],
+    /// Unit's bias plus object's, clamped.
+    pub lod_bias: f32,
+}
+
+/// `SAMPLE_COVERAGE`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleCoverage {
+    /// 0..=1.
+    pub value: f32,
+    /// Inverts the mask.
+    pub invert: bool,
+}
+
+/// Everything a fragment meets after rasterisation.
+#[derive(Clone, Debug, Default)]
+pub struct FragmentState {
+    /// Enabled texture units in order of their index.
+    pub units: Vec<Unit>,
+    /// Adds the secondary colour after texturing.
+    pub color_sum: bool,
+    /// Fog.
+    pub fog: Option<Fog>,
+    /// Alpha test: function and reference, 0..=1.
+    pub alpha_test: Option<(Compare, f32)>,
+    /// Stencil test.
+    pub stencil: Option<Stencil>,
+    /// Depth test; without one depth is not written either.
+    pub depth: Option<DepthTest>,
+    /// Blending; not applied where a logic operation is.
+    pub blend: Option<Blend>,
+    /// Logic operation on the stored bits.
+    pub logic_op: Option<LogicOp>,
+    /// Which components are protected from writing: `true` is masked.
+    pub masked: [bool; 4],
+    /// Allowed pixels x0, y0, x1, y1, the last two exclusive: scissor and target.
+    pub clip: [i32; 4],
+    /// 32 rows from the bottom, leftmost pixel in the highest bit; polygons only.
+    pub polygon_stipple: Option<Arc<[u32; 32]>>,
+    /// Multisample rasterisation: off means that a fragment covers all samples of its pixel or none.
+    pub multisample: bool,
+    /// Alpha becomes coverage.
+    pub alpha_to_coverage: bool,
+    /// Then alpha becomes 1.
+    pub alpha_to_one: bool,
+    /// Sample coverage.
+    pub sample_coverage: Option<SampleCoverage>,
+    /// `FLAT`: the provoking vertex' colours.
+    pub flat: bool,
+    /// Depth is clamped to the range instead of clipped.
+    pub depth_clamp: bool,
+    /// Counts samples that pass.
+    pub query: Option<Arc<AtomicU64>>,
+}

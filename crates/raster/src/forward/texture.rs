@@ -1,0 +1,117 @@
+//! Textures as the rasteriser sees them: immutable images and a sampler.
+
+use super::plane::DepthPlane;
+use super::state::Compare;
+use std::sync::{Arc, Mutex};
+
+/// Kind of texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum TextureKind {
+    One,
+    Two,
+    Rectangle,
+    Three,
+    Cube,
+}
+
+/// What the environment combines: the base internal format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum BaseFormat {
+    Alpha,
+    Luminance,
+    LuminanceAlpha,
+    Intensity,
+    Rgb,
+    Rgba,
+    /// Behaves as `DEPTH_TEXTURE_MODE` says (the sampler has turned it into one of the above).
+    Depth,
+}
+
+/// Texels of one level of one face. Row by row from the bottom, then layer by layer; all values are expanded to RGBA as
+/// sampling returns them (luminance repeated, missing alpha 1, alpha textures black).
+#[derive(Clone, Debug)]
+pub enum Texels {
+    /// 8 bits; red in the lowest byte.
+    Rgba8(Vec<u32>),
+    /// As `Rgba8` with sRGB-encoded colour, decoded before filtering.
+    Srgb8(Vec<u32>),
+    /// Floating point, not clamped.
+    RgbaF32(Vec<[f32; 4]>),
+    /// Depth, 0..=1.
+    Depth(Vec<f32>),
+    /// A depth plane that passes render to. Texels may still be pending triangles.
+    DepthPlane(Arc<Mutex<DepthPlane>>),
+}
+
+/// One level: sizes include the border.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Width, height, depth, with `2 * border` in those that the kind uses.
+    pub size: [u32; 3],
+    /// 0 or 1.
+    pub border: u32,
+    /// `size[0] * size[1] * size[2]` texels.
+    pub texels: Texels,
+}
+
+/// How a coordinate beyond the image is treated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Wrap {
+    Repeat,
+    MirroredRepeat,
+    Clamp,
+    ClampToEdge,
+    ClampToBorder,
+}
+
+/// Filters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Filter {
+    Nearest,
+    Linear,
+    NearestMipmapNearest,
+    LinearMipmapNearest,
+    NearestMipmapLinear,
+    LinearMipmapLinear,
+}
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampler {
+    /// Minification.
+    pub min: Filter,
+    /// Magnification: `Nearest` or `Linear`.
+    pub mag: Filter,
+    /// s, t, r.
+    pub wrap: [Wrap; 3],
+    /// Border colour, expanded like texels.
+    pub border: [f32; 4],
+    /// Level of detail limits.
+    pub lod: [f32; 2],
+    /// Largest anisotropy, at least 1.
+    pub anisotropy: f32,
+    /// Comparison of r with the texel.
+    pub compare: Option<Compare>,
+    /// Cube maps filter across edges.
+    pub seamless: bool,
+}
+
+/// A complete texture: what a lookup needs, nothing that can change.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// Kind.
+    pub kind: TextureKind,
+    /// What sampling yields.
+    pub format: BaseFormat,
+    /// For depth textures: `Luminance`, `Intensity` or `Alpha`.
+    pub depth_mode: BaseFormat,
+    /// Faces (one, or six in the order +x -x +y -y +z -z) of levels; level 0 here is `TEXTURE_BASE_LEVEL`. Without
+    /// mipmapping only the first is there.
+    pub faces: Vec<Vec<Arc<Level>>>,
+    /// How to look it up.
+    pub sampler: Sampler,
+}

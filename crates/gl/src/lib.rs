@@ -17,6 +17,7 @@ pub mod memory;
 pub mod objects;
 mod pixels;
 pub mod state;
+mod stubs;
 mod tnl;
 pub mod vertex;
 mod vertices;

@@ -23,5 +23,6 @@ pub mod vertex;
 mod vertices;
 
 pub use context::Context;
+pub use stubs::*;
 pub use memory::ClientMemory;
 pub use objects::Shared;

@@ -521,17 +521,22 @@ impl Context {
     pub fn window_pos_4s_mesa(&mut self, x: i16, y: i16, z: i16, w: i16) {}
     pub fn window_pos_4sv_mesa(&mut self, v: usize) {}
 
-    pub fn make_current(&mut self, buffer: usize, kind: u32, format: u32, width: u32, height: u32) {}
-    pub fn default_pixel_store(&mut self, row_length: u32, y_up: bool) {}
-    pub fn default_depth(&mut self) -> Option<Vec<u32>> { None }
+    pub fn configure_default_framebuffer(&mut self, format: u32, depth: i32, stencil: i32, accum: i32) -> bool { true }
+    pub fn make_current(&mut self, buffer: usize, kind: u32, width: i32, height: i32) -> bool { true }
+    pub fn release(&mut self) {}
+    pub fn set_buffer_row_length(&mut self, row_length: usize) {}
+    pub fn set_buffer_y_up(&mut self, y_up: bool) {}
+    pub fn buffer_info(&self) -> BufferInfo { BufferInfo::default() }
+    pub fn default_depths(&mut self) -> Option<DepthCopy> { None }
     pub fn store_default_framebuffer(&mut self) {}
-    pub fn set_color_clamp(&mut self, clamp: bool) {}
     pub fn set_threads(&mut self, threads: usize) {}
-    pub fn set_error_output(&mut self, output: Option<fn(&str)>) {}
-    pub fn unsupported(&mut self, call: &str) {}
+    pub fn set_debug_printer(&mut self, output: Option<fn(&str)>) {}
+    pub fn set_debug_hook(&mut self, hook: Option<DebugHook>) {}
     pub fn report(&mut self, error: u32, call: &str, why: &str) {}
-    pub fn has_debug_messages(&self) -> bool { false }
-    pub fn next_debug_message(&mut self) -> Option<(usize, usize, DebugMessage)> { None }
 }
-
-pub struct DebugMessage { pub source: u32, pub kind: u32, pub id: u32, pub severity: u32, pub text: String }
+pub type DebugHook = std::sync::Arc<dyn Fn(usize, &DebugMessage, usize) + Send + Sync>;
+#[derive(Clone)]
+pub struct DebugMessage { pub source: u32, pub kind: u32, pub id: u32, pub severity: u32, pub text: Vec<u8> }
+pub struct DepthCopy { pub width: u32, pub height: u32, pub bytes_per_value: usize, pub bytes: Vec<u8> }
+#[derive(Default)]
+pub struct BufferInfo { pub width: u32, pub height: u32, pub format: u32, pub kind: u32, pub row_length: usize, pub y_up: bool, pub address: usize }

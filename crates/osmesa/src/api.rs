@@ -3,11 +3,12 @@
 use crate::attributes::{Attributes, tokens};
 use crate::current::{call, current, replace};
 use crate::environment::{say, tell};
-use crate::handle::{Binding, DepthCopy, Handle, Machine};
+use crate::handle::{Handle, Machine};
 use crate::procedures;
 use std::ffi::{CStr, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
+use vitral_gl::Context;
 use vitral_gl::state::MAX_TEXTURE_SIZE;
 
 /// The longest list of attributes that is read: no list has more than one of each kind.
@@ -115,36 +116,29 @@ pub(crate) unsafe extern "C" fn OSMesaMakeCurrent(
     guarded("OSMesaMakeCurrent", 0, || {
         if handle.is_null() && buffer.is_null() {
             leave(ptr::null());
-            replace(ptr::null());
             return 1;
         }
-        let binding = Binding { buffer: buffer.expose_provenance(), kind, width, height };
         // SAFETY: the context is alive and the calling thread's to use; this is the only borrow of it.
         let refused = match unsafe { machine(handle) } {
             None => Some("there is no context".to_owned()),
-            Some(machine) => refusal(&machine.attributes, &binding),
+            Some(machine) => refusal(&machine.attributes, buffer, kind, [width, height]),
         };
         if let Some(why) = refused {
             tell(&format!("OSMesaMakeCurrent: {why}"));
             return 0;
         }
         leave(handle);
-        replace(handle);
-        // SAFETY: as above; what was borrowed there has ended.
-        if let Some(machine) = unsafe { machine(handle) } {
-            bind(machine, binding);
-        }
-        1
+        let address = buffer.expose_provenance();
+        call("OSMesaMakeCurrent", |context| u8::from(context.make_current(address, kind, width, height)))
     })
 }
 
 /// Why a buffer cannot be drawn to.
-fn refusal(attributes: &Attributes, binding: &Binding) -> Option<String> {
-    let Binding { buffer, kind, width, height } = *binding;
-    let sides = 1..=MAX_TEXTURE_SIZE as i32;
-    if buffer == 0 {
+fn refusal(attributes: &Attributes, buffer: *const c_void, kind: u32, size: [i32; 2]) -> Option<String> {
+    let [width, height] = size;
+    if buffer.is_null() {
         Some("there is no buffer".to_owned())
-    } else if !sides.contains(&width) || !sides.contains(&height) {
+    } else if size.iter().any(|side| !(1..=MAX_TEXTURE_SIZE as i32).contains(side)) {
         Some(format!("{width} x {height} pixels: a side has 1 to {MAX_TEXTURE_SIZE}"))
     } else if !attributes.takes(kind) {
         Some(format!("the format {:#x} has no buffers of type {kind:#x}", attributes.format))
@@ -153,22 +147,13 @@ fn refusal(attributes: &Attributes, binding: &Binding) -> Option<String> {
     }
 }
 
-/// Finishes the drawing of the calling thread's context, unless it is `next` as well.
+/// Makes `next` (null: none) current. The context before it, if it is another one, finishes its drawing and lets go of
+/// its buffer.
 fn leave(next: *const Handle) {
-    let before = current();
-    if before != next {
-        call("OSMesaMakeCurrent", vitral_gl::Context::store_default_framebuffer);
+    if current() != next {
+        call("OSMesaMakeCurrent", Context::release);
+        replace(next);
     }
-}
-
-/// Lets the context draw to another buffer; the first one gives viewport and scissor their size.
-fn bind(machine: &mut Machine, binding: Binding) {
-    if machine.binding == Some(binding) {
-        return;
-    }
-    machine.binding = Some(binding);
-    let (width, height) = (binding.width.cast_unsigned(), binding.height.cast_unsigned());
-    machine.context.make_current(binding.buffer, binding.kind, machine.attributes.format, width, height);
 }
 
 #[unsafe(no_mangle)]
@@ -181,13 +166,12 @@ pub(crate) extern "C" fn OSMesaPixelStore(name: i32, value: i32) {
     guarded("OSMesaPixelStore", (), || {
         // SAFETY: the current context is alive and this thread's.
         let Some(machine) = (unsafe { machine(current()) }) else { return };
-        match name {
-            tokens::ROW_LENGTH if value < 0 => tell(&format!("OSMesaPixelStore: a row cannot have {value} pixels")),
-            tokens::ROW_LENGTH => machine.row_length = value,
-            tokens::Y_UP => machine.y_up = value != 0,
+        match (name, usize::try_from(value)) {
+            (tokens::ROW_LENGTH, Ok(pixels)) => machine.context.set_buffer_row_length(pixels),
+            (tokens::ROW_LENGTH, Err(_)) => tell(&format!("OSMesaPixelStore: a row cannot have {value} pixels")),
+            (tokens::Y_UP, _) => machine.context.set_buffer_y_up(value != 0),
             _ => tell(&format!("OSMesaPixelStore: {name:#x} is no parameter")),
         }
-        machine.context.default_pixel_store(machine.row_length.cast_unsigned(), machine.y_up);
     });
 }
 
@@ -197,15 +181,14 @@ pub(crate) extern "C" fn OSMesaPixelStore(name: i32, value: i32) {
 pub(crate) unsafe extern "C" fn OSMesaGetIntegerv(name: i32, value: *mut i32) {
     guarded("OSMesaGetIntegerv", (), || {
         // SAFETY: the current context is alive and this thread's.
-        let machine = unsafe { machine(current()) };
-        let binding = machine.as_ref().and_then(|machine| machine.binding);
+        let info = unsafe { machine(current()) }.map(|machine| machine.context.buffer_info());
         let answer = match name {
-            tokens::WIDTH => binding.map_or(0, |b| b.width),
-            tokens::HEIGHT => binding.map_or(0, |b| b.height),
-            tokens::TYPE => binding.map_or(0, |b| b.kind.cast_signed()),
-            tokens::FORMAT => machine.map_or(0, |m| m.attributes.format.cast_signed()),
-            tokens::ROW_LENGTH => machine.map_or(0, |m| m.row_length),
-            tokens::Y_UP => machine.map_or(1, |m| i32::from(m.y_up)),
+            tokens::WIDTH => info.map_or(0, |i| i.width.cast_signed()),
+            tokens::HEIGHT => info.map_or(0, |i| i.height.cast_signed()),
+            tokens::TYPE => info.map_or(0, |i| i.kind.cast_signed()),
+            tokens::FORMAT => info.map_or(0, |i| i.format.cast_signed()),
+            tokens::ROW_LENGTH => info.map_or(0, |i| i.row_length as i32),
+            tokens::Y_UP => info.map_or(1, |i| i32::from(i.y_up)),
             tokens::MAX_WIDTH | tokens::MAX_HEIGHT => MAX_TEXTURE_SIZE as i32,
             _ => {
                 tell(&format!("OSMesaGetIntegerv: {name:#x} is no parameter"));
@@ -229,34 +212,30 @@ pub(crate) unsafe extern "C" fn OSMesaGetDepthBuffer(
 ) -> u8 {
     // SAFETY: the client's promise.
     let machine = unsafe { machine(handle) };
-    let (size, bytes, address) = guarded("OSMesaGetDepthBuffer", None, || depth(machine?)).unwrap_or_default();
+    let found = guarded("OSMesaGetDepthBuffer", None, || depths(machine?));
+    let (size, bytes, address) = found.unwrap_or(([0; 2], 0, 0));
     // SAFETY: the client's promise.
     unsafe {
-        put(width, size.0);
-        put(height, size.1);
+        put(width, size[0]);
+        put(height, size[1]);
         put(bytes_per_value, bytes);
         put(buffer, ptr::with_exposed_provenance_mut(address));
     }
-    u8::from(address != 0)
+    u8::from(found.is_some())
 }
 
-/// Size, bytes a value, and address of a fresh copy of the depth buffer, if there is one.
-fn depth(machine: &mut Machine) -> Option<((i32, i32), i32, usize)> {
-    let binding = machine.binding.filter(|_| machine.attributes.depth_bits > 0)?;
-    let values = machine.context.default_depth()?;
-    let (bytes, address) = match &mut machine.depth {
-        DepthCopy::Bits16(copy) => {
-            copy.clear();
-            copy.extend(values.iter().map(|value| u16::try_from(*value).unwrap_or(u16::MAX)));
-            (2, copy.as_mut_ptr().expose_provenance())
-        }
-        DepthCopy::Bits32(copy) => {
-            copy.clear();
-            copy.extend_from_slice(&values);
-            (4, copy.as_mut_ptr().expose_provenance())
-        }
-    };
-    Some(((binding.width, binding.height), bytes, address))
+/// Size, bytes a value, and address of a fresh copy of the depth buffer, if there is one. The address stays while the
+/// size does.
+fn depths(machine: &mut Machine) -> Option<([i32; 2], i32, usize)> {
+    let copy = machine.context.default_depths()?;
+    machine.depths.clear();
+    machine.depths.extend(copy.bytes.chunks(4).map(|bytes| {
+        let mut word = [0; 4];
+        word[..bytes.len()].copy_from_slice(bytes);
+        u32::from_ne_bytes(word)
+    }));
+    let address = machine.depths.as_mut_ptr().expose_provenance();
+    Some(([copy.width, copy.height].map(u32::cast_signed), copy.bytes_per_value as i32, address))
 }
 
 /// # Safety
@@ -272,18 +251,17 @@ pub(crate) unsafe extern "C" fn OSMesaGetColorBuffer(
     // SAFETY: the client's promise.
     let machine = unsafe { machine(handle) };
     let found = guarded("OSMesaGetColorBuffer", None, || {
-        let machine = machine?;
-        let binding = machine.binding?;
-        machine.context.store_default_framebuffer();
-        Some((binding, machine.attributes.format.cast_signed()))
+        let context = &mut machine?.context;
+        context.store_default_framebuffer();
+        Some(context.buffer_info()).filter(|info| info.address != 0)
     });
-    let (size, kind, address) = found.map_or(((0, 0), 0, 0), |(b, format)| ((b.width, b.height), format, b.buffer));
+    let size = found.as_ref().map_or([0; 2], |info| [info.width, info.height].map(u32::cast_signed));
     // SAFETY: the client's promise.
     unsafe {
-        put(width, size.0);
-        put(height, size.1);
-        put(format, kind);
-        put(buffer, ptr::with_exposed_provenance_mut(address));
+        put(width, size[0]);
+        put(height, size[1]);
+        put(format, found.as_ref().map_or(0, |info| info.format.cast_signed()));
+        put(buffer, ptr::with_exposed_provenance_mut(found.as_ref().map_or(0, |info| info.address)));
     }
     u8::from(found.is_some())
 }
@@ -300,10 +278,9 @@ pub(crate) unsafe extern "C" fn OSMesaGetProcAddress(name: *const c_char) -> *co
     procedures::address(name.to_bytes())
 }
 
+/// Colours of vertices are clamped always, and colours in buffers of floats never are: there is nothing to choose.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn OSMesaColorClamp(enable: u8) {
-    call("OSMesaColorClamp", |context| context.set_color_clamp(enable != 0));
-}
+pub(crate) extern "C" fn OSMesaColorClamp(_enable: u8) {}
 
 /// There are no filters after rendering.
 ///

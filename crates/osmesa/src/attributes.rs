@@ -4,10 +4,9 @@ use vitral_gl::enums;
 
 /// Tokens of `GL/osmesa.h`.
 pub(crate) mod tokens {
-    pub(crate) const RGBA: u32 = vitral_gl::enums::RGBA;
+    pub(crate) use vitral_gl::enums::{RGB, RGBA, UNSIGNED_SHORT_5_6_5};
     pub(crate) const BGRA: u32 = 0x1;
     pub(crate) const ARGB: u32 = 0x2;
-    pub(crate) const RGB: u32 = vitral_gl::enums::RGB;
     pub(crate) const BGR: u32 = 0x4;
     pub(crate) const RGB_565: u32 = 0x5;
     pub(crate) const ROW_LENGTH: i32 = 0x10;
@@ -26,8 +25,6 @@ pub(crate) mod tokens {
     pub(crate) const COMPAT_PROFILE: i32 = 0x35;
     pub(crate) const CONTEXT_MAJOR_VERSION: i32 = 0x36;
     pub(crate) const CONTEXT_MINOR_VERSION: i32 = 0x37;
-    /// `GL_UNSIGNED_SHORT_5_6_5`.
-    pub(crate) const UNSIGNED_SHORT_5_6_5: u32 = vitral_gl::enums::UNSIGNED_SHORT_5_6_5;
 }
 use tokens::*;
 
@@ -40,11 +37,11 @@ pub(crate) struct Attributes {
     /// `OSMESA_RGBA` ...
     pub(crate) format: u32,
     /// 0, 16 or 24.
-    pub(crate) depth_bits: u32,
+    pub(crate) depth_bits: i32,
     /// 0 or 8.
-    pub(crate) stencil_bits: u32,
+    pub(crate) stencil_bits: i32,
     /// 0 or 16.
-    pub(crate) accum_bits: u32,
+    pub(crate) accum_bits: i32,
 }
 
 impl Attributes {

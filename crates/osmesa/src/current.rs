@@ -2,10 +2,12 @@
 
 use crate::environment;
 use crate::handle::Handle;
+use crate::messages::Waiting;
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
+use std::sync::Arc;
 use vitral_gl::{Context, enums};
 
 /// Lets go of the current context when the thread ends. Kept apart from the pointer, so that reading that costs nothing.
@@ -47,18 +49,16 @@ pub(crate) fn replace(handle: *const Handle) {
 /// error of OpenGL.
 #[inline]
 pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) -> R) -> R {
-    let handle = CURRENT.get();
-    if handle.is_null() {
-        return R::default();
-    }
-    // SAFETY: the current handle is alive, and its machine belongs to this thread. Calls do not nest: `body` runs no
-    // code of the client, whose debug callback is called below, when this borrow has ended.
-    let context = unsafe { &mut (*(*handle).machine()).context };
+    // SAFETY: the current handle is alive until it is replaced.
+    let Some(handle) = (unsafe { CURRENT.get().as_ref() }) else { return R::default() };
+    // SAFETY: the machine belongs to this thread. Calls do not nest: `body` runs no code of the client, whose debug
+    // callback is called below, when this borrow has ended.
+    let context = unsafe { &mut (*handle.machine()).context };
     let result = match catch_unwind(AssertUnwindSafe(|| body(context))) {
         Ok(result) => result,
         Err(cause) => panicked(context, name, &*cause),
     };
-    if context.has_debug_messages() {
+    if handle.messages.any() {
         deliver(handle);
     }
     result
@@ -80,25 +80,20 @@ fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Se
 /// `GLDEBUGPROC`.
 type DebugProc = unsafe extern "C" fn(u32, u32, u32, u32, i32, *const u8, usize);
 
-/// Calls the client's debug callback with each message that waits. The callback may call OpenGL.
+/// Calls the client's debug callback with each message that waits. The callback may call OpenGL, and even destroy the
+/// context.
 #[cold]
-fn deliver(handle: *const Handle) {
-    loop {
-        // SAFETY: as in `call`: the handle is this thread's, and no other borrow of its machine is alive.
-        let context = unsafe { &mut (*(*handle).machine()).context };
-        let Some((callback, user, message)) = context.next_debug_message() else { return };
+fn deliver(handle: &Handle) {
+    let messages = Arc::clone(&handle.messages);
+    while let Some(Waiting { callback, user, mut message }) = messages.next() {
         let length = i32::try_from(message.text.len()).unwrap_or(i32::MAX);
-        let mut text = message.text.into_bytes();
-        text.push(0);
+        message.text.push(0);
         let callback = ptr::with_exposed_provenance::<()>(callback);
-        // SAFETY: the client gave this address as a GLDEBUGPROC; `next_debug_message` does not give null.
+        // SAFETY: the client gave this address as a GLDEBUGPROC; the state machine calls no hook for address 0.
         let callback = unsafe { std::mem::transmute::<*const (), DebugProc>(callback) };
         // SAFETY: a call as KHR_debug says, with a terminated text that lives until it returns.
         unsafe {
-            callback(message.source, message.kind, message.id, message.severity, length, text.as_ptr(), user);
-        }
-        if current() != handle {
-            return;
+            callback(message.source, message.kind, message.id, message.severity, length, message.text.as_ptr(), user);
         }
     }
 }

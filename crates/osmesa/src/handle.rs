@@ -3,23 +3,11 @@
 use crate::attributes::Attributes;
 use crate::environment;
 use crate::memory::ProcessMemory;
+use crate::messages::Messages;
 use std::cell::UnsafeCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use vitral_gl::{Context, Shared};
-
-/// The buffer that a context was last made current with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Binding {
-    /// Address of the client's colour buffer.
-    pub(crate) buffer: usize,
-    /// Type of a component.
-    pub(crate) kind: u32,
-    /// Pixels.
-    pub(crate) width: i32,
-    /// Pixels.
-    pub(crate) height: i32,
-}
 
 /// A context with what OSMesa itself keeps of it.
 #[derive(Debug)]
@@ -28,29 +16,16 @@ pub(crate) struct Machine {
     pub(crate) context: Context,
     /// What it was made as.
     pub(crate) attributes: Attributes,
-    /// Where it draws, since it was first made current.
-    pub(crate) binding: Option<Binding>,
-    /// `OSMESA_ROW_LENGTH`; 0 is the width.
-    pub(crate) row_length: i32,
-    /// `OSMESA_Y_UP`.
-    pub(crate) y_up: bool,
-    /// What `OSMesaGetDepthBuffer` handed out: lowest row first.
-    pub(crate) depth: DepthCopy,
-}
-
-/// Depth values at an address that stays while the size does.
-#[derive(Debug)]
-pub(crate) enum DepthCopy {
-    /// Up to 16 bits.
-    Bits16(Vec<u16>),
-    /// More, in the low bits.
-    Bits32(Vec<u32>),
+    /// What `OSMesaGetDepthBuffer` handed out, in words so that it is aligned: lowest row first.
+    pub(crate) depths: Vec<u32>,
 }
 
 /// What an `OSMesaContext` points to. One thread at a time may have the context current; others may destroy it: then
 /// it goes when that thread lets go of it.
 #[derive(Debug)]
 pub(crate) struct Handle {
+    /// Messages for the client's debug callback.
+    pub(crate) messages: Arc<Messages>,
     /// For contexts that will share with this one.
     shared: Arc<Shared>,
     /// Buffers mapped by one context may be unmapped by another that shares them.
@@ -64,15 +39,19 @@ pub(crate) struct Handle {
 impl Handle {
     /// A new context in the client's hands: its address is an `OSMesaContext`.
     pub(crate) fn create(attributes: Attributes, share: Option<&Self>) -> *const Self {
-        let (shared, memory) =
-            share.map_or_else(Default::default, |other| (Arc::clone(&other.shared), Arc::clone(&other.memory)));
+        let (shared, memory) = match share {
+            Some(other) => (Arc::clone(&other.shared), Arc::clone(&other.memory)),
+            None => Default::default(),
+        };
+        let messages = Arc::<Messages>::default();
         let mut context = Context::new(Arc::<ProcessMemory>::clone(&memory), Arc::clone(&shared));
         context.set_threads(environment::threads());
-        context.set_error_output(environment::debug().then_some(environment::say as fn(&str)));
-        let depth =
-            if attributes.depth_bits <= 16 { DepthCopy::Bits16(Vec::new()) } else { DepthCopy::Bits32(Vec::new()) };
-        let machine = Machine { context, attributes, binding: None, row_length: 0, y_up: true, depth };
-        Box::into_raw(Box::new(Self { shared, memory, users: AtomicUsize::new(1), machine: UnsafeCell::new(machine) }))
+        context.set_debug_printer(environment::debug().then_some(environment::say as fn(&str)));
+        context.set_debug_hook(Some(messages.hook()));
+        let Attributes { format, depth_bits, stencil_bits, accum_bits } = attributes;
+        context.configure_default_framebuffer(format, depth_bits, stencil_bits, accum_bits);
+        let machine = UnsafeCell::new(Machine { context, attributes, depths: Vec::new() });
+        Box::into_raw(Box::new(Self { messages, shared, memory, users: AtomicUsize::new(1), machine }))
     }
 
     /// The machine.

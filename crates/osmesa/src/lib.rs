@@ -12,5 +12,6 @@ mod entry_points;
 mod environment;
 mod handle;
 mod memory;
+mod messages;
 mod procedures;
 mod unsupported;

@@ -3,6 +3,17 @@
 #![allow(non_snake_case)]
 
 use crate::current::call;
+use vitral_gl::enums::INVALID_OPERATION;
+
+/// What a call of such a function does.
+#[cold]
+#[inline(never)]
+fn refuse(name: &'static str) -> usize {
+    call(name, |context| {
+        context.report(INVALID_OPERATION, name, "this is beyond OpenGL 1.5 and the extensions that are there");
+        0
+    })
+}
 
 /// Exports each name as a C function that takes whatever it is given and returns 0.
 macro_rules! unsupported {
@@ -10,10 +21,7 @@ macro_rules! unsupported {
         $(
             #[unsafe(no_mangle)]
             pub(crate) extern "C" fn $name() -> usize {
-                call(stringify!($name), |context| {
-                    context.unsupported(stringify!($name));
-                    0
-                })
+                refuse(stringify!($name))
             }
         )+
     };

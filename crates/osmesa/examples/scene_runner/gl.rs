@@ -135,6 +135,14 @@ functions! {
     OSMesaDestroyContext(context: OsmesaContext) -> ();
     OSMesaMakeCurrent(context: OsmesaContext, buffer: usize, kind: u32, width: i32, height: i32) -> u8;
     OSMesaPixelStore(name: i32, value: i32) -> ();
+    OSMesaCreateContextAttribs(list: &[i32], share: OsmesaContext) -> OsmesaContext;
+    OSMesaGetCurrentContext() -> OsmesaContext;
+    OSMesaGetIntegerv(name: i32, value: &mut [i32]) -> ();
+    OSMesaGetDepthBuffer(context: OsmesaContext, width: &mut [i32], height: &mut [i32], bytes: &mut [i32], buffer: &mut [usize]) -> u8;
+    OSMesaGetColorBuffer(context: OsmesaContext, width: &mut [i32], height: &mut [i32], format: &mut [i32], buffer: &mut [usize]) -> u8;
+    OSMesaGetProcAddress(name: &[u8]) -> usize;
+    OSMesaColorClamp(enable: u8) -> ();
+    OSMesaPostprocess(context: OsmesaContext, filter: &[u8], value: u32) -> ();
     glAccum(op: u32, value: f32) -> ();
     glActiveStencilFaceEXT(face: u32) -> ();
     glActiveTexture(texture: u32) -> ();
@@ -187,6 +195,7 @@ functions! {
     glCopyTexImage2D(target: u32, level: i32, internalformat: u32, x: i32, y: i32, width: i32, height: i32, border: i32) -> ();
     glCopyTexSubImage2D(target: u32, level: i32, xoffset: i32, yoffset: i32, x: i32, y: i32, width: i32, height: i32) -> ();
     glCullFace(mode: u32) -> ();
+    glDebugMessageCallback(callback: usize, user_param: usize) -> ();
     glDeleteFramebuffers(n: i32, framebuffers: &[u32]) -> ();
     glDeleteLists(list: u32, range: i32) -> ();
     glDepthFunc(func: u32) -> ();

@@ -1,16 +1,19 @@
 //! Draws small scenes with an OSMesa library and writes what came out, for comparison with another library.
 //!
-//! `scene_runner --list` prints each scene's name and how exactly two libraries must agree on it.
+//! `scene_runner --list` prints each scene's group, its name and how exactly two libraries must agree on it.
 //! `scene_runner LIBRARY FOLDER [SCENE...]` draws those scenes, or all; it prints the name of each before drawing it, and
 //! writes `FOLDER/SCENE.rgba` (width and height as little-endian 32-bit numbers, then the colour buffer as RGBA bytes,
 //! lowest row first), `FOLDER/SCENE.depth` (32-bit floats) and `FOLDER/SCENE.numbers` (32-bit floats: what the scene noted,
 //! the error last). With `SCENE_PICTURES` set it writes `FOLDER/SCENE.ppm` as well.
+//!
+//! `scene_runner --lifecycle MODE LIBRARY` tries what is not in pictures: see `lifecycle.rs`.
 //!
 //! Each scene has a context of its own. A library is loaded once: two of them cannot be in one process, since they export the
 //! same names.
 #![allow(unsafe_code, clippy::disallowed_methods)]
 
 mod gl;
+mod lifecycle;
 mod scenes;
 mod stage;
 
@@ -24,9 +27,18 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.as_slice() {
         [list] if list == "--list" => {
-            scenes::all().for_each(|scene| println!("{} {:?}", scene.name, scene.agreement));
+            for (group, scenes) in scenes::GROUPS {
+                scenes.iter().for_each(|scene| println!("{group} {} {:?}", scene.name, scene.agreement));
+            }
             ExitCode::SUCCESS
         }
+        [option, mode, library] if option == "--lifecycle" => match lifecycle::run(mode, library) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(why) => {
+                eprintln!("{mode}: {why}");
+                ExitCode::FAILURE
+            }
+        },
         [library, folder, wanted @ ..] => match run(library, Path::new(folder), wanted) {
             Ok(()) => ExitCode::SUCCESS,
             Err(why) => {
@@ -35,7 +47,7 @@ fn main() -> ExitCode {
             }
         },
         _ => {
-            eprintln!("usage: scene_runner --list | scene_runner LIBRARY FOLDER [SCENE...]");
+            eprintln!("usage: scene_runner --list | --lifecycle MODE LIBRARY | LIBRARY FOLDER [SCENE...]");
             ExitCode::FAILURE
         }
     }

@@ -51,29 +51,30 @@ const fn scene(name: &'static str, agreement: Agreement, draw: fn(&mut Stage<'_>
     Scene { name, agreement, surface: USUAL, draw }
 }
 
+/// All scenes in their groups.
+pub(crate) const GROUPS: &[(&str, &[Scene])] = &[
+    ("lines", lines::SCENES),
+    ("polygons", polygons::SCENES),
+    ("lighting", lighting::SCENES),
+    ("fog", fog::SCENES),
+    ("texgen", texgen::SCENES),
+    ("textures", textures::SCENES),
+    ("texture_images", texture_images::SCENES),
+    ("environment", environment::SCENES),
+    ("alpha_stencil", alpha_stencil::SCENES),
+    ("blending", blending::SCENES),
+    ("images", images::SCENES),
+    ("reading", reading::SCENES),
+    ("lists", lists::SCENES),
+    ("arrays", arrays::SCENES),
+    ("framebuffers", framebuffers::SCENES),
+    ("queries", queries::SCENES),
+    ("surfaces", surfaces::SCENES),
+];
+
 /// All scenes.
 pub(crate) fn all() -> impl Iterator<Item = &'static Scene> {
-    [
-        lines::SCENES,
-        polygons::SCENES,
-        lighting::SCENES,
-        fog::SCENES,
-        texgen::SCENES,
-        textures::SCENES,
-        texture_images::SCENES,
-        environment::SCENES,
-        alpha_stencil::SCENES,
-        blending::SCENES,
-        images::SCENES,
-        reading::SCENES,
-        lists::SCENES,
-        arrays::SCENES,
-        framebuffers::SCENES,
-        queries::SCENES,
-        surfaces::SCENES,
-    ]
-    .into_iter()
-    .flatten()
+    GROUPS.iter().flat_map(|(_, scenes)| scenes.iter())
 }
 
 /// One unit a pixel, origin in the lower left corner, z from -1 to 1 (nearer is greater).

@@ -17,12 +17,10 @@ pub mod memory;
 pub mod objects;
 mod pixels;
 pub mod state;
-mod stubs;
 mod tnl;
 pub mod vertex;
 mod vertices;
 
 pub use context::Context;
-pub use stubs::*;
 pub use memory::ClientMemory;
 pub use objects::Shared;

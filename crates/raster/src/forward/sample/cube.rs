@@ -6,11 +6,12 @@
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
 use super::depth::{by_mode, compared};
-use super::fetch::{Images, interior, level_of};
+use super::fetch::{Image, Words, columns, interior, level_of, level_of_face};
 use super::mip::{mipped, mix_rgba};
+use super::packed::bilinear;
 use super::wrap::{Axis, position};
 use crate::forward::texture::{Level, Texels, Texture, Wrap};
-use crate::forward::wide::{Rgba, abs, mask_of, select, select_rgba, splat, splat_rgba};
+use crate::forward::wide::{Rgba, abs, bits_of, mask_of, select, select_rgba, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, Simd, U32x8};
 
@@ -129,8 +130,11 @@ fn lookup<S: Simd>(
     lanes: u32,
     reference: Option<F32x8<S>>,
 ) -> Rgba<S> {
-    let Some(shape) = level_of(texture, level) else { return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]) };
-    let images = Images::new(texture, level);
+    // Most rows of pixels see one face: then all is as on a flat image.
+    let first = lanes.trailing_zeros() as usize % LANES;
+    let Some(shape) = level_of_face(texture, (face[first] % 6) as usize, level) else {
+        return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
+    };
     let size = interior(shape, 2);
     let seamless = texture.sampler.seamless && shape.border == 0 && size[0] == size[1];
     let wrap = match (seamless, filtered) {
@@ -138,35 +142,89 @@ fn lookup<S: Simd>(
         (true, false) => [Wrap::ClampToEdge; 2],
         (false, _) => [texture.sampler.wrap[0], texture.sampler.wrap[1]],
     };
-    let border = splat_rgba(simd, texture.sampler.border);
-    let axes = [
-        Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered),
-        Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered),
-    ];
-    let corners = if filtered { 4 } else { 1 };
-    let mut colors = [border; 4];
-    let mut missing = [0u32; 4];
-    for corner in 0..corners {
-        let x = if corner & 1 == 0 { axes[0].near } else { axes[0].far };
-        let y = if corner & 2 == 0 { axes[1].near } else { axes[1].far };
-        let place = place(simd, shape, seamless, face, x, y, lanes);
-        let mut color = images.colors(simd, &place.face, place.index);
-        color = select_rgba(place.outside, border, color);
-        if let Some(reference) = reference {
-            color[0] = compared(simd, texture, reference, color[0]);
+    let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
+    let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
+    let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
+    if one_face && shape.border == 0 && bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0 {
+        if let Some(words) = Words::new(shape) {
+            let color = if filtered {
+                bilinear(simd, words, &x, &y, size[0])
+            } else {
+                words.colors(simd, y.near * size[0] as i32 + x.near)
+            };
+            return words.finish(color);
         }
-        colors[corner] = color;
-        missing[corner] = place.missing;
     }
-    if !filtered {
-        return colors[0];
+    let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
+    general(simd, texture, &spot)
+}
+
+/// Where an axis reaches beyond the image.
+#[inline(always)]
+fn crosses<S: Simd>(simd: S, axis: &Axis<S>, size: u32) -> Mask8<S> {
+    axis.near.simd_lt(I32x8::splat(simd, 0)) | axis.far.simd_ge(I32x8::splat(simd, size as i32))
+}
+
+/// A lookup in one level, ready but for the texels.
+struct Spot<'a, S: Simd> {
+    level: usize,
+    shape: &'a Level,
+    face: &'a [u32; LANES],
+    x: Axis<S>,
+    y: Axis<S>,
+    lanes: u32,
+    seamless: bool,
+    filtered: bool,
+    reference: Option<F32x8<S>>,
+}
+
+/// Several faces, edges, borders, any texels.
+#[inline(never)]
+fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let image = Image::new(spot.shape);
+            let border = splat_rgba(simd, image.raw(texture.sampler.border));
+            let corners = if spot.filtered { 4 } else { 1 };
+            let mut colors = [border; 4];
+            let mut missing = [0u32; 4];
+            for corner in 0..corners {
+                let x = if corner & 1 == 0 { spot.x.near } else { spot.x.far };
+                let y = if corner & 2 == 0 { spot.y.near } else { spot.y.far };
+                let place = place(simd, spot, x, y);
+                let mut color = texels(simd, texture, spot, &place);
+                color = select_rgba(place.outside, border, color);
+                if let Some(reference) = spot.reference {
+                    color[0] = compared(simd, texture, reference, color[0]);
+                }
+                colors[corner] = color;
+                missing[corner] = place.missing;
+            }
+            if spot.filtered {
+                fill_missing(simd, &mut colors, &missing);
+                let lower = mix_rgba(colors[0], colors[1], spot.x.weight);
+                let upper = mix_rgba(colors[2], colors[3], spot.x.weight);
+                colors[0] = mix_rgba(lower, upper, spot.y.weight);
+            }
+            image.finish(colors[0])
+        },
+    )
+}
+
+/// One raw texel a lane, each from its face.
+#[inline(always)]
+fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place<S>) -> Rgba<S> {
+    let index = place.index.to_array();
+    let mut colors = [[0.0f32; 4]; LANES];
+    for lane in 0..LANES {
+        if spot.lanes >> lane & 1 == 1 {
+            if let Some(shape) = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level) {
+                colors[lane] = Image::new(shape).color(index[lane] as usize);
+            }
+        }
     }
-    if missing != [0; 4] {
-        fill_missing(simd, &mut colors, &missing);
-    }
-    let lower = mix_rgba(colors[0], colors[1], axes[0].weight);
-    let upper = mix_rgba(colors[2], colors[3], axes[0].weight);
-    mix_rgba(lower, upper, axes[1].weight)
+    columns(simd, &colors)
 }
 
 /// Texels of one corner.
@@ -181,15 +239,8 @@ struct Place<S: Simd> {
 
 /// Finds the texels `(x, y)` of the faces, which may lie one beyond their edges.
 #[inline(always)]
-fn place<S: Simd>(
-    simd: S,
-    shape: &Level,
-    seamless: bool,
-    face: &[u32; LANES],
-    x: I32x8<S>,
-    y: I32x8<S>,
-    lanes: u32,
-) -> Place<S> {
+fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Place<S> {
+    let Spot { shape, face, lanes, seamless, .. } = *spot;
     let (zero, last) = (I32x8::splat(simd, 0), I32x8::splat(simd, shape.size[0] as i32 - 1));
     let last_y = I32x8::splat(simd, shape.size[1] as i32 - 1);
     let (x, y) = (x + shape.border as i32, y + shape.border as i32);

@@ -3,11 +3,11 @@
 //! With a comparison each texel becomes 0 or 1 before filtering, so that a linear filter gives the share of the four
 //! texels that pass, by their weights.
 
-use super::fetch::{Images, level_of};
+use super::fetch::{Depths, level_of};
 use super::flat::{axes, corner_texels};
-use super::mip::{dimensions, mipped};
+use super::mip::mipped;
 use crate::forward::fragment_ops::compare::compare;
-use crate::forward::texture::{BaseFormat, Texture};
+use crate::forward::texture::{BaseFormat, Texture, TextureKind};
 use crate::forward::wide::{Rgba, mix, saturate, select, splat, splat_rgba};
 use vitral_math::lanes::{F32x8, Simd};
 
@@ -31,7 +31,13 @@ pub(super) fn sample<S: Simd>(
                 lod,
                 active,
                 #[inline(always)]
-                |level, linear, lanes| [lookup(simd, texture, level, linear, point, lanes)],
+                |level, linear, lanes| {
+                    // A constant number of dimensions unrolls the loops.
+                    [match texture.kind {
+                        TextureKind::One => lookup::<S, 1>(simd, texture, level, linear, point, lanes),
+                        _ => lookup::<S, 2>(simd, texture, level, linear, point, lanes),
+                    }]
+                },
             );
             by_mode(simd, texture.depth_mode, value)
         },
@@ -63,7 +69,7 @@ pub(super) fn compared<S: Simd>(simd: S, texture: &Texture, reference: F32x8<S>,
 
 /// One level, filtered.
 #[inline(always)]
-fn lookup<S: Simd>(
+fn lookup<S: Simd, const DIMENSIONS: usize>(
     simd: S,
     texture: &Texture,
     level: usize,
@@ -72,19 +78,18 @@ fn lookup<S: Simd>(
     lanes: u32,
 ) -> F32x8<S> {
     let Some(shape) = level_of(texture, level) else { return splat(simd, 0.0) };
-    let images = Images::new(texture, level);
-    let dimensions = dimensions(texture.kind).min(2);
-    let axes = axes(simd, texture, shape, dimensions, linear, point);
+    let depths = Depths::new(shape);
+    let axes = axes(simd, texture, shape, DIMENSIONS, linear, point);
     let border = splat_rgba(simd, texture.sampler.border)[0];
-    let corners = if linear { 1 << dimensions } else { 1 };
+    let corners = if linear { 1 << DIMENSIONS } else { 1 };
     let mut values = [border; 4];
     for corner in 0..corners {
-        let ([x, y, _], outside) = corner_texels(simd, shape, dimensions, &axes, corner);
-        let depth = select(outside, border, images.depths(simd, x, y, shape.size[0], lanes));
+        let ([x, y, _], outside) = corner_texels(simd, shape, DIMENSIONS, &axes, corner);
+        let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes));
         values[corner] = compared(simd, texture, point[2], depth);
     }
     let mut count = corners;
-    for k in 0..dimensions {
+    for k in 0..DIMENSIONS {
         count /= 2;
         for i in 0..count {
             values[i] = mix(values[2 * i], values[2 * i + 1], axes[k].weight);

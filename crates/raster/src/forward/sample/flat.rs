@@ -1,12 +1,12 @@
 //! Any texture but cube maps and depth: one to three dimensions, borders, every wrap mode.
 
-use super::fetch::{Images, interior, level_of};
+use super::fetch::{Image, interior, level_of};
 use super::mip::{dimensions, mipped, mix_rgba};
 use super::wrap::{Axis, limited, position};
 use crate::forward::texture::{Level, Texture, TextureKind};
 use crate::forward::wide::{Rgba, select_rgba, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, Simd};
+use vitral_math::lanes::{F32x8, I32x8, Mask8, Simd};
 
 /// As [`super::sample`].
 #[inline(never)]
@@ -38,17 +38,17 @@ pub(super) fn sample<S: Simd>(
 #[inline(always)]
 fn lookup<S: Simd>(simd: S, texture: &Texture, level: usize, linear: bool, point: [F32x8<S>; 3]) -> Rgba<S> {
     let Some(shape) = level_of(texture, level) else { return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]) };
-    let images = Images::new(texture, level);
+    let image = Image::new(shape);
     let dimensions = dimensions(texture.kind);
     let axes = axes(simd, texture, shape, dimensions, linear, point);
 
     // Fetch the corners of the cell round the point. Bit k of a corner's number chooses the far texel of axis k.
-    let border = splat_rgba(simd, texture.sampler.border);
+    let border = splat_rgba(simd, image.raw(texture.sampler.border));
     let corners = if linear { 1 << dimensions } else { 1 };
     let mut colors = [border; 8];
     for corner in 0..corners {
         let (index, outside) = address(simd, shape, dimensions, &axes, corner);
-        let texel = images.colors(simd, &[0; LANES], index);
+        let texel = image.colors(simd, index);
         colors[corner] = select_rgba(outside, border, texel);
     }
 
@@ -60,7 +60,7 @@ fn lookup<S: Simd>(simd: S, texture: &Texture, level: usize, linear: bool, point
             colors[i] = mix_rgba(colors[2 * i], colors[2 * i + 1], axes[k].weight);
         }
     }
-    colors[0]
+    image.finish(colors[0])
 }
 
 /// Texel numbers along the axes in use; a nearest lookup has near texels only.

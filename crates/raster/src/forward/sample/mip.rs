@@ -141,6 +141,9 @@ pub(super) fn mipped<S: Simd, const N: usize>(
     active: u32,
     lookup: impl Fn(usize, bool, u32) -> [F32x8<S>; N],
 ) -> [F32x8<S>; N] {
+    if !needs_lod(texture) {
+        return lookup(0, texture.sampler.mag == Filter::Linear, active);
+    }
     let last = texture.faces.first().map_or(0, Vec::len).saturating_sub(1);
     let choice = choose(simd, &texture.sampler, last, lod);
     let levels = choice.level.to_array();

@@ -1,13 +1,12 @@
 //! The common case: two dimensions, 8 bits a component, no border in reach.
 
-use super::fetch::{Images, decode, gather, interior, level_of};
+use super::fetch::{Words, interior, level_of};
 use super::mip::{mipped, mix_rgba};
 use super::wrap::{Axis, linear, nearest, position};
-use crate::forward::fragment_ops::packed::unpack_bytes;
 use crate::forward::texture::Texture;
 use crate::forward::wide::{Rgba, splat_rgba};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{F32x8, Simd};
 
 /// As [`super::sample`].
 #[inline(never)]
@@ -37,42 +36,40 @@ pub(super) fn sample<S: Simd>(
 /// One level, filtered.
 #[inline(always)]
 fn lookup<S: Simd>(simd: S, texture: &Texture, level: usize, filtered: bool, s: F32x8<S>, t: F32x8<S>) -> Rgba<S> {
-    let Some(shape) = level_of(texture, level) else { return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]) };
-    let images = Images::new(texture, level);
+    let Some((shape, words)) = level_of(texture, level).and_then(|shape| Some((shape, Words::new(shape)?))) else {
+        return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
+    };
     let [width, height, _] = interior(shape, 2);
     let [wrap_s, wrap_t, _] = texture.sampler.wrap;
     let (x, y) = (position(simd, s, width, wrap_s), position(simd, t, height, wrap_t));
-    let row = width as i32;
     let color = if filtered {
-        let (x, y) = (linear(simd, x, width, wrap_s), linear(simd, y, height, wrap_t));
-        bilinear(simd, &images, &x, &y, row)
+        bilinear(simd, words, &linear(simd, x, width, wrap_s), &linear(simd, y, height, wrap_t), width)
     } else {
         let (x, y) = (nearest(simd, x, width, wrap_s), nearest(simd, y, height, wrap_t));
-        texels(simd, &images, y * row + x)
+        words.colors(simd, y * width as i32 + x)
     };
-    // Components of 0..=255 until here: division once instead of for each texel.
-    let [r, g, b, a] = color;
-    match images {
-        Images::Srgb8(..) => [r, g, b, a / 255.0],
-        _ => [r / 255.0, g / 255.0, b / 255.0, a / 255.0],
-    }
+    words.finish(color)
 }
 
-/// Mixes along the two rows, then between them.
+/// Raw colours of an image `width` wide, mixed along the two rows, then between them.
 #[inline(always)]
-fn bilinear<S: Simd>(simd: S, images: &Images<'_>, x: &Axis<S>, y: &Axis<S>, row: i32) -> Rgba<S> {
-    let (lower, upper) = (y.near * row, y.far * row);
-    let a = mix_rgba(texels(simd, images, lower + x.near), texels(simd, images, lower + x.far), x.weight);
-    let b = mix_rgba(texels(simd, images, upper + x.near), texels(simd, images, upper + x.far), x.weight);
-    mix_rgba(a, b, y.weight)
-}
-
-/// Texels, alpha and colours without decoding as 0..=255.
-#[inline(always)]
-fn texels<S: Simd>(simd: S, images: &Images<'_>, index: I32x8<S>) -> Rgba<S> {
-    match images {
-        Images::Rgba8(faces) => unpack_bytes(U32x8::from_slice(simd, &gather(faces, &[0; LANES], index))),
-        Images::Srgb8(faces, table) => decode(simd, &gather(faces, &[0; LANES], index), table),
-        _ => splat_rgba(simd, [0.0, 0.0, 0.0, 255.0]),
-    }
+pub(super) fn bilinear<S: Simd>(simd: S, words: Words<'_>, x: &Axis<S>, y: &Axis<S>, width: u32) -> Rgba<S> {
+    let (lower, upper) = (y.near * width as i32, y.far * width as i32);
+    // But where the image wraps round or ends, the two texels of a row are neighbours in memory.
+    let adjacent = (x.near + 1).simd_eq(x.far).all_true();
+    let (a, b, c, d) = if adjacent {
+        let (a, b) = words.pairs(simd, lower + x.near);
+        let (c, d) = words.pairs(simd, upper + x.near);
+        (a, b, c, d)
+    } else {
+        (
+            words.words(simd, lower + x.near),
+            words.words(simd, lower + x.far),
+            words.words(simd, upper + x.near),
+            words.words(simd, upper + x.far),
+        )
+    };
+    let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
+    let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
+    mix_rgba(lower, upper, y.weight)
 }

@@ -134,11 +134,11 @@ mod tests {
                 for i in 0..32u32 {
                     let s: [u32; 8] = std::array::from_fn(|k| {
                         let alpha = (source_byte * 7 + (i * 8 + k as u32) * 5) & 255;
-                        source_byte * 0x0001_0101 | alpha << 24
+                        (source_byte * 0x0001_0101) | (alpha << 24)
                     });
                     let d: [u32; 8] = std::array::from_fn(|k| {
                         let byte = i * 8 + k as u32;
-                        byte * 0x0001_0101 | (255 - source_byte) << 24
+                        (byte * 0x0001_0101) | ((255 - source_byte) << 24)
                     });
                     let (sum, scaled, mixed) = dispatch!(level, simd => {
                         let (s, d) = (U32x8::from_slice(simd, &s), U32x8::from_slice(simd, &d));

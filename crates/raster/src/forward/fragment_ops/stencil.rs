@@ -80,7 +80,10 @@ mod tests {
     use crate::forward::wide::{bits_of, mask_of};
     use vitral_math::lanes::{Level, available_levels, dispatch};
 
-    const FUNCS: [(Compare, fn(u8, u8) -> bool); 8] = [
+    type Test = fn(u8, u8) -> bool;
+    type Change = fn(u8, u8) -> u8;
+
+    const FUNCS: [(Compare, Test); 8] = [
         (Compare::Never, |_, _| false),
         (Compare::Less, |r, s| r < s),
         (Compare::Equal, |r, s| r == s),
@@ -91,7 +94,7 @@ mod tests {
         (Compare::Always, |_, _| true),
     ];
 
-    const OPS: [(StencilOp, fn(u8, u8) -> u8); 8] = [
+    const OPS: [(StencilOp, Change); 8] = [
         (StencilOp::Keep, |s, _| s),
         (StencilOp::Zero, |_, _| 0),
         (StencilOp::Replace, |_, r| r),
@@ -149,7 +152,7 @@ mod tests {
                         let out = updated(level, &face, ROW, masks);
                         for lane in 0..8 {
                             let s = ROW[lane];
-                            let expected = scalar(s, 0x83) & write_mask | s & !write_mask;
+                            let expected = (scalar(s, 0x83) & write_mask) | (s & !write_mask);
                             assert_eq!(out[lane], expected, "{name} {op:?} {s}");
                         }
                     }

@@ -145,15 +145,18 @@ fn lookup<S: Simd>(
     let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
     let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
     let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
-    if one_face && shape.border == 0 && bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0 {
-        if let Some(words) = Words::new(shape) {
-            let color = if filtered {
-                bilinear(simd, words, &x, &y, size[0])
-            } else {
-                words.colors(simd, y.near * size[0] as i32 + x.near)
-            };
-            return words.finish(color);
-        }
+    let inside = bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0;
+    if one_face
+        && inside
+        && shape.border == 0
+        && let Some(words) = Words::new(shape)
+    {
+        let color = if filtered {
+            bilinear(simd, words, &x, &y, size[0])
+        } else {
+            words.colors(simd, y.near * size[0] as i32 + x.near)
+        };
+        return words.finish(color);
     }
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
@@ -218,10 +221,10 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place
     let index = place.index.to_array();
     let mut colors = [[0.0f32; 4]; LANES];
     for lane in 0..LANES {
-        if spot.lanes >> lane & 1 == 1 {
-            if let Some(shape) = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level) {
-                colors[lane] = Image::new(shape).color(index[lane] as usize);
-            }
+        if spot.lanes >> lane & 1 == 1
+            && let Some(shape) = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level)
+        {
+            colors[lane] = Image::new(shape).color(index[lane] as usize);
         }
     }
     columns(simd, &colors)

@@ -88,3 +88,12 @@ fn planes_are_read_tile_by_tile() {
     let lit = |x: f32, r: f32| at(&shadow, [x / 100.0, 0.5 / 70.0, r, 1.0], 0.0)[0];
     assert!(close(lit(64.0, 0.5), 0.5) && close(lit(64.75, 0.5), 0.75) && close(lit(66.0, 0.5), 0.0));
 }
+
+#[test]
+fn cube_maps_compare_with_q() {
+    let face = |i: usize| vec![level([1, 1, 1], 0, Texels::Depth(vec![0.1 * (i + 1) as f32]))];
+    let s = Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST };
+    let t = texture(TextureKind::Cube, (0..6).map(face).collect(), s);
+    let lit = |z: f32, q: f32| at(&t, [0.1, 0.2, z, q], 0.0);
+    assert_eq!([lit(1.0, 0.45), lit(1.0, 0.55), lit(-1.0, 0.55)], [[1.0; 4], [0.0, 0.0, 0.0, 1.0], [1.0; 4]]);
+}

@@ -4,10 +4,14 @@
 //! setups and tile lists in parallel, then each tile walks the commands in their order. Planes are stored tile by tile
 //! and cleared lazily. Row 0 of a plane is OpenGL's window row 0: the lowest.
 
+mod environment;
+mod fragment_ops;
 mod pass;
 mod plane;
+mod sample;
 mod state;
 mod texture;
+mod wide;
 
 pub use pass::{Clear, Command, Geometry, ImageFragments, Pass, Target};
 pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};

@@ -135,11 +135,14 @@ impl Context {
         values
     }
 
-    /// Writes results. Records an error if the memory cannot be written.
-    pub(super) fn give_results<T: NoUninit>(&mut self, call: &str, address: usize, values: &[T]) {
-        if address == 0 || !self.memory.write(address, bytemuck::cast_slice(values)) {
+    /// Writes results; `false` if the memory cannot be written, which is an error.
+    pub(super) fn give_results<T: NoUninit>(&mut self, call: &str, address: usize, values: &[T]) -> bool {
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        let written = bytes.is_empty() || (address != 0 && self.memory.write(address, bytes));
+        if !written {
             self.refuse_value(call, "the result has no writable memory");
         }
+        written
     }
 
     /// Whether a call that is not allowed between Begin and End may go on; else records the error.

@@ -2,15 +2,18 @@
 
 mod arguments;
 mod attributes;
+mod blending;
 mod capabilities;
 mod debug;
 mod fog;
 mod foreign;
 mod fragment;
 mod get;
-mod lighting;
+mod lights;
+mod materials;
 mod matrices;
-mod pixels;
+mod pixel_maps;
+mod pixel_store;
 mod queries;
 mod raster;
 mod stipple;

@@ -1,7 +1,7 @@
 //! Points, lines, polygons, hints, multisampling.
 
 use super::arguments::{Form, scalar_call, unit, vector_call};
-use super::lighting::faces;
+use super::materials::faces;
 use crate::{Context, enums as gl};
 
 fn point_form(pname: u32) -> Option<Form> {
@@ -35,7 +35,9 @@ impl Context {
         let points = &mut self.state.points;
         match pname {
             gl::POINT_DISTANCE_ATTENUATION => points.attenuation = [values[0], values[1], values[2]],
-            gl::POINT_SIZE_MIN | gl::POINT_SIZE_MAX | gl::POINT_FADE_THRESHOLD_SIZE if !(values[0] >= 0.0) => {
+            gl::POINT_SIZE_MIN | gl::POINT_SIZE_MAX | gl::POINT_FADE_THRESHOLD_SIZE
+                if values[0].is_nan() || values[0] < 0.0 =>
+            {
                 self.refuse_value(call, "the size is negative");
             }
             gl::POINT_SIZE_MIN => points.limits[0] = values[0],

@@ -103,14 +103,13 @@ impl Context {
             let Some(message) = self.debug.log.pop_front() else { break };
             let fields = [message.source, message.kind, message.id, message.severity, length as u32];
             for (array, value) in [sources, types, ids, severities, lengths].into_iter().zip(fields) {
-                if array != 0 {
-                    self.give_results(call, array.saturating_add(done as usize * 4), &[value]);
+                if array != 0 && !self.give_results(call, array.saturating_add(done as usize * 4), &[value]) {
+                    return done;
                 }
             }
-            if message_log != 0 {
-                let mut text = message.text;
-                text.push(0);
-                self.give_results(call, message_log.saturating_add(used), &text);
+            let text = [&message.text[..], &[0]].concat();
+            if message_log != 0 && !self.give_results(call, message_log.saturating_add(used), &text) {
+                return done;
             }
             used += length;
             done += 1;

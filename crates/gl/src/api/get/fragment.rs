@@ -34,6 +34,9 @@ impl Context {
 
     /// `ActiveStencilFaceEXT` chooses what the names without `BACK` tell.
     pub(super) fn get_stencil(&mut self, pname: u32) -> Option<Value> {
+        if !is_stencil(pname) {
+            return None;
+        }
         let largest = (1 << self.framebuffer_bits().stencil.min(8)) - 1;
         let stencil = &self.state.stencil;
         let face = &stencil.faces[if stencil.active_face == 0 { 0 } else { 2 }];
@@ -105,13 +108,31 @@ impl Context {
     }
 
     pub(super) fn get_framebuffer(&mut self, pname: u32) -> Option<Value> {
+        Some(match pname {
+            gl::INDEX_BITS | gl::AUX_BUFFERS => Value::integer(0),
+            gl::STEREO | gl::INDEX_MODE | gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(false),
+            gl::RGBA_MODE => Value::boolean(true),
+            gl::DRAW_BUFFER => Value::token(self.draw_buffer_token()),
+            gl::READ_BUFFER => Value::token(self.read_buffer_token()),
+            gl::DRAW_FRAMEBUFFER_BINDING => Value::token(self.draw_framebuffer_name()),
+            gl::READ_FRAMEBUFFER_BINDING => Value::token(self.read_framebuffer_name()),
+            gl::RENDERBUFFER_BINDING => Value::token(self.renderbuffer_name()),
+            _ => return self.get_bits(pname),
+        })
+    }
+
+    fn get_bits(&mut self, pname: u32) -> Option<Value> {
+        let known =
+            matches!(pname, gl::RED_BITS..=gl::ACCUM_ALPHA_BITS | gl::SAMPLES | gl::SAMPLE_BUFFERS | gl::DOUBLEBUFFER);
+        if !known {
+            return None;
+        }
         let bits = self.framebuffer_bits();
         Some(match pname {
             gl::RED_BITS => Value::token(bits.color[0]),
             gl::GREEN_BITS => Value::token(bits.color[1]),
             gl::BLUE_BITS => Value::token(bits.color[2]),
             gl::ALPHA_BITS => Value::token(bits.color[3]),
-            gl::INDEX_BITS | gl::AUX_BUFFERS => Value::integer(0),
             gl::DEPTH_BITS => Value::token(bits.depth),
             gl::STENCIL_BITS => Value::token(bits.stencil),
             gl::ACCUM_RED_BITS => Value::token(bits.accum[0]),
@@ -121,16 +142,19 @@ impl Context {
             gl::SAMPLES => Value::token(bits.samples),
             gl::SAMPLE_BUFFERS => Value::integer(i32::from(bits.samples > 0)),
             gl::DOUBLEBUFFER => Value::boolean(bits.double_buffer),
-            gl::STEREO | gl::INDEX_MODE | gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(false),
-            gl::RGBA_MODE => Value::boolean(true),
-            gl::DRAW_BUFFER => Value::token(self.draw_buffer_token()),
-            gl::READ_BUFFER => Value::token(self.read_buffer_token()),
-            gl::DRAW_FRAMEBUFFER_BINDING => Value::token(self.draw_framebuffer_name()),
-            gl::READ_FRAMEBUFFER_BINDING => Value::token(self.read_framebuffer_name()),
-            gl::RENDERBUFFER_BINDING => Value::token(self.renderbuffer_name()),
             _ => return None,
         })
     }
+}
+
+/// Whether a token belongs to the stencil test.
+fn is_stencil(pname: u32) -> bool {
+    matches!(
+        pname,
+        gl::STENCIL_CLEAR_VALUE..=gl::STENCIL_WRITEMASK
+            | gl::STENCIL_BACK_FUNC_ATI..=gl::STENCIL_BACK_PASS_DEPTH_PASS_ATI
+            | gl::ACTIVE_STENCIL_FACE_EXT
+    )
 }
 
 fn pixel_store(pname: u32, unpack: &PixelStore, pack: &PixelStore) -> Option<Value> {

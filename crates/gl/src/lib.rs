@@ -21,6 +21,7 @@ mod tnl;
 pub mod vertex;
 mod vertices;
 
+pub use api::{DebugHook, DebugMessage};
 pub use context::Context;
 pub use memory::ClientMemory;
 pub use objects::Shared;

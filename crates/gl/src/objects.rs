@@ -10,4 +10,6 @@ pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
 pub struct Shared {
     /// Buffer objects.
     pub buffers: Mutex<Names<()>>,
+    /// Labels of shared objects.
+    pub(crate) labels: Mutex<crate::api::Labels>,
 }

@@ -8,6 +8,10 @@ pub trait ClientMemory: Send + Sync + std::fmt::Debug {
     fn read(&self, address: usize, out: &mut [u8]) -> bool;
     /// Copies `bytes` to `address`. `false` if that range is not the client's.
     fn write(&self, address: usize, bytes: &[u8]) -> bool;
+    /// Hands a buffer's bytes to the client and returns their address (not 0), where it may read and write them.
+    fn map(&self, bytes: Vec<u8>) -> usize;
+    /// Takes mapped bytes back; `None` if nothing is mapped there.
+    fn unmap(&self, address: usize) -> Option<Vec<u8>>;
 }
 
 /// A bounded piece of memory at a made-up address, for tests and fuzzing.

@@ -3,12 +3,18 @@
 //! An attribute gets an array once it has been given since Begin; if that is after the first vertex, the earlier ones are
 //! filled with the value that was current until then. What was never given stays `None`: the current value holds for
 //! all. So a vertex costs one push for each attribute in use.
+//!
+//! If the caller promises to announce every call that is not one of vertices or their attributes
+//! ([`Context::set_merging`]), Begin/End pairs gather in one batch until then.
 
 use super::attribute::{CARRIED, COLOR};
 use crate::state::{Current, MaterialFace};
 use crate::vertex::VertexBatch;
 use crate::{Context, enums};
 use std::sync::Arc;
+
+/// Vertices of a batch that waits for no more.
+const LONG_ENOUGH: usize = 1 << 16;
 
 /// The primitive that is being given, and complete ones before it.
 #[derive(Debug, Default)]
@@ -17,6 +23,10 @@ pub(crate) struct Builder {
     /// Attributes that have arrays in `batch`.
     pub(crate) seen: u32,
     open: bool,
+    /// A Begin is open, or complete primitives wait to be drawn.
+    gathering: bool,
+    /// Whether complete primitives wait.
+    merging: bool,
     mode: u32,
     first: u32,
     /// The materials at Begin.
@@ -46,6 +56,7 @@ impl Builder {
     /// Begins a primitive.
     pub(crate) fn open(&mut self, mode: u32) {
         self.open = true;
+        self.gathering = true;
         self.mode = mode;
         self.first = self.batch.positions.len() as u32;
     }
@@ -64,6 +75,7 @@ impl Builder {
 
     /// Hands out what was gathered.
     pub(crate) fn take(&mut self) -> VertexBatch {
+        self.gathering = self.open;
         self.seen = 0;
         self.first = 0;
         std::mem::take(&mut self.batch)
@@ -110,7 +122,9 @@ impl Context {
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
         } else {
-            self.builder.material = self.state.lighting.material;
+            if !self.builder.gathering {
+                self.builder.material = self.state.lighting.material;
+            }
             self.builder.open(mode);
         }
     }
@@ -121,6 +135,28 @@ impl Context {
             return;
         }
         self.builder.close();
+        if !self.builder.merging || self.builder.batch.positions.len() >= LONG_ENOUGH {
+            self.flush_vertices();
+        }
+    }
+
+    /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call
+    /// but `begin`, `end`, `array_element` and those that give a vertex or set one of its attributes.
+    pub fn set_merging(&mut self, merging: bool) {
+        self.flush_vertices();
+        self.builder.merging = merging;
+    }
+
+    /// Draws the primitives that wait. Does nothing between Begin and End.
+    #[inline]
+    pub fn flush_vertices(&mut self) {
+        if self.builder.gathering && !self.builder.open {
+            self.draw_gathered();
+        }
+    }
+
+    /// Draws what the builder holds.
+    pub(super) fn draw_gathered(&mut self) {
         let batch = self.builder.take();
         self.draw_batch(Arc::new(batch));
     }
@@ -134,7 +170,7 @@ impl Context {
 
     #[inline(always)]
     pub(super) fn exec_attribute(&mut self, which: usize, value: [f32; 4]) {
-        if self.builder.is_open() {
+        if self.builder.gathering {
             self.builder.see(which, &self.state.current);
         }
         self.state.current.set(which, value);

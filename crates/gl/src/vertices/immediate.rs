@@ -8,9 +8,8 @@ use crate::{Context, enums};
 /// Fills up to four numbers as vertices and texture coordinates are filled.
 #[inline(always)]
 pub(super) fn filled<const N: usize>(given: [f32; N]) -> [f32; 4] {
-    let mut all = [0.0, 0.0, 0.0, 1.0];
-    all[..N].copy_from_slice(&given);
-    all
+    let or = |i: usize, default: f32| if i < N { given[i] } else { default };
+    [or(0, 0.0), or(1, 0.0), or(2, 0.0), or(3, 1.0)]
 }
 
 impl Context {
@@ -296,6 +295,25 @@ mod tests {
         assert_eq!(batch.primitives, [Primitive { mode: enums::TRIANGLES, first: 0, count: 3 }]);
         assert_eq!(c.state.current.color, green);
         assert_eq!(c.error, enums::NO_ERROR);
+    }
+
+    #[test]
+    fn pairs_wait_for_more_if_they_may() {
+        let mut c = context();
+        c.set_merging(true);
+        for i in 0..3u8 {
+            c.begin(enums::POINTS);
+            c.vertex_2f(0.0, 0.0);
+            c.end();
+            c.color_3ub(if i == 1 { 255 } else { 0 }, 0, 0);
+        }
+        assert!(c.builder.log.is_empty());
+        c.flush_vertices();
+        c.flush_vertices();
+        let (white, black, red) = ([1.0; 4], [0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(c.builder.log.len(), 1);
+        assert_eq!(c.builder.log[0].colors, Some(vec![white, black, red]));
+        assert_eq!(c.builder.log[0].primitives, [Primitive { mode: enums::POINTS, first: 0, count: 3 }]);
     }
 
     #[test]

@@ -166,9 +166,13 @@ impl Context {
 
     fn execute(&mut self, item: &Item) {
         match item {
-            Item::Call(call) => call(self),
+            Item::Call(call) => {
+                self.flush_vertices();
+                call(self);
+            }
             Item::Batch(batch) => {
                 if !self.refused_inside_begin("glBegin") {
+                    self.flush_vertices();
                     self.draw_batch(batch.clone());
                 }
             }
@@ -289,8 +293,7 @@ mod tests {
         c.new_list(1, enums::COMPILE);
         make(c);
         c.end_list();
-        let list = c.list_names()[&1].clone();
-        list
+        c.list_names()[&1].clone()
     }
 
     fn batches(list: &List) -> Vec<Arc<VertexBatch>> {

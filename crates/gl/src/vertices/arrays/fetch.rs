@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(found, Ok(vec![[1.0, 65535.0, 9.0], [2.0, 65535.0, 9.0], [7.0, 65535.0, 9.0]]));
         let overlapping = reader.elements(&array(2, enums::UNSIGNED_SHORT, 2, 18), &[(0, 2)], true, [0.0; 4]);
         assert_eq!(overlapping.unwrap()[1], [1.0 / 65535.0, 1.0, 0.0, 0.0]);
-        let wide = reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 3)], false, [0.0]);
+        let wide = reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 4)], false, [0.0]);
         assert_eq!(wide, Err(NOT_THERE));
         assert_eq!(
             reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 2)], false, [0.0]),

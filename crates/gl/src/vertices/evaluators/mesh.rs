@@ -4,7 +4,6 @@ use super::evaluate::{Evaluated, evaluate_1, evaluate_2};
 use crate::vertices::client::Component;
 use crate::{Context, enums};
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
 /// The most vertices of a mesh; grids themselves have no bound.
 const MAX_VERTICES: u64 = 1 << 22;
@@ -80,7 +79,7 @@ impl Context {
             let known = matches!(mode, enums::POINT | enums::LINE);
             if c.mesh_allowed(CALL, known, len(&(i1..=i2))) {
                 c.mesh_row(primitive, i1..=i2, |c, i| c.exec_point_1(i));
-                c.draw_mesh();
+                c.draw_gathered();
             }
         });
     }
@@ -117,11 +116,12 @@ impl Context {
                     }
                 }
             }
-            c.draw_mesh();
+            c.draw_gathered();
         });
     }
 
     fn mesh_allowed(&mut self, call: &str, known_mode: bool, vertices: u64) -> bool {
+        self.flush_vertices();
         if self.refused_inside_begin(call) {
         } else if !known_mode {
             self.record_error(enums::INVALID_ENUM, call, "mode is not one of meshes");
@@ -138,11 +138,6 @@ impl Context {
         self.builder.open(primitive);
         range.for_each(|i| give(self, i));
         self.builder.close();
-    }
-
-    fn draw_mesh(&mut self) {
-        let batch = self.builder.take();
-        self.draw_batch(Arc::new(batch));
     }
 }
 

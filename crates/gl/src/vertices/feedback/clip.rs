@@ -111,7 +111,7 @@ impl<'a> View<'a> {
         let depth = if self.zero_to_one { z * over_w } else { 0.5 * z * over_w + 0.5 };
         let mut depth = near + depth * (far - near);
         if self.state.depth_clamp {
-            depth = depth.clamp(near.min(far), near.max(far));
+            depth = depth.max(near.min(far)).min(near.max(far));
         }
         let window =
             [left + (x * over_w + 1.0) * 0.5 * width, bottom + (up * y * over_w + 1.0) * 0.5 * height, depth, w];

@@ -69,11 +69,11 @@ mod tests {
 
         fn small(&mut self) -> i32 {
             const WILD: [i32; 4] = [i32::MAX, i32::MIN, -1, 1 << 12];
-            if self.next() % 16 == 0 { WILD[self.next() as usize % 4] } else { (self.next() % 12) as i32 }
+            if self.next().is_multiple_of(16) { WILD[self.next() as usize % 4] } else { (self.next() % 12) as i32 }
         }
 
         fn address(&mut self) -> usize {
-            if self.next() % 8 == 0 { self.small() as usize } else { BASE + self.next() as usize % 64 }
+            if self.next().is_multiple_of(8) { self.small() as usize } else { BASE + self.next() as usize % 64 }
         }
 
         fn one_of(&mut self, tokens: &[u32]) -> u32 {

@@ -7,7 +7,7 @@ use crate::objects::Shared;
 use crate::pixels::{DefaultFramebuffer, FramebufferBindings};
 use crate::state::{ClientState, State};
 use crate::tnl::Recorder;
-use crate::vertices::{Builder, Feedback, Lists};
+use crate::vertices::{Arrays, Builder, Feedback, Lists};
 use std::sync::Arc;
 
 /// An OpenGL context.
@@ -29,6 +29,8 @@ pub struct Context {
     pub(crate) stacks: AttribStacks,
     /// Occlusion queries.
     pub(crate) queries: Queries,
+    /// Vertex arrays, beyond the client state.
+    pub(crate) arrays: Arrays,
     /// Begin/End.
     pub(crate) builder: Builder,
     /// Display lists being made and called.
@@ -56,6 +58,7 @@ impl Context {
             debug: DebugState::default(),
             stacks: AttribStacks::default(),
             queries: Queries::default(),
+            arrays: Arrays::default(),
             builder: Builder::default(),
             lists: Lists::default(),
             feedback: Feedback::default(),

@@ -375,7 +375,8 @@ impl<'a> Assembler<'a> {
         }
         // The sign of the area in homogeneous coordinates needs no clipping.
         for i in 1..corners.len() - 1 {
-            let [a, b, c] = [corners[0], corners[i], corners[i + 1]].map(|v| self.vertices.clip[v as usize].map(f64::from));
+            let [a, b, c] =
+                [corners[0], corners[i], corners[i + 1]].map(|v| self.vertices.clip[v as usize].map(f64::from));
             area += a[3] * (b[0] * c[1] - b[1] * c[0]) - b[3] * (a[0] * c[1] - a[1] * c[0])
                 + c[3] * (a[0] * b[1] - a[1] * b[0]);
             outside &= a[3] <= 0.0 && b[3] <= 0.0 && c[3] <= 0.0;
@@ -530,7 +531,8 @@ impl<'a> Assembler<'a> {
         };
         let shape = self.out.shapes.len() as u32;
         self.out.shapes.push(Shape::Point { center, size, fade });
-        let quad = [[-half, -half], [half, -half], [half, half], [-half, half]].map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
+        let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
+            .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
         self.quad(quad, [z; 4], [slot; 4], provoking, FacetKind::Point, back, shape, offset);
     }
 

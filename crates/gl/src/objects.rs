@@ -1,6 +1,8 @@
 //! Objects that contexts may share.
 
+use crate::pixels::{RenderbufferHandle, TextureHandle};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Names in use and their objects. `None`: the name was generated but nothing has been bound to it.
 pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
@@ -10,4 +12,17 @@ pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
 pub struct Shared {
     /// Buffer objects.
     pub buffers: Mutex<Names<()>>,
+    /// Textures.
+    pub(crate) textures: Mutex<Names<TextureHandle>>,
+    /// Renderbuffers.
+    pub(crate) renderbuffers: Mutex<Names<RenderbufferHandle>>,
+    /// Grows when an image that a framebuffer may have attached gets new storage.
+    pub(crate) storage_epoch: AtomicU64,
+}
+
+impl Shared {
+    /// Tells all contexts that attached images may have new storage.
+    pub(crate) fn storage_changed(&self) {
+        self.storage_epoch.fetch_add(1, Ordering::Relaxed);
+    }
 }

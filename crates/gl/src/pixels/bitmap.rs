@@ -2,7 +2,7 @@
 //! call is made, so that a display list of glyphs has them ready.
 
 use super::format::PixelFormat;
-use super::tex_image::plausible;
+use super::store::drawable;
 use crate::Context;
 use crate::enums::*;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ impl Context {
     /// `glBitmap`.
     pub fn bitmap(&mut self, width: i32, height: i32, xorig: f32, yorig: f32, xmove: f32, ymove: f32, bitmap: usize) {
         let format = PixelFormat { format: COLOR_INDEX, kind: BITMAP };
-        let image = plausible([width, height, 1]).and_then(|size| self.read_image(format, size, false, bitmap));
+        let image = drawable([width, height]).and_then(|size| self.read_image(format, size, false, bitmap));
         let bits = image.filter(|i| !i.bytes.is_empty()).map(|i| i.bytes.iter().map(|&b| b != 0).collect());
         let glyph = Glyph { size: [width, height], origin: [xorig, yorig], step: [xmove, ymove], bits };
         let glyph = Arc::new(glyph);
@@ -38,6 +38,9 @@ impl Context {
         }
         if glyph.size.iter().any(|&s| s < 0) {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
+        }
+        if drawable(glyph.size).is_none() {
+            return self.record_error(OUT_OF_MEMORY, CALL, "the bitmap is too large");
         }
         if !self.draw_framebuffer_complete(CALL) || !self.state.raster_position.valid {
             return;

@@ -1,13 +1,15 @@
 //! `BlitFramebuffer`.
 
 use super::copy_plane::{
-    Axis, Job, average_colors, average_words, converted, copy, first_sample, scale_linear, scale_nearest,
+    Axis, Job, Resolve, average_colors, average_words, converted, copy, first_sample, resolved, scale_linear,
+    scale_nearest,
 };
 use super::image::{Shared, lock};
 use super::target::Surfaces;
+use super::texels::{color_from_word, word_from_color};
 use crate::Context;
 use crate::enums::*;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use vitral_raster::Viewport;
 use vitral_raster::forward::{ColorPlane, Plane};
 
@@ -95,25 +97,33 @@ impl Plan {
 
     fn colors(&self, from: &ColorPlane, into: &mut ColorPlane) {
         match (from, into) {
-            (ColorPlane::Rgba8(from), ColorPlane::Rgba8(into)) if self.job.is_some() || !self.linear => {
-                match self.job {
-                    Some(job) => copy(from, into, job, average_words),
-                    None => scale_nearest(from, into, &self.x, &self.y),
-                }
+            (ColorPlane::Rgba8(from), ColorPlane::Rgba8(into)) => {
+                self.values(from, into, average_words, color_from_word, word_from_color);
             }
-            (ColorPlane::RgbaF32(from), ColorPlane::RgbaF32(into)) => match self.job {
-                Some(job) => copy(from, into, job, average_colors),
-                None if self.linear => scale_linear(from, into, &self.x, &self.y),
-                None => scale_nearest(from, into, &self.x, &self.y),
-            },
-            // Mixed kinds, and interpolation, go by way of floats.
+            (ColorPlane::RgbaF32(from), ColorPlane::RgbaF32(into)) => {
+                self.values(from, into, average_colors, |c| c, |c| c);
+            }
             (from, into) => {
                 let bytes = matches!(into, ColorPlane::Rgba8(_));
-                let source = converted(from, false);
-                let mut target = converted(into, false);
-                self.colors(&source, &mut target);
-                *into = converted(&target, bytes);
+                self.colors(&converted(from, bytes), into);
             }
+        }
+    }
+
+    fn values<T: Copy>(
+        &self,
+        from: &Plane<T>,
+        into: &mut Plane<T>,
+        resolve: Resolve<T>,
+        color: impl Fn(T) -> [f32; 4],
+        value: impl Fn([f32; 4]) -> T,
+    ) {
+        match self.job {
+            Some(job) => copy(from, into, job, resolve),
+            // A flipped resolve.
+            None if from.samples() > 1 => self.values(&resolved(from, resolve), into, resolve, color, value),
+            None if self.linear => scale_linear(from, into, &self.x, &self.y, color, value),
+            None => scale_nearest(from, into, &self.x, &self.y),
         }
     }
 }
@@ -246,8 +256,8 @@ mod tests {
     fn rectangles_scale_flip_and_clip() {
         let mut c = context_with(4, 4);
         let source = framebuffer(&mut c, 0, 2, 2);
-        draw(&mut c, 0, 0, &[1]);
-        draw(&mut c, 1, 0, &[3]);
+        draw(&mut c, 0, 0, &[10]);
+        draw(&mut c, 1, 0, &[30]);
         let target = framebuffer(&mut c, 0, 8, 8);
         c.bind_framebuffer(READ_FRAMEBUFFER, source);
         c.blit_framebuffer(0, 0, 2, 2, 8, 0, 4, 4, COLOR_BUFFER_BIT, NEAREST);
@@ -255,9 +265,9 @@ mod tests {
         c.blit_framebuffer(1, 0, 5, 1, 0, 7, 4, 8, COLOR_BUFFER_BIT, NEAREST);
         assert_eq!(c.error, NO_ERROR);
         c.bind_framebuffer(FRAMEBUFFER, target);
-        assert_eq!([4, 5, 6, 7].map(|x| pixel(&mut c, x, 1)), [3, 3, 1, 1]);
-        assert_eq!([0, 1, 2, 3].map(|x| pixel(&mut c, x, 6)), [1, 2, 3, 3]);
-        assert_eq!([0, 1].map(|x| pixel(&mut c, x, 7)), [3, 0]);
+        assert_eq!([4, 5, 6, 7].map(|x| pixel(&mut c, x, 1)), [30, 30, 10, 10]);
+        assert_eq!([0, 1, 2, 3].map(|x| pixel(&mut c, x, 6)), [10, 15, 25, 30]);
+        assert_eq!([0, 1].map(|x| pixel(&mut c, x, 7)), [30, 0]);
     }
 
     #[test]

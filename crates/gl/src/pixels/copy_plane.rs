@@ -6,7 +6,7 @@ use vitral_raster::forward::{ColorPlane, Plane, PlaneTile};
 use vitral_raster::{TILE, TILE_PIXELS};
 
 /// Makes one value of a pixel's four samples, for a run of pixels.
-type Resolve<T> = fn([&[T]; 4], &mut [T]);
+pub(crate) type Resolve<T> = fn([&[T]; 4], &mut [T]);
 
 /// The first sample: depth and stencil.
 pub(crate) fn first_sample<T: Copy>(samples: [&[T]; 4], out: &mut [T]) {
@@ -184,7 +184,14 @@ pub(crate) fn scale_nearest<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, x: &A
 }
 
 /// Scales with linear interpolation; beyond the source's edge its last pixels go on.
-pub(crate) fn scale_linear(from: &Plane<[f32; 4]>, into: &mut Plane<[f32; 4]>, x: &Axis, y: &Axis) {
+pub(crate) fn scale_linear<T: Copy, U: Copy>(
+    from: &Plane<T>,
+    into: &mut Plane<U>,
+    x: &Axis,
+    y: &Axis,
+    color: impl Fn(T) -> [f32; 4],
+    value: impl Fn([f32; 4]) -> U,
+) {
     let viewport = from.viewport();
     let pair = |place: f64, size: u32| {
         let place = (place - 0.5).clamp(0.0, f64::from(size - 1));
@@ -197,17 +204,25 @@ pub(crate) fn scale_linear(from: &Plane<[f32; 4]>, into: &mut Plane<[f32; 4]>, x
         for (i, u) in x.places.iter().enumerate() {
             let Some(u) = u else { continue };
             let (x0, x1, tx) = pair(*u, viewport.width);
-            let corners = [from.get(x0, y0, 0), from.get(x1, y0, 0), from.get(x0, y1, 0), from.get(x1, y1, 0)];
-            let value = std::array::from_fn(|c| {
+            let corners = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| color(from.get(x, y, 0)));
+            let mixed = std::array::from_fn(|c| {
                 let low = corners[0][c] + (corners[1][c] - corners[0][c]) * tx;
                 let high = corners[2][c] + (corners[3][c] - corners[2][c]) * tx;
                 low + (high - low) * ty
             });
             for s in 0..into.samples() {
-                into.set(x.first + i as u32, y.first + j as u32, s, value);
+                into.set(x.first + i as u32, y.first + j as u32, s, value(mixed));
             }
         }
     }
+}
+
+/// A plane of one sample with the resolved pixels of another.
+pub(crate) fn resolved<T: Copy>(from: &Plane<T>, resolve: Resolve<T>) -> Plane<T> {
+    let viewport = from.viewport();
+    let mut out = Plane::new(viewport, 1, from.get(0, 0, 0));
+    copy(from, &mut out, Job { clip: [0, 0, viewport.width, viewport.height], shift: [0, 0] }, resolve);
+    out
 }
 
 #[cfg(test)]

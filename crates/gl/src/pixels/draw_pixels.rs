@@ -4,8 +4,7 @@ use super::decode;
 use super::format::{Content, PixelFormat};
 use super::image::lock;
 use super::read_pixels::{has_content, inside, read_colors, read_depths, read_stencils};
-use super::store::ClientImage;
-use super::tex_image::plausible;
+use super::store::{ClientImage, drawable};
 use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
@@ -90,7 +89,7 @@ impl Context {
     pub fn draw_pixels(&mut self, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
         let pair = PixelFormat::new(format, type_);
         let image = match pair {
-            Ok(pair) => plausible([width, height, 1]).and_then(|size| self.read_image(pair, size, false, pixels)),
+            Ok(pair) => drawable([width, height]).and_then(|size| self.read_image(pair, size, false, pixels)),
             Err(_) => None,
         };
         let image = image.map(Arc::new);
@@ -109,6 +108,9 @@ impl Context {
         }
         if size.iter().any(|&s| s < 0) {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
+        }
+        if drawable(size).is_none() {
+            return self.record_error(OUT_OF_MEMORY, CALL, "the image is too large");
         }
         let format = match format {
             Ok(format) => format,

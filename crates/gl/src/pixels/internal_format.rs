@@ -196,9 +196,8 @@ impl InternalFormat {
     /// Bytes of a texel in memory.
     pub(crate) fn texel_bytes(&self) -> usize {
         match self.storage {
-            Storage::Unorm8 | Storage::Srgb8 => 4,
+            Storage::Unorm8 | Storage::Srgb8 | Storage::Depth(_) => 4,
             Storage::Unorm16 | Storage::Half | Storage::Float => 16,
-            Storage::Depth(_) => 5,
             Storage::Stencil => 1,
         }
     }

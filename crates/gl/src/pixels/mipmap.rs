@@ -156,8 +156,7 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         Storage::Depth(_) | Storage::Stencil => {
             let mut depths: Vec<f32> = colors.into_iter().map(|c| c[0]).collect();
             texels::round_depths(&mut depths, format);
-            let stencils = format.has_stencil().then(|| vec![0; depths.len()]);
-            TexelData::Depths(depths, stencils)
+            TexelData::Depths(depths, None)
         }
         _ => texels::from_colors(colors, format),
     }

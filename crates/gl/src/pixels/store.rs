@@ -182,6 +182,15 @@ pub(crate) fn write_region(
     rows(&layout, region, address, |at, range| memory.write(at, &bytes[range]))
 }
 
+/// More pixels than this are not drawn at once.
+const MAX_DRAWN_PIXELS: usize = 1 << 26;
+
+/// The size of a rectangle to draw, if it is neither negative nor absurd.
+pub(crate) fn drawable([width, height]: [i32; 2]) -> Option<[usize; 3]> {
+    let size = [usize::try_from(width).ok()?, usize::try_from(height).ok()?];
+    (size[0].checked_mul(size[1])? <= MAX_DRAWN_PIXELS).then_some([size[0], size[1], 1])
+}
+
 impl Context {
     /// Reads an image with the unpacking state. `None` without an address, or if the memory is not the client's.
     pub(crate) fn read_image(

@@ -39,3 +39,8 @@ pub(crate) fn get<const N: usize>(c: &Context, address: usize) -> [u8; N] {
 pub(crate) fn read_u32(c: &Context, address: usize) -> u32 {
     u32::from_ne_bytes(get(c, address))
 }
+
+/// Takes floats from the arena.
+pub(crate) fn read_floats<const N: usize>(c: &Context, address: usize) -> [f32; N] {
+    std::array::from_fn(|i| f32::from_bits(read_u32(c, address + 4 * i)))
+}

@@ -245,7 +245,7 @@ impl Context {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{BASE, context, get as bytes, put, read_u32};
+    use super::super::testing::{BASE, context, put, read_floats, read_u32};
     use super::*;
 
     #[test]
@@ -273,8 +273,7 @@ mod tests {
         put(&c, BASE, bytemuck::cast_slice(&[i32::MAX, i32::MIN, 0, i32::MAX]));
         c.tex_parameteriv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE);
         c.get_tex_parameterfv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE + 64);
-        let values: [u8; 16] = bytes(&c, BASE + 64);
-        let values: Vec<f32> = bytemuck::pod_collect_to_vec(&values);
+        let values = read_floats::<4>(&c, BASE + 64);
         assert_eq!([values[0], values[1], values[3]], [1.0, 0.0, 1.0]);
         c.get_tex_parameteriv(TEXTURE_3D, TEXTURE_PRIORITY, BASE);
         assert_eq!(read_u32(&c, BASE), i32::MAX as u32);

@@ -172,7 +172,7 @@ impl Context {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{BASE, context, get, put};
+    use super::super::testing::{BASE, context, get, put, read_floats};
     use super::*;
 
     #[test]
@@ -199,8 +199,7 @@ mod tests {
         put(&c, BASE, bytemuck::cast_slice(&[-2.5f32, 1000.0, 0.1]));
         c.tex_image_1d(TEXTURE_1D, 0, RGB32F_ARB as i32, 1, 0, RGB, FLOAT, BASE);
         c.get_tex_image(TEXTURE_1D, 0, RGB, FLOAT, BASE + 64);
-        let bytes: [u8; 12] = get(&c, BASE + 64);
-        assert_eq!(bytemuck::pod_collect_to_vec::<u8, f32>(&bytes), [-2.5, 1000.0, 0.1]);
+        assert_eq!(read_floats(&c, BASE + 64), [-2.5, 1000.0, 0.1]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Values on their way into a texture image: converted to what the internal format stores.
 
 use super::decode;
-use super::format::{float_from_half, half_from_float};
+use super::format::{Content, float_from_half, half_from_float};
 use super::internal_format::{InternalFormat, Storage};
 use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
@@ -41,13 +41,9 @@ pub(crate) fn from_client(image: &ClientImage, format: &InternalFormat, transfer
     if format.has_depth() {
         let mut depths = decode::depths(image, transfer, format.depth_scale() != 1.0);
         round_depths(&mut depths, format);
-        let stencils = format.has_stencil().then(|| {
-            if matches!(image.format.content(), super::format::Content::DepthStencil) {
-                decode::stencils(image, transfer)
-            } else {
-                vec![0; depths.len()]
-            }
-        });
+        // Depths alone leave the stencil values as they are.
+        let both = format.has_stencil() && image.format.content() == Content::DepthStencil;
+        let stencils = both.then(|| decode::stencils(image, transfer));
         return TexelData::Depths(depths, stencils);
     }
     if matches!(format.storage, Storage::Unorm8 | Storage::Srgb8)

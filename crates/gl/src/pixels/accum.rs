@@ -68,7 +68,7 @@ impl Context {
         if self.framebuffers.draw != 0 || self.default_framebuffer.accum_bits() == 0 {
             return self.record_error(INVALID_OPERATION, CALL, "there is no accumulation buffer");
         }
-        if !self.draw_framebuffer_complete(CALL) || !self.rendering() {
+        if !self.draw_framebuffer_complete(CALL) || !self.renders() {
             return;
         }
         let Some(viewport) = self.draw_surfaces().size else { return };

@@ -2,10 +2,9 @@
 
 use super::image::lock;
 use super::names;
-use super::texture::{ImageTarget, TextureHandle, TextureObject, TextureParameters, slot, slot_of};
+use super::texture::{ImageTarget, TextureHandle, TextureObject, slot_of};
 use crate::Context;
 use crate::enums::*;
-use crate::state::MAX_TEXTURE_UNITS;
 use std::sync::{Arc, Mutex};
 use vitral_raster::forward::Texture;
 
@@ -61,21 +60,6 @@ impl Context {
     /// `TEXTURE_LOD_BIAS` of the texture that unit `unit` samples.
     pub(crate) fn texture_lod_bias(&self, unit: usize) -> f32 {
         self.sampled_object(unit).map_or(0.0, |object| lock(&object).parameters.lod_bias)
-    }
-
-    /// Parameters of the texture bound to a slot, for `PushAttrib(TEXTURE_BIT)`.
-    pub(crate) fn texture_parameters(&self, unit: usize, slot: usize) -> TextureParameters {
-        lock(&self.bound_texture(unit, slot)).parameters.clone()
-    }
-
-    /// Sets the parameters of the texture bound to a slot, for `PopAttrib`.
-    pub(crate) fn set_texture_parameters(&mut self, unit: usize, slot: usize, parameters: TextureParameters) {
-        let object = self.bound_texture(unit, slot);
-        let mut object = lock(&object);
-        if object.parameters != parameters {
-            object.parameters = parameters;
-            object.touch();
-        }
     }
 
     /// Checks a call that is not allowed between Begin and End.
@@ -252,16 +236,15 @@ impl Context {
     /// Whether `name` is bound anywhere here.
     #[cfg(test)]
     pub(crate) fn is_bound(&self, name: u32) -> bool {
-        (0..MAX_TEXTURE_UNITS).any(|unit| self.state.units[unit].bindings.contains(&name))
+        self.state.units.iter().any(|unit| unit.bindings.contains(&name))
     }
 }
-
-const _: () = assert!(slot::CUBE == 4 && MAX_TEXTURE_UNITS > 0);
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::{BASE, context, read_u32};
     use super::*;
+    use crate::state::target;
 
     #[test]
     fn names_become_textures_when_bound() {
@@ -286,7 +269,7 @@ mod tests {
     fn the_highest_enabled_target_counts() {
         let mut c = context();
         c.state.units[0].enabled = [true, true, false, false, false];
-        lock(&c.bound_texture(0, slot::TWO)).parameters.lod_bias = 2.0;
+        lock(&c.bound_texture(0, target::TWO)).parameters.lod_bias = 2.0;
         assert_eq!(c.texture_lod_bias(0), 2.0);
         assert!(c.sampled_texture(0).is_none());
     }

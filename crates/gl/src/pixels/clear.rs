@@ -32,7 +32,7 @@ impl Context {
         if mask & !(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT | ACCUM_BUFFER_BIT) != 0 {
             return self.record_error(INVALID_VALUE, CALL, "mask has bits that name no buffer");
         }
-        if !self.draw_framebuffer_complete(CALL) || !self.rendering() {
+        if !self.draw_framebuffer_complete(CALL) || !self.renders() {
             return;
         }
         let surfaces = self.draw_surfaces();
@@ -73,7 +73,7 @@ impl Context {
     }
 
     /// Which buffers `DrawBuffer` and `ReadBuffer` may name.
-    fn buffer_choice(&self, buffer: u32, object: bool, draw: bool) -> Result<(), (u32, &'static str)> {
+    pub(crate) fn buffer_choice(&self, buffer: u32, object: bool, draw: bool) -> Result<(), (u32, &'static str)> {
         let colors = COLOR_ATTACHMENT0..=COLOR_ATTACHMENT15;
         let exists = match buffer {
             NONE => true,
@@ -105,6 +105,12 @@ impl Context {
         if let Err((error, why)) = self.buffer_choice(buffer, name != 0, draw) {
             return self.record_error(error, call, why);
         }
+        self.put_buffer(buffer, draw);
+    }
+
+    /// Sets a draw or read buffer that was found valid.
+    pub(crate) fn put_buffer(&mut self, buffer: u32, draw: bool) {
+        let name = if draw { self.framebuffers.draw } else { self.framebuffers.read };
         match (name, draw) {
             (0, true) => self.state.color_buffer.draw_buffer = buffer,
             (0, false) => self.state.pixel_mode.read_buffer = buffer,

@@ -192,7 +192,7 @@ mod tests {
         let red = 0xf800u16.to_ne_bytes();
         assert_eq!(decoded(RGB, UNSIGNED_SHORT_5_6_5, &red), [[1.0, 0.0, 0.0, 1.0]]);
         assert_eq!(decoded(RGB, UNSIGNED_SHORT_5_6_5_REV, &red), [[0.0, 0.0, 1.0, 1.0]]);
-        assert_eq!(decoded(RGB, UNSIGNED_BYTE_3_3_2, &[0b000_111_00]), [[0.0, 1.0, 0.0, 1.0]]);
+        assert_eq!(decoded(RGB, UNSIGNED_BYTE_3_3_2, &[0b0001_1100]), [[0.0, 1.0, 0.0, 1.0]]);
         let first = 0xff00_0000u32.to_ne_bytes();
         assert_eq!(decoded(BGRA, UNSIGNED_INT_8_8_8_8, &first), [[0.0, 0.0, 1.0, 0.0]]);
         let alpha = (3u32 << 30).to_ne_bytes();

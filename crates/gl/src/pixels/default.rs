@@ -77,9 +77,7 @@ impl ClientBuffer {
             encode::colors(colors, format, out);
             return;
         }
-        for color in colors {
-            self.places().iter().for_each(|&place| encode::number(color[place], self.kind, out));
-        }
+        encode::components(colors, self.places(), self.kind, out);
     }
 
     fn pack_words(&self, words: &[u32], out: &mut Vec<u8>) {
@@ -379,7 +377,10 @@ impl Context {
             match bits {
                 16 => row.iter().for_each(|&d| bytes.extend((d as u16).to_ne_bytes())),
                 24 => row.iter().for_each(|&d| bytes.extend((d as u32).to_ne_bytes())),
-                _ => row.iter().for_each(|&d| encode::number(d, UNSIGNED_INT, &mut bytes)),
+                _ => {
+                    let format = PixelFormat { format: DEPTH_COMPONENT, kind: UNSIGNED_INT };
+                    encode::depths(&row, format, &mut bytes);
+                }
             }
         }
         Some(DepthCopy { width, height, bytes_per_value, bytes })
@@ -432,7 +433,7 @@ impl Context {
 
     /// Runs what is recorded and writes the colours to the client's buffer, if something was drawn. To be called by
     /// `Flush`, `Finish` and whatever lets the client look.
-    pub(crate) fn store_default_framebuffer(&mut self) {
+    pub fn store_default_framebuffer(&mut self) {
         if !self.default_framebuffer.drawn {
             return;
         }

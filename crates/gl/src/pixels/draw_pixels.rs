@@ -78,7 +78,7 @@ impl Context {
         if !self.state.raster_position.valid {
             return false;
         }
-        if !self.rendering() {
+        if !self.renders() {
             self.feedback_image(token);
             return false;
         }
@@ -170,7 +170,7 @@ impl Context {
         if missing(read.status) || (content != Content::Color && !has_content(&to, content)) {
             return self.record_error(INVALID_OPERATION, CALL, "a framebuffer has no such buffer");
         }
-        if !self.rendering() {
+        if !self.renders() {
             self.raster_draws(COPY_PIXEL_TOKEN);
             return;
         }

@@ -4,24 +4,50 @@ use super::format::{PixelFormat, half_from_float};
 use super::transfer::clamp_unit;
 use crate::enums::*;
 
-/// Appends one number as type `kind`.
+/// A number in 0..=1 as an unsigned integer up to `largest`.
 #[inline]
-pub(crate) fn number(value: f32, kind: u32, out: &mut Vec<u8>) {
-    let unsigned = |largest: f64| (f64::from(clamp_unit(value)) * largest + 0.5) as u32;
-    // (largest * c - 1) / 2 of the signed conversion.
-    let signed = |largest: f64| {
-        let c = f64::from(if value.is_nan() { 0.0 } else { value.clamp(-1.0, 1.0) });
-        ((largest * c - 1.0) / 2.0 + 0.5).floor() as i64
-    };
+fn unsigned(value: f32, largest: f64) -> u32 {
+    (f64::from(clamp_unit(value)) * largest + 0.5) as u32
+}
+
+/// A number in -1..=1 as a signed integer: (largest * c - 1) / 2.
+#[inline]
+fn signed(value: f32, largest: f64) -> i64 {
+    let c = f64::from(if value.is_nan() { 0.0 } else { value.clamp(-1.0, 1.0) });
+    ((largest * c - 1.0) / 2.0 + 0.5).floor() as i64
+}
+
+/// Appends the components at `places` of each colour, as `f` makes them bytes.
+#[inline]
+fn spread<const BYTES: usize>(
+    colors: &[[f32; 4]],
+    places: &[usize],
+    out: &mut Vec<u8>,
+    f: impl Fn(f32) -> [u8; BYTES],
+) {
+    let first = out.len();
+    let pixel = places.len() * BYTES;
+    out.resize(first + colors.len() * pixel, 0);
+    for (bytes, color) in out[first..].chunks_exact_mut(pixel).zip(colors) {
+        for (bytes, &place) in bytes.chunks_exact_mut(BYTES).zip(places) {
+            bytes.copy_from_slice(&f(color[place & 3]));
+        }
+    }
+}
+
+/// Appends the components at `places` of each colour as numbers of type `kind`.
+pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: &mut Vec<u8>) {
+    const WHOLE: f64 = u32::MAX as f64;
     match kind {
-        UNSIGNED_BYTE => out.push((clamp_unit(value) * 255.0 + 0.5) as u8),
-        BYTE => out.push(signed(255.0) as i8 as u8),
-        UNSIGNED_SHORT => out.extend((unsigned(65535.0) as u16).to_ne_bytes()),
-        SHORT => out.extend((signed(65535.0) as i16).to_ne_bytes()),
-        UNSIGNED_INT => out.extend(unsigned(f64::from(u32::MAX)).to_ne_bytes()),
-        INT => out.extend((signed(f64::from(u32::MAX)) as i32).to_ne_bytes()),
-        HALF_FLOAT_ARB => out.extend(half_from_float(value).to_ne_bytes()),
-        _ => out.extend(value.to_ne_bytes()),
+        UNSIGNED_BYTE => spread(colors, places, out, |v| [(clamp_unit(v) * 255.0 + 0.5) as u8]),
+        BYTE => spread(colors, places, out, |v| [signed(v, 255.0) as i8 as u8]),
+        UNSIGNED_SHORT => spread(colors, places, out, |v| (unsigned(v, 65535.0) as u16).to_ne_bytes()),
+        SHORT => spread(colors, places, out, |v| (signed(v, 65535.0) as i16).to_ne_bytes()),
+        UNSIGNED_INT => spread(colors, places, out, |v| unsigned(v, WHOLE).to_ne_bytes()),
+        INT => spread(colors, places, out, |v| (signed(v, WHOLE) as i32).to_ne_bytes()),
+        HALF_FLOAT_ARB => spread(colors, places, out, |v| half_from_float(v).to_ne_bytes()),
+        _ if *places == [0, 1, 2, 3] => out.extend_from_slice(bytemuck::cast_slice(colors)),
+        _ => spread(colors, places, out, f32::to_ne_bytes),
     }
 }
 
@@ -35,26 +61,20 @@ fn push_element(element: u32, bytes: usize, out: &mut Vec<u8>) {
 
 /// Colours in a colour format. Luminance is the sum of red, green and blue.
 pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut Vec<u8>) {
-    out.reserve(colors.len() * format.pixel_bytes());
     let places = format.places();
-    let luminance = matches!(format.format, LUMINANCE | LUMINANCE_ALPHA);
-    let packed = format.packed();
+    if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
+        let sums: Vec<[f32; 4]> = colors.iter().map(|c| [c[0] + c[1] + c[2], 0.0, 0.0, c[3]]).collect();
+        return components(&sums, places, format.kind, out);
+    }
+    let Some(packed) = format.packed() else { return components(colors, places, format.kind, out) };
+    out.reserve(colors.len() * packed.bytes);
     for color in colors {
-        let mut color = *color;
-        if luminance {
-            color[0] = color[0] + color[1] + color[2];
+        let mut element = 0;
+        for (&place, &(shift, width)) in places.iter().zip(packed.fields) {
+            let largest = ((1u32 << width) - 1) as f32;
+            element |= ((clamp_unit(color[place]) * largest + 0.5) as u32) << shift;
         }
-        match packed {
-            Some(packed) => {
-                let mut element = 0;
-                for (&place, &(shift, width)) in places.iter().zip(packed.fields) {
-                    let largest = ((1u32 << width) - 1) as f32;
-                    element |= ((clamp_unit(color[place]) * largest + 0.5) as u32) << shift;
-                }
-                push_element(element, packed.bytes, out);
-            }
-            None => places.iter().for_each(|&place| number(color[place], format.kind, out)),
-        }
+        push_element(element, packed.bytes, out);
     }
 }
 
@@ -64,7 +84,8 @@ pub(crate) fn depths(depths: &[f32], format: PixelFormat, out: &mut Vec<u8>) {
         out.extend_from_slice(bytemuck::cast_slice(depths));
         return;
     }
-    depths.iter().for_each(|&depth| number(depth, format.kind, out));
+    let colors: Vec<[f32; 4]> = depths.iter().map(|&depth| [depth, 0.0, 0.0, 0.0]).collect();
+    components(&colors, &[0], format.kind, out);
 }
 
 /// Stencil values (after transfer) in format `STENCIL_INDEX`.

@@ -1,10 +1,10 @@
-//! What other rooms of the crate tell this one.
+//! What the vertices' room tells this one.
 
 use crate::Context;
 
 impl Context {
     /// Whether `RENDER_MODE` is `RENDER`.
-    pub(crate) fn rendering(&self) -> bool {
+    pub(crate) fn renders(&self) -> bool {
         true
     }
 

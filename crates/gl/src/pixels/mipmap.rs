@@ -73,6 +73,25 @@ fn halve_words(source: &[u32], width: usize) -> Vec<u32> {
     out
 }
 
+/// As [`halve_words`], of sRGB words: light is averaged, in 65535ths.
+fn halve_srgb(source: &[u32], width: usize) -> Vec<u32> {
+    let light = linear_table().map(|v| (v * 65535.0 + 0.5) as u32);
+    let bytes = srgb_bytes();
+    let mix = |words: [u32; 4]| {
+        let alpha = average4(words) & 0xff00_0000;
+        (0..3).fold(alpha, |word, c| {
+            let sum: u32 = words.iter().map(|w| light[((w >> (8 * c)) & 255) as usize]).sum();
+            word | (u32::from(bytes[((sum + 2) / 4) as usize]) << (8 * c))
+        })
+    };
+    let mut out = Vec::with_capacity(source.len() / 4);
+    for rows in source.chunks_exact(2 * width) {
+        let (low, high) = rows.split_at(width);
+        out.extend(low.chunks_exact(2).zip(high.chunks_exact(2)).map(|(a, b)| mix([a[0], a[1], b[0], b[1]])));
+    }
+    out
+}
+
 /// The average of each byte of four words, rounded to nearest, halves up.
 #[inline]
 pub(crate) fn average4(words: [u32; 4]) -> u32 {
@@ -119,13 +138,15 @@ fn word_from_light([r, g, b, a]: [f32; 4]) -> u32 {
 /// The level after `level`.
 fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u32; 3]) -> TexelData {
     let border = level.border as usize;
-    if border == 0
-        && let Texels::Rgba8(words) = &level.texels
-        && inner[2] == next[2]
-        && inner[0] == 2 * next[0]
-        && inner[1] == 2 * next[1]
-    {
-        return TexelData::Words(halve_words(words, inner[0] as usize));
+    let halved = inner[2] == next[2] && inner[0] == 2 * next[0] && inner[1] == 2 * next[1];
+    match &level.texels {
+        Texels::Rgba8(words) if halved && border == 0 => {
+            return TexelData::Words(halve_words(words, inner[0] as usize));
+        }
+        Texels::Srgb8(words) if halved && border == 0 => {
+            return TexelData::Words(halve_srgb(words, inner[0] as usize));
+        }
+        _ => {}
     }
     let colors: Vec<[f32; 4]> = match &level.texels {
         Texels::Rgba8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
@@ -256,6 +277,14 @@ mod tests {
         }
         // Half of the light of white is brighter than the middle byte.
         assert_eq!(word_from_light([0.5, 0.5, 0.5, 0.5]), u32::from_le_bytes([188, 188, 188, 128]));
+    }
+
+    #[test]
+    fn halves_of_srgb_agree_with_the_general_way() {
+        let source = [0x4000_ff10, 0x40ff_0020, 0x40ff_0030, 0x4000_ff40];
+        let light = source.map(light_from_word);
+        let mean = std::array::from_fn(|c| light.iter().map(|l| l[c]).sum::<f32>() / 4.0);
+        assert_eq!(halve_srgb(&source, 2), [word_from_light(mean)]);
     }
 
     #[test]

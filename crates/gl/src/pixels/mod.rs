@@ -6,6 +6,7 @@
 //! it.
 
 mod accum;
+mod answers;
 mod binding;
 mod bitmap;
 mod blit;
@@ -38,10 +39,11 @@ mod texels;
 mod texture;
 mod transfer;
 
+#[allow(unused_imports)]
+pub(crate) use answers::{BoundTextures, FramebufferBits};
 pub(crate) use binding::UnnamedTextures;
 pub(crate) use default::DefaultFramebuffer;
 pub use default::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};
 pub(crate) use framebuffer::FramebufferBindings;
 pub(crate) use renderbuffer::RenderbufferHandle;
-pub(crate) use target::FramebufferInfo;
-pub(crate) use texture::{TextureHandle, TextureParameters};
+pub(crate) use texture::TextureHandle;

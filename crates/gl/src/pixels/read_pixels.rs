@@ -99,6 +99,29 @@ pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
     values
 }
 
+/// Row by row, from a plane of bytes to the client's bytes. `false` for other planes and formats.
+fn encode_words(
+    plane: &ColorPlane,
+    stored: &InternalFormat,
+    format: PixelFormat,
+    r: &Rectangle,
+    out: &mut Vec<u8>,
+) -> bool {
+    let ColorPlane::Rgba8(plane) = plane else { return false };
+    if !matches!(stored.base, RGB | RGBA) {
+        return false;
+    }
+    let mut row = vec![0; r.size[0]];
+    out.reserve(r.size[0] * r.size[1] * format.pixel_bytes());
+    (0..r.size[1]).all(|y| {
+        plane.read_row(r.x, r.y + y as u32, 0, &mut row);
+        if stored.base == RGB {
+            row.iter_mut().for_each(|w| *w |= 0xff00_0000);
+        }
+        encode::words(&row, format, out)
+    })
+}
+
 /// Bytes of the client's format for a rectangle.
 fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, transfer: &Transfer<'_>) -> Vec<u8> {
     let mut out = Vec::new();
@@ -133,10 +156,7 @@ fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, tra
             let Some(surface) = &surfaces.color else { return out };
             let Some(plane) = &surface.color else { return out };
             let plane = lock(plane);
-            if transfer.keeps_colors()
-                && let Some(words) = read_words(&plane, &surface.format, r)
-                && encode::words(&words, format, &mut out)
-            {
+            if transfer.keeps_colors() && encode_words(&plane, &surface.format, format, r, &mut out) {
                 return out;
             }
             let mut colors = read_colors(&plane, &surface.format, r);

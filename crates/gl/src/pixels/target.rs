@@ -2,7 +2,7 @@
 
 use super::framebuffer::{Attached, DEPTH_POINT, FramebufferObject, STENCIL_POINT};
 use super::image::{Shared, lock};
-use super::internal_format::{Bits, InternalFormat};
+use super::internal_format::InternalFormat;
 use crate::Context;
 use crate::enums::*;
 use crate::state::MAX_COLOR_ATTACHMENTS;
@@ -148,21 +148,6 @@ pub(crate) struct Resolved {
     default_color: bool,
 }
 
-/// Sizes and bindings for queries.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct FramebufferInfo {
-    /// Bits of the draw framebuffer.
-    pub bits: Bits,
-    /// Bits of each accumulation component; 0 for framebuffer objects.
-    pub accum_bits: i32,
-    /// `SAMPLES`; `SAMPLE_BUFFERS` is 1 if it is not 0.
-    pub samples: i32,
-    /// `DRAW_BUFFER`.
-    pub draw_buffer: u32,
-    /// `READ_BUFFER`.
-    pub read_buffer: u32,
-}
-
 impl Context {
     fn resolve(&mut self) -> &Resolved {
         let key = Key {
@@ -244,26 +229,6 @@ impl Context {
             self.load_default_framebuffer();
         }
         Some(surfaces)
-    }
-
-    /// Sizes of the draw framebuffer and buffers in use, for queries.
-    pub(crate) fn framebuffer_info(&mut self) -> FramebufferInfo {
-        let surfaces = self.draw_surfaces();
-        let mut bits = Bits::default();
-        if let Some(color) = &surfaces.color {
-            bits = color.format.bits();
-        }
-        bits.depth = surfaces.depth.as_ref().map_or(0, |d| d.format.bits().depth);
-        bits.stencil = surfaces.stencil.as_ref().map_or(0, |s| s.format.bits().stencil);
-        let object = self.framebuffers.object(self.framebuffers.draw);
-        let read = self.framebuffers.object(self.framebuffers.read);
-        FramebufferInfo {
-            bits,
-            accum_bits: if object.is_some() { 0 } else { self.default_framebuffer.accum_bits() },
-            samples: surfaces.samples as i32,
-            draw_buffer: object.map_or(self.state.color_buffer.draw_buffer, |o| o.draw_buffer),
-            read_buffer: read.map_or(self.state.pixel_mode.read_buffer, |o| o.read_buffer),
-        }
     }
 
     /// `glCheckFramebufferStatus`.

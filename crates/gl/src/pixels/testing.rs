@@ -1,6 +1,6 @@
 //! A context over an arena, for the tests of this room.
 
-use crate::memory::{Arena, ClientMemory};
+use crate::memory::Arena;
 use crate::objects::Shared;
 use crate::{Context, enums};
 use std::sync::Arc;

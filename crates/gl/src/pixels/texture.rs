@@ -6,14 +6,7 @@ use crate::state::{MAX_3D_TEXTURE_SIZE, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
 use vitral_raster::forward::{BaseFormat, Compare, Filter, Level, Sampler, Texture, TextureKind, Wrap};
 
-/// Slots of a unit's enables and bindings; see `state::texture::target`.
-pub(crate) mod slot {
-    pub(crate) const ONE: usize = 0;
-    pub(crate) const TWO: usize = 1;
-    pub(crate) const RECTANGLE: usize = 2;
-    pub(crate) const THREE: usize = 3;
-    pub(crate) const CUBE: usize = 4;
-}
+pub(crate) use crate::state::target as slot;
 
 /// Levels that an image can have.
 pub(crate) const MAX_LEVELS: usize = MAX_TEXTURE_SIZE.ilog2() as usize + 1;

@@ -108,8 +108,9 @@ pub(crate) fn clamp_colors(colors: &mut [[f32; 4]]) {
 
 /// `value` in 0..=1, NaN as 0.
 #[inline]
+#[allow(clippy::manual_clamp)]
 pub(crate) fn clamp_unit(value: f32) -> f32 {
-    // `max` and `min` take the number when one side is NaN.
+    // Unlike `clamp`, `max` takes the number when one side is NaN.
     value.max(0.0).min(1.0)
 }
 

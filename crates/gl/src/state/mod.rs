@@ -15,7 +15,7 @@ pub use lighting::{ColorMaterial, Light, LightModel, Lighting, MaterialFace};
 pub use matrix::{Matrices, MatrixStack};
 pub use pixel::{PixelMap, PixelMode, PixelTransfer};
 pub use raster::{Lines, Points, Polygons, Scissor, Viewport};
-pub use texture::{Combine, TexGen, TextureEnvironment, TextureUnit};
+pub use texture::{Combine, TexGen, TextureEnvironment, TextureUnit, target};
 pub use vertex::{Current, Eval, Map1, Map2, RasterPosition};
 
 use crate::enums;

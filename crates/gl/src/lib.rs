@@ -25,3 +25,4 @@ pub use api::{DebugHook, DebugMessage};
 pub use context::Context;
 pub use memory::ClientMemory;
 pub use objects::Shared;
+pub use pixels::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};

@@ -8,6 +8,7 @@
 //! least one element.
 
 use crate::state::{MAX_TEXTURE_UNITS, MaterialFace};
+pub use crate::tnl::AssembledCell;
 
 /// What a run of vertices is assembled into; `mode` is `POINTS` ... `POLYGON`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,9 +46,17 @@ pub struct VertexBatch {
     pub indices: Option<Vec<u32>>,
     /// What is drawn, in order.
     pub primitives: Vec<Primitive>,
+    /// The triangles of filled polygons, found when first drawn.
+    pub assembled: AssembledCell,
 }
 
 impl VertexBatch {
+    /// The materials at a vertex, if they were set between vertices.
+    pub(crate) fn material(&self, vertex: u32) -> Option<&[MaterialFace; 2]> {
+        let next = self.materials.partition_point(|(from, _)| *from <= vertex);
+        Some(&self.materials.get(next.checked_sub(1)?)?.1)
+    }
+
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
     pub fn vertex(&self, i: u32) -> usize {
         self.indices.as_ref().map_or(i, |indices| indices[i as usize]) as usize

@@ -90,10 +90,14 @@ pub struct PrimitiveState {
     pub depth_clamp: bool,
     /// Front faces run counter-clockwise.
     pub counter_clockwise: bool,
+    /// The window's y runs against the clip space's.
+    pub flipped: bool,
     /// Front faces, back faces are culled.
     pub cull: [bool; 2],
-    /// Polygon offset factor and units (times the smallest depth step), for points, lines, fill; 0 when disabled.
+    /// Polygon offset factor and units for points, lines, fill; 0 when disabled.
     pub offset: [[f32; 2]; 3],
+    /// The smallest depth step; 0 for floating point, where it depends on the depth.
+    pub depth_step: f32,
     /// How front and back polygons are drawn: 0 points, 1 lines, 2 filled.
     pub polygon_mode: [u8; 2],
     /// Line width in pixels.
@@ -250,7 +254,7 @@ impl<'a> Assembler<'a> {
     /// With y upwards in the window, counter-clockwise corners have a positive area.
     #[inline(always)]
     fn is_back(&self, area: i64) -> bool {
-        (area > 0) != self.state.counter_clockwise
+        (area > 0) != (self.state.counter_clockwise != self.state.flipped)
     }
 
     /// The pixels a triangle may cover, if any are allowed.
@@ -270,7 +274,10 @@ impl<'a> Assembler<'a> {
         let [factor, units] = self.state.offset[offset];
         if factor != 0.0 || units != 0.0 {
             let slope = plane.dz_dx.abs().max(plane.dz_dy.abs());
-            let offset = slope * factor + units;
+            // A step of floating-point depth: 2^(exponent - 23).
+            let float_step = f32::from_bits(plane.z_max.to_bits() & 0x7f80_0000) * (1.0 / 8_388_608.0);
+            let step = if self.state.depth_step > 0.0 { self.state.depth_step } else { float_step };
+            let offset = slope * factor + step * units;
             plane.z += offset;
             plane.z_min = (plane.z_min + offset).clamp(0.0, 1.0);
             plane.z_max = (plane.z_max + offset).clamp(0.0, 1.0);

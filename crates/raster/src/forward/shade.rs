@@ -38,6 +38,7 @@ pub struct Layout {
 }
 
 /// A facet made ready to be interpolated.
+#[derive(Default)]
 pub(crate) struct Interpolation {
     origin: [f32; 2],
     /// Screen-space barycentric coordinates of corners 1 and 2: change with x, with y.
@@ -111,8 +112,10 @@ impl<'a> Shader<'a> {
         layout: &'a Layout,
         records: &'a [f32],
         shapes: &[Shape],
+        shaded: bool,
     ) -> Self {
-        let mut interpolation = Interpolation::new(setup, &facet, records);
+        let mut interpolation =
+            if shaded { Interpolation::new(setup, &facet, records) } else { Interpolation::default() };
         if facet.kind == FacetKind::Polygon && layout.smooth[2] {
             interpolation.prepare_edges(setup);
         }

@@ -96,8 +96,8 @@ impl<'a> TileRun<'a> {
                         continue;
                     }
                     let pattern = if draw.multisample { many } else { one };
-                    let shader =
-                        Shader::new(setup, facet, draw.state, draw.layout, &primitives.records, &primitives.shapes);
+                    let (records, shapes) = (&primitives.records, &primitives.shapes);
+                    let shader = Shader::new(setup, facet, draw.state, draw.layout, records, shapes, draw.shaded);
                     let (x, y) = (self.x, self.y);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
                     traverse(simd, setup, (x, y), pattern, &mut sink);

@@ -4,10 +4,10 @@ use crate::api::{AttribStacks, DebugState, Queries};
 use crate::enums;
 use crate::memory::ClientMemory;
 use crate::objects::Shared;
-use crate::pixels::{DefaultFramebuffer, FramebufferBindings};
+use crate::pixels::{DefaultFramebuffer, FramebufferBindings, UnnamedTextures};
 use crate::state::{ClientState, State};
 use crate::tnl::Recorder;
-use crate::vertices::{Builder, Feedback, Lists};
+use crate::vertices::{Arrays, Builder, Feedback, Lists};
 use std::sync::Arc;
 
 /// An OpenGL context.
@@ -29,12 +29,16 @@ pub struct Context {
     pub(crate) stacks: AttribStacks,
     /// Occlusion queries.
     pub(crate) queries: Queries,
+    /// Vertex arrays, beyond the client state.
+    pub(crate) arrays: Arrays,
     /// Begin/End.
     pub(crate) builder: Builder,
     /// Display lists being made and called.
     pub(crate) lists: Lists,
     /// Feedback and selection.
     pub(crate) feedback: Feedback,
+    /// Default and proxy textures.
+    pub(crate) textures: UnnamedTextures,
     /// Framebuffer objects and their bindings.
     pub(crate) framebuffers: FramebufferBindings,
     /// What the window system (OSMesa) gave.
@@ -56,9 +60,11 @@ impl Context {
             debug: DebugState::default(),
             stacks: AttribStacks::default(),
             queries: Queries::default(),
+            arrays: Arrays::default(),
             builder: Builder::default(),
             lists: Lists::default(),
             feedback: Feedback::default(),
+            textures: UnnamedTextures::default(),
             framebuffers: FramebufferBindings::default(),
             default_framebuffer: DefaultFramebuffer::default(),
             recorder: Recorder::default(),

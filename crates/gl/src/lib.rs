@@ -21,6 +21,8 @@ mod tnl;
 pub mod vertex;
 mod vertices;
 
+pub use api::{DebugHook, DebugMessage};
 pub use context::Context;
 pub use memory::ClientMemory;
 pub use objects::Shared;
+pub use pixels::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};

@@ -1,6 +1,9 @@
 //! Objects that contexts may share.
 
+use crate::pixels::{RenderbufferHandle, TextureHandle};
+pub use crate::vertices::{Buffer, List, ListNames};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Names in use and their objects. `None`: the name was generated but nothing has been bound to it.
 pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
@@ -9,5 +12,22 @@ pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
 #[derive(Debug, Default)]
 pub struct Shared {
     /// Buffer objects.
-    pub buffers: Mutex<Names<()>>,
+    pub buffers: Mutex<Names<Buffer>>,
+    /// Display lists.
+    pub lists: Mutex<ListNames>,
+    /// Labels of shared objects.
+    pub(crate) labels: Mutex<crate::api::Labels>,
+    /// Textures.
+    pub(crate) textures: Mutex<Names<TextureHandle>>,
+    /// Renderbuffers.
+    pub(crate) renderbuffers: Mutex<Names<RenderbufferHandle>>,
+    /// Grows when an image that a framebuffer may have attached gets new storage.
+    pub(crate) storage_epoch: AtomicU64,
+}
+
+impl Shared {
+    /// Tells all contexts that attached images may have new storage.
+    pub(crate) fn storage_changed(&self) {
+        self.storage_epoch.fetch_add(1, Ordering::Relaxed);
+    }
 }

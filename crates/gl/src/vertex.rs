@@ -1,6 +1,14 @@
 //! Vertices on their way to the pipeline.
+//!
+//! A batch is one draw: attributes side by side, and the primitives they form. Primitives keep the mode they were given
+//! with, also when a display list merged many of them: unfilled polygons need the original edges, and the flat colour of
+//! a `POLYGON` is that of its first vertex. Neighbours of the same independent mode (`POINTS`, `LINES`, `TRIANGLES`,
+//! `QUADS`) are one [`Primitive`], so that a list of thousands of quads holds one. Incomplete primitives are cut off:
+//! `count` is a multiple of 2, 3 or 4 for `LINES`, `TRIANGLES`, `QUADS`, even for `QUAD_STRIP`, and large enough for at
+//! least one element.
 
 use crate::state::{MAX_TEXTURE_UNITS, MaterialFace};
+pub use crate::tnl::AssembledCell;
 
 /// What a run of vertices is assembled into; `mode` is `POINTS` ... `POLYGON`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,10 +39,91 @@ pub struct VertexBatch {
     pub tex: [Option<Vec<[f32; 4]>>; MAX_TEXTURE_UNITS],
     /// Edge flags.
     pub edges: Option<Vec<bool>>,
-    /// Materials (front, back) set between vertices: they hold from the given vertex on.
+    /// Materials (front, back) set between vertices: they hold from the given vertex on. If there are any, the first
+    /// holds from vertex 0; without any the current material holds.
     pub materials: Vec<(u32, [MaterialFace; 2])>,
     /// Indices into the attributes; without them vertices are taken in order.
     pub indices: Option<Vec<u32>>,
     /// What is drawn, in order.
     pub primitives: Vec<Primitive>,
+    /// The triangles of filled polygons, found when first drawn.
+    pub assembled: AssembledCell,
+}
+
+impl VertexBatch {
+    /// The materials at a vertex, if they were set between vertices.
+    pub(crate) fn material(&self, vertex: u32) -> Option<&[MaterialFace; 2]> {
+        let next = self.materials.partition_point(|(from, _)| *from <= vertex);
+        Some(&self.materials.get(next.checked_sub(1)?)?.1)
+    }
+
+    /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
+    pub fn vertex(&self, i: u32) -> usize {
+        self.indices.as_ref().map_or(i, |indices| indices[i as usize]) as usize
+    }
+
+    /// Adds a primitive without what is incomplete of it; joins it with the one before if that is the same drawing.
+    pub fn add_primitive(&mut self, mode: u32, first: u32, count: u32) {
+        let count = complete(mode, count);
+        if count == 0 {
+            return;
+        }
+        if let Some(last) = self.primitives.last_mut()
+            && last.mode == mode
+            && is_independent(mode)
+            && last.first + last.count == first
+        {
+            last.count += count;
+            return;
+        }
+        self.primitives.push(Primitive { mode, first, count });
+    }
+}
+
+/// Whether elements of this mode share no vertices, so that runs of them can be joined.
+fn is_independent(mode: u32) -> bool {
+    use crate::enums::{LINES, POINTS, QUADS, TRIANGLES};
+    matches!(mode, POINTS | LINES | TRIANGLES | QUADS)
+}
+
+/// How many of `count` vertices form complete elements.
+fn complete(mode: u32, count: u32) -> u32 {
+    use crate::enums::{LINE_LOOP, LINE_STRIP, LINES, POINTS, QUAD_STRIP, QUADS, TRIANGLES};
+    let (least, step) = match mode {
+        POINTS => (1, 1),
+        LINES => (2, 2),
+        LINE_LOOP | LINE_STRIP => (2, 1),
+        TRIANGLES => (3, 3),
+        QUADS => (4, 4),
+        QUAD_STRIP => (4, 2),
+        _ => (3, 1),
+    };
+    if count < least { 0 } else { count - count % step }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::enums;
+
+    #[test]
+    fn incomplete_elements_are_cut() {
+        assert_eq!(complete(enums::TRIANGLES, 8), 6);
+        assert_eq!(complete(enums::QUAD_STRIP, 7), 6);
+        assert_eq!(complete(enums::QUAD_STRIP, 3), 0);
+        assert_eq!(complete(enums::POLYGON, 2), 0);
+        assert_eq!(complete(enums::LINE_STRIP, 5), 5);
+    }
+
+    #[test]
+    fn neighbours_of_independent_modes_join() {
+        let mut batch = VertexBatch::default();
+        batch.add_primitive(enums::QUADS, 0, 4);
+        batch.add_primitive(enums::QUADS, 4, 9);
+        batch.add_primitive(enums::QUADS, 13, 4);
+        batch.add_primitive(enums::TRIANGLE_STRIP, 17, 3);
+        batch.add_primitive(enums::TRIANGLE_STRIP, 20, 3);
+        let spans: Vec<_> = batch.primitives.iter().map(|p| (p.first, p.count)).collect();
+        assert_eq!(spans, [(0, 12), (13, 4), (17, 3), (20, 3)]);
+    }
 }

@@ -7,7 +7,9 @@
 //! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the instruction set.
 
 use fearless_simd::prelude::*;
-pub use fearless_simd::{Level, Simd, dispatch, f32x8 as F32x8, i32x8 as I32x8, mask32x8 as Mask8, u32x8 as U32x8};
+pub use fearless_simd::{
+    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, i32x8 as I32x8, mask32x8 as Mask8, u32x8 as U32x8,
+};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// What fearless_simd's methods need in scope (`from_slice`, `store_slice`, `select`, comparisons ...).

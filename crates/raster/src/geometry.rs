@@ -294,7 +294,7 @@ impl Batch {
     }
 
     #[inline(always)]
-    fn push(&mut self, setup: Setup, [x0, y0, x1, y1]: [u32; 4], screen: &Screen) {
+    pub(crate) fn push(&mut self, setup: Setup, [x0, y0, x1, y1]: [u32; 4], screen: &Screen) {
         let index = self.setups.len() as u32;
         let tiles_x = screen.viewport.tiles_x();
         let tile = TILE as u32;
@@ -357,7 +357,7 @@ pub fn transform_point(clip_from_model: &Mat4, p: [f32; 3]) -> Vec4 {
 
 /// The pixels whose samples the triangle's box may hold, `[x0, y0, x1, y1]` inclusive.
 #[inline(always)]
-fn covered_pixels([a, b, c]: &[CornerPosition; 3], screen: &Screen) -> Option<[u32; 4]> {
+pub(crate) fn covered_pixels([a, b, c]: &[CornerPosition; 3], screen: &Screen) -> Option<[u32; 4]> {
     let (min_x, max_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
     let (min_y, max_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
     let (x0, x1) = Screen::pixels(min_x, max_x, screen.sample_x, screen.viewport.width);

@@ -10,6 +10,7 @@ use crate::SUBPIXEL;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SamplePattern {
     positions: Vec<[i32; 2]>,
+    extent: [[i32; 2]; 2],
 }
 
 impl SamplePattern {
@@ -26,17 +27,27 @@ impl SamplePattern {
         let step =
             (1..=n).filter(|&k| gcd(k, n + 1) == 1).min_by_key(|&k| (k * 1000 - (n + 1) * 382).abs()).unwrap_or(1);
         let place = |i: i32| ((2 * i + 1) * SUBPIXEL) / (2 * n);
-        let positions = (0..n).map(|i| [place((i + 1) * step % (n + 1) - 1), place(i)]).collect();
-        Self { positions }
+        Self::at((0..n).map(|i| [place((i + 1) * step % (n + 1) - 1), place(i)]).collect())
+    }
+
+    /// Samples at given positions in 1/256 pixel, 1 to 16 of them.
+    pub fn at(positions: Vec<[i32; 2]>) -> Self {
+        let extent = [0, 1].map(|k| {
+            let values = positions.iter().map(|p| p[k]);
+            [values.clone().min().unwrap_or(0), values.max().unwrap_or(0)]
+        });
+        Self { positions, extent }
     }
 
     /// How many there are.
     #[allow(clippy::len_without_is_empty)]
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
     /// Position `[x, y]` of sample `s` in 1/256 pixel.
+    #[inline(always)]
     pub fn position(&self, s: usize) -> [i32; 2] {
         self.positions[s]
     }
@@ -47,11 +58,9 @@ impl SamplePattern {
     }
 
     /// Smallest and largest x, then y, over all samples.
+    #[inline(always)]
     pub(crate) fn extent(&self) -> [[i32; 2]; 2] {
-        [0, 1].map(|k| {
-            let values = self.positions.iter().map(|p| p[k]);
-            [values.clone().min().unwrap_or(0), values.max().unwrap_or(0)]
-        })
+        self.extent
     }
 }
 

@@ -9,7 +9,7 @@ const LANE_OFFSETS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Depths of eight pixels of a row, by the operations of [`Setup::depth`].
 #[inline(always)]
-fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x8<S> {
+pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x8<S> {
     let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
     let dx = (x - setup.origin[0]) as f32 / SUBPIXEL as f32;
     // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.

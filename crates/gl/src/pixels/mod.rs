@@ -1,27 +1,48 @@
 //! Pixels: formats, textures, framebuffers, clears, copies.
+//!
+//! The way of an image: [`store`] takes it from the client's memory as tight rows, [`decode`] makes colours, depths or
+//! stencil values of it with [`transfer`], [`texels`] what an [`internal_format`] stores of them. [`encode`] and
+//! [`store`] lead back. [`texture`], [`renderbuffer`] and [`default`] own what framebuffers draw to; [`target`] finds
+//! it.
 
-use crate::Context;
-use std::sync::Arc;
-use vitral_raster::forward::{Target, Texture};
+mod accum;
+mod answers;
+mod binding;
+mod bitmap;
+mod blit;
+mod clear;
+mod copy_plane;
+mod copy_tex;
+mod decode;
+mod default;
+mod draw_pixels;
+mod encode;
+mod format;
+mod framebuffer;
+mod framebuffer_query;
+mod image;
+mod internal_format;
+mod mipmap;
+mod names;
+mod read_pixels;
+mod renderbuffer;
+mod store;
+mod target;
+#[cfg(test)]
+mod testing;
+mod tex_image;
+mod tex_parameter;
+mod tex_query;
+mod tex_sub_image;
+mod texels;
+mod texture;
+mod transfer;
 
-/// Framebuffer objects and what is bound.
-#[derive(Debug, Default)]
-pub(crate) struct FramebufferBindings {}
-
-/// The planes of framebuffer 0.
-#[derive(Debug, Default)]
-pub(crate) struct DefaultFramebuffer {}
-
-impl Context {
-    /// The planes that draws go to: of the bound framebuffer object or framebuffer 0. `None` if it is incomplete (the
-    /// caller records INVALID_FRAMEBUFFER_OPERATION), has no size, or draws nowhere.
-    pub(crate) fn draw_target(&mut self) -> Option<Target> {
-        None
-    }
-
-    /// The texture that unit `unit` samples: the enabled target of highest priority, if its texture is complete.
-    pub(crate) fn sampled_texture(&mut self, unit: usize) -> Option<Arc<Texture>> {
-        let _ = unit;
-        None
-    }
-}
+#[allow(unused_imports)]
+pub(crate) use answers::{BoundTextures, FramebufferBits};
+pub(crate) use binding::UnnamedTextures;
+pub(crate) use default::DefaultFramebuffer;
+pub use default::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};
+pub(crate) use framebuffer::FramebufferBindings;
+pub(crate) use renderbuffer::RenderbufferHandle;
+pub(crate) use texture::TextureHandle;

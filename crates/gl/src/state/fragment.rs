@@ -62,12 +62,22 @@ pub struct StencilState {
     pub two_side: bool,
     /// `ACTIVE_STENCIL_FACE_EXT`: 0 front, 1 back.
     pub active_face: usize,
-    /// Front, and back (used if `two_side`, or if set apart by ATI_separate_stencil).
-    pub faces: [StencilFace; 2],
-    /// Set by the separate functions: both faces count without `two_side`.
-    pub separate: bool,
+    /// Front; back (which differs from the front only through ATI_separate_stencil); back of EXT_stencil_two_side.
+    pub faces: [StencilFace; 3],
     /// `STENCIL_CLEAR_VALUE`.
     pub clear: i32,
+}
+
+impl StencilState {
+    /// What holds for front-facing polygons, points, lines and images.
+    pub fn front(&self) -> &StencilFace {
+        &self.faces[0]
+    }
+
+    /// What holds for back-facing polygons.
+    pub fn back(&self) -> &StencilFace {
+        &self.faces[if self.two_side { 2 } else { 1 }]
+    }
 }
 
 impl Default for StencilState {
@@ -79,7 +89,7 @@ impl Default for StencilState {
             ops: [enums::KEEP; 3],
             write_mask: u32::MAX,
         };
-        Self { enabled: false, two_side: false, active_face: 0, faces: [face; 2], separate: false, clear: 0 }
+        Self { enabled: false, two_side: false, active_face: 0, faces: [face; 3], clear: 0 }
     }
 }
 
@@ -115,6 +125,13 @@ pub struct Blend {
     pub equation: [u32; 2],
     /// `BLEND_COLOR`.
     pub color: [f32; 4],
+}
+
+impl Blend {
+    /// EXT_blend_logic_op: blending is replaced by the logic operation.
+    pub fn is_logic_op(&self) -> bool {
+        self.enabled && self.equation[0] == enums::LOGIC_OP
+    }
 }
 
 impl Default for Blend {

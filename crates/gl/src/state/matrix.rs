@@ -1,6 +1,6 @@
 //! Matrix stacks.
 
-use super::MAX_TEXTURE_UNITS;
+use super::{MAX_MATRIX_STACK_DEPTH, MAX_TEXTURE_STACK_DEPTH, MAX_TEXTURE_UNITS};
 use crate::enums;
 use vitral_math::Mat4;
 
@@ -52,9 +52,9 @@ impl Default for Matrices {
     fn default() -> Self {
         Self {
             mode: enums::MODELVIEW,
-            modelview: MatrixStack::new(32),
-            projection: MatrixStack::new(32),
-            texture: std::array::from_fn(|_| MatrixStack::new(10)),
+            modelview: MatrixStack::new(MAX_MATRIX_STACK_DEPTH),
+            projection: MatrixStack::new(MAX_MATRIX_STACK_DEPTH),
+            texture: std::array::from_fn(|_| MatrixStack::new(MAX_TEXTURE_STACK_DEPTH)),
             normalize: false,
             rescale_normal: false,
         }

@@ -15,7 +15,7 @@ pub use lighting::{ColorMaterial, Light, LightModel, Lighting, MaterialFace};
 pub use matrix::{Matrices, MatrixStack};
 pub use pixel::{PixelMap, PixelMode, PixelTransfer};
 pub use raster::{Lines, Points, Polygons, Scissor, Viewport};
-pub use texture::{Combine, TexGen, TextureEnvironment, TextureUnit};
+pub use texture::{Combine, TexGen, TextureEnvironment, TextureUnit, target};
 pub use vertex::{Current, Eval, Map1, Map2, RasterPosition};
 
 use crate::enums;
@@ -44,6 +44,17 @@ pub const MAX_PIXEL_MAP_TABLE: usize = 65536;
 pub const MAX_SAMPLES: usize = 4;
 /// Colour attachments of a framebuffer object.
 pub const MAX_COLOR_ATTACHMENTS: usize = 8;
+
+/// Depth of the modelview and projection stacks.
+pub const MAX_MATRIX_STACK_DEPTH: usize = 32;
+/// Depth of each texture matrix stack.
+pub const MAX_TEXTURE_STACK_DEPTH: usize = 10;
+/// Width of points and lines.
+pub const MAX_POINT_SIZE: f32 = 256.0;
+/// Magnitude of `TEXTURE_LOD_BIAS`, object's and unit's together.
+pub const MAX_TEXTURE_LOD_BIAS: f32 = 16.0;
+/// `MAX_TEXTURE_MAX_ANISOTROPY_EXT`.
+pub const MAX_ANISOTROPY: f32 = 16.0;
 
 /// All server state of a context that is not an object.
 #[derive(Clone, Debug)]

@@ -61,7 +61,7 @@ impl Default for Points {
             size: 1.0,
             smooth: false,
             sprite: false,
-            limits: [0.0, 256.0],
+            limits: [0.0, super::MAX_POINT_SIZE],
             fade_threshold: 1.0,
             attenuation: [1.0, 0.0, 0.0],
             sprite_r_mode: enums::ZERO,

@@ -4,13 +4,25 @@
 //! setups and tile lists in parallel, then each tile walks the commands in their order. Planes are stored tile by tile
 //! and cleared lazily. Row 0 of a plane is OpenGL's window row 0: the lowest.
 
+mod assemble;
+mod environment;
+mod fragment;
+mod fragment_ops;
 mod pass;
 mod plane;
+mod project;
+mod sample;
+mod shade;
 mod state;
 mod texture;
+mod tile;
+mod wide;
 
-pub use pass::{Clear, Command, Geometry, ImageFragments, Pass, Target};
+pub use assemble::{Assembler, Facet, FacetKind, PrimitiveState, Primitives, Shape, Vertices};
+pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageFragments, Pass, Runner, Target};
 pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+pub use project::{WindowTransform, project};
+pub use shade::Layout;
 pub use state::{
     Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare, DepthTest,
     EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Unit,

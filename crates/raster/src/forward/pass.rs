@@ -1,9 +1,20 @@
 //! Recorded commands on one target, and how they run.
+//!
+//! Draws are cut into jobs of about equal size, which turn vertices into facets in parallel; then every tile, in parallel,
+//! walks clears, images and the jobs' facets in the order of the commands.
 
-use super::plane::{ColorPlane, DepthPlane, StencilPlane};
+use super::assemble::{Facet, Primitives, screen};
+use super::fragment::{ColorTile, FragmentOps, TilePlanes};
+use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+use super::shade::Layout;
 use super::state::FragmentState;
-use crate::Viewport;
-use std::sync::{Arc, Mutex};
+use super::tile::TileRun;
+use crate::geometry::Screen;
+use crate::{SamplePattern, TILE, Viewport};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use vitral_exec::Workers;
+use vitral_math::lanes::{Level, dispatch};
 
 /// Where fragments go. All planes have the same size and number of samples.
 #[derive(Clone, Debug)]
@@ -18,6 +29,37 @@ pub struct Target {
     pub depth: Option<Arc<Mutex<DepthPlane>>>,
     /// Stencil; without one the stencil test passes.
     pub stencil: Option<Arc<Mutex<StencilPlane>>>,
+}
+
+impl Target {
+    /// Whether both draw into the same planes.
+    pub fn same(&self, other: &Self) -> bool {
+        fn same<T>(a: &Option<Arc<Mutex<T>>>, b: &Option<Arc<Mutex<T>>>) -> bool {
+            match (a, b) {
+                (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+                (None, None) => true,
+                _ => false,
+            }
+        }
+        self.viewport == other.viewport
+            && self.samples == other.samples
+            && same(&self.color, &other.color)
+            && same(&self.depth, &other.depth)
+            && same(&self.stencil, &other.stencil)
+    }
+
+    /// Where samples lie: the centre, or the pattern of four that Direct3D made common.
+    pub fn pattern(&self) -> SamplePattern {
+        pattern(self.samples)
+    }
+}
+
+/// One sample in the centre, or four.
+pub(crate) fn pattern(samples: usize) -> SamplePattern {
+    match samples {
+        4 => SamplePattern::at(vec![[96, 32], [224, 96], [32, 160], [160, 224]]),
+        _ => SamplePattern::new(1),
+    }
 }
 
 /// A clear.
@@ -69,6 +111,31 @@ pub struct ImageFragments {
 pub trait Geometry: Send + Sync + std::fmt::Debug {
     /// How many pieces there are.
     fn pieces(&self) -> usize;
+    /// About how many triangles a piece has.
+    fn weight(&self, piece: usize) -> usize;
+    /// Where its vertex records hold what.
+    fn layout(&self) -> &Layout;
+    /// Allowed pixels x0, y0, x1, y1: the viewport.
+    fn clip(&self) -> [i32; 4];
+    /// Adds a piece's primitives as draw number `draw` of the job.
+    fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives);
+}
+
+/// What geometry must know of the target.
+#[derive(Clone, Debug)]
+pub struct ForwardScreen {
+    pub(crate) screen: Screen,
+    /// Size of the target.
+    pub viewport: Viewport,
+    /// Samples a pixel.
+    pub samples: usize,
+}
+
+impl ForwardScreen {
+    /// The screen, for assemblers.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
 }
 
 /// A recorded command.
@@ -89,4 +156,209 @@ pub struct Pass {
     pub target: Target,
     /// In order.
     pub commands: Vec<Command>,
+}
+
+/// Threads, instruction set and memory that passes use again.
+#[derive(Debug)]
+pub struct Runner {
+    /// Threads.
+    pub workers: Workers,
+    /// Instruction set.
+    pub level: Level,
+    spare: Mutex<Vec<Primitives>>,
+}
+
+/// Triangles of a job.
+const JOB: usize = 4096;
+
+/// What a tile walks, in order.
+pub(crate) enum Item<'a> {
+    Clear(&'a Clear),
+    Image(&'a ImageFragments, &'a FragmentState, FragmentOps),
+    Job { primitives: Primitives, draws: Vec<DrawContext<'a>> },
+}
+
+/// A draw of a job.
+pub(crate) struct DrawContext<'a> {
+    pub state: &'a FragmentState,
+    pub layout: &'a Layout,
+    pub ops: FragmentOps,
+    pub clip: [i32; 4],
+    /// All samples of the target get tests of their own.
+    pub multisample: bool,
+    /// Colours matter: some are written, or decide.
+    pub shaded: bool,
+}
+
+/// A job before it runs.
+struct Plan {
+    /// Index of the command, pieces of it.
+    pieces: Vec<(usize, Range<usize>)>,
+    weight: usize,
+}
+
+enum PlanItem {
+    Command(usize),
+    Job(usize),
+}
+
+impl Runner {
+    /// A runner.
+    pub fn new(workers: Workers, level: Level) -> Self {
+        Self { workers, level, spare: Mutex::default() }
+    }
+
+    /// Runs a pass.
+    pub fn run(&self, pass: &Pass) {
+        let (plans, order) = plan(&pass.commands);
+        let forward = ForwardScreen {
+            screen: screen(pass.target.viewport, &pass.target.pattern()),
+            viewport: pass.target.viewport,
+            samples: pass.target.samples,
+        };
+        let mut jobs: Vec<Option<Primitives>> =
+            self.workers.map(plans.len(), |j| Some(self.emit(&plans[j], &pass.commands, &forward)));
+        let items: Vec<Item<'_>> = order.iter().map(|item| self.item(item, pass, &plans, &mut jobs)).collect();
+        self.tiles(&pass.target, &items);
+        let mut spare = lock(&self.spare);
+        for item in items {
+            if let Item::Job { primitives, .. } = item {
+                spare.push(primitives);
+            }
+        }
+    }
+
+    fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen) -> Primitives {
+        let mut out = lock(&self.spare).pop().unwrap_or_default();
+        out.batch.clear();
+        out.facets.clear();
+        out.shapes.clear();
+        out.records.clear();
+        for (draw, (command, pieces)) in plan.pieces.iter().enumerate() {
+            if let Command::Draw(geometry, _) = &commands[*command] {
+                for piece in pieces.clone() {
+                    geometry.emit(self.level, piece, draw as u32, forward, &mut out);
+                }
+            }
+        }
+        out.batch.finish(&forward.screen);
+        out
+    }
+
+    fn item<'a>(&self, item: &PlanItem, pass: &'a Pass, plans: &[Plan], jobs: &mut [Option<Primitives>]) -> Item<'a> {
+        let samples = pass.target.samples;
+        match item {
+            PlanItem::Command(c) => match &pass.commands[*c] {
+                Command::Clear(clear) => Item::Clear(clear),
+                Command::Image(image, state) => Item::Image(image, state, FragmentOps::new(state, samples)),
+                Command::Draw(..) => unreachable!("draws are in jobs"),
+            },
+            PlanItem::Job(j) => {
+                let draws = plans[*j].pieces.iter().filter_map(|(command, _)| match &pass.commands[*command] {
+                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass)),
+                    _ => None,
+                });
+                let draws = draws.collect();
+                Item::Job { primitives: jobs[*j].take().unwrap_or_default(), draws }
+            }
+        }
+    }
+
+    /// Walks all tiles.
+    fn tiles(&self, target: &Target, items: &[Item<'_>]) {
+        let mut color = target.color.as_ref().map(|p| lock(p));
+        let mut depth = target.depth.as_ref().map(|p| lock(p));
+        let mut stencil = target.stencil.as_ref().map(|p| lock(p));
+        let tiles_x = target.viewport.tiles_x();
+        let count = (tiles_x * target.viewport.tiles_y()) as usize;
+        let mut colors = color_tiles(&mut color);
+        let scale = depth.as_ref().map_or(1.0, |d| d.scale);
+        let mut depths = plane_tiles(depth.as_mut().map(|d| &mut d.plane));
+        let mut stencils = plane_tiles(stencil.as_mut().map(|s| &mut **s));
+        let runs: Vec<TileRun<'_>> = (0..count)
+            .map(|index| {
+                let (x, y) = (index as u32 % tiles_x, index as u32 / tiles_x);
+                let planes = TilePlanes {
+                    color: colors.next(),
+                    depth: depths.next().map(|d| (d, scale)),
+                    stencil: stencils.next(),
+                    samples: target.samples,
+                };
+                TileRun::new(index, x * TILE as u32, y * TILE as u32, target.viewport, planes)
+            })
+            .collect();
+        let (many, one) = (pattern(target.samples), pattern(1));
+        self.workers.for_each(runs, |mut run| {
+            dispatch!(self.level, simd => run.walk(simd, items, &many, &one));
+        });
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Tiles of the colour plane, one after the other; none if there is no plane.
+fn color_tiles<'a>(plane: &'a mut Option<MutexGuard<'_, ColorPlane>>) -> Box<dyn Iterator<Item = ColorTile<'a>> + 'a> {
+    match plane.as_deref_mut() {
+        None => Box::new(std::iter::empty()),
+        Some(ColorPlane::Rgba8(p)) => Box::new(p.tiles.iter_mut().map(ColorTile::Rgba8)),
+        Some(ColorPlane::RgbaF32(p)) => Box::new(p.tiles.iter_mut().map(ColorTile::RgbaF32)),
+    }
+}
+
+fn plane_tiles<T>(plane: Option<&mut Plane<T>>) -> std::slice::IterMut<'_, PlaneTile<T>> {
+    match plane {
+        Some(p) => p.tiles.iter_mut(),
+        None => [].iter_mut(),
+    }
+}
+
+fn draw_context<'a>(geometry: &'a dyn Geometry, state: &'a FragmentState, pass: &Pass) -> DrawContext<'a> {
+    let samples = pass.target.samples;
+    let (a, b) = (geometry.clip(), state.clip);
+    let clip = [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])];
+    let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
+    let shaded = decides || (pass.target.color.is_some() && state.masked != [true; 4]);
+    DrawContext {
+        state,
+        layout: geometry.layout(),
+        ops: FragmentOps::new(state, samples),
+        clip,
+        multisample: samples > 1 && state.multisample,
+        shaded,
+    }
+}
+
+/// Cuts draws into jobs; what is no draw stands between them.
+fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
+    let (mut plans, mut order): (Vec<Plan>, Vec<PlanItem>) = (Vec::new(), Vec::new());
+    let mut open = false;
+    for (c, command) in commands.iter().enumerate() {
+        let Command::Draw(geometry, _) = command else {
+            order.push(PlanItem::Command(c));
+            open = false;
+            continue;
+        };
+        for piece in 0..geometry.pieces() {
+            let weight = geometry.weight(piece);
+            if !open || plans.last().is_none_or(|p| p.weight + weight > JOB && p.weight > 0) {
+                order.push(PlanItem::Job(plans.len()));
+                plans.push(Plan { pieces: Vec::new(), weight: 0 });
+                open = true;
+            }
+            let Some(plan) = plans.last_mut() else { continue };
+            plan.weight += weight;
+            match plan.pieces.last_mut() {
+                Some((last, range)) if *last == c => range.end = piece + 1,
+                _ => plan.pieces.push((c, piece..piece + 1)),
+            }
+        }
+    }
+    (plans, order)
+}
+
+/// The facet of a setup.
+pub(crate) fn facet_of(primitives: &Primitives, number: u32) -> Facet {
+    primitives.facets[number as usize]
 }

@@ -58,7 +58,23 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
-    let samples = pattern.len();
+    match pattern.len() {
+        1 => traverse_samples::<S, K, 1>(simd, setup, (tile_x, tile_y), pattern, sink),
+        4 => traverse_samples::<S, K, 4>(simd, setup, (tile_x, tile_y), pattern, sink),
+        _ => traverse_samples::<S, K, 16>(simd, setup, (tile_x, tile_y), pattern, sink),
+    }
+}
+
+/// `MOST` is the number of samples, or 16 where there are fewer.
+#[inline(always)]
+fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
+    simd: S,
+    setup: &Setup,
+    (tile_x, tile_y): (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
     let (origin_x, origin_y) = (tile_x as i32 * SUBPIXEL, tile_y as i32 * SUBPIXEL);
     let x = setup.x.map(|x| x - origin_x);
     let y = setup.y.map(|y| y - origin_y);
@@ -75,7 +91,7 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
 
     // Edge functions at the tile's origin, one constant a sample.
     let mut edges = [Edge { a: 0, b: 0 }; 3];
-    let mut constants = [[0i32; 3]; 16];
+    let mut constants = [[0i32; 3]; MOST];
     for i in 0..3 {
         let j = (i + 1) % 3;
         let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
@@ -91,7 +107,7 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
     let several = x0 / BLOCK != x1 / BLOCK || y0 / BLOCK != y1 / BLOCK;
-    let mut masks = [0u64; 16];
+    let mut masks = [0u64; MOST];
     for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
         let rows = y0.max(by) - by..(y1 + 1).min(by + BLOCK) - by;
         for bx in (x0 & !(BLOCK - 1)..=x1).step_by(BLOCK) {

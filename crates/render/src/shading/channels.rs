@@ -1,8 +1,9 @@
 //! Planes of data about what is visible at each pixel's centre: depth, surface, object, material, normal.
 
 use super::FrameConstants;
-use super::geometry::{Viewing, surface};
-use super::group::slots;
+use super::facets::FacetTable;
+use super::geometry::surface;
+use super::group::{slots, subject};
 use super::phong::interpolated_normal;
 use super::points::{Points, Source};
 use crate::Channels;
@@ -87,19 +88,14 @@ impl ChannelSink<'_> {
 fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, out: &mut [[f32; 3]]) {
     let rotation = constants.view.view.view_from_world.as_mat4();
     let mut of_point = vec![[0.0; 3]; points.len()];
+    let mut facets = FacetTable::default();
     for group in &points.groups {
-        let world_instance = &constants.view.session.world.instances[group.instance as usize];
-        let instance = &constants.instances[group.instance as usize];
-        let mesh = &*world_instance.mesh;
-        let material = constants.material(mesh.parts[group.part as usize].material);
-        let viewing = Viewing {
-            interpolation: constants.interpolation,
-            perspective: constants.view.view.perspective,
-            double_sided: material.material.double_sided,
-        };
-        for eight in points.order[group.start as usize..group.end as usize].chunks(LANES) {
-            let slots = slots(points, eight, world_instance.first_facet);
-            let n = interpolated_normal(&surface(simd, mesh, instance, &slots, viewing));
+        let order = &points.order[group.start as usize..group.end as usize];
+        let (subject, _) = subject(group, constants);
+        facets.fill(simd, points, order, &subject);
+        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+            let slots = slots(points, eight, records, subject.first_facet);
+            let n = interpolated_normal(&surface(simd, &facets.records, &slots));
             let soa = [n.x.to_array(), n.y.to_array(), n.z.to_array()];
             for (lane, &p) in eight.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);

@@ -6,7 +6,8 @@ use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Sett
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
 use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef};
-use vitral_math::color::{byte_from_unit, linear_from_srgb};
+use vitral_math::color::byte_from_unit;
+use vitral_math::lanes::Lanes;
 use vitral_math::{DMat4, DVec4};
 
 /// Matrices of an instance, as rows.
@@ -99,7 +100,7 @@ impl<'a> FrameConstants<'a> {
         let materials = session.scene.materials.iter().chain([&default]);
         let materials = materials.map(|m| material_constants(m, view, settings, tables)).collect();
         let background = background_rows(&settings.background, settings.height, raw);
-        let encode = |c: f32| byte_from_unit(if raw { c } else { vitral_math::color::srgb_from_linear(c) });
+        let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
         let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
         Self {
             view,
@@ -187,7 +188,7 @@ fn material_constants<'a>(
 }
 
 fn background_rows(background: &Background, height: u32, raw: bool) -> Vec<[f32; 4]> {
-    let light = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
+    let light = |c: [f32; 3]| if raw { c } else { c.map(Lanes::linear_from_srgb) };
     let opaque = |c: [f32; 3]| [c[0], c[1], c[2], 1.0];
     (0..height)
         .map(|y| match background {

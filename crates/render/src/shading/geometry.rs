@@ -1,23 +1,18 @@
-//! The surface at eight points: which corners each point lies between, with which weights, and in which space.
+//! The surface at eight points: which corners each point lies between, and with which weights.
 //!
-//! Weights come from the facet's corners in homogeneous screen coordinates `(X, Y, W)` taken relative to the point:
-//! with `e0 = X1 Y2 - X2 Y1` and so on, `e0 : e1 : e2` are the point's barycentric coordinates on the surface in
-//! space (perspective-correct), for corners behind the eye too. Divided by the corners' `W` products they would be
-//! those on the screen; that is the classical defect, kept for comparison.
-//!
-//! Source: [Heckbert & Moreton 1991], [Olano & Greer 1997].
+//! What is the same all over a facet was computed before, see [`super::facets`]; here each point weighs the corners.
 
-use super::frame_constants::InstanceConstants;
-use crate::Interpolation;
+use super::facets::Record;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
-use vitral_scene::Mesh;
+use vitral_math::lanes::{self, F32x4, F32x8, LANES, Simd, V3};
 
 /// Up to eight points of one object and material.
 #[derive(Clone, Copy)]
 pub(crate) struct Slots {
-    /// Triangle of each point within its mesh; unused lanes repeat lane 0.
+    /// Triangle of each point within its mesh; unused lanes repeat the last.
     pub triangle: [u32; LANES],
+    /// Record of each point's facet.
+    pub record: [u32; LANES],
     /// Places in pixels.
     pub x: [f32; LANES],
     /// Places in pixels, downwards.
@@ -80,18 +75,17 @@ pub(crate) struct Surface<S: Simd> {
     pub facet_normal: V3<F<S>>,
     /// Barycentric coordinates of the point, not negative, sum 1.
     pub weights: [F<S>; 3],
-    screen: [V3<F<S>>; 3],
-    place: (F<S>, F<S>),
-    interpolation: Interpolation,
+    edges: [Edge<S>; 3],
+    /// Barycentric coordinates before they were scaled to the sum 1.
+    values: [F<S>; 3],
 }
 
-/// What a frame says about points and viewer.
+/// An unscaled barycentric coordinate `c + a x + b y`.
 #[derive(Clone, Copy)]
-pub(crate) struct Viewing {
-    pub interpolation: Interpolation,
-    pub perspective: bool,
-    /// The material shows both sides.
-    pub double_sided: bool,
+struct Edge<S: Simd> {
+    a: F<S>,
+    b: F<S>,
+    c: F<S>,
 }
 
 /// A row of an affine map times `(p, 1)`.
@@ -116,18 +110,6 @@ pub(crate) fn linear<S: Simd>(m: &[[f32; 3]; 3], p: &[F<S>; 3]) -> V3<F<S>> {
     )
 }
 
-/// The edge functions of corners `(X, Y, W)` at a point of the screen.
-#[inline(always)]
-fn edges_at<S: Simd>(screen: &[V3<F<S>>; 3], x: F<S>, y: F<S>, interpolation: Interpolation) -> [F<S>; 3] {
-    let [ax, bx, cx] = [screen[0].x - x * screen[0].z, screen[1].x - x * screen[1].z, screen[2].x - x * screen[2].z];
-    let [ay, by, cy] = [screen[0].y - y * screen[0].z, screen[1].y - y * screen[1].z, screen[2].y - y * screen[2].z];
-    let e = [bx * cy - cx * by, cx * ay - ax * cy, ax * by - bx * ay];
-    match interpolation {
-        Interpolation::Perspective => e,
-        Interpolation::Linear => [e[0] * screen[0].z, e[1] * screen[1].z, e[2] * screen[2].z],
-    }
-}
-
 /// Scales numbers to a sum of 1; a third each where the sum is 0.
 #[inline(always)]
 fn normalized<S: Simd>(e: [F<S>; 3]) -> [F<S>; 3] {
@@ -140,82 +122,77 @@ fn normalized<S: Simd>(e: [F<S>; 3]) -> [F<S>; 3] {
 }
 
 /// Builds the surface under each lane's point.
-pub(crate) fn surface<S: Simd>(
-    simd: S,
-    mesh: &Mesh,
-    instance: &InstanceConstants,
-    slots: &Slots,
-    viewing: Viewing,
-) -> Surface<S> {
+pub(crate) fn surface<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
     simd.vectorize(
         #[inline(always)]
-        || surface_inlined(simd, mesh, instance, slots, viewing),
+        || surface_inlined(simd, records, slots),
     )
 }
 
+/// Columns `at..at + 4` of eight rows, one row a lane.
 #[inline(always)]
-fn surface_inlined<S: Simd>(
-    simd: S,
-    mesh: &Mesh,
-    instance: &InstanceConstants,
-    slots: &Slots,
-    viewing: Viewing,
-) -> Surface<S> {
-    let model = gather(
-        simd,
+fn columns<S: Simd>(simd: S, rows: &[&Record; LANES], at: usize) -> [F<S>; 4] {
+    let half = lanes::inlined(
         #[inline(always)]
-        |lane| {
-            let [a, b, c] = mesh.triangles[slots.triangle[lane] as usize];
-            [mesh.positions[a as usize], mesh.positions[b as usize], mesh.positions[c as usize]]
+        |first: usize| {
+            let row = lanes::inlined(
+                #[inline(always)]
+                |i: usize| F32x4::from_slice(simd, &rows[first + i].0[at..at + 4]),
+            );
+            let (even_low, even_high) = (simd.zip_low_f32x4(row(0), row(2)), simd.zip_high_f32x4(row(0), row(2)));
+            let (odd_low, odd_high) = (simd.zip_low_f32x4(row(1), row(3)), simd.zip_high_f32x4(row(1), row(3)));
+            [
+                simd.zip_low_f32x4(even_low, odd_low),
+                simd.zip_high_f32x4(even_low, odd_low),
+                simd.zip_low_f32x4(even_high, odd_high),
+                simd.zip_high_f32x4(even_high, odd_high),
+            ]
         },
     );
+    let (low, high) = (half(0), half(4));
+    [
+        simd.combine_f32x4(low[0], high[0]),
+        simd.combine_f32x4(low[1], high[1]),
+        simd.combine_f32x4(low[2], high[2]),
+        simd.combine_f32x4(low[3], high[3]),
+    ]
+}
+
+#[inline(always)]
+fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
+    let r = &slots.record;
+    let row = lanes::inlined(
+        #[inline(always)]
+        |i: usize| &records[r[i] as usize],
+    );
+    let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+    let q = lanes::inlined(
+        #[inline(always)]
+        |i: usize| columns(simd, &rows, 4 * i),
+    );
+    let ([c0, a0, b0, c1], [a1, b1, c2, a2]) = (q(0), q(1));
+    let ([b2, x0, y0, nx], [ny, nz, p0x, p0y]) = (q(2), q(3));
+    let ([p0z, p1x, p1y, p1z], [p2x, p2y, p2z, n0x]) = (q(4), q(5));
+    let ([n0y, n0z, n1x, n1y], [n1z, n2x, n2y, n2z]) = (q(6), q(7));
 
     // Weigh the corners.
-    let to_screen = &instance.screen_from_model;
-    let screen = [affine(to_screen, &model[0]), affine(to_screen, &model[1]), affine(to_screen, &model[2])];
-    let (x, y) = (F32x8::from_slice(simd, &slots.x), F32x8::from_slice(simd, &slots.y));
-    let w = normalized(edges_at(&screen, x, y, viewing.interpolation));
+    let x = F32x8::from_slice(simd, &slots.x) - x0;
+    let y = F32x8::from_slice(simd, &slots.y) - y0;
+    let edges = [Edge { a: a0, b: b0, c: c0 }, Edge { a: a1, b: b1, c: c1 }, Edge { a: a2, b: b2, c: c2 }];
+    let values = [c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y];
+    let w = normalized(values);
     // Snapping may put a sample a hair outside the facet: stay on it.
     let zero = constant(simd, 0.0);
     let weights =
         normalized([lanes::Lanes::max(w[0], zero), lanes::Lanes::max(w[1], zero), lanes::Lanes::max(w[2], zero)]);
-
-    // Bring corners and normals to view space.
-    let to_view = &instance.view_from_model;
-    let positions = [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
-    let geometric = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
-    let geometric = if instance.mirrored { -geometric } else { geometric };
-    let mut normals = [geometric; 3];
-    if let Some(attribute) = &mesh.normals {
-        let corners = attribute.corners.as_deref().unwrap_or(&mesh.triangles);
-        let values = gather(
-            simd,
-            #[inline(always)]
-            |lane| {
-                let [a, b, c] = corners[slots.triangle[lane] as usize];
-                [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
-            },
-        );
-        for c in 0..3 {
-            let n = linear(&instance.view_from_model_normal, &values[c]).normalize();
-            // A zero normal in the file falls back to the facet's.
-            normals[c] = V3::select(lanes::Lanes::lt(zero, n.dot(n)), n, geometric);
-        }
+    Surface {
+        positions: [V3::new(p0x, p0y, p0z), V3::new(p1x, p1y, p1z), V3::new(p2x, p2y, p2z)],
+        normals: [V3::new(n0x, n0y, n0z), V3::new(n1x, n1y, n1z), V3::new(n2x, n2y, n2z)],
+        facet_normal: V3::new(nx, ny, nz),
+        weights,
+        edges,
+        values,
     }
-
-    // Where both sides are seen, turn normals to the viewer's side of the facet.
-    let mut facet_normal = geometric;
-    if instance.two_sided || viewing.double_sided {
-        let towards = if viewing.perspective { geometric.dot(-blend3(&weights, &positions)) } else { geometric.z };
-        facet_normal = V3::select(lanes::Lanes::lt(towards, zero), -geometric, geometric);
-        // A normal in the facet's plane, but for rounding, is on neither side: it stays as it is.
-        let hair = constant(simd, -1e-4);
-        for c in 0..3 {
-            let behind = lanes::Lanes::lt(normals[c].dot(facet_normal), hair);
-            normals[c] = V3::select(behind, -normals[c], normals[c]);
-        }
-    }
-    Surface { screen, place: (x, y), interpolation: viewing.interpolation, positions, normals, facet_normal, weights }
 }
 
 impl<S: Simd> Surface<S> {
@@ -223,10 +200,7 @@ impl<S: Simd> Surface<S> {
     /// `0..=1`.
     #[inline(always)]
     pub(crate) fn neighbours(&self) -> [[F<S>; 3]; 2] {
-        let (x, y) = self.place;
-        [
-            normalized(edges_at(&self.screen, x + 1.0, y, self.interpolation)),
-            normalized(edges_at(&self.screen, x, y + 1.0, self.interpolation)),
-        ]
+        let ([v0, v1, v2], [e0, e1, e2]) = (self.values, self.edges);
+        [normalized([v0 + e0.a, v1 + e1.a, v2 + e2.a]), normalized([v0 + e0.b, v1 + e1.b, v2 + e2.b])]
     }
 }

@@ -1,8 +1,9 @@
 //! Illuminating points of one object and material, eight at a time.
 
 use super::FrameConstants;
+use super::facets::{FacetTable, Subject, Viewing};
 use super::frame_constants::{MaterialConstants, TextureConstants};
-use super::geometry::{F, Slots, Surface, Viewing, blend, constant, gather, surface};
+use super::geometry::{F, Slots, Surface, blend, constant, gather, surface};
 use super::points::{Group, Points};
 use super::{flat, gouraud, phong};
 use crate::Shading;
@@ -83,29 +84,63 @@ impl Lighting<'_> {
 
 /// Illuminates all points; `colors` gets premultiplied RGBA in the space in which pictures are composed.
 #[inline(always)]
-pub(crate) fn shade_all<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, colors: &mut [[f32; 4]]) {
+pub(crate) fn shade_all<S: Simd>(
+    simd: S,
+    points: &Points,
+    facets: &mut FacetTable,
+    constants: &FrameConstants<'_>,
+    colors: &mut [[f32; 4]],
+) {
+    if constants.surfaces_are_background {
+        for (color, place) in colors.iter_mut().zip(&points.place) {
+            *color = constants.background[(place[1] as usize).min(constants.background.len() - 1)];
+        }
+        return;
+    }
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
-        for eight in order.chunks(LANES) {
-            if constants.surfaces_are_background {
-                for &p in eight {
-                    let row = points.place[p as usize][1] as usize;
-                    colors[p as usize] = constants.background[row.min(constants.background.len() - 1)];
-                }
-            } else {
-                shade_eight(simd, points, group, eight, constants, colors);
-            }
+        let (subject, material) = subject(group, constants);
+        facets.fill(simd, points, order, &subject);
+        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+            let slots = slots(points, eight, records, subject.first_facet);
+            shade_eight(simd, &subject, material, eight, &slots, facets, constants, colors);
         }
     }
 }
 
+/// The object that a group's points belong to, and its material.
+pub(crate) fn subject<'a>(
+    group: &Group,
+    constants: &'a FrameConstants<'_>,
+) -> (Subject<'a>, &'a MaterialConstants<'a>) {
+    let world_instance = &constants.view.session.world.instances[group.instance as usize];
+    let mesh = &*world_instance.mesh;
+    let material = constants.material(mesh.parts[group.part as usize].material);
+    let viewing = Viewing {
+        interpolation: constants.interpolation,
+        perspective: constants.view.view.perspective,
+        double_sided: material.material.double_sided,
+    };
+    let instance = &constants.instances[group.instance as usize];
+    let subject = Subject {
+        mesh,
+        instance,
+        first_facet: world_instance.first_facet,
+        mesh_index: world_instance.mesh_index,
+        viewing,
+    };
+    (subject, material)
+}
+
 /// The slots of up to eight points of a group.
 #[inline(always)]
-pub(crate) fn slots(points: &Points, eight: &[u32], first_facet: u32) -> Slots {
-    let mut slots = Slots { triangle: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet: u32) -> Slots {
+    let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
     for lane in 0..LANES {
-        let p = eight[lane.min(eight.len() - 1)] as usize;
+        let here = lane.min(eight.len() - 1);
+        let p = eight[here] as usize;
         slots.triangle[lane] = points.facet[p] - first_facet;
+        slots.record[lane] = records[here];
         [slots.x[lane], slots.y[lane]] = points.place[p];
     }
     slots
@@ -114,39 +149,34 @@ pub(crate) fn slots(points: &Points, eight: &[u32], first_facet: u32) -> Slots {
 /// One instruction-set function: kept out of line, so that each level compiles it once.
 fn shade_eight<S: Simd>(
     simd: S,
-    points: &Points,
-    group: &Group,
+    subject: &Subject<'_>,
+    material: &MaterialConstants<'_>,
     eight: &[u32],
+    slots: &Slots,
+    facets: &FacetTable,
     constants: &FrameConstants<'_>,
     colors: &mut [[f32; 4]],
 ) {
     simd.vectorize(
         #[inline(always)]
-        || shade_eight_inlined(simd, points, group, eight, constants, colors),
+        || shade_eight_inlined(simd, subject, material, eight, slots, facets, constants, colors),
     );
 }
 
 #[inline(always)]
 fn shade_eight_inlined<S: Simd>(
     simd: S,
-    points: &Points,
-    group: &Group,
+    subject: &Subject<'_>,
+    material: &MaterialConstants<'_>,
     eight: &[u32],
+    slots: &Slots,
+    facets: &FacetTable,
     constants: &FrameConstants<'_>,
     colors: &mut [[f32; 4]],
 ) {
-    let world_instance = &constants.view.session.world.instances[group.instance as usize];
-    let instance = &constants.instances[group.instance as usize];
-    let mesh = &*world_instance.mesh;
-    let material = constants.material(mesh.parts[group.part as usize].material);
-    let slots = slots(points, eight, world_instance.first_facet);
-    let viewing = Viewing {
-        interpolation: constants.interpolation,
-        perspective: constants.view.view.perspective,
-        double_sided: material.material.double_sided,
-    };
-    let surface = surface(simd, mesh, instance, &slots, viewing);
-    let looks = Looks::new(simd, mesh, &slots, &surface, material, constants.raw);
+    let (mesh, instance) = (subject.mesh, subject.instance);
+    let surface = surface(simd, &facets.records, slots);
+    let looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
 
     let lighting = Lighting {
         lights: &constants.lights,
@@ -155,7 +185,7 @@ fn shade_eight_inlined<S: Simd>(
             Model::Empirical(illumination) => illumination,
             _ => Illumination::Phong,
         },
-        perspective: viewing.perspective,
+        perspective: subject.viewing.perspective,
     };
     let reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },
@@ -166,13 +196,13 @@ fn shade_eight_inlined<S: Simd>(
         Model::Empirical(_) | Model::Microfacet => match constants.shading {
             Shading::Phong => {
                 let k = looks.coefficients(simd, material, looks.base);
-                let normal = looks.mapped_normal(simd, mesh, &slots, &surface, material);
+                let normal = looks.mapped_normal(simd, mesh, slots, &surface, material);
                 phong::shade(simd, &surface, normal, &lighting, &k)
             }
             Shading::Flat => {
                 let k = looks.coefficients(simd, material, looks.base);
-                let faces = constants.view.session.faces(world_instance.mesh_index);
-                flat::shade(simd, mesh, faces, instance, &slots, &surface, &lighting, &k)
+                let faces = constants.view.session.faces(subject.mesh_index);
+                flat::shade(simd, mesh, faces, instance, slots, &surface, &lighting, &k)
             }
             Shading::Gouraud => {
                 let colors = &looks.corner_colors;

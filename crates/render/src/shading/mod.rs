@@ -13,6 +13,7 @@ pub mod phong;
 
 mod channels;
 mod composite;
+mod facets;
 mod frame_constants;
 mod geometry;
 mod group;
@@ -23,6 +24,7 @@ pub use flat::FaceTable;
 pub(crate) use frame_constants::{DecodeTables, FrameConstants};
 
 use composite::Composer;
+use facets::FacetTable;
 use points::Points;
 use std::sync::Mutex;
 use vitral_math::lanes::{Level, dispatch};
@@ -47,6 +49,7 @@ pub(crate) struct ColorSink<'a> {
 #[derive(Default)]
 struct Scratch {
     points: Points,
+    facets: FacetTable,
     colors: Vec<[f32; 4]>,
     composer: Composer,
 }
@@ -76,12 +79,12 @@ impl<'a> ColorSink<'a> {
 impl TileSink for ColorSink<'_> {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>) {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
-        let Scratch { points, colors, composer } = &mut scratch;
+        let Scratch { points, facets, colors, composer } = &mut scratch;
         let constants = self.constants;
         points.collect(tile, layers, constants, self.marks);
         colors.clear();
         colors.resize(points.len(), [0.0; 4]);
-        dispatch!(self.level, simd => group::shade_all(simd, points, constants, colors));
+        dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, colors));
         let mut picture = vec![[0; 4]; TILE_PIXELS];
         dispatch!(self.level, simd => composer.compose(simd, tile, points, colors, constants, self.marks, &mut picture));
         *self.tiles[index].lock().expect("tile picture") = picture;

@@ -1,0 +1,141 @@
+//! Labels of objects.
+
+use super::MAX_LABEL_LENGTH;
+use crate::{Context, enums as gl};
+use std::collections::BTreeMap;
+use std::sync::PoisonError;
+
+/// Labels by kind (`BUFFER`, `TEXTURE` ...) and name.
+pub(crate) type Labels = BTreeMap<(u32, u32), Vec<u8>>;
+
+const KINDS: [u32; 11] = [
+    gl::BUFFER,
+    gl::SHADER,
+    gl::PROGRAM,
+    gl::VERTEX_ARRAY,
+    gl::QUERY,
+    gl::PROGRAM_PIPELINE,
+    gl::SAMPLER,
+    gl::TEXTURE,
+    gl::RENDERBUFFER,
+    gl::FRAMEBUFFER,
+    gl::DISPLAY_LIST,
+];
+
+/// Container objects and queries belong to one context.
+fn shared(kind: u32) -> bool {
+    !matches!(kind, gl::VERTEX_ARRAY | gl::QUERY | gl::FRAMEBUFFER)
+}
+
+impl Context {
+    fn with_labels<T>(&mut self, kind: u32, act: impl FnOnce(&mut Labels) -> T) -> T {
+        if shared(kind) {
+            act(&mut self.shared.labels.lock().unwrap_or_else(PoisonError::into_inner))
+        } else {
+            act(&mut self.debug.labels)
+        }
+    }
+
+    /// Called when an object is deleted: a later one of its name has no label.
+    pub(crate) fn forget_label(&mut self, kind: u32, name: u32) {
+        self.with_labels(kind, |labels| labels.remove(&(kind, name)));
+    }
+
+    /// Whether there is such an object; else records the error.
+    fn check_object(&mut self, call: &str, kind: u32, name: u32) -> bool {
+        if !self.may_set(call) || !self.check_enum(call, "identifier", kind, &KINDS) {
+            return false;
+        }
+        let exists = self.object_exists(kind, name);
+        if !exists {
+            self.refuse_value(call, "there is no such object");
+        }
+        exists
+    }
+
+    /// `glObjectLabel`.
+    pub fn object_label(&mut self, identifier: u32, name: u32, length: i32, label: usize) {
+        let call = "glObjectLabel";
+        if !self.check_object(call, identifier, name) {
+        } else if label == 0 {
+            self.forget_label(identifier, name);
+        } else if let Some(text) = self.debug_text(call, label, length, MAX_LABEL_LENGTH) {
+            self.with_labels(identifier, |labels| labels.insert((identifier, name), text));
+        }
+    }
+
+    /// `glGetObjectLabel`.
+    pub fn get_object_label(&mut self, identifier: u32, name: u32, buf_size: i32, length: usize, label: usize) {
+        let call = "glGetObjectLabel";
+        if !self.check_object(call, identifier, name) {
+            return;
+        }
+        let Ok(size) = usize::try_from(buf_size) else {
+            return self.refuse_value(call, "the buffer's size is negative");
+        };
+        let mut text =
+            self.with_labels(identifier, |labels| labels.get(&(identifier, name)).cloned().unwrap_or_default());
+        if label != 0 {
+            text.truncate(size.saturating_sub(1));
+        }
+        if length != 0 {
+            self.give_results(call, length, &[text.len() as i32]);
+        }
+        if label != 0 && size > 0 {
+            text.push(0);
+            self.give_results(call, label, &text);
+        }
+    }
+
+    /// `glObjectPtrLabel`: there are no sync objects, the only ones named by a pointer.
+    pub fn object_ptr_label(&mut self, ptr: usize, length: i32, label: usize) {
+        let _ = (ptr, length, label);
+        if self.may_set("glObjectPtrLabel") {
+            self.refuse_value("glObjectPtrLabel", "there is no such sync object");
+        }
+    }
+
+    /// `glGetObjectPtrLabel`: see [`Self::object_ptr_label`].
+    pub fn get_object_ptr_label(&mut self, ptr: usize, buf_size: i32, length: usize, label: usize) {
+        let _ = (ptr, buf_size, length, label);
+        if self.may_set("glGetObjectPtrLabel") {
+            self.refuse_value("glGetObjectPtrLabel", "there is no such sync object");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::testing::{RESULT, context, put, take};
+
+    #[test]
+    fn labels_of_queries() {
+        let mut c = context();
+        c.begin_query(gl::SAMPLES_PASSED, 4);
+        c.end_query(gl::SAMPLES_PASSED);
+        let at = put(&c, b"visible\0");
+        c.object_label(gl::QUERY, 4, -1, at);
+        c.get_object_label(gl::QUERY, 4, 4, RESULT, RESULT + 4);
+        assert_eq!(take::<u8, 8>(&c), *b"\x03\0\0\0vis\0");
+        c.get_object_label(gl::QUERY, 4, 0, RESULT, 0);
+        assert_eq!(take::<i32, 1>(&c), [7]);
+        c.object_label(gl::QUERY, 4, 0, 0);
+        c.get_object_label(gl::QUERY, 4, 4, RESULT, RESULT + 4);
+        assert_eq!(take::<i32, 1>(&c), [0]);
+        assert_eq!(c.get_error(), gl::NO_ERROR);
+    }
+
+    #[test]
+    fn errors() {
+        let mut c = context();
+        c.object_label(gl::QUERY, 4, 0, 0);
+        assert_eq!(c.get_error(), gl::INVALID_VALUE);
+        c.object_label(gl::SHADER, 1, 0, 0);
+        assert_eq!(c.get_error(), gl::INVALID_VALUE);
+        c.object_label(gl::TEXTURE_2D, 1, 0, 0);
+        assert_eq!(c.get_error(), gl::INVALID_ENUM);
+        c.object_ptr_label(0, 0, 0);
+        assert_eq!(c.get_error(), gl::INVALID_VALUE);
+    }
+}

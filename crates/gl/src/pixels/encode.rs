@@ -1,0 +1,210 @@
+//! From colours, depths and stencil values to the client's pixels.
+
+use super::format::{PixelFormat, half_from_float};
+use super::transfer::clamp_unit;
+use crate::enums::*;
+
+/// A number in 0..=1 as an unsigned integer up to `largest`.
+#[inline]
+fn unsigned(value: f32, largest: f64) -> u32 {
+    (f64::from(clamp_unit(value)) * largest + 0.5) as u32
+}
+
+/// A number in -1..=1 as a signed integer: (largest * c - 1) / 2.
+#[inline]
+fn signed(value: f32, largest: f64) -> i64 {
+    let c = f64::from(if value.is_nan() { 0.0 } else { value.clamp(-1.0, 1.0) });
+    ((largest * c - 1.0) / 2.0 + 0.5).floor() as i64
+}
+
+/// Appends the components at `places` of each colour, as `f` makes them bytes.
+#[inline]
+fn spread<const BYTES: usize>(
+    colors: &[[f32; 4]],
+    places: &[usize],
+    out: &mut Vec<u8>,
+    f: impl Fn(f32) -> [u8; BYTES],
+) {
+    let first = out.len();
+    let pixel = places.len() * BYTES;
+    out.resize(first + colors.len() * pixel, 0);
+    for (bytes, color) in out[first..].chunks_exact_mut(pixel).zip(colors) {
+        for (bytes, &place) in bytes.chunks_exact_mut(BYTES).zip(places) {
+            bytes.copy_from_slice(&f(color[place & 3]));
+        }
+    }
+}
+
+/// Appends the components at `places` of each colour as numbers of type `kind`.
+pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: &mut Vec<u8>) {
+    const WHOLE: f64 = u32::MAX as f64;
+    match kind {
+        UNSIGNED_BYTE => spread(colors, places, out, |v| [(clamp_unit(v) * 255.0 + 0.5) as u8]),
+        BYTE => spread(colors, places, out, |v| [signed(v, 255.0) as i8 as u8]),
+        UNSIGNED_SHORT => spread(colors, places, out, |v| (unsigned(v, 65535.0) as u16).to_ne_bytes()),
+        SHORT => spread(colors, places, out, |v| (signed(v, 65535.0) as i16).to_ne_bytes()),
+        UNSIGNED_INT => spread(colors, places, out, |v| unsigned(v, WHOLE).to_ne_bytes()),
+        INT => spread(colors, places, out, |v| (signed(v, WHOLE) as i32).to_ne_bytes()),
+        HALF_FLOAT_ARB => spread(colors, places, out, |v| half_from_float(v).to_ne_bytes()),
+        _ if *places == [0, 1, 2, 3] => out.extend_from_slice(bytemuck::cast_slice(colors)),
+        _ => spread(colors, places, out, f32::to_ne_bytes),
+    }
+}
+
+fn push_element(element: u32, bytes: usize, out: &mut Vec<u8>) {
+    match bytes {
+        1 => out.push(element as u8),
+        2 => out.extend((element as u16).to_ne_bytes()),
+        _ => out.extend(element.to_ne_bytes()),
+    }
+}
+
+/// Colours in a colour format. Luminance is the sum of red, green and blue.
+pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut Vec<u8>) {
+    let places = format.places();
+    if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
+        let sums: Vec<[f32; 4]> = colors.iter().map(|c| [c[0] + c[1] + c[2], 0.0, 0.0, c[3]]).collect();
+        return components(&sums, places, format.kind, out);
+    }
+    let Some(packed) = format.packed() else { return components(colors, places, format.kind, out) };
+    out.reserve(colors.len() * packed.bytes);
+    for color in colors {
+        let mut element = 0;
+        for (&place, &(shift, width)) in places.iter().zip(packed.fields) {
+            let largest = ((1u32 << width) - 1) as f32;
+            element |= ((clamp_unit(color[place]) * largest + 0.5) as u32) << shift;
+        }
+        push_element(element, packed.bytes, out);
+    }
+}
+
+/// Depths in format `DEPTH_COMPONENT`.
+pub(crate) fn depths(depths: &[f32], format: PixelFormat, out: &mut Vec<u8>) {
+    if format.kind == FLOAT {
+        out.extend_from_slice(bytemuck::cast_slice(depths));
+        return;
+    }
+    let colors: Vec<[f32; 4]> = depths.iter().map(|&depth| [depth, 0.0, 0.0, 0.0]).collect();
+    components(&colors, &[0], format.kind, out);
+}
+
+/// Stencil values (after transfer) in format `STENCIL_INDEX`.
+pub(crate) fn stencils(values: impl Iterator<Item = i64>, kind: u32, out: &mut Vec<u8>) {
+    for value in values {
+        match kind {
+            UNSIGNED_BYTE => out.push(value as u8),
+            BYTE => out.push((value & 0x7f) as u8),
+            BITMAP => out.push((value & 1) as u8),
+            UNSIGNED_SHORT => out.extend((value as u16).to_ne_bytes()),
+            SHORT => out.extend(((value & 0x7fff) as u16).to_ne_bytes()),
+            UNSIGNED_INT => out.extend((value as u32).to_ne_bytes()),
+            INT => out.extend(((value & 0x7fff_ffff) as u32).to_ne_bytes()),
+            HALF_FLOAT_ARB => out.extend(half_from_float(value as f32).to_ne_bytes()),
+            _ => out.extend((value as f32).to_ne_bytes()),
+        }
+    }
+}
+
+/// Depth and stencil together.
+pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &mut Vec<u8>) {
+    for (&depth, &stencil) in depths.iter().zip(stencils) {
+        if kind == UNSIGNED_INT_24_8 {
+            let whole = (f64::from(clamp_unit(depth)) * 16_777_215.0 + 0.5) as u32;
+            out.extend(((whole << 8) | u32::from(stencil)).to_ne_bytes());
+        } else {
+            out.extend(depth.to_ne_bytes());
+            out.extend(u32::from(stencil).to_ne_bytes());
+        }
+    }
+}
+
+/// Words (red lowest) as unsigned bytes of `RGBA`, `BGRA`, `RGB` or `BGR`. `false` for other formats.
+pub(crate) fn words(words: &[u32], format: PixelFormat, out: &mut Vec<u8>) -> bool {
+    if format.kind != UNSIGNED_BYTE {
+        return false;
+    }
+    let first = out.len();
+    match format.format {
+        RGBA | BGRA => {
+            out.resize(first + words.len() * 4, 0);
+            let swapped = format.format == BGRA;
+            for (pixel, &word) in out[first..].chunks_exact_mut(4).zip(words) {
+                let word = if swapped { word.swap_bytes().rotate_right(8) } else { word };
+                pixel.copy_from_slice(&word.to_le_bytes());
+            }
+        }
+        RGB | BGR => {
+            out.resize(first + words.len() * 3, 0);
+            let swapped = format.format == BGR;
+            let order = |word: u32| if swapped { word.swap_bytes() >> 8 } else { word & 0x00ff_ffff };
+            // Four pixels are three whole words.
+            let mut quads = words.chunks_exact(4);
+            let mut pixels = out[first..].chunks_exact_mut(12);
+            for (bytes, quad) in (&mut pixels).zip(&mut quads) {
+                let [a, b, c, d] = [quad[0], quad[1], quad[2], quad[3]].map(order);
+                bytes[..4].copy_from_slice(&(a | (b << 24)).to_le_bytes());
+                bytes[4..8].copy_from_slice(&((b >> 8) | (c << 16)).to_le_bytes());
+                bytes[8..].copy_from_slice(&((c >> 16) | (d << 8)).to_le_bytes());
+            }
+            let rest = pixels.into_remainder().chunks_exact_mut(3);
+            for (bytes, &word) in rest.zip(quads.remainder()) {
+                bytes.copy_from_slice(&order(word).to_le_bytes()[..3]);
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn format(format: u32, kind: u32) -> PixelFormat {
+        PixelFormat::new(format, kind).unwrap()
+    }
+
+    fn encoded(color: [f32; 4], token: u32, kind: u32) -> Vec<u8> {
+        let mut out = Vec::new();
+        colors(&[color], format(token, kind), &mut out);
+        out
+    }
+
+    #[test]
+    fn numbers_take_the_types_range() {
+        assert_eq!(encoded([1.0, 0.0, 0.5, 0.0], RGB, UNSIGNED_BYTE), [255, 0, 128]);
+        assert_eq!(encoded([1.0; 4], RED, BYTE), [127]);
+        assert_eq!(encoded([0.0; 4], RED, SHORT), 0i16.to_ne_bytes());
+        assert_eq!(encoded([-1.0; 4], RED, INT), i32::MIN.to_ne_bytes());
+        assert_eq!(encoded([2.0; 4], RED, UNSIGNED_INT), u32::MAX.to_ne_bytes());
+        assert_eq!(encoded([0.25, 0.5, 0.125, 1.0], LUMINANCE, FLOAT), 0.875f32.to_ne_bytes());
+        assert_eq!(encoded([1.0, 0.0, 0.0, 0.0], RGB, UNSIGNED_SHORT_5_6_5), 0xf800u16.to_ne_bytes());
+    }
+
+    #[test]
+    fn words_keep_their_bytes() {
+        let mut out = Vec::new();
+        assert!(words(&[0x0403_0201], format(BGRA, UNSIGNED_BYTE), &mut out));
+        assert!(words(&[0x0403_0201], format(RGB, UNSIGNED_BYTE), &mut out));
+        assert!(words(&[0x0403_0201], format(BGR, UNSIGNED_BYTE), &mut out));
+        assert_eq!(out, [3, 2, 1, 4, 1, 2, 3, 3, 2, 1]);
+    }
+
+    #[test]
+    fn runs_of_rgb_are_tight() {
+        let source: Vec<u32> = (0..6).map(|i| 0xff00_0000 | (i * 0x0003_0201)).collect();
+        let (mut forward, mut backward) = (Vec::new(), Vec::new());
+        assert!(words(&source, format(RGB, UNSIGNED_BYTE), &mut forward));
+        assert!(words(&source, format(BGR, UNSIGNED_BYTE), &mut backward));
+        let expected: Vec<u8> = (0..6u8).flat_map(|i| [i, 2 * i, 3 * i]).collect();
+        assert_eq!(forward, expected);
+        assert_eq!(backward, (0..6u8).flat_map(|i| [3 * i, 2 * i, i]).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn depth_and_stencil_share_a_word() {
+        let mut out = Vec::new();
+        depth_stencils(&[1.0], &[5], UNSIGNED_INT_24_8, &mut out);
+        assert_eq!(out, 0xffff_ff05u32.to_ne_bytes());
+    }
+}

@@ -1,0 +1,268 @@
+//! `ReadPixels`: whole rows from the planes to the client.
+
+use super::encode;
+use super::format::{Content, PixelFormat};
+use super::image::lock;
+use super::internal_format::InternalFormat;
+use super::store::{MAX_IMAGE_BYTES, Region, write_region};
+use super::target::Surfaces;
+use super::texels::color_from_word;
+use super::transfer::{Transfer, clamp_colors, clamp_unit};
+use crate::Context;
+use crate::enums::*;
+use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
+
+/// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Rectangle {
+    /// Window position.
+    pub x: u32,
+    pub y: u32,
+    /// Offset from the corner that was asked for.
+    pub skip: [usize; 2],
+    /// Size, perhaps 0.
+    pub size: [usize; 2],
+}
+
+/// The part of a rectangle that is inside a framebuffer.
+pub(crate) fn inside(surfaces: &Surfaces, x: i32, y: i32, width: i32, height: i32) -> Rectangle {
+    let (w, h) = surfaces.size.map_or((0, 0), |v| (i64::from(v.width), i64::from(v.height)));
+    let part = |first: i32, size: i32, limit: i64| {
+        let first = i64::from(first);
+        let start = first.clamp(0, limit);
+        let end = (first + i64::from(size)).clamp(start, limit);
+        (start as u32, (start - first).max(0) as usize, (end - start) as usize)
+    };
+    let (x, skip_x, width) = part(x, width, w);
+    let (y, skip_y, height) = part(y, height, h);
+    Rectangle { x, y, skip: [skip_x, skip_y], size: [width, height] }
+}
+
+/// Colours of a rectangle, as the buffer's format returns them.
+pub(crate) fn read_colors(plane: &ColorPlane, format: &InternalFormat, r: &Rectangle) -> Vec<[f32; 4]> {
+    let [width, height] = r.size;
+    let mut out = vec![[0.0; 4]; width * height];
+    let mut words = vec![0; width];
+    for (y, row) in out.chunks_exact_mut(width.max(1)).enumerate() {
+        match plane {
+            ColorPlane::Rgba8(plane) => {
+                plane.read_row(r.x, r.y + y as u32, 0, &mut words);
+                row.iter_mut().zip(&words).for_each(|(c, &w)| *c = color_from_word(w));
+            }
+            ColorPlane::RgbaF32(plane) => plane.read_row(r.x, r.y + y as u32, 0, row),
+        }
+    }
+    let missing = format.missing();
+    if missing != [false; 4] {
+        let constant = [0.0, 0.0, 0.0, 1.0];
+        for color in &mut out {
+            (0..4).filter(|&c| missing[c]).for_each(|c| color[c] = constant[c]);
+        }
+    }
+    out
+}
+
+/// Words of a rectangle of a plane of bytes.
+pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectangle) -> Option<Vec<u32>> {
+    let ColorPlane::Rgba8(plane) = plane else { return None };
+    if !matches!(format.base, RGB | RGBA) {
+        return None;
+    }
+    let mut words = vec![0; r.size[0] * r.size[1]];
+    for (y, row) in words.chunks_exact_mut(r.size[0].max(1)).enumerate() {
+        plane.read_row(r.x, r.y + y as u32, 0, row);
+    }
+    if format.base == RGB {
+        words.iter_mut().for_each(|w| *w |= 0xff00_0000);
+    }
+    Some(words)
+}
+
+/// Depths of a rectangle, 0..=1.
+pub(crate) fn read_depths(plane: &DepthPlane, r: &Rectangle) -> Vec<f32> {
+    let mut depths = vec![0.0; r.size[0] * r.size[1]];
+    for (y, row) in depths.chunks_exact_mut(r.size[0].max(1)).enumerate() {
+        plane.plane.read_row(r.x, r.y + y as u32, 0, row);
+    }
+    if plane.scale != 1.0 {
+        depths.iter_mut().for_each(|d| *d /= plane.scale);
+    }
+    depths
+}
+
+/// Stencil values of a rectangle.
+pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
+    let mut values = vec![0; r.size[0] * r.size[1]];
+    for (y, row) in values.chunks_exact_mut(r.size[0].max(1)).enumerate() {
+        plane.read_row(r.x, r.y + y as u32, 0, row);
+    }
+    values
+}
+
+/// Row by row, from a plane of bytes to the client's bytes. `false` for other planes and formats.
+fn encode_words(
+    plane: &ColorPlane,
+    stored: &InternalFormat,
+    format: PixelFormat,
+    r: &Rectangle,
+    out: &mut Vec<u8>,
+) -> bool {
+    let ColorPlane::Rgba8(plane) = plane else { return false };
+    if !matches!(stored.base, RGB | RGBA) {
+        return false;
+    }
+    let mut row = vec![0; r.size[0]];
+    out.reserve(r.size[0] * r.size[1] * format.pixel_bytes());
+    (0..r.size[1]).all(|y| {
+        plane.read_row(r.x, r.y + y as u32, 0, &mut row);
+        if stored.base == RGB {
+            row.iter_mut().for_each(|w| *w |= 0xff00_0000);
+        }
+        encode::words(&row, format, out)
+    })
+}
+
+/// Bytes of the client's format for a rectangle.
+fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, transfer: &Transfer<'_>) -> Vec<u8> {
+    let mut out = Vec::new();
+    let depths = |clamp: bool| {
+        let mut depths = surfaces
+            .depth
+            .as_ref()
+            .and_then(|s| s.depth.as_ref())
+            .map_or_else(Vec::new, |plane| read_depths(&lock(plane), r));
+        transfer.depths(&mut depths);
+        if clamp && !transfer.keeps_depths() {
+            depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
+        }
+        depths
+    };
+    let stencils = || {
+        let plane = surfaces.stencil.as_ref().and_then(|s| s.stencil.as_ref());
+        plane.map_or_else(Vec::new, |plane| read_stencils(&lock(plane), r))
+    };
+    match format.content() {
+        Content::Depth => encode::depths(&depths(true), format, &mut out),
+        Content::Stencil => {
+            let values = stencils().into_iter().map(|v| transfer.stencil(i64::from(v)));
+            encode::stencils(values, format.kind, &mut out);
+        }
+        Content::DepthStencil => {
+            let values: Vec<u8> =
+                stencils().into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect();
+            encode::depth_stencils(&depths(true), &values, format.kind, &mut out);
+        }
+        Content::Color | Content::Index => {
+            let Some(surface) = &surfaces.color else { return out };
+            let Some(plane) = &surface.color else { return out };
+            let plane = lock(plane);
+            if transfer.keeps_colors() && encode_words(&plane, &surface.format, format, r, &mut out) {
+                return out;
+            }
+            let mut colors = read_colors(&plane, &surface.format, r);
+            transfer.colors(&mut colors);
+            if surface.format.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB) {
+                clamp_colors(&mut colors);
+            }
+            encode::colors(&colors, format, &mut out);
+        }
+    }
+    out
+}
+
+/// Whether a framebuffer has what a pixel of `format` holds.
+pub(crate) fn has_content(surfaces: &Surfaces, content: Content) -> bool {
+    match content {
+        Content::Color => surfaces.color.is_some(),
+        // There are no colour index buffers.
+        Content::Index => false,
+        Content::Depth => surfaces.depth.is_some(),
+        Content::Stencil => surfaces.stencil.is_some(),
+        Content::DepthStencil => surfaces.depth.is_some() && surfaces.stencil.is_some(),
+    }
+}
+
+impl Context {
+    /// `glReadPixels`.
+    pub fn read_pixels(&mut self, x: i32, y: i32, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
+        const CALL: &str = "glReadPixels";
+        if !self.outside_begin(CALL) {
+            return;
+        }
+        if width < 0 || height < 0 {
+            return self.record_error(INVALID_VALUE, CALL, "a size is negative");
+        }
+        let format = match PixelFormat::new(format, type_) {
+            Ok(format) => format,
+            Err((error, why)) => return self.record_error(error, CALL, why),
+        };
+        let Some(surfaces) = self.read_surfaces(CALL, true) else { return };
+        if !has_content(&surfaces, format.content()) {
+            return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
+        }
+        if self.framebuffers.read == 0 {
+            self.store_default_framebuffer();
+        }
+        let r = inside(&surfaces, x, y, width, height);
+        if pixels == 0 || r.size.contains(&0) || r.size[0] * r.size[1] > MAX_IMAGE_BYTES / 4 {
+            return;
+        }
+        let bytes = encode_rectangle(&surfaces, format, &r, &Transfer::new(&self.state.pixel));
+        let region = Region {
+            full: [width as usize, height as usize, 1],
+            origin: [r.skip[0], r.skip[1], 0],
+            size: [r.size[0], r.size[1], 1],
+            volume: false,
+        };
+        write_region(&*self.memory, &self.client.pack, format, &region, pixels, bytes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{BASE, context_with, get, put};
+    use super::*;
+
+    #[test]
+    fn rectangles_are_cut_to_the_framebuffer() {
+        let mut c = context_with(4, 3);
+        let surfaces = c.draw_surfaces();
+        let r = inside(&surfaces, -1, 2, 3, 5);
+        assert_eq!(r, Rectangle { x: 0, y: 2, skip: [1, 0], size: [2, 1] });
+        assert_eq!(inside(&surfaces, 9, 9, 3, 3).size, [0, 0]);
+        assert_eq!(inside(&surfaces, i32::MIN, 0, i32::MAX, 1).size[0], 0);
+        // Of a rectangle that ends one pixel inside, that pixel remains.
+        assert_eq!(inside(&surfaces, i32::MIN + 2, 0, i32::MAX, 1).size, [1, 1]);
+    }
+
+    #[test]
+    fn pixels_outside_stay_as_they_were() {
+        let mut c = context_with(2, 1);
+        assert!(c.draw_target().is_some());
+        if let ColorPlane::Rgba8(plane) = &mut *lock(&c.draw_color().unwrap().0) {
+            plane.write_row(0, 0, &[0x0403_0201, 0x0807_0605]);
+        }
+        put(&c, BASE, &[99; 16]);
+        c.read_pixels(1, 0, 2, 1, BGR, UNSIGNED_BYTE, BASE);
+        assert_eq!(get(&c, BASE), [7, 6, 5, 99, 99, 99, 99]);
+        c.read_pixels(0, 0, 1, 1, DEPTH_COMPONENT, FLOAT, BASE);
+        assert_eq!(get(&c, BASE), 1.0f32.to_ne_bytes());
+        c.read_pixels(0, 0, 1, 1, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE);
+        assert_eq!(get(&c, BASE), 0xffff_ff00u32.to_ne_bytes());
+        assert_eq!(c.error, NO_ERROR);
+        c.read_pixels(0, 0, 1, 1, COLOR_INDEX, UNSIGNED_BYTE, BASE);
+        assert_eq!(c.error, INVALID_OPERATION);
+    }
+
+    #[test]
+    fn transfer_applies() {
+        let mut c = context_with(1, 1);
+        c.state.pixel.bias = [0.5, 0.0, 0.0, 2.0];
+        c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE);
+        assert_eq!(get(&c, BASE), [128, 0, 0, 255]);
+        c.state.stencil.clear = 0;
+        c.state.pixel.index = (0, 5);
+        c.read_pixels(0, 0, 1, 1, STENCIL_INDEX, UNSIGNED_SHORT, BASE);
+        assert_eq!(get(&c, BASE), 5u16.to_ne_bytes());
+    }
+}

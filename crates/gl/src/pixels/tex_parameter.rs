@@ -1,0 +1,281 @@
+//! `TexParameter` and its queries.
+
+use super::image::lock;
+use super::texture::{ImageTarget, MAX_ANISOTROPY, TextureParameters, slot, slot_of};
+use crate::Context;
+use crate::enums::*;
+
+/// A parameter's value as it was given.
+#[derive(Clone, Copy, Debug)]
+enum Value {
+    Float(f32),
+    Int(i32),
+    Floats([f32; 4]),
+    Ints([i32; 4]),
+}
+
+/// An integer as a component of a colour: the range of the type becomes -1..=1.
+fn component(value: i32) -> f32 {
+    ((2.0 * f64::from(value) + 1.0) / f64::from(u32::MAX)) as f32
+}
+
+/// A component of a colour as an integer.
+fn integer(component: f32) -> i32 {
+    ((f64::from(u32::MAX) * f64::from(component) - 1.0) / 2.0).round() as i32
+}
+
+impl Value {
+    fn float(self) -> f32 {
+        match self {
+            Self::Float(v) | Self::Floats([v, ..]) => v,
+            Self::Int(v) | Self::Ints([v, ..]) => v as f32,
+        }
+    }
+
+    /// Floats are rounded to the nearest integer.
+    fn int(self) -> i32 {
+        match self {
+            Self::Float(v) | Self::Floats([v, ..]) => v.round() as i32,
+            Self::Int(v) | Self::Ints([v, ..]) => v,
+        }
+    }
+
+    fn token(self) -> u32 {
+        self.int() as u32
+    }
+
+    fn color(self) -> Option<[f32; 4]> {
+        match self {
+            Self::Floats(v) => Some(v),
+            Self::Ints(v) => Some(v.map(component)),
+            Self::Float(_) | Self::Int(_) => None,
+        }
+    }
+}
+
+type Failure = (u32, &'static str);
+
+fn token_of(value: Value, allowed: &[u32]) -> Result<u32, Failure> {
+    let token = value.token();
+    allowed.contains(&token).then_some(token).ok_or((INVALID_ENUM, "the value is none that the parameter can have"))
+}
+
+fn level_of(value: Value) -> Result<i32, Failure> {
+    let level = value.int();
+    (level >= 0).then_some(level).ok_or((INVALID_VALUE, "a level is negative"))
+}
+
+fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Result<(), Failure> {
+    let rectangle = slot == slot::RECTANGLE;
+    match pname {
+        TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
+            let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R].iter().position(|&t| t == pname).unwrap_or(0);
+            let all = [CLAMP, CLAMP_TO_EDGE, CLAMP_TO_BORDER, REPEAT, MIRRORED_REPEAT];
+            p.wrap[axis] = token_of(value, if rectangle { &all[..3] } else { &all })?;
+        }
+        TEXTURE_MIN_FILTER => {
+            let all = [
+                NEAREST,
+                LINEAR,
+                NEAREST_MIPMAP_NEAREST,
+                LINEAR_MIPMAP_NEAREST,
+                NEAREST_MIPMAP_LINEAR,
+                LINEAR_MIPMAP_LINEAR,
+            ];
+            p.min = token_of(value, if rectangle { &all[..2] } else { &all })?;
+        }
+        TEXTURE_MAG_FILTER => p.mag = token_of(value, &[NEAREST, LINEAR])?,
+        TEXTURE_BORDER_COLOR => {
+            p.border = value.color().ok_or((INVALID_ENUM, "TEXTURE_BORDER_COLOR needs a vector"))?;
+        }
+        TEXTURE_PRIORITY => p.priority = value.float().clamp(0.0, 1.0),
+        TEXTURE_MIN_LOD => p.lod[0] = value.float(),
+        TEXTURE_MAX_LOD => p.lod[1] = value.float(),
+        TEXTURE_BASE_LEVEL => {
+            let level = level_of(value)?;
+            if rectangle && level != 0 {
+                return Err((INVALID_OPERATION, "a rectangle texture has level 0 alone"));
+            }
+            p.levels[0] = level;
+        }
+        TEXTURE_MAX_LEVEL => p.levels[1] = level_of(value)?,
+        TEXTURE_LOD_BIAS => p.lod_bias = value.float(),
+        DEPTH_TEXTURE_MODE => p.depth_mode = token_of(value, &[LUMINANCE, INTENSITY, ALPHA])?,
+        TEXTURE_COMPARE_MODE => p.compare_mode = token_of(value, &[NONE, COMPARE_R_TO_TEXTURE])?,
+        TEXTURE_COMPARE_FUNC => {
+            p.compare_func = token_of(value, &[LEQUAL, GEQUAL, LESS, GREATER, EQUAL, NOTEQUAL, ALWAYS, NEVER])?;
+        }
+        GENERATE_MIPMAP if rectangle && value.int() != 0 => {
+            return Err((INVALID_VALUE, "a rectangle texture has no mipmaps"));
+        }
+        GENERATE_MIPMAP => p.generate_mipmap = value.float() != 0.0,
+        TEXTURE_MAX_ANISOTROPY_EXT => {
+            let amount = value.float();
+            if amount.is_nan() || amount < 1.0 {
+                return Err((INVALID_VALUE, "anisotropy is less than 1"));
+            }
+            p.anisotropy = amount.min(MAX_ANISOTROPY);
+        }
+        _ => return Err((INVALID_ENUM, "pname is not a texture parameter")),
+    }
+    Ok(())
+}
+
+/// The values of a parameter: numbers, and whether they are components of a colour.
+fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)> {
+    let one = |v: f64| Some((vec![v], false));
+    match pname {
+        TEXTURE_WRAP_S => one(p.wrap[0].into()),
+        TEXTURE_WRAP_T => one(p.wrap[1].into()),
+        TEXTURE_WRAP_R => one(p.wrap[2].into()),
+        TEXTURE_MIN_FILTER => one(p.min.into()),
+        TEXTURE_MAG_FILTER => one(p.mag.into()),
+        TEXTURE_BORDER_COLOR => Some((p.border.map(|v| f64::from(v.clamp(0.0, 1.0))).to_vec(), true)),
+        TEXTURE_PRIORITY => Some((vec![p.priority.into()], true)),
+        TEXTURE_RESIDENT => one(1.0),
+        TEXTURE_MIN_LOD => one(p.lod[0].into()),
+        TEXTURE_MAX_LOD => one(p.lod[1].into()),
+        TEXTURE_BASE_LEVEL => one(p.levels[0].into()),
+        TEXTURE_MAX_LEVEL => one(p.levels[1].into()),
+        TEXTURE_LOD_BIAS => one(p.lod_bias.into()),
+        DEPTH_TEXTURE_MODE => one(p.depth_mode.into()),
+        TEXTURE_COMPARE_MODE => one(p.compare_mode.into()),
+        TEXTURE_COMPARE_FUNC => one(p.compare_func.into()),
+        GENERATE_MIPMAP => one(f64::from(u8::from(p.generate_mipmap))),
+        TEXTURE_MAX_ANISOTROPY_EXT => one(p.anisotropy.into()),
+        _ => None,
+    }
+}
+
+impl Context {
+    fn tex_parameter(&mut self, call: &'static str, target: u32, pname: u32, value: Value) {
+        self.listable(move |c| {
+            if !c.outside_begin(call) {
+                return;
+            }
+            let Some(slot) = slot_of(target) else {
+                c.record_error(INVALID_ENUM, call, "target is not a texture target");
+                return;
+            };
+            let texture = c.target_texture(ImageTarget { slot, face: 0, proxy: false });
+            let mut texture = lock(&texture);
+            let mut parameters = texture.parameters.clone();
+            match set(&mut parameters, slot, pname, value) {
+                Err((error, why)) => {
+                    drop(texture);
+                    c.record_error(error, call, why);
+                }
+                Ok(()) if parameters != texture.parameters => {
+                    texture.parameters = parameters;
+                    texture.touch();
+                }
+                Ok(()) => {}
+            }
+        });
+    }
+
+    /// Reads a parameter's vector: four values of a border colour, else one.
+    fn read_parameter<T: bytemuck::Pod + Default>(&self, pname: u32, address: usize) -> Option<[T; 4]> {
+        let mut values = [T::default(); 4];
+        let count = if pname == TEXTURE_BORDER_COLOR { 4 } else { 1 };
+        (address != 0 && self.memory.read(address, bytemuck::cast_slice_mut(&mut values[..count]))).then_some(values)
+    }
+
+    /// `glTexParameterf`.
+    pub fn tex_parameterf(&mut self, target: u32, pname: u32, param: f32) {
+        self.tex_parameter("glTexParameterf", target, pname, Value::Float(param));
+    }
+
+    /// `glTexParameteri`.
+    pub fn tex_parameteri(&mut self, target: u32, pname: u32, param: i32) {
+        self.tex_parameter("glTexParameteri", target, pname, Value::Int(param));
+    }
+
+    /// `glTexParameterfv`.
+    pub fn tex_parameterfv(&mut self, target: u32, pname: u32, params: usize) {
+        if let Some(values) = self.read_parameter(pname, params) {
+            self.tex_parameter("glTexParameterfv", target, pname, Value::Floats(values));
+        }
+    }
+
+    /// `glTexParameteriv`.
+    pub fn tex_parameteriv(&mut self, target: u32, pname: u32, params: usize) {
+        if let Some(values) = self.read_parameter(pname, params) {
+            self.tex_parameter("glTexParameteriv", target, pname, Value::Ints(values));
+        }
+    }
+
+    fn parameter_values(&mut self, call: &str, target: u32, pname: u32) -> Option<(Vec<f64>, bool)> {
+        if !self.outside_begin(call) {
+            return None;
+        }
+        let Some(slot) = slot_of(target) else {
+            self.record_error(INVALID_ENUM, call, "target is not a texture target");
+            return None;
+        };
+        let texture = self.target_texture(ImageTarget { slot, face: 0, proxy: false });
+        let values = get(&lock(&texture).parameters, pname);
+        if values.is_none() {
+            self.record_error(INVALID_ENUM, call, "pname is not a texture parameter");
+        }
+        values
+    }
+
+    /// `glGetTexParameterfv`.
+    pub fn get_tex_parameterfv(&mut self, target: u32, pname: u32, params: usize) {
+        if let Some((values, _)) = self.parameter_values("glGetTexParameterfv", target, pname)
+            && params != 0
+        {
+            let values: Vec<f32> = values.iter().map(|&v| v as f32).collect();
+            self.memory.write(params, bytemuck::cast_slice(&values));
+        }
+    }
+
+    /// `glGetTexParameteriv`.
+    pub fn get_tex_parameteriv(&mut self, target: u32, pname: u32, params: usize) {
+        if let Some((values, color)) = self.parameter_values("glGetTexParameteriv", target, pname)
+            && params != 0
+        {
+            let convert = |v: f64| if color { integer(v as f32) } else { v.round() as i32 };
+            let values: Vec<i32> = values.into_iter().map(convert).collect();
+            self.memory.write(params, bytemuck::cast_slice(&values));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{BASE, context, put, read_floats, read_u32};
+    use super::*;
+
+    #[test]
+    fn values_are_checked_and_kept() {
+        let mut c = context();
+        c.tex_parameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, LINEAR as i32);
+        c.get_tex_parameteriv(TEXTURE_2D, TEXTURE_MIN_FILTER, BASE);
+        assert_eq!(read_u32(&c, BASE), LINEAR);
+        c.tex_parameterf(TEXTURE_2D, TEXTURE_MAG_FILTER, LINEAR_MIPMAP_LINEAR as f32);
+        assert_eq!(c.error, INVALID_ENUM);
+        c.error = NO_ERROR;
+        c.tex_parameteri(TEXTURE_2D, TEXTURE_MAX_LEVEL, -1);
+        assert_eq!(c.error, INVALID_VALUE);
+        c.error = NO_ERROR;
+        c.tex_parameteri(TEXTURE_RECTANGLE_ARB, TEXTURE_WRAP_S, REPEAT as i32);
+        assert_eq!(c.error, INVALID_ENUM);
+        c.error = NO_ERROR;
+        c.tex_parameterf(TEXTURE_2D, TEXTURE_BORDER_COLOR, 1.0);
+        assert_eq!(c.error, INVALID_ENUM);
+    }
+
+    #[test]
+    fn border_colours_convert() {
+        let mut c = context();
+        put(&c, BASE, bytemuck::cast_slice(&[i32::MAX, i32::MIN, 0, i32::MAX]));
+        c.tex_parameteriv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE);
+        c.get_tex_parameterfv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE + 64);
+        let values = read_floats::<4>(&c, BASE + 64);
+        assert_eq!([values[0], values[1], values[3]], [1.0, 0.0, 1.0]);
+        c.get_tex_parameteriv(TEXTURE_3D, TEXTURE_PRIORITY, BASE);
+        assert_eq!(read_u32(&c, BASE), i32::MAX as u32);
+    }
+}

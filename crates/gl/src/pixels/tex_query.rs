@@ -1,0 +1,214 @@
+//! `GetTexImage` and `GetTexLevelParameter`.
+
+use super::encode;
+use super::format::{Content, PixelFormat};
+use super::image::lock;
+use super::internal_format::Bits;
+use super::store::{Region, write_region};
+use super::texture::{ImageTarget, TextureObject};
+use super::transfer::{Transfer, clamp_colors, clamp_unit};
+use crate::Context;
+use crate::enums::*;
+
+type Failure = (u32, &'static str);
+
+/// A level's parameter. Levels without an image have the initial values.
+fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname: u32) -> Result<i32, Failure> {
+    let image = texture.image(face, level);
+    let (size, border, token, bits, kind) = match &image {
+        Some(i) => (i.size, i.border, i.format.token, i.format.bits(), i.format.component_type()),
+        None => ([0; 3], 0, 1, Bits::default(), NONE),
+    };
+    let of = |bits: i32| if bits > 0 { kind as i32 } else { NONE as i32 };
+    Ok(match pname {
+        TEXTURE_WIDTH => size[0] as i32,
+        TEXTURE_HEIGHT => size[1] as i32,
+        TEXTURE_DEPTH => size[2] as i32,
+        TEXTURE_BORDER => border as i32,
+        TEXTURE_INTERNAL_FORMAT => token as i32,
+        TEXTURE_RED_SIZE => bits.rgba[0],
+        TEXTURE_GREEN_SIZE => bits.rgba[1],
+        TEXTURE_BLUE_SIZE => bits.rgba[2],
+        TEXTURE_ALPHA_SIZE => bits.rgba[3],
+        TEXTURE_LUMINANCE_SIZE => bits.luminance,
+        TEXTURE_INTENSITY_SIZE => bits.intensity,
+        TEXTURE_DEPTH_SIZE => bits.depth,
+        TEXTURE_STENCIL_SIZE => bits.stencil,
+        TEXTURE_RED_TYPE_ARB => of(bits.rgba[0]),
+        TEXTURE_GREEN_TYPE_ARB => of(bits.rgba[1]),
+        TEXTURE_BLUE_TYPE_ARB => of(bits.rgba[2]),
+        TEXTURE_ALPHA_TYPE_ARB => of(bits.rgba[3]),
+        TEXTURE_LUMINANCE_TYPE_ARB => of(bits.luminance),
+        TEXTURE_INTENSITY_TYPE_ARB => of(bits.intensity),
+        TEXTURE_DEPTH_TYPE_ARB => of(bits.depth),
+        TEXTURE_COMPRESSED => 0,
+        TEXTURE_COMPRESSED_IMAGE_SIZE => return Err((INVALID_OPERATION, "the image is not compressed")),
+        _ => return Err((INVALID_ENUM, "pname is not a parameter of a level")),
+    })
+}
+
+impl Context {
+    fn query_target(&self, target: u32, level: i32, proxies: bool) -> Result<(ImageTarget, usize), Failure> {
+        let target = ImageTarget::new(target, None)
+            .filter(|t| proxies || !t.proxy)
+            .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
+        let level = usize::try_from(level)
+            .ok()
+            .filter(|&l| l < target.max_levels())
+            .ok_or((INVALID_VALUE, "level is negative or larger than the target allows"))?;
+        Ok((target, level))
+    }
+
+    fn tex_level_parameter(&mut self, call: &str, target: u32, level: i32, pname: u32) -> Option<i32> {
+        if !self.outside_begin(call) {
+            return None;
+        }
+        let value = self.query_target(target, level, true).and_then(|(target, level)| {
+            if target.proxy {
+                return level_parameter(&mut self.textures.proxies[target.slot], target.face, level, pname);
+            }
+            let texture = self.target_texture(target);
+            let mut texture = lock(&texture);
+            level_parameter(&mut texture, target.face, level, pname)
+        });
+        value.map_err(|(error, why)| self.record_error(error, call, why)).ok()
+    }
+
+    /// `glGetTexLevelParameterfv`.
+    pub fn get_tex_level_parameterfv(&mut self, target: u32, level: i32, pname: u32, params: usize) {
+        if let Some(value) = self.tex_level_parameter("glGetTexLevelParameterfv", target, level, pname)
+            && params != 0
+        {
+            self.memory.write(params, &(value as f32).to_ne_bytes());
+        }
+    }
+
+    /// `glGetTexLevelParameteriv`.
+    pub fn get_tex_level_parameteriv(&mut self, target: u32, level: i32, pname: u32, params: usize) {
+        if let Some(value) = self.tex_level_parameter("glGetTexLevelParameteriv", target, level, pname)
+            && params != 0
+        {
+            self.memory.write(params, &value.to_ne_bytes());
+        }
+    }
+
+    /// `glGetTexImage`.
+    pub fn get_tex_image(&mut self, target: u32, level: i32, format: u32, type_: u32, pixels: usize) {
+        const CALL: &str = "glGetTexImage";
+        if !self.outside_begin(CALL) {
+            return;
+        }
+        if let Err((error, why)) = self.read_texture(target, level, format, type_, pixels) {
+            self.record_error(error, CALL, why);
+        }
+    }
+
+    fn read_texture(&mut self, target: u32, level: i32, format: u32, kind: u32, pixels: usize) -> Result<(), Failure> {
+        let (target, level) = self.query_target(target, level, false)?;
+        let format = PixelFormat::new(format, kind)?;
+        if matches!(format.content(), Content::Index | Content::Stencil) {
+            return Err((INVALID_ENUM, "a texture has no indices"));
+        }
+        let texture = self.target_texture(target);
+        let pending = lock(&texture).needs_flush();
+        if pending {
+            self.flush_recorded();
+        }
+        let mut texture = lock(&texture);
+        let dimensions = texture.dimensions();
+        let Some(image) = texture.image(target.face, level) else { return Ok(()) };
+        let fits = match format.content() {
+            Content::Depth => image.format.has_depth(),
+            Content::DepthStencil => image.format.has_stencil(),
+            _ => image.format.is_color(),
+        };
+        if !fits {
+            return Err((INVALID_OPERATION, "the texture does not hold what format asks for"));
+        }
+        let full = image.full();
+        if pixels == 0 || full.contains(&0) {
+            return Ok(());
+        }
+        let transfer = Transfer::new(&self.state.pixel);
+        let mut bytes = Vec::new();
+        if format.content() == Content::Color {
+            let mut colors = image.colors();
+            transfer.colors(&mut colors);
+            if image.format.component_type() != FLOAT || !matches!(kind, FLOAT | HALF_FLOAT_ARB) {
+                clamp_colors(&mut colors);
+            }
+            encode::colors(&colors, format, &mut bytes);
+        } else {
+            let mut depths = image.depths();
+            transfer.depths(&mut depths);
+            if !transfer.keeps_depths() {
+                depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
+            }
+            if format.content() == Content::Depth {
+                encode::depths(&depths, format, &mut bytes);
+            } else {
+                let mut stencils = image.stencils();
+                stencils.iter_mut().for_each(|s| *s = (transfer.stencil(i64::from(*s)) & 255) as u8);
+                encode::depth_stencils(&depths, &stencils, kind, &mut bytes);
+            }
+        }
+        let region = Region::whole(full, dimensions == 3);
+        write_region(&*self.memory, &self.client.pack, format, &region, pixels, bytes);
+        Ok(())
+    }
+
+    /// `glGetCompressedTexImage`: no image is compressed.
+    pub fn get_compressed_tex_image(&mut self, target: u32, level: i32, _img: usize) {
+        const CALL: &str = "glGetCompressedTexImage";
+        if !self.outside_begin(CALL) {
+            return;
+        }
+        match self.query_target(target, level, false) {
+            Err((error, why)) => self.record_error(error, CALL, why),
+            Ok(_) => self.record_error(INVALID_OPERATION, CALL, "the image is not compressed"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{BASE, context, get, put, read_floats};
+    use super::*;
+
+    #[test]
+    fn luminance_is_read_as_red() {
+        let mut c = context();
+        put(&c, BASE, &[100, 200]);
+        c.tex_image_1d(TEXTURE_1D, 0, LUMINANCE_ALPHA as i32, 1, 0, LUMINANCE_ALPHA, UNSIGNED_BYTE, BASE);
+        c.get_tex_image(TEXTURE_1D, 0, RGBA, UNSIGNED_BYTE, BASE);
+        assert_eq!(get(&c, BASE), [100, 0, 0, 200]);
+        c.get_tex_image(TEXTURE_1D, 0, LUMINANCE, UNSIGNED_BYTE, BASE);
+        assert_eq!(get(&c, BASE), [100]);
+        assert_eq!(c.error, NO_ERROR);
+        c.get_tex_image(TEXTURE_1D, 0, DEPTH_COMPONENT, UNSIGNED_BYTE, BASE);
+        assert_eq!(c.error, INVALID_OPERATION);
+    }
+
+    #[test]
+    fn wide_formats_keep_their_precision() {
+        let mut c = context();
+        put(&c, BASE, &[1, 2, 3, 4, 5, 6, 7, 8]);
+        c.tex_image_1d(TEXTURE_1D, 0, RGBA16 as i32, 1, 0, RGBA, UNSIGNED_SHORT, BASE);
+        c.get_tex_image(TEXTURE_1D, 0, RGBA, UNSIGNED_SHORT, BASE + 64);
+        assert_eq!(get(&c, BASE + 64), [1, 2, 3, 4, 5, 6, 7, 8]);
+        put(&c, BASE, bytemuck::cast_slice(&[-2.5f32, 1000.0, 0.1]));
+        c.tex_image_1d(TEXTURE_1D, 0, RGB32F_ARB as i32, 1, 0, RGB, FLOAT, BASE);
+        c.get_tex_image(TEXTURE_1D, 0, RGB, FLOAT, BASE + 64);
+        assert_eq!(read_floats(&c, BASE + 64), [-2.5, 1000.0, 0.1]);
+    }
+
+    #[test]
+    fn depth_and_stencil_come_back() {
+        let mut c = context();
+        put(&c, BASE, &0x1234_5678u32.to_ne_bytes());
+        c.tex_image_1d(TEXTURE_1D, 0, DEPTH24_STENCIL8 as i32, 1, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE);
+        c.get_tex_image(TEXTURE_1D, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE + 64);
+        assert_eq!(get(&c, BASE + 64), 0x1234_5678u32.to_ne_bytes());
+        assert_eq!(c.error, NO_ERROR);
+    }
+}

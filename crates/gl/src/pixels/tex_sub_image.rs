@@ -1,0 +1,313 @@
+//! `TexSubImage`: new texels for a part of an image; and compressed images, of which there are none.
+
+use super::format::PixelFormat;
+use super::image::lock;
+use super::store::ClientImage;
+use super::tex_image::{formats_agree, plausible};
+use super::texels::{self, TexelData};
+use super::texture::ImageTarget;
+use super::transfer::Transfer;
+use crate::Context;
+use crate::enums::*;
+use std::sync::Arc;
+
+/// The arguments that all forms of `TexSubImage` share. Offsets count from the border.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoxArguments {
+    pub call: &'static str,
+    pub dimensions: usize,
+    pub target: u32,
+    pub level: i32,
+    pub offset: [i32; 3],
+    pub size: [i32; 3],
+}
+
+/// Where a box lies in an existing image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CheckedBox {
+    pub target: ImageTarget,
+    pub level: usize,
+    pub format: super::internal_format::InternalFormat,
+    pub origin: [usize; 3],
+    pub size: [usize; 3],
+}
+
+impl Context {
+    /// Checks a box against the image that it names.
+    pub(crate) fn check_box(&mut self, arguments: &BoxArguments) -> Result<CheckedBox, (u32, &'static str)> {
+        let target = ImageTarget::new(arguments.target, Some(arguments.dimensions))
+            .filter(|t| !t.proxy)
+            .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
+        let level = usize::try_from(arguments.level)
+            .ok()
+            .filter(|&l| l < target.max_levels())
+            .ok_or((INVALID_VALUE, "level is negative or larger than the target allows"))?;
+        if arguments.size[..arguments.dimensions].iter().any(|&s| s < 0) {
+            return Err((INVALID_VALUE, "a size is negative"));
+        }
+        let texture = self.target_texture(target);
+        let mut texture = lock(&texture);
+        let image = texture.image(target.face, level).ok_or((INVALID_OPERATION, "the level has no image"))?;
+        let mut origin = [0; 3];
+        let mut size = [1; 3];
+        for i in 0..arguments.dimensions {
+            let first = i64::from(arguments.offset[i]) + i64::from(image.border);
+            let end = first + i64::from(arguments.size[i]);
+            if first < 0 || end > i64::from(image.size[i]) {
+                return Err((INVALID_VALUE, "the box is not inside the image"));
+            }
+            origin[i] = first as usize;
+            size[i] = arguments.size[i] as usize;
+        }
+        Ok(CheckedBox { target, level, format: image.format, origin, size })
+    }
+
+    /// Puts texels into a checked box.
+    pub(crate) fn write_box(&mut self, checked: &CheckedBox, data: &TexelData) {
+        if checked.size.contains(&0) {
+            return;
+        }
+        // A plane must not change under recorded draws.
+        let texture = self.target_texture(checked.target);
+        let in_plane = lock(&texture).image(checked.target.face, checked.level).is_some_and(|image| image.has_planes());
+        if in_plane {
+            self.flush_recorded();
+        }
+        {
+            let mut texture = lock(&texture);
+            // Without the snapshot, texels that no draw waits for change in place.
+            texture.touch();
+            if let Some(image) = texture.image(checked.target.face, checked.level) {
+                image.write(checked.origin, checked.size, data);
+            }
+        }
+        self.image_changed(checked.target, checked.level);
+    }
+
+    fn tex_sub_image(&mut self, arguments: BoxArguments, format: u32, kind: u32, pixels: usize) {
+        let pair = PixelFormat::new(format, kind);
+        let image = match pair {
+            Ok(pair) => plausible(arguments.size)
+                .and_then(|size| self.read_image(pair, size, arguments.dimensions == 3, pixels)),
+            Err(_) => None,
+        };
+        let image = image.map(Arc::new);
+        self.listable(move |c| c.exec_tex_sub_image(&arguments, pair, image.as_deref()));
+    }
+
+    fn exec_tex_sub_image(
+        &mut self,
+        arguments: &BoxArguments,
+        format: Result<PixelFormat, (u32, &'static str)>,
+        image: Option<&ClientImage>,
+    ) {
+        if !self.outside_begin(arguments.call) {
+            return;
+        }
+        let checked = self.check_box(arguments).and_then(|c| formats_agree(format?, &c.format).map(|()| c));
+        match (checked, image) {
+            (Err((error, why)), _) => self.record_error(error, arguments.call, why),
+            (Ok(_), None) => {}
+            (Ok(checked), Some(image)) => {
+                let data = texels::from_client(image, &checked.format, &Transfer::new(&self.state.pixel));
+                self.write_box(&checked, &data);
+            }
+        }
+    }
+
+    /// `glTexSubImage1D`.
+    pub fn tex_sub_image_1d(
+        &mut self,
+        target: u32,
+        level: i32,
+        xoffset: i32,
+        width: i32,
+        format: u32,
+        type_: u32,
+        pixels: usize,
+    ) {
+        let call = "glTexSubImage1D";
+        let (offset, size) = ([xoffset, 0, 0], [width, 1, 1]);
+        self.tex_sub_image(BoxArguments { call, dimensions: 1, target, level, offset, size }, format, type_, pixels);
+    }
+
+    /// `glTexSubImage2D`.
+    pub fn tex_sub_image_2d(
+        &mut self,
+        target: u32,
+        level: i32,
+        xoffset: i32,
+        yoffset: i32,
+        width: i32,
+        height: i32,
+        format: u32,
+        type_: u32,
+        pixels: usize,
+    ) {
+        let call = "glTexSubImage2D";
+        let (offset, size) = ([xoffset, yoffset, 0], [width, height, 1]);
+        self.tex_sub_image(BoxArguments { call, dimensions: 2, target, level, offset, size }, format, type_, pixels);
+    }
+
+    /// `glTexSubImage3D`.
+    pub fn tex_sub_image_3d(
+        &mut self,
+        target: u32,
+        level: i32,
+        xoffset: i32,
+        yoffset: i32,
+        zoffset: i32,
+        width: i32,
+        height: i32,
+        depth: i32,
+        format: u32,
+        type_: u32,
+        pixels: usize,
+    ) {
+        let call = "glTexSubImage3D";
+        let (offset, size) = ([xoffset, yoffset, zoffset], [width, height, depth]);
+        self.tex_sub_image(BoxArguments { call, dimensions: 3, target, level, offset, size }, format, type_, pixels);
+    }
+
+    /// There is no compressed format: every such call is an error.
+    fn no_compressed(&mut self, call: &'static str, size: i32) {
+        self.listable(move |c| {
+            if !c.outside_begin(call) {
+                return;
+            }
+            if size < 0 {
+                c.record_error(INVALID_VALUE, call, "imageSize is negative");
+            } else {
+                c.record_error(INVALID_ENUM, call, "the format is not a supported compressed format");
+            }
+        });
+    }
+
+    /// `glCompressedTexImage1D`.
+    pub fn compressed_tex_image_1d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _internalformat: u32,
+        _width: i32,
+        _border: i32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexImage1D", image_size);
+    }
+
+    /// `glCompressedTexImage2D`.
+    pub fn compressed_tex_image_2d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _internalformat: u32,
+        _width: i32,
+        _height: i32,
+        _border: i32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexImage2D", image_size);
+    }
+
+    /// `glCompressedTexImage3D`.
+    pub fn compressed_tex_image_3d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _internalformat: u32,
+        _width: i32,
+        _height: i32,
+        _depth: i32,
+        _border: i32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexImage3D", image_size);
+    }
+
+    /// `glCompressedTexSubImage1D`.
+    pub fn compressed_tex_sub_image_1d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _xoffset: i32,
+        _width: i32,
+        _format: u32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexSubImage1D", image_size);
+    }
+
+    /// `glCompressedTexSubImage2D`.
+    pub fn compressed_tex_sub_image_2d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _xoffset: i32,
+        _yoffset: i32,
+        _width: i32,
+        _height: i32,
+        _format: u32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexSubImage2D", image_size);
+    }
+
+    /// `glCompressedTexSubImage3D`.
+    pub fn compressed_tex_sub_image_3d(
+        &mut self,
+        _target: u32,
+        _level: i32,
+        _xoffset: i32,
+        _yoffset: i32,
+        _zoffset: i32,
+        _width: i32,
+        _height: i32,
+        _depth: i32,
+        _format: u32,
+        image_size: i32,
+        _data: usize,
+    ) {
+        self.no_compressed("glCompressedTexSubImage3D", image_size);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{BASE, context};
+    use super::*;
+
+    #[test]
+    fn boxes_must_lie_inside() {
+        let mut c = context();
+        let mut error = |x, width| {
+            c.error = NO_ERROR;
+            c.tex_sub_image_1d(TEXTURE_1D, 0, x, width, RGBA, UNSIGNED_BYTE, BASE);
+            c.error
+        };
+        assert_eq!(error(0, 1), INVALID_OPERATION);
+        c.tex_image_1d(TEXTURE_1D, 0, RGBA as i32, 6, 1, RGBA, UNSIGNED_BYTE, 0);
+        let mut error = |x, width| {
+            c.error = NO_ERROR;
+            c.tex_sub_image_1d(TEXTURE_1D, 0, x, width, RGBA, UNSIGNED_BYTE, BASE);
+            c.error
+        };
+        assert_eq!(error(-1, 6), NO_ERROR);
+        assert_eq!(error(-2, 1), INVALID_VALUE);
+        assert_eq!(error(0, 6), INVALID_VALUE);
+        assert_eq!(error(0, -1), INVALID_VALUE);
+        assert_eq!(error(i32::MAX, i32::MAX), INVALID_VALUE);
+    }
+
+    #[test]
+    fn nothing_is_compressed() {
+        let mut c = context();
+        c.compressed_tex_image_2d(TEXTURE_2D, 0, COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 4, 0, 8, BASE);
+        assert_eq!(c.error, INVALID_ENUM);
+    }
+}

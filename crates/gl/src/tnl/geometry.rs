@@ -1,0 +1,244 @@
+//! A recorded draw: what the rasteriser asks for its primitives.
+
+use super::assembled::{Assembled, Piece, PieceVertices};
+use super::snapshot::VertexSnapshot;
+use super::vertices::{Eight, shade};
+use crate::enums as gl;
+use crate::vertex::{Primitive, VertexBatch};
+use std::sync::Arc;
+use vitral_math::lanes::{LANES, Level, dispatch};
+use vitral_raster::ScreenVertex;
+use vitral_raster::forward::{Assembler, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project};
+
+/// Point parameters.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointSizes {
+    pub size: f32,
+    pub limits: [f32; 2],
+    pub attenuation: [f32; 3],
+    /// Multisampled points smaller than this fade.
+    pub fade: Option<f32>,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct DrawGeometry {
+    pub batch: Arc<VertexBatch>,
+    pub assembled: Arc<Assembled>,
+    pub snapshot: Arc<VertexSnapshot>,
+    pub primitive: PrimitiveState,
+    pub layout: Layout,
+    pub clip: [i32; 4],
+    pub points: PointSizes,
+}
+
+impl DrawGeometry {
+    fn filled(&self) -> bool {
+        self.primitive.polygon_mode == [2, 2]
+    }
+
+    fn filled_pieces(&self) -> usize {
+        if self.filled() { self.assembled.pieces.len() } else { 0 }
+    }
+}
+
+impl Geometry for DrawGeometry {
+    fn pieces(&self) -> usize {
+        self.filled_pieces() + usize::from(!self.filled() || self.assembled.others)
+    }
+
+    fn weight(&self, piece: usize) -> usize {
+        match self.assembled.pieces.get(piece) {
+            Some(p) if self.filled() => p.triangles.len(),
+            _ => self.batch.primitives.iter().map(|p| p.count as usize).sum(),
+        }
+    }
+
+    fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    fn clip(&self) -> [i32; 4] {
+        self.clip
+    }
+
+    fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives) {
+        let mut state = self.primitive.clone();
+        state.draw = draw;
+        if piece < self.filled_pieces() {
+            let Piece { triangles, vertices } = &self.assembled.pieces[piece];
+            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles, 0));
+        } else {
+            let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
+            self.emit_vertices(level, &all, &state, screen, out, |assembler| self.emit_primitives(assembler));
+        }
+    }
+}
+
+impl DrawGeometry {
+    /// Transforms a piece's vertices, assembles, and shades the vertices that primitives use.
+    fn emit_vertices(
+        &self,
+        level: Level,
+        vertices: &PieceVertices,
+        state: &PrimitiveState,
+        screen: &ForwardScreen,
+        out: &mut Primitives,
+        assemble: impl FnOnce(&mut Assembler<'_>),
+    ) {
+        let count = vertices.len();
+        let gathered: Vec<[f32; 4]>;
+        let positions = match vertices {
+            PieceVertices::Range(start, end) => &self.batch.positions[*start as usize..*end as usize],
+            PieceVertices::List(list) => {
+                gathered = list.iter().map(|&v| self.batch.positions[v as usize]).collect();
+                &gathered
+            }
+        };
+        let mut clip = vec![[0.0f32; 4]; count];
+        let mut window = vec![ScreenVertex::default(); count];
+        let matrix = &self.snapshot.clip_from_model;
+        project(level, positions, matrix, &state.window, &mut clip, &mut window);
+        let user = self.user_distances(positions);
+        let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
+        let in_piece = Vertices { clip: &clip, screen: &window, user: &user, sizes: &sizes };
+        let mut assembler = Assembler::new(state, screen.screen(), out, self.layout.stride, &in_piece);
+        assemble(&mut assembler);
+        let range = assembler.finish();
+        if self.layout.stride == 0 {
+            return;
+        }
+        let used = std::mem::take(&mut assembler.used);
+        let records = &mut assembler.records()[range];
+        for (eight, records) in used.chunks(LANES).zip(records.chunks_mut(LANES * self.layout.stride)) {
+            self.shade_eight(level, vertices, &clip, eight, records);
+        }
+        assembler.derive();
+    }
+
+    /// Shades up to eight used vertices; those that clipping made are skipped.
+    fn shade_eight(
+        &self,
+        level: Level,
+        vertices: &PieceVertices,
+        clip: &[[f32; 4]],
+        eight: &[u32],
+        records: &mut [f32],
+    ) {
+        let Some(some) = eight.iter().copied().find(|&v| Assembler::is_own(v)) else { return };
+        let mut numbers = [0; LANES];
+        let mut inverse_w = [1.0; LANES];
+        for lane in 0..LANES {
+            let own = eight.get(lane).copied().filter(|&v| Assembler::is_own(v)).unwrap_or(some);
+            numbers[lane] = vertices.get(own);
+            inverse_w[lane] = 1.0 / clip[own as usize][3];
+        }
+        let stride = self.layout.stride;
+        if self.batch.materials.is_empty() {
+            let lanes = Eight { vertices: numbers, count: eight.len(), batch: &self.batch };
+            dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &lanes, &inverse_w, records));
+            return;
+        }
+        // Materials change between vertices: one at a time.
+        for lane in 0..eight.len() {
+            let one = Eight { vertices: [numbers[lane]; LANES], count: 1, batch: &self.batch };
+            let w = [inverse_w[lane]; LANES];
+            let record = &mut records[lane * stride..];
+            dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &one, &w, record));
+        }
+    }
+
+    /// Distances to the user's planes, one after the other for each vertex.
+    fn user_distances(&self, positions: &[[f32; 4]]) -> Vec<f32> {
+        let planes = &self.snapshot.clip_planes;
+        let distance = |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+        positions.iter().flat_map(|p| planes.iter().map(move |plane| distance(plane, p))).collect()
+    }
+
+    fn needs_sizes(&self) -> bool {
+        self.primitive.polygon_mode.contains(&0) || self.batch.primitives.iter().any(|p| p.mode == gl::POINTS)
+    }
+
+    /// Point sizes and fade factors.
+    fn sizes(&self, positions: &[[f32; 4]]) -> Vec<[f32; 2]> {
+        let (m, points) = (&self.snapshot.modelview, &self.points);
+        let size_at = |p: &[f32; 4]| {
+            let row = |r: usize| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r];
+            let d = (row(0) * row(0) + row(1) * row(1) + row(2) * row(2)).sqrt();
+            let [a, b, c] = points.attenuation;
+            let loss = a + b * d + c * d * d;
+            let size = if loss > 0.0 { points.size / loss.sqrt() } else { points.limits[1] };
+            let size = size.clamp(points.limits[0], points.limits[1].max(points.limits[0]));
+            match points.fade {
+                Some(threshold) if size < threshold => [threshold, (size / threshold) * (size / threshold)],
+                _ => [size, 1.0],
+            }
+        };
+        positions.iter().map(size_at).collect()
+    }
+
+    /// Points, lines, and polygons that are not filled.
+    fn emit_primitives(&self, assembler: &mut Assembler<'_>) {
+        for primitive in &self.batch.primitives {
+            let vertex = |i: u32| self.batch.vertex(primitive.first + i) as u32;
+            let n = primitive.count;
+            match primitive.mode {
+                gl::POINTS => (0..n).for_each(|i| assembler.point(vertex(i))),
+                gl::LINES => (0..n / 2).for_each(|i| {
+                    assembler.line([vertex(2 * i), vertex(2 * i + 1)], vertex(2 * i + 1), 0.0);
+                }),
+                gl::LINE_STRIP | gl::LINE_LOOP => {
+                    let mut stipple = 0.0;
+                    for i in 1..n {
+                        stipple = assembler.line([vertex(i - 1), vertex(i)], vertex(i), stipple);
+                    }
+                    if primitive.mode == gl::LINE_LOOP {
+                        assembler.line([vertex(n - 1), vertex(0)], vertex(0), stipple);
+                    }
+                }
+                _ if !self.filled() => self.emit_outlined(assembler, primitive),
+                _ => {}
+            }
+        }
+    }
+
+    /// Polygons with their edges.
+    fn emit_outlined(&self, assembler: &mut Assembler<'_>, primitive: &Primitive) {
+        let vertex = |i: u32| self.batch.vertex(primitive.first + i) as u32;
+        let flag = |v: u32| match &self.batch.edges {
+            Some(edges) => edges[v as usize],
+            None => self.snapshot.current.edge,
+        };
+        let n = primitive.count;
+        let mut polygon = |corners: &[u32], provoking: u32, flagged: bool| {
+            let edges: Vec<bool> = corners.iter().map(|&v| !flagged || flag(v)).collect();
+            assembler.polygon(corners, &edges, provoking);
+        };
+        match primitive.mode {
+            gl::TRIANGLES => (0..n / 3).for_each(|i| {
+                let c = [0, 1, 2].map(|k| vertex(3 * i + k));
+                polygon(&c, c[2], true);
+            }),
+            gl::QUADS => (0..n / 4).for_each(|i| {
+                let c = [0, 1, 2, 3].map(|k| vertex(4 * i + k));
+                polygon(&c, c[3], true);
+            }),
+            gl::POLYGON => {
+                let c: Vec<u32> = (0..n).map(vertex).collect();
+                polygon(&c, c[0], true);
+            }
+            gl::TRIANGLE_STRIP => (2..n).for_each(|i| {
+                let (a, b) = if i % 2 == 0 { (i - 2, i - 1) } else { (i - 1, i - 2) };
+                polygon(&[vertex(a), vertex(b), vertex(i)], vertex(i), false);
+            }),
+            gl::TRIANGLE_FAN => (2..n).for_each(|i| {
+                polygon(&[vertex(0), vertex(i - 1), vertex(i)], vertex(i), false);
+            }),
+            gl::QUAD_STRIP => (0..n.saturating_sub(2) / 2).for_each(|i| {
+                let c = [0, 1, 3, 2].map(|k| vertex(2 * i + k));
+                polygon(&c, c[2], false);
+            }),
+            _ => {}
+        }
+    }
+}

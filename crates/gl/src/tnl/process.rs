@@ -1,0 +1,102 @@
+//! Vertices processed at once, for feedback, selection and the raster position.
+
+use super::snapshot::{LightCache, VertexSnapshot};
+use super::vertices::{Eight, process};
+use crate::Context;
+use crate::enums as gl;
+use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
+use crate::vertex::VertexBatch;
+use vitral_math::lanes::{LANES, Level, dispatch};
+use vitral_raster::forward::WindowTransform;
+
+/// A vertex after transformation and lighting, for feedback and selection.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ProcessedVertex {
+    /// Clip coordinates.
+    pub clip: [f32; 4],
+    /// Signed distances to the user clip planes (0 for disabled ones): inside is >= 0.
+    pub user: [f32; 8],
+    /// Front colour, clamped.
+    pub color: [f32; 4],
+    /// Front secondary colour, clamped.
+    pub secondary: [f32; 3],
+    /// Back colour, clamped (two-sided lighting; else the front's).
+    pub back_color: [f32; 4],
+    /// Coordinates of each unit after generation and texture matrix.
+    pub tex: [[f32; 4]; 8],
+    /// Fog coordinate.
+    pub fog: f32,
+    /// Edge flag.
+    pub edge: bool,
+}
+
+impl Context {
+    /// Transforms and lights all vertices of a batch now.
+    pub(crate) fn process_batch(&mut self, batch: &VertexBatch) -> Vec<ProcessedVertex> {
+        let units: Vec<usize> = (0..MAX_TEXTURE_UNITS).collect();
+        let snapshot = VertexSnapshot::new(&self.state, &units, true, &mut LightCache::default());
+        let mut planes = snapshot.clip_planes.iter();
+        let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
+        let level = Level::new();
+        let mut out = vec![ProcessedVertex::default(); batch.positions.len()];
+        for first in (0..batch.positions.len()).step_by(LANES) {
+            // Materials may change between vertices: one at a time then.
+            let count = if batch.materials.is_empty() { LANES.min(batch.positions.len() - first) } else { 1 };
+            let last = (first + LANES).min(batch.positions.len());
+            for first in (first..last).step_by(count) {
+                let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
+                let eight = Eight { vertices, count, batch };
+                dispatch!(level, simd => {
+                    let (_, shaded, tex) = process(simd, &snapshot, &eight);
+                    let color = shaded.color.map(|c| c.to_array());
+                    let back = shaded.back.map_or(shaded.color, |(c, _)| c).map(|c| c.to_array());
+                    let secondary = shaded.secondary.map(|c| [c.x.to_array(), c.y.to_array(), c.z.to_array()]);
+                    let tex = tex.map(|unit| unit.map(|c| c.to_array()));
+                    let fog = shaded.fog.to_array();
+                    for lane in 0..count {
+                        let vertex = &mut out[first + lane];
+                        vertex.color = color.map(|c| c[lane]);
+                        vertex.back_color = back.map(|c| c[lane]);
+                        vertex.secondary = secondary.map_or([0.0; 3], |s| s.map(|c| c[lane]));
+                        vertex.tex = tex.map(|unit| unit.map(|c| c[lane]));
+                        vertex.fog = fog[lane];
+                    }
+                });
+            }
+        }
+        let m = &snapshot.clip_from_model;
+        for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {
+            vertex.clip = [0, 1, 2, 3].map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
+            vertex.user = planes.map(|plane| plane.map_or(0.0, |q| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]));
+            vertex.edge = batch.edges.as_ref().map_or(self.state.current.edge, |edges| edges[i]);
+        }
+        out
+    }
+
+    /// What `RasterPos` of a model-space position gives: with the current attributes, lit, clipped against the view
+    /// volume and user planes.
+    pub(crate) fn raster_position(&mut self, position: [f32; 4]) -> RasterPosition {
+        let batch = VertexBatch { positions: vec![position], ..VertexBatch::default() };
+        let Some(vertex) = self.process_batch(&batch).first().copied() else { return RasterPosition::default() };
+        let v = &self.state.viewport;
+        let (origin, depth_mode) = self.state.clip_control;
+        let zero_to_one = depth_mode == gl::ZERO_TO_ONE;
+        let range = [v.depth_range.near, v.depth_range.far];
+        let window = WindowTransform::new(v.rect, range, zero_to_one, origin == gl::UPPER_LEFT);
+        let [x, y, z, w] = vertex.clip;
+        let depth_ok = self.state.depth_clamp || (z >= window.near * w && z <= w);
+        let inside = w > 0.0 && x.abs() <= w && y.abs() <= w && depth_ok && vertex.user.iter().all(|d| *d >= 0.0);
+        if !inside {
+            return RasterPosition { valid: false, ..self.state.raster_position };
+        }
+        let [wx, wy, wz] = window.project_exact(vertex.clip);
+        RasterPosition {
+            window: [wx, wy, wz, w],
+            valid: true,
+            distance: vertex.fog,
+            color: vertex.color,
+            secondary: vertex.secondary,
+            tex: vertex.tex,
+        }
+    }
+}

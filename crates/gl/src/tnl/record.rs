@@ -1,0 +1,210 @@
+//! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks.
+
+use super::geometry::{DrawGeometry, PointSizes};
+use super::snapshot::{LightCache, VertexSnapshot};
+use crate::Context;
+use crate::enums as gl;
+use crate::vertex::VertexBatch;
+use std::sync::Arc;
+use vitral_exec::Workers;
+use vitral_math::lanes::Level;
+use vitral_raster::forward::{
+    Command, FragmentState, Layout, Pass, PrimitiveState, Runner, Target, WindowTransform,
+};
+
+/// Gives the threads that run passes; asked each time, since a process may have forked.
+pub type RunnerSource = fn() -> Arc<Runner>;
+
+/// Recorded passes that have not run.
+#[derive(Default)]
+pub(crate) struct Recorder {
+    pass: Option<Pass>,
+    source: Option<RunnerSource>,
+    own: Option<Arc<Runner>>,
+    lights: LightCache,
+    /// Vertices that wait.
+    waiting: usize,
+}
+
+impl std::fmt::Debug for Recorder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Recorder").field("pass", &self.pass).finish_non_exhaustive()
+    }
+}
+
+/// Most vertices that wait before they are drawn.
+const MOST_WAITING: usize = 8 << 20;
+
+impl Recorder {
+    fn run(&mut self) {
+        self.waiting = 0;
+        let Some(pass) = self.pass.take() else { return };
+        let runner = match self.source {
+            Some(source) => source(),
+            None => self.own.get_or_insert_with(|| Arc::new(Runner::new(Workers::single(), Level::new()))).clone(),
+        };
+        runner.run(&pass);
+    }
+}
+
+impl Context {
+    /// Where the threads come from that run passes. Without it the calling thread works alone.
+    pub fn set_runner_source(&mut self, source: RunnerSource) {
+        self.recorder.source = Some(source);
+    }
+
+    /// Records the drawing of `batch` with a snapshot of the state.
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>) {
+        let Some(target) = self.draw_target() else {
+            self.record_error(gl::INVALID_FRAMEBUFFER_OPERATION, "draw", "the draw framebuffer is not complete");
+            return;
+        };
+        let fragment = self.fragment_state_for(Some(&target), false);
+        let count = batch.positions.len();
+        let Some(geometry) = self.draw_geometry(batch, &fragment, &target) else { return };
+        self.recorder.waiting += count;
+        self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
+    }
+
+    /// Records a command on the current draw target.
+    pub(crate) fn record(&mut self, command: Command) {
+        let Some(target) = self.draw_target() else {
+            self.record_error(gl::INVALID_FRAMEBUFFER_OPERATION, "draw", "the draw framebuffer is not complete");
+            return;
+        };
+        self.record_on(target, command);
+    }
+
+    fn record_on(&mut self, target: Target, command: Command) {
+        let fits = self.recorder.pass.as_ref().is_some_and(|p| p.target.same(&target));
+        if !fits || self.recorder.waiting > MOST_WAITING {
+            self.recorder.run();
+        }
+        let pass = self.recorder.pass.get_or_insert_with(|| Pass { target, commands: Vec::new() });
+        pass.commands.push(command);
+    }
+
+    /// Runs everything recorded: afterwards all planes and queries are up to date.
+    pub(crate) fn flush_recorded(&mut self) {
+        self.recorder.run();
+    }
+
+    /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
+    pub(crate) fn fragment_state(&mut self, images: bool) -> Arc<FragmentState> {
+        let target = self.draw_target();
+        self.fragment_state_for(target.as_ref(), images)
+    }
+
+    /// The snapshot for the vertex stages; `None` if nothing can be drawn.
+    fn draw_geometry(
+        &mut self,
+        batch: Arc<VertexBatch>,
+        fragment: &FragmentState,
+        target: &Target,
+    ) -> Option<DrawGeometry> {
+        let colored = target.color.is_some() && fragment.masked != [true; 4];
+        let samples = target.samples > 1;
+        let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
+        let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
+        let fog = shaded && fragment.fog.is_some();
+        let snapshot = VertexSnapshot::new(&self.state, &units, fog, &mut self.recorder.lights);
+        let layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
+        let primitive = self.primitive_state(fragment, target)?;
+        let assembled = batch.assembled.get(&batch);
+        let s = &self.state;
+        let multisample = s.multisample && samples;
+        let points = PointSizes {
+            size: s.points.size,
+            limits: s.points.limits,
+            attenuation: s.points.attenuation,
+            fade: multisample.then_some(s.points.fade_threshold),
+        };
+        let clip = primitive.clip;
+        Some(DrawGeometry { assembled, batch, snapshot: Arc::new(snapshot), primitive, layout, clip, points })
+    }
+
+    /// Where vertex records hold what.
+    fn layout(&self, fragment: &FragmentState, units: &[usize]) -> Layout {
+        let s = &self.state;
+        let two_side = s.lighting.enabled && s.lighting.model.two_side;
+        let mut next = 1;
+        let mut take = |count: usize| {
+            next += count;
+            next - count
+        };
+        let mut layout = Layout { color: take(4), ..Layout::default() };
+        layout.secondary = fragment.color_sum.then(|| take(3));
+        layout.back_color = two_side.then(|| take(4));
+        layout.back_secondary = (two_side && fragment.color_sum).then(|| take(3));
+        layout.fog = fragment.fog.is_some().then(|| take(1));
+        for &unit in units {
+            layout.tex[unit] = Some(take(4));
+            if s.points.sprite && s.units[unit].environment.coord_replace {
+                layout.sprites |= 1 << unit;
+            }
+        }
+        layout.stride = next;
+        let sharp = s.multisample && self.recorder.pass.as_ref().is_some_and(|p| p.target.samples > 1);
+        layout.smooth = [
+            s.points.smooth && !sharp && !s.points.sprite,
+            s.lines.smooth && !sharp,
+            s.polygons.smooth && !sharp,
+        ];
+        layout.line_stipple = s.lines.stipple.then_some(s.lines.pattern);
+        layout
+    }
+
+    fn primitive_state(&self, fragment: &FragmentState, target: &Target) -> Option<PrimitiveState> {
+        let s = &self.state;
+        let [x, y, w, h] = s.viewport.rect;
+        if w <= 0 || h <= 0 {
+            return None;
+        }
+        let (origin, depth_mode) = s.clip_control;
+        let flipped = origin == gl::UPPER_LEFT;
+        let range = [s.viewport.depth_range.near, s.viewport.depth_range.far];
+        let window = WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
+        let culled = |face: u32| {
+            s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK)
+        };
+        let mode = |token: u32| match token {
+            gl::POINT => 0,
+            gl::LINE => 1,
+            _ => 2,
+        };
+        let multisample = s.multisample && target.samples > 1;
+        let offset = |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
+        let c = fragment.clip;
+        let clip = [
+            c[0].max(x),
+            c[1].max(y),
+            c[2].min(x.saturating_add(w)),
+            c[3].min(y.saturating_add(h)),
+        ];
+        Some(PrimitiveState {
+            window,
+            user_planes: s.clip_plane_enabled.iter().filter(|e| **e).count(),
+            depth_clamp: s.depth_clamp,
+            counter_clockwise: s.polygons.front_face == gl::CCW,
+            flipped,
+            cull: [culled(gl::FRONT), culled(gl::BACK)],
+            offset: [offset(0), offset(1), offset(2)],
+            depth_step: depth_step(target),
+            polygon_mode: s.polygons.mode.map(mode),
+            line_width: s.lines.width,
+            line_smooth: s.lines.smooth && !multisample,
+            multisample,
+            point_smooth: s.points.smooth && !multisample && !s.points.sprite,
+            clip,
+            draw: 0,
+        })
+    }
+}
+
+/// The smallest step of a fixed-point depth plane, 0 for floating point.
+fn depth_step(target: &Target) -> f32 {
+    let scale = target.depth.as_ref().map_or(16_777_215.0, |depth| {
+        depth.lock().unwrap_or_else(std::sync::PoisonError::into_inner).scale
+    });
+    if scale == 1.0 { 0.0 } else { 1.0 / scale }
+}

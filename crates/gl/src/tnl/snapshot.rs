@@ -1,0 +1,207 @@
+//! What the vertex stage needs of the state, as it was when a draw was recorded.
+
+use crate::enums as gl;
+use crate::state::{Current, MaterialFace, State};
+use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
+use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4};
+
+/// Generation of one coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Generation {
+    /// The given coordinate.
+    None,
+    /// `plane · position`, model space.
+    Object([f32; 4]),
+    /// `plane · position`, eye space.
+    Eye([f32; 4]),
+    Sphere,
+    Reflection,
+    Normal,
+}
+
+/// A unit's texture coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct UnitSnapshot {
+    pub index: usize,
+    pub generation: [Generation; 4],
+    /// Texture matrix, unless it is the identity.
+    pub matrix: Option<[f32; 16]>,
+}
+
+/// Which material properties follow the colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tracked {
+    pub ambient: bool,
+    pub diffuse: bool,
+    pub specular: bool,
+    pub emission: bool,
+}
+
+/// Lighting as it was.
+#[derive(Clone, Debug)]
+pub(crate) struct LightingSnapshot {
+    pub lights: Vec<PreparedLight>,
+    pub ambient: [f32; 3],
+    pub local_viewer: bool,
+    pub two_side: bool,
+    pub separate_specular: bool,
+    pub material: [MaterialFace; 2],
+    /// Front, back.
+    pub tracked: [Tracked; 2],
+}
+
+/// Where fog coordinates come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FogSource {
+    Depth,
+    Given,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct VertexSnapshot {
+    pub current: Current,
+    /// Column-major.
+    pub modelview: [f32; 16],
+    pub clip_from_model: [f32; 16],
+    /// Rows of the map of normals to eye space.
+    pub normal_rows: [[f32; 3]; 3],
+    pub normalize: bool,
+    pub lighting: Option<LightingSnapshot>,
+    pub units: Vec<UnitSnapshot>,
+    pub fog: Option<FogSource>,
+    /// Model-space planes: inside is >= 0.
+    pub clip_planes: Vec<[f32; 4]>,
+    /// The secondary colour is used although lighting is off.
+    pub color_sum: bool,
+}
+
+impl VertexSnapshot {
+    /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
+    pub(crate) fn new(state: &State, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
+        let modelview = state.matrices.modelview.top();
+        let clip_from_model = state.matrices.projection.top() * modelview;
+        let (normal_rows, normalize) = normal_map(state, &modelview);
+        let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
+        let model_plane = |p: &[f64; 4]| (modelview.transpose() * Vec4::from_array(p.map(|v| v as f32))).to_array();
+        Self {
+            current: state.current,
+            modelview: modelview.to_cols_array(),
+            clip_from_model: clip_from_model.to_cols_array(),
+            normal_rows,
+            normalize,
+            lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, lights)),
+            units: units.iter().map(|&u| unit(state, u)).collect(),
+            fog: fog.then(|| {
+                if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given }
+            }),
+            clip_planes: planes.map(|(p, _)| model_plane(p)).collect(),
+            color_sum: state.color_sum,
+        }
+    }
+}
+
+/// Rows of the map of normals, and whether they are normalised.
+fn normal_map(state: &State, modelview: &Mat4) -> ([[f32; 3]; 3], bool) {
+    let upper = Mat3::from_mat4(*modelview);
+    let determinant = upper.determinant();
+    let inverse = if determinant != 0.0 && determinant.is_finite() { upper.inverse() } else { Mat3::IDENTITY };
+    // n_eye = (M^-1)^T n: its rows are the columns of the inverse.
+    let mut rows = [inverse.x_axis.to_array(), inverse.y_axis.to_array(), inverse.z_axis.to_array()];
+    if state.matrices.rescale_normal && !state.matrices.normalize {
+        let third = inverse.row(2);
+        let length = third.length();
+        if length > 0.0 {
+            rows.iter_mut().flatten().for_each(|v| *v /= length);
+        }
+    }
+    (rows, state.matrices.normalize)
+}
+
+fn unit(state: &State, index: usize) -> UnitSnapshot {
+    let generation = state.units[index].generation.map(|g| match (g.enabled, g.mode) {
+        (false, _) => Generation::None,
+        (_, gl::OBJECT_LINEAR) => Generation::Object(g.object_plane),
+        (_, gl::EYE_LINEAR) => Generation::Eye(g.eye_plane),
+        (_, gl::SPHERE_MAP) => Generation::Sphere,
+        (_, gl::REFLECTION_MAP) => Generation::Reflection,
+        _ => Generation::Normal,
+    });
+    let matrix = state.matrices.texture[index].top();
+    UnitSnapshot { index, generation, matrix: (matrix != Mat4::IDENTITY).then(|| matrix.to_cols_array()) }
+}
+
+impl LightingSnapshot {
+    fn new(state: &State, cache: &mut LightCache) -> Self {
+        let lighting = &state.lighting;
+        let material = lighting.color_material;
+        let tracked = |face: u32| {
+            if !material.enabled || (material.face != gl::FRONT_AND_BACK && material.face != face) {
+                return Tracked::default();
+            }
+            Tracked {
+                ambient: matches!(material.mode, gl::AMBIENT | gl::AMBIENT_AND_DIFFUSE),
+                diffuse: matches!(material.mode, gl::DIFFUSE | gl::AMBIENT_AND_DIFFUSE),
+                specular: material.mode == gl::SPECULAR,
+                emission: material.mode == gl::EMISSION,
+            }
+        };
+        let [r, g, b, _] = lighting.model.ambient;
+        Self {
+            lights: cache.prepare(&lighting.lights),
+            ambient: [r, g, b],
+            local_viewer: lighting.model.local_viewer,
+            two_side: lighting.model.two_side,
+            separate_specular: lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR,
+            material: lighting.material,
+            tracked: [tracked(gl::FRONT), tracked(gl::BACK)],
+        }
+    }
+}
+
+/// Lights that were prepared before: most draws share them.
+#[derive(Debug, Default)]
+pub(crate) struct LightCache {
+    lights: Vec<Option<(crate::state::Light, Option<PreparedLight>)>>,
+}
+
+impl LightCache {
+    fn prepare(&mut self, lights: &[crate::state::Light]) -> Vec<PreparedLight> {
+        self.lights.resize(lights.len(), None);
+        let mut out = Vec::new();
+        for (light, kept) in lights.iter().zip(&mut self.lights).filter(|(l, _)| l.enabled) {
+            if kept.as_ref().is_none_or(|(of, _)| of != light) {
+                *kept = Some((*light, prepare(light)));
+            }
+            out.extend(kept.as_ref().and_then(|(_, prepared)| prepared.clone()));
+        }
+        out
+    }
+}
+
+fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
+    let rgb = |c: [f32; 4]| [c[0], c[1], c[2]];
+    let [x, y, z, w] = light.position.map(f64::from);
+    let [constant, linear, quadratic] = light.attenuation.map(f64::from);
+    let position = DVec3::new(x, y, z) / w;
+    let (kind, attenuation) = if w == 0.0 {
+        (LightKind::Directional { direction: -DVec3::new(x, y, z) }, Attenuation::None)
+    } else if light.spot_cutoff == 180.0 {
+        (LightKind::Point { position }, Attenuation::Gl { constant, linear, quadratic })
+    } else {
+        let cutoff = f64::from(light.spot_cutoff).to_radians();
+        let direction = DVec3::from_array(light.spot_direction.map(f64::from));
+        let exponent = f64::from(light.spot_exponent);
+        let kind = LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent };
+        (kind, Attenuation::Gl { constant, linear, quadratic })
+    };
+    let light = Light {
+        kind,
+        attenuation,
+        ambient: rgb(light.ambient),
+        diffuse: rgb(light.diffuse),
+        specular: rgb(light.specular),
+        ..Light::default()
+    };
+    PreparedLight::new(&light, &DMat4::IDENTITY)
+}

@@ -1,0 +1,358 @@
+//! Drawing from arrays.
+
+use super::POSITION;
+use super::cache::{Key, Vertices};
+use super::fetch::{Reader, Refusal, Run, store};
+use crate::state::ArrayPointer;
+use crate::vertex::VertexBatch;
+use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
+use crate::vertices::client;
+use crate::{Context, enums};
+use std::sync::Arc;
+
+/// The most vertices a draw may take.
+const MAX_VERTICES: usize = 1 << 28;
+
+impl Context {
+    /// `glDrawArrays`.
+    pub fn draw_arrays(&mut self, mode: u32, first: i32, count: i32) {
+        self.draw_range("glDrawArrays", mode, first, count);
+    }
+
+    fn draw_range(&mut self, call: &str, mode: u32, first: i32, count: i32) {
+        match (usize::try_from(first), usize::try_from(count)) {
+            (Ok(first), Ok(count)) => self.draw_vertices(call, mode, Vertices::Range { first, count }),
+            _ => self.record_error(enums::INVALID_VALUE, call, &format!("first {first}, count {count} is negative")),
+        }
+    }
+
+    /// `glDrawElements`.
+    pub fn draw_elements(&mut self, mode: u32, count: i32, type_: u32, indices: usize) {
+        self.draw_indexed("glDrawElements", mode, count, type_, indices);
+    }
+
+    /// `glDrawRangeElements`.
+    pub fn draw_range_elements(&mut self, mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize) {
+        if end < start {
+            let why = format!("end {end} lies before start {start}");
+            self.record_error(enums::INVALID_VALUE, "glDrawRangeElements", &why);
+            return;
+        }
+        self.draw_indexed("glDrawRangeElements", mode, count, type_, indices);
+    }
+
+    fn draw_indexed(&mut self, call: &str, mode: u32, count: i32, kind: u32, pointer: usize) {
+        let Ok(count) = usize::try_from(count) else {
+            self.record_error(enums::INVALID_VALUE, call, &format!("count {count} is negative"));
+            return;
+        };
+        if !matches!(kind, enums::UNSIGNED_BYTE | enums::UNSIGNED_SHORT | enums::UNSIGNED_INT) {
+            self.record_error(enums::INVALID_ENUM, call, &format!("type {kind:#x} is not one of indices"));
+            return;
+        }
+        let buffer = self.client.element_buffer;
+        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer });
+    }
+
+    /// `glMultiDrawArrays`.
+    pub fn multi_draw_arrays(&mut self, mode: u32, first: usize, count: usize, drawcount: i32) {
+        const CALL: &str = "glMultiDrawArrays";
+        let Some(n) = self.draw_count(CALL, mode, drawcount) else { return };
+        let firsts = client::values::<i32>(&*self.memory, first, n);
+        let counts = client::values::<i32>(&*self.memory, count, n);
+        let (Some(firsts), Some(counts)) = (firsts, counts) else {
+            self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
+            return;
+        };
+        for (first, count) in firsts.into_iter().zip(counts) {
+            self.draw_range(CALL, mode, first, count);
+        }
+    }
+
+    /// `glMultiDrawElements`.
+    pub fn multi_draw_elements(&mut self, mode: u32, count: usize, type_: u32, indices: usize, drawcount: i32) {
+        const CALL: &str = "glMultiDrawElements";
+        let Some(n) = self.draw_count(CALL, mode, drawcount) else { return };
+        let counts = client::values::<i32>(&*self.memory, count, n);
+        let pointers = client::values::<usize>(&*self.memory, indices, n);
+        let (Some(counts), Some(pointers)) = (counts, pointers) else {
+            self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
+            return;
+        };
+        for (count, pointer) in counts.into_iter().zip(pointers) {
+            self.draw_indexed(CALL, mode, count, type_, pointer);
+        }
+    }
+
+    fn draw_count(&mut self, call: &str, mode: u32, n: i32) -> Option<usize> {
+        if mode > enums::POLYGON {
+            self.record_error(enums::INVALID_ENUM, call, &format!("mode {mode:#x} is not a primitive"));
+            return None;
+        }
+        let count = usize::try_from(n).ok();
+        if count.is_none() {
+            self.record_error(enums::INVALID_VALUE, call, &format!("the number of draws {n} is negative"));
+        }
+        count
+    }
+
+    /// Draws, or compiles what the arrays hold now.
+    fn draw_vertices(&mut self, call: &str, mode: u32, vertices: Vertices) {
+        let executed = !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE;
+        if executed && self.refused_inside_begin(call) {
+            return;
+        }
+        if mode > enums::POLYGON {
+            self.record_error(enums::INVALID_ENUM, call, &format!("mode {mode:#x} is not a primitive"));
+            return;
+        }
+        let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = vertices;
+        if count == 0 || !self.client.vertex.enabled {
+            return;
+        }
+        if count > MAX_VERTICES {
+            self.record_error(enums::OUT_OF_MEMORY, call, &format!("{count} vertices are too many"));
+            return;
+        }
+        let batch = match self.array_batch(mode, vertices) {
+            Ok(batch) => batch,
+            Err(why) => {
+                self.record_error(enums::INVALID_OPERATION, call, why);
+                return;
+            }
+        };
+        if self.lists.recording {
+            self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
+        }
+        if executed {
+            self.draw_batch(batch);
+        }
+    }
+
+    /// Enabled arrays, with what they are for.
+    fn enabled_arrays(&self) -> Vec<(usize, ArrayPointer)> {
+        let all = (0..=POSITION).map(|which| (which, *self.client.array(which)));
+        all.filter(|(_, array)| array.enabled).collect()
+    }
+
+    fn array_batch(&mut self, mode: u32, vertices: Vertices) -> Result<Arc<VertexBatch>, Refusal> {
+        // Colour indices have no effect: whether and where they lie does not matter.
+        let mut arrays = self.enabled_arrays();
+        arrays.retain(|(which, _)| *which != INDEX);
+        let element_buffer = match vertices {
+            Vertices::Elements { buffer, .. } => Some(buffer),
+            Vertices::Range { .. } => None,
+        };
+        let reader = self.array_reader(&arrays, element_buffer.unwrap_or(0))?;
+        let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| array.buffer != 0);
+        if !constant {
+            return build(&reader, &arrays, mode, vertices).map(Arc::new);
+        }
+        let versions = reader.stores.iter().map(|store| store.version).collect();
+        let key = Key { mode, vertices, arrays, versions };
+        if let Some(batch) = self.arrays.cache.find(&key) {
+            return Ok(batch);
+        }
+        let batch = Arc::new(build(&reader, &key.arrays, mode, vertices)?);
+        self.arrays.cache.insert(key, batch.clone());
+        Ok(batch)
+    }
+
+    fn array_reader(&self, arrays: &[(usize, ArrayPointer)], element_buffer: u32) -> Result<Reader, Refusal> {
+        let mut names: Vec<u32> = arrays.iter().map(|(_, array)| array.buffer).collect();
+        names.push(element_buffer);
+        names.sort_unstable();
+        names.dedup();
+        let buffers = self.buffers();
+        let stores = names.into_iter().filter(|name| *name != 0).map(|name| store(&buffers, name));
+        Ok(Reader { memory: self.memory.clone(), stores: stores.collect::<Result<_, _>>()? })
+    }
+
+    /// `glArrayElement`.
+    pub fn array_element(&mut self, i: i32) {
+        const CALL: &str = "glArrayElement";
+        let Ok(i) = usize::try_from(i) else {
+            self.record_error(enums::INVALID_VALUE, CALL, &format!("index {i} is negative"));
+            return;
+        };
+        let arrays = self.enabled_arrays();
+        let read = |reader: Reader| -> Result<Vec<[f32; 4]>, Refusal> {
+            let one = |(which, array): &(usize, ArrayPointer)| {
+                let unit = matches!(*which, NORMAL | COLOR | SECONDARY);
+                Ok(reader.elements(array, &[(i, 1)], unit, [0.0, 0.0, 0.0, 1.0])?[0])
+            };
+            arrays.iter().map(one).collect()
+        };
+        match self.array_reader(&arrays, 0).and_then(read) {
+            Err(why) => self.record_error(enums::INVALID_OPERATION, CALL, why),
+            // The position is the last.
+            Ok(values) => {
+                for ((which, _), value) in arrays.iter().zip(values) {
+                    if *which == POSITION { self.give_vertex(value) } else { self.give_attribute(*which, value) }
+                }
+            }
+        }
+    }
+}
+
+/// Reads everything that a draw takes.
+fn build(
+    reader: &Reader,
+    arrays: &[(usize, ArrayPointer)],
+    mode: u32,
+    vertices: Vertices,
+) -> Result<VertexBatch, Refusal> {
+    let mut batch = VertexBatch::default();
+    let (runs, count) = match vertices {
+        Vertices::Range { first, count } => (vec![(first, count)], count),
+        Vertices::Elements { count, kind, pointer, buffer } => {
+            let mut indices = reader.indices(buffer, kind, count, pointer)?;
+            let runs = compact(&mut indices);
+            batch.indices = Some(indices);
+            (runs, count)
+        }
+    };
+    for (which, array) in arrays {
+        match *which {
+            POSITION => batch.positions = reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?,
+            NORMAL => batch.normals = Some(reader.elements(array, &runs, true, [0.0; 3])?),
+            COLOR => batch.colors = Some(reader.elements(array, &runs, true, [0.0, 0.0, 0.0, 1.0])?),
+            SECONDARY => batch.secondary = Some(reader.elements(array, &runs, true, [0.0; 3])?),
+            FOG => batch.fog = Some(reader.elements(array, &runs, false, [0.0])?.into_flattened()),
+            EDGE => {
+                let flags = reader.elements(array, &runs, false, [0.0])?;
+                batch.edges = Some(flags.into_iter().map(|[flag]| flag != 0.0).collect());
+            }
+            INDEX => {}
+            _ => batch.tex[which - TEX] = Some(reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?),
+        }
+    }
+    batch.add_primitive(mode, 0, count as u32);
+    Ok(batch)
+}
+
+/// Renumbers indices from 0; the result says which elements to read for that.
+fn compact(indices: &mut [u32]) -> Vec<Run> {
+    let (Some(&least), Some(&most)) = (indices.iter().min(), indices.iter().max()) else { return Vec::new() };
+    let span = (most - least) as usize + 1;
+    if span <= 2 * indices.len() + 64 {
+        indices.iter_mut().for_each(|i| *i -= least);
+        return vec![(least as usize, span)];
+    }
+    // Few elements of many: only those that are named.
+    let mut named = indices.to_vec();
+    named.sort_unstable();
+    named.dedup();
+    for i in indices.iter_mut() {
+        *i = named.binary_search(i).map_or(0, |at| at as u32);
+    }
+    let mut runs: Vec<Run> = Vec::new();
+    for name in named {
+        match runs.last_mut() {
+            Some((first, count)) if *first + *count == name as usize => *count += 1,
+            _ => runs.push((name as usize, 1)),
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::tests::{BASE, context};
+    use super::*;
+    use crate::vertex::Primitive;
+
+    fn with_square() -> Context {
+        let mut c = context();
+        let corners = [[0.0f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        c.memory.write(BASE, bytemuck::cast_slice(&corners));
+        c.memory.write(BASE + 100, &[0, 1, 2, 0, 2, 3]);
+        c.vertex_pointer(2, enums::FLOAT, 0, BASE);
+        c.enable_client_state(enums::VERTEX_ARRAY);
+        c
+    }
+
+    #[test]
+    fn ranges_and_elements() {
+        let mut c = with_square();
+        c.draw_arrays(enums::TRIANGLES, 1, 3);
+        c.draw_elements(enums::TRIANGLES, 6, enums::UNSIGNED_BYTE, BASE + 100);
+        c.draw_range_elements(enums::LINES, 2, 3, 2, enums::UNSIGNED_BYTE, BASE + 104);
+        let log = &c.builder.log;
+        assert_eq!(log[0].positions[0], [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(log[0].primitives, [Primitive { mode: enums::TRIANGLES, first: 0, count: 3 }]);
+        assert_eq!(log[1].indices, Some(vec![0, 1, 2, 0, 2, 3]));
+        assert_eq!(log[1].positions.len(), 4);
+        assert_eq!((log[2].indices.clone(), log[2].positions[0]), (Some(vec![0, 1]), [1.0, 1.0, 0.0, 1.0]));
+        assert_eq!(c.error, 0);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused() {
+        let mut c = with_square();
+        c.draw_arrays(enums::POINTS, 0, i32::MAX);
+        assert_eq!(std::mem::take(&mut c.error), enums::OUT_OF_MEMORY);
+        c.draw_arrays(enums::POINTS, i32::MAX, 1);
+        assert_eq!(std::mem::take(&mut c.error), enums::INVALID_OPERATION);
+        c.draw_arrays(enums::POINTS, 0, -1);
+        assert_eq!(std::mem::take(&mut c.error), enums::INVALID_VALUE);
+        c.draw_elements(enums::POINTS, 1, enums::FLOAT, BASE);
+        assert_eq!(std::mem::take(&mut c.error), enums::INVALID_ENUM);
+        c.bind_buffer(enums::ARRAY_BUFFER, 1);
+        c.vertex_pointer(2, enums::FLOAT, 0, 0);
+        c.draw_arrays(enums::POINTS, 0, 1);
+        assert_eq!(std::mem::take(&mut c.error), enums::INVALID_OPERATION);
+        assert!(c.builder.log.is_empty());
+    }
+
+    #[test]
+    fn the_same_draw_from_buffers_is_the_same_batch() {
+        let mut c = with_square();
+        c.bind_buffer(enums::ARRAY_BUFFER, 1);
+        c.buffer_data(enums::ARRAY_BUFFER, 32, BASE, enums::STATIC_DRAW);
+        c.vertex_pointer(2, enums::FLOAT, 0, 0);
+        c.bind_buffer(enums::ELEMENT_ARRAY_BUFFER, 2);
+        c.buffer_data(enums::ELEMENT_ARRAY_BUFFER, 6, BASE + 100, enums::STATIC_DRAW);
+        for _ in 0..2 {
+            c.draw_elements(enums::TRIANGLES, 6, enums::UNSIGNED_BYTE, 0);
+        }
+        c.buffer_sub_data(enums::ARRAY_BUFFER, 0, 4, BASE + 8);
+        c.draw_elements(enums::TRIANGLES, 6, enums::UNSIGNED_BYTE, 0);
+        let log = &c.builder.log;
+        assert!(Arc::ptr_eq(&log[0], &log[1]) && !Arc::ptr_eq(&log[0], &log[2]));
+        assert_eq!((log[0].positions[0][0], log[2].positions[0][0]), (0.0, 1.0));
+    }
+
+    #[test]
+    fn a_list_keeps_what_the_arrays_held() {
+        let mut c = with_square();
+        c.new_list(1, enums::COMPILE);
+        c.draw_arrays(enums::POINTS, 0, 1);
+        c.begin(enums::POINTS);
+        c.array_element(2);
+        c.end();
+        c.end_list();
+        c.memory.write(BASE, &[0xff; 32]);
+        assert!(c.builder.log.is_empty());
+        c.call_list(1);
+        assert_eq!(c.builder.log[0].positions, [[0.0, 0.0, 0.0, 1.0]]);
+        assert_eq!(c.builder.log[1].positions, [[1.0, 1.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn far_indices_are_read_one_by_one() {
+        let mut indices = [5, 4_000_000_000, 6, 5];
+        assert_eq!(compact(&mut indices), [(5, 2), (4_000_000_000, 1)]);
+        assert_eq!(indices, [0, 2, 1, 0]);
+    }
+
+    #[test]
+    fn many_draws() {
+        let mut c = with_square();
+        c.memory.write(BASE + 200, bytemuck::cast_slice(&[0i32, 2, 2, 2]));
+        c.multi_draw_arrays(enums::LINES, BASE + 200, BASE + 208, 2);
+        assert_eq!(c.builder.log[1].positions[0], [1.0, 1.0, 0.0, 1.0]);
+        c.multi_draw_arrays(enums::LINES, BASE + 200, BASE + 208, i32::MAX);
+        assert_eq!(c.error, enums::INVALID_VALUE);
+    }
+}

@@ -1,0 +1,256 @@
+//! Reading array elements in bulk, out of buffer objects or the client's memory.
+
+use crate::enums;
+use crate::memory::ClientMemory;
+use crate::objects::{Buffer, Names};
+use crate::state::ArrayPointer;
+use crate::vertices::client::{self, Component};
+use std::sync::Arc;
+
+/// Why elements cannot be read.
+pub(super) type Refusal = &'static str;
+
+const OUTSIDE: Refusal = "elements lie outside of the buffer";
+const NOT_THERE: Refusal = "elements are not in the client's memory";
+
+/// Bytes of client memory that are read at once.
+const PIECE: usize = 1 << 16;
+
+/// Room made for elements before they are read; more comes as they arrive.
+const ROOM: usize = 1 << 20;
+
+/// A buffer's data, as they are now.
+#[derive(Clone, Debug)]
+pub(super) struct Store {
+    name: u32,
+    pub(super) version: u64,
+    bytes: Arc<Vec<u8>>,
+}
+
+/// The data of buffer `name`.
+pub(super) fn store(buffers: &Names<Buffer>, name: u32) -> Result<Store, Refusal> {
+    match buffers.get(&name) {
+        Some(Some(buffer)) if buffer.is_mapped() => Err("a buffer is mapped"),
+        Some(Some(buffer)) => Ok(Store { name, version: buffer.version, bytes: buffer.bytes.clone() }),
+        _ => Err("a buffer was deleted"),
+    }
+}
+
+/// A run of elements: first and count.
+pub(super) type Run = (usize, usize);
+
+/// Reads arrays.
+pub(super) struct Reader {
+    pub(super) memory: Arc<dyn ClientMemory>,
+    /// Every buffer that the arrays lie in.
+    pub(super) stores: Vec<Store>,
+}
+
+impl Reader {
+    fn bytes(&self, name: u32) -> Result<&[u8], Refusal> {
+        let store = self.stores.iter().find(|store| store.name == name);
+        Ok(store.ok_or("a buffer was deleted")?.bytes.as_slice())
+    }
+
+    /// The elements of `runs`, in order. Missing numbers come from `default`; `unit` maps whole numbers to 0..=1 or
+    /// -1..=1.
+    pub(super) fn elements<const N: usize>(
+        &self,
+        array: &ArrayPointer,
+        runs: &[Run],
+        unit: bool,
+        default: [f32; N],
+    ) -> Result<Vec<[f32; N]>, Refusal> {
+        let layout = Layout::of(array);
+        let count = runs.iter().map(|run| run.1).sum::<usize>();
+        let mut elements = Vec::with_capacity(count.min(ROOM));
+        let mut piece = Vec::new();
+        for &(first, count) in runs {
+            let start = first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
+            let mut start = start.ok_or(OUTSIDE)?;
+            if array.buffer != 0 {
+                let span = layout.span(count).ok_or(OUTSIDE)?;
+                let end = start.checked_add(span).ok_or(OUTSIDE)?;
+                let bytes = self.bytes(array.buffer)?.get(start..end).ok_or(OUTSIDE)?;
+                layout.convert(bytes, count, unit, default, &mut elements);
+                continue;
+            }
+            // Elements far apart are read one by one: what lies between may not be the client's.
+            let at_once = if layout.stride > 4 * layout.size + 256 { 1 } else { (PIECE / layout.stride).max(1) };
+            let mut left = count;
+            while left > 0 {
+                let n = left.min(at_once);
+                piece.resize(layout.span(n).ok_or(NOT_THERE)?, 0);
+                if array.pointer == 0 || !self.memory.read(start, &mut piece) {
+                    return Err(NOT_THERE);
+                }
+                layout.convert(&piece, n, unit, default, &mut elements);
+                start = start.checked_add(n * layout.stride).ok_or(NOT_THERE)?;
+                left -= n;
+            }
+        }
+        Ok(elements)
+    }
+
+    /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
+    pub(super) fn indices(&self, buffer: u32, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
+        let size = type_size(kind);
+        let owned;
+        let bytes = if buffer == 0 {
+            let len = count.checked_mul(size).ok_or(NOT_THERE)?;
+            owned = client::bytes(&*self.memory, pointer, len).ok_or(NOT_THERE)?;
+            owned.as_slice()
+        } else {
+            let end = count.checked_mul(size).and_then(|len| len.checked_add(pointer)).ok_or(OUTSIDE)?;
+            self.bytes(buffer)?.get(pointer..end).ok_or(OUTSIDE)?
+        };
+        Ok(match kind {
+            enums::UNSIGNED_BYTE => bytes.iter().map(|&i| i.into()).collect(),
+            enums::UNSIGNED_SHORT => {
+                bytes.chunks_exact(2).map(|i| bytemuck::pod_read_unaligned::<u16>(i).into()).collect()
+            }
+            _ => bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect(),
+        })
+    }
+}
+
+/// Size of a number.
+fn type_size(kind: u32) -> usize {
+    match kind {
+        enums::BYTE | enums::UNSIGNED_BYTE => 1,
+        enums::SHORT | enums::UNSIGNED_SHORT => 2,
+        enums::DOUBLE => 8,
+        _ => 4,
+    }
+}
+
+/// How elements lie in memory.
+#[derive(Clone, Copy)]
+struct Layout {
+    kind: u32,
+    components: usize,
+    size: usize,
+    stride: usize,
+}
+
+impl Layout {
+    fn of(array: &ArrayPointer) -> Self {
+        let components = array.size as usize;
+        let size = components * type_size(array.kind);
+        let stride = if array.stride == 0 { size } else { array.stride as usize };
+        Self { kind: array.kind, components, size, stride }
+    }
+
+    /// Bytes from the first to the end of the last of `count` elements.
+    fn span(&self, count: usize) -> Option<usize> {
+        match count.checked_sub(1) {
+            Some(last) => last.checked_mul(self.stride)?.checked_add(self.size),
+            None => Some(0),
+        }
+    }
+
+    fn convert<const N: usize>(
+        &self,
+        bytes: &[u8],
+        count: usize,
+        unit: bool,
+        default: [f32; N],
+        to: &mut Vec<[f32; N]>,
+    ) {
+        match self.kind {
+            enums::FLOAT => match self.components {
+                1 => self.floats::<1, N>(bytes, count, default, to),
+                2 => self.floats::<2, N>(bytes, count, default, to),
+                3 => self.floats::<3, N>(bytes, count, default, to),
+                _ => self.floats::<4, N>(bytes, count, default, to),
+            },
+            enums::BYTE => self.numbers::<i8, N>(bytes, count, unit, default, to),
+            enums::UNSIGNED_BYTE => self.numbers::<u8, N>(bytes, count, unit, default, to),
+            enums::SHORT => self.numbers::<i16, N>(bytes, count, unit, default, to),
+            enums::UNSIGNED_SHORT => self.numbers::<u16, N>(bytes, count, unit, default, to),
+            enums::INT => self.numbers::<i32, N>(bytes, count, unit, default, to),
+            enums::UNSIGNED_INT => self.numbers::<u32, N>(bytes, count, unit, default, to),
+            _ => self.numbers::<f64, N>(bytes, count, unit, default, to),
+        }
+    }
+
+    fn floats<const S: usize, const N: usize>(
+        &self,
+        bytes: &[u8],
+        count: usize,
+        default: [f32; N],
+        to: &mut Vec<[f32; N]>,
+    ) {
+        to.extend((0..count).map(|i| {
+            let from = &bytes[i * self.stride..][..4 * S];
+            let mut element = default;
+            for k in 0..S.min(N) {
+                element[k] = bytemuck::pod_read_unaligned(&from[4 * k..4 * k + 4]);
+            }
+            element
+        }));
+    }
+
+    fn numbers<T: Component, const N: usize>(
+        &self,
+        bytes: &[u8],
+        count: usize,
+        unit: bool,
+        default: [f32; N],
+        to: &mut Vec<[f32; N]>,
+    ) {
+        to.extend((0..count).map(|i| {
+            let from = &bytes[i * self.stride..][..self.size];
+            let mut element = default;
+            for (number, bytes) in element.iter_mut().zip(from.chunks_exact(size_of::<T>())) {
+                let value: T = bytemuck::pod_read_unaligned(bytes);
+                *number = if unit { value.unit() } else { value.plain() };
+            }
+            element
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::Arena;
+
+    fn array(size: i32, kind: u32, stride: i32, pointer: usize) -> ArrayPointer {
+        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: 0 }
+    }
+
+    #[test]
+    fn elements_of_all_strides() {
+        let arena = Arc::new(Arena::new(16, 4096));
+        for i in 0..1000u16 {
+            arena.write(16 + 4 * usize::from(i), bytemuck::bytes_of(&[i, 65535]));
+        }
+        let reader = Reader { memory: arena, stores: Vec::new() };
+        let found = reader.elements(&array(2, enums::UNSIGNED_SHORT, 0, 16), &[(1, 2), (7, 1)], false, [9.0; 3]);
+        assert_eq!(found, Ok(vec![[1.0, 65535.0, 9.0], [2.0, 65535.0, 9.0], [7.0, 65535.0, 9.0]]));
+        let overlapping = reader.elements(&array(2, enums::UNSIGNED_SHORT, 2, 18), &[(0, 2)], true, [0.0; 4]);
+        assert_eq!(overlapping.unwrap()[1], [1.0 / 65535.0, 1.0, 0.0, 0.0]);
+        let wide = reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 4)], false, [0.0]);
+        assert_eq!(wide, Err(NOT_THERE));
+        assert_eq!(
+            reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 2)], false, [0.0]),
+            Ok(vec![[0.0], [500.0]])
+        );
+    }
+
+    #[test]
+    fn wild_ranges_are_refused() {
+        let arena = Arc::new(Arena::new(16, 64));
+        let bytes = Arc::new(vec![0; 64]);
+        let reader = Reader { memory: arena, stores: vec![Store { name: 1, version: 0, bytes }] };
+        let mut from = array(3, enums::FLOAT, i32::MAX, 16);
+        assert_eq!(reader.elements(&from, &[(usize::MAX, 1)], false, [0.0; 3]), Err(OUTSIDE));
+        assert_eq!(reader.elements(&from, &[(0, i32::MAX as usize)], false, [0.0; 3]), Err(NOT_THERE));
+        from.buffer = 1;
+        assert!(reader.elements(&from, &[(0, 1)], false, [0.0; 3]).is_ok());
+        assert_eq!(reader.elements(&from, &[(0, 2)], false, [0.0; 3]), Err(OUTSIDE));
+        assert_eq!(reader.indices(1, enums::UNSIGNED_INT, 16, 1), Err(OUTSIDE));
+        assert_eq!(reader.indices(1, enums::UNSIGNED_INT, 15, 1).map(|v| v.len()), Ok(15));
+    }
+}

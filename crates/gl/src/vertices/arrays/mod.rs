@@ -1,0 +1,77 @@
+//! Vertex arrays: pointers, draws, vertex array objects.
+
+mod cache;
+mod draw;
+mod fetch;
+mod interleaved;
+mod objects;
+mod pointers;
+
+use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
+use crate::Context;
+use crate::objects::Names;
+use crate::state::{ArrayPointer, ClientState};
+
+/// Positions, beside the attributes.
+const POSITION: usize = super::attribute::COUNT;
+
+/// What a context keeps about vertex arrays besides its client state.
+#[derive(Debug, Default)]
+pub(crate) struct Arrays {
+    /// Batches built from buffer objects.
+    cache: cache::Cache,
+    /// Vertex array objects that are not bound; 0 is the default one.
+    objects: Names<objects::VertexArray>,
+    /// `LockArraysEXT`: first and count.
+    pub(crate) locked: Option<(i32, i32)>,
+}
+
+impl ClientState {
+    /// The array of attribute `which`, or of positions.
+    fn array(&self, which: usize) -> &ArrayPointer {
+        match which {
+            POSITION => &self.vertex,
+            NORMAL => &self.normal,
+            COLOR => &self.color,
+            SECONDARY => &self.secondary,
+            FOG => &self.fog,
+            EDGE => &self.edge,
+            INDEX => &self.index,
+            _ => &self.tex[which - TEX],
+        }
+    }
+
+    /// The array of attribute `which`, or of positions, to change.
+    fn array_mut(&mut self, which: usize) -> &mut ArrayPointer {
+        match which {
+            POSITION => &mut self.vertex,
+            NORMAL => &mut self.normal,
+            COLOR => &mut self.color,
+            SECONDARY => &mut self.secondary,
+            FOG => &mut self.fog,
+            EDGE => &mut self.edge,
+            INDEX => &mut self.index,
+            _ => &mut self.tex[which - TEX],
+        }
+    }
+}
+
+impl Context {
+    /// A buffer is deleted: it is no longer bound anywhere.
+    pub(super) fn forget_buffer(&mut self, name: u32) {
+        let client = &mut self.client;
+        for binding in [&mut client.array_buffer, &mut client.element_buffer] {
+            if *binding == name {
+                *binding = 0;
+            }
+        }
+        for which in 0..=POSITION {
+            let array = client.array_mut(which);
+            if array.buffer == name {
+                // What was an offset must not become an address.
+                (array.buffer, array.pointer) = (0, 0);
+            }
+        }
+        self.arrays.cache.forget(name);
+    }
+}

@@ -1,0 +1,165 @@
+//! The attributes of a vertex by number, so that one function serves them all.
+
+use crate::state::{Current, MAX_TEXTURE_UNITS};
+use crate::vertex::VertexBatch;
+
+pub(crate) const NORMAL: usize = 0;
+pub(crate) const COLOR: usize = 1;
+pub(crate) const SECONDARY: usize = 2;
+pub(crate) const FOG: usize = 3;
+pub(crate) const EDGE: usize = 4;
+/// Texture coordinates of unit 0; the others follow.
+pub(crate) const TEX: usize = 5;
+/// Colour index: current state that vertices do not carry.
+pub(crate) const INDEX: usize = TEX + MAX_TEXTURE_UNITS;
+/// How many there are.
+pub(crate) const COUNT: usize = INDEX + 1;
+
+/// Attributes that vertices carry.
+pub(crate) const CARRIED: u32 = (1 << INDEX) - 1;
+
+impl Current {
+    /// Sets attribute `which`; numbers that it does not have are dropped.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, which: usize, value: [f32; 4]) {
+        let [x, y, z, _] = value;
+        match which {
+            NORMAL => self.normal = [x, y, z],
+            COLOR => self.color = value,
+            SECONDARY => self.secondary = [x, y, z],
+            FOG => self.fog = x,
+            EDGE => self.edge = x != 0.0,
+            INDEX => self.index = x,
+            _ => self.tex[which - TEX] = value,
+        }
+    }
+
+    /// Attribute `which`.
+    pub(crate) fn get(&self, which: usize) -> [f32; 4] {
+        let three = |[x, y, z]: [f32; 3]| [x, y, z, 1.0];
+        match which {
+            NORMAL => three(self.normal),
+            COLOR => self.color,
+            SECONDARY => three(self.secondary),
+            FOG => [self.fog, 0.0, 0.0, 1.0],
+            EDGE => [f32::from(u8::from(self.edge)), 0.0, 0.0, 1.0],
+            INDEX => [self.index, 0.0, 0.0, 1.0],
+            _ => self.tex[which - TEX],
+        }
+    }
+}
+
+/// The attributes in `mask`, lowest first.
+pub(crate) fn each(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let which = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (which < 32).then_some(which)
+    })
+}
+
+impl VertexBatch {
+    /// Appends the attributes in `seen` from `current`.
+    #[inline]
+    pub(crate) fn push_attributes(&mut self, seen: u32, current: &Current) {
+        fn push<T>(values: &mut Option<Vec<T>>, value: T) {
+            if let Some(values) = values {
+                values.push(value);
+            }
+        }
+        if seen & 1 << NORMAL != 0 {
+            push(&mut self.normals, current.normal);
+        }
+        if seen & 1 << COLOR != 0 {
+            push(&mut self.colors, current.color);
+        }
+        if seen & 1 << TEX != 0 {
+            push(&mut self.tex[0], current.tex[0]);
+        }
+        if seen & !(1 << NORMAL | 1 << COLOR | 1 << TEX) != 0 {
+            push(&mut self.secondary, current.secondary);
+            push(&mut self.fog, current.fog);
+            push(&mut self.edges, current.edge);
+            for unit in 1..MAX_TEXTURE_UNITS {
+                push(&mut self.tex[unit], current.tex[unit]);
+            }
+        }
+    }
+
+    /// Makes an array for attribute `which`: all vertices so far have the value in `current`.
+    pub(crate) fn back_fill(&mut self, which: usize, current: &Current) {
+        fn fill<T: Clone>(values: &mut Option<Vec<T>>, value: T, n: usize) {
+            let mut all = Vec::with_capacity(n + 1);
+            all.resize(n, value);
+            *values = Some(all);
+        }
+        let n = self.positions.len();
+        match which {
+            NORMAL => fill(&mut self.normals, current.normal, n),
+            COLOR => fill(&mut self.colors, current.color, n),
+            SECONDARY => fill(&mut self.secondary, current.secondary, n),
+            FOG => fill(&mut self.fog, current.fog, n),
+            EDGE => fill(&mut self.edges, current.edge, n),
+            INDEX => {}
+            _ => fill(&mut self.tex[which - TEX], current.tex[which - TEX], n),
+        }
+    }
+
+    /// Copies what vertex `i` has to `current`.
+    pub(crate) fn load_attributes(&self, i: usize, current: &mut Current) {
+        fn load<T: Copy>(values: &Option<Vec<T>>, i: usize, to: &mut T) {
+            if let Some(values) = values {
+                *to = values[i];
+            }
+        }
+        load(&self.normals, i, &mut current.normal);
+        load(&self.colors, i, &mut current.color);
+        load(&self.secondary, i, &mut current.secondary);
+        load(&self.fog, i, &mut current.fog);
+        load(&self.edges, i, &mut current.edge);
+        for (values, to) in self.tex.iter().zip(&mut current.tex) {
+            load(values, i, to);
+        }
+    }
+
+    /// Keeps the vertices that `keep` names, in that order.
+    pub(crate) fn select_vertices(&mut self, keep: &[u32]) {
+        fn select<T: Copy>(values: &mut Vec<T>, keep: &[u32]) {
+            *values = keep.iter().map(|&i| values[i as usize]).collect();
+        }
+        select(&mut self.positions, keep);
+        self.normals.iter_mut().for_each(|values| select(values, keep));
+        self.colors.iter_mut().for_each(|values| select(values, keep));
+        self.secondary.iter_mut().for_each(|values| select(values, keep));
+        self.fog.iter_mut().for_each(|values| select(values, keep));
+        self.edges.iter_mut().for_each(|values| select(values, keep));
+        self.tex.iter_mut().flatten().for_each(|values| select(values, keep));
+    }
+
+    /// Drops all vertices from `n` on.
+    pub(crate) fn truncate_vertices(&mut self, n: usize) {
+        self.positions.truncate(n);
+        self.normals.iter_mut().for_each(|values| values.truncate(n));
+        self.colors.iter_mut().for_each(|values| values.truncate(n));
+        self.secondary.iter_mut().for_each(|values| values.truncate(n));
+        self.fog.iter_mut().for_each(|values| values.truncate(n));
+        self.edges.iter_mut().for_each(|values| values.truncate(n));
+        self.tex.iter_mut().flatten().for_each(|values| values.truncate(n));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_attribute_is_found_again() {
+        let mut current = Current::default();
+        for which in 0..COUNT {
+            current.set(which, [1.0, 0.0, 0.0, 1.0]);
+            assert_eq!(current.get(which)[0], 1.0);
+        }
+        assert_eq!(each(0b1010).collect::<Vec<_>>(), [1, 3]);
+        assert_eq!(each(0).count(), 0);
+    }
+}

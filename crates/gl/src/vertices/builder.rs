@@ -1,0 +1,218 @@
+//! Begin/End: gathers vertices as they are given.
+//!
+//! An attribute gets an array once it has been given since Begin; if that is after the first vertex, the earlier ones are
+//! filled with the value that was current until then. What was never given stays `None`: the current value holds for
+//! all. So a vertex costs one push for each attribute in use.
+//!
+//! If the caller promises to announce every call that is not one of vertices or their attributes
+//! ([`Context::set_merging`]), Begin/End pairs gather in one batch until then.
+
+use super::attribute::{CARRIED, COLOR};
+use crate::state::{Current, MaterialFace};
+use crate::vertex::VertexBatch;
+use crate::{Context, enums};
+use std::sync::Arc;
+
+/// Vertices of a batch that waits for no more.
+const LONG_ENOUGH: usize = 1 << 16;
+
+/// The primitive that is being given, and complete ones before it.
+#[derive(Debug, Default)]
+pub(crate) struct Builder {
+    pub(crate) batch: VertexBatch,
+    /// Attributes that have arrays in `batch`.
+    pub(crate) seen: u32,
+    open: bool,
+    /// A Begin is open, or complete primitives wait to be drawn.
+    gathering: bool,
+    /// Whether complete primitives wait.
+    merging: bool,
+    mode: u32,
+    first: u32,
+    /// The materials at Begin.
+    material: [MaterialFace; 2],
+    /// What was drawn.
+    #[cfg(test)]
+    pub(crate) log: Vec<Arc<VertexBatch>>,
+}
+
+impl Builder {
+    /// Whether a Begin is open.
+    #[inline(always)]
+    pub(crate) fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Mode of the open primitive.
+    pub(crate) fn mode(&self) -> u32 {
+        self.mode
+    }
+
+    /// First vertex of the open primitive.
+    pub(crate) fn first(&self) -> usize {
+        self.first as usize
+    }
+
+    /// Begins a primitive.
+    pub(crate) fn open(&mut self, mode: u32) {
+        self.open = true;
+        self.gathering = true;
+        self.mode = mode;
+        self.first = self.batch.positions.len() as u32;
+    }
+
+    /// Ends the primitive.
+    pub(crate) fn close(&mut self) {
+        self.open = false;
+        let count = self.batch.positions.len() as u32 - self.first;
+        self.batch.add_primitive(self.mode, self.first, count);
+    }
+
+    /// Forgets the open primitive, but not its vertices.
+    pub(crate) fn abandon(&mut self) {
+        self.open = false;
+    }
+
+    /// Hands out what was gathered.
+    pub(crate) fn take(&mut self) -> VertexBatch {
+        self.gathering = self.open;
+        self.seen = 0;
+        self.first = 0;
+        std::mem::take(&mut self.batch)
+    }
+
+    /// Adds a vertex with the attributes of `current` that are in use.
+    #[inline(always)]
+    pub(crate) fn vertex(&mut self, position: [f32; 4], current: &Current) {
+        self.batch.positions.push(position);
+        if self.seen != 0 {
+            self.batch.push_attributes(self.seen, current);
+        }
+    }
+
+    /// Makes sure that attribute `which` has an array, before `current` changes.
+    #[inline(always)]
+    pub(crate) fn see(&mut self, which: usize, current: &Current) {
+        let bit = 1 << which;
+        if self.seen & bit == 0 && CARRIED & bit != 0 {
+            self.batch.back_fill(which, current);
+            self.seen |= bit;
+        }
+    }
+}
+
+impl Context {
+    /// Whether a Begin is open, of the immediate stream.
+    pub(crate) fn inside_begin(&self) -> bool {
+        self.builder.is_open()
+    }
+
+    /// Records `INVALID_OPERATION` if a Begin is open.
+    pub(crate) fn refused_inside_begin(&mut self, call: &str) -> bool {
+        let inside = self.inside_begin();
+        if inside {
+            self.record_error(enums::INVALID_OPERATION, call, "not allowed between glBegin and glEnd");
+        }
+        inside
+    }
+
+    pub(super) fn exec_begin(&mut self, mode: u32) {
+        if self.inside_begin() {
+            self.record_error(enums::INVALID_OPERATION, "glBegin", "a glBegin is open already");
+        } else if mode > enums::POLYGON {
+            self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
+        } else {
+            if !self.builder.gathering {
+                self.builder.material = self.state.lighting.material;
+            }
+            self.builder.open(mode);
+        }
+    }
+
+    pub(super) fn exec_end(&mut self) {
+        if !self.inside_begin() {
+            self.record_error(enums::INVALID_OPERATION, "glEnd", "no glBegin is open");
+            return;
+        }
+        self.builder.close();
+        if !self.builder.merging || self.builder.batch.positions.len() >= LONG_ENOUGH {
+            self.flush_vertices();
+        }
+    }
+
+    /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call
+    /// but `begin`, `end`, `array_element` and those that give a vertex or set one of its attributes.
+    pub fn set_merging(&mut self, merging: bool) {
+        self.flush_vertices();
+        self.builder.merging = merging;
+    }
+
+    /// Draws the primitives that wait. Does nothing between Begin and End.
+    #[inline]
+    pub fn flush_vertices(&mut self) {
+        if self.builder.gathering && !self.builder.open {
+            self.draw_gathered();
+        }
+    }
+
+    /// Draws what the builder holds.
+    pub(super) fn draw_gathered(&mut self) {
+        let batch = self.builder.take();
+        self.draw_batch(Arc::new(batch));
+    }
+
+    #[inline(always)]
+    pub(super) fn exec_vertex(&mut self, position: [f32; 4]) {
+        if self.builder.is_open() {
+            self.builder.vertex(position, &self.state.current);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn exec_attribute(&mut self, which: usize, value: [f32; 4]) {
+        if self.builder.gathering {
+            self.builder.see(which, &self.state.current);
+        }
+        self.state.current.set(which, value);
+        if which == COLOR && self.state.lighting.color_material.enabled {
+            self.follow_color();
+        }
+    }
+
+    /// Sets the material properties that `COLOR_MATERIAL` ties to the current colour.
+    pub(crate) fn follow_color(&mut self) {
+        let color = self.state.current.color;
+        let lighting = &mut self.state.lighting;
+        let faces = match lighting.color_material.face {
+            enums::FRONT => 0..1,
+            enums::BACK => 1..2,
+            _ => 0..2,
+        };
+        for material in &mut lighting.material[faces] {
+            match lighting.color_material.mode {
+                enums::AMBIENT => material.ambient = color,
+                enums::DIFFUSE => material.diffuse = color,
+                enums::SPECULAR => material.specular = color,
+                enums::EMISSION => material.emission = color,
+                _ => (material.ambient, material.diffuse) = (color, color),
+            }
+        }
+    }
+
+    /// To be called when `Material` has changed the materials: between vertices they are kept with the batch.
+    pub(crate) fn material_changed(&mut self) {
+        if !self.inside_begin() {
+            return;
+        }
+        let builder = &mut self.builder;
+        let n = builder.batch.positions.len() as u32;
+        let materials = &mut builder.batch.materials;
+        if materials.is_empty() && n > 0 {
+            materials.push((0, builder.material));
+        }
+        match materials.last_mut() {
+            Some((from, material)) if *from == n => *material = self.state.lighting.material,
+            _ => materials.push((n, self.state.lighting.material)),
+        }
+    }
+}

@@ -1,0 +1,642 @@
+//! From vertices in clip space to primitives in tile lists, with OpenGL's culling, clipping, polygon modes, offset,
+//! lines and points.
+//!
+//! Vertices are shaded after this, and only those that a primitive uses: an assembler hands out a *slot* for each, the
+//! place of the vertex's record in [`Primitives::records`]. A vertex made by clipping is a weighted sum of three others.
+//!
+//! In:   clip-space vertices, projected ones, corners of primitives.
+//! Out:  [`Primitives`]: setups, tile lists, facets, and which vertices to shade.
+
+use super::project::WindowTransform;
+use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
+use crate::setup::{CornerPosition, DepthPlane, Setup};
+use crate::{Batch, SUBPIXEL, SamplePattern, Viewport};
+use std::ops::Range;
+
+/// How a facet's interior is found and coloured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacetKind {
+    /// A polygon's interior.
+    Polygon,
+    /// A line: its local coordinates are in [`Facet::shape`].
+    Line,
+    /// A point.
+    Point,
+}
+
+/// A triangle of a primitive, by the number in its setup.
+#[derive(Clone, Copy, Debug)]
+pub struct Facet {
+    /// Slots of the corners, in the order of the setup's.
+    pub corners: [u32; 3],
+    /// Slot of the vertex whose colours flat shading takes.
+    pub provoking: u32,
+    /// Which draw of the job it belongs to.
+    pub draw: u32,
+    /// What it is part of.
+    pub kind: FacetKind,
+    /// A back-facing polygon.
+    pub back: bool,
+    /// Index into [`Primitives::shapes`] of a line or point.
+    pub shape: u32,
+}
+
+/// Local geometry of lines and points, in pixels.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    /// From one end to the other; `stipple` is the distance along the strip at the start, `width` the line's.
+    Line {
+        /// Start.
+        from: [f32; 2],
+        /// End.
+        to: [f32; 2],
+        /// Width.
+        width: f32,
+        /// Stipple count at the start.
+        stipple: f32,
+    },
+    /// A point of a diameter; `fade` multiplies its alpha.
+    Point {
+        /// Centre.
+        center: [f32; 2],
+        /// Diameter.
+        size: f32,
+        /// Factor for alpha.
+        fade: f32,
+    },
+}
+
+/// A vertex that clipping made.
+#[derive(Clone, Copy, Debug)]
+pub struct Derived {
+    /// Its slot.
+    pub slot: u32,
+    /// Slots of its parents.
+    pub parents: [u32; 3],
+    /// Their weights, sum 1.
+    pub weights: [f32; 3],
+    /// `1 / w`.
+    pub inverse_w: f32,
+}
+
+/// How primitives become facets: the part of the state that needs no vertex.
+#[derive(Clone, Debug)]
+pub struct PrimitiveState {
+    /// Clip space to the window.
+    pub window: WindowTransform,
+    /// Clip-space planes of the user, inside is >= 0; distances come with the vertices.
+    pub user_planes: usize,
+    /// Near and far do not clip.
+    pub depth_clamp: bool,
+    /// Front faces run counter-clockwise.
+    pub counter_clockwise: bool,
+    /// The window's y runs against the clip space's.
+    pub flipped: bool,
+    /// Front faces, back faces are culled.
+    pub cull: [bool; 2],
+    /// Polygon offset factor and units for points, lines, fill; 0 when disabled.
+    pub offset: [[f32; 2]; 3],
+    /// The smallest depth step; 0 for floating point, where it depends on the depth.
+    pub depth_step: f32,
+    /// How front and back polygons are drawn: 0 points, 1 lines, 2 filled.
+    pub polygon_mode: [u8; 2],
+    /// Line width in pixels.
+    pub line_width: f32,
+    /// Lines are smooth: their rectangle is widened for the soft border.
+    pub line_smooth: bool,
+    /// Multisample lines and points are true rectangles and circles.
+    pub multisample: bool,
+    /// Points are smooth.
+    pub point_smooth: bool,
+    /// Allowed pixels x0, y0, x1, y1 for polygons and lines: scissor, target and viewport.
+    pub clip: [i32; 4],
+    /// The draw's number in its job.
+    pub draw: u32,
+}
+
+/// What jobs make: primitives of several draws, in order.
+#[derive(Debug, Default)]
+pub struct Primitives {
+    /// Setups and tile lists; a setup's facet indexes `facets`.
+    pub batch: Batch,
+    /// See there.
+    pub facets: Vec<Facet>,
+    /// Lines' and points' geometry.
+    pub shapes: Vec<Shape>,
+    /// Shaded vertices, by slot.
+    pub records: Vec<f32>,
+}
+
+/// No slot yet.
+const NONE: u32 = u32::MAX;
+
+/// Collects the primitives of one piece of a draw.
+#[derive(Debug)]
+pub struct Assembler<'a> {
+    /// State of the draw.
+    pub state: &'a PrimitiveState,
+    screen: &'a Screen,
+    out: &'a mut Primitives,
+    /// Numbers a record has.
+    stride: u32,
+    vertices: &'a Vertices<'a>,
+    slots: Vec<u32>,
+    /// Vertices to shade, in the order of their slots; derived ones are `NONE`.
+    pub used: Vec<u32>,
+    /// Vertices that clipping made.
+    pub derived: Vec<Derived>,
+    first_slot: u32,
+}
+
+/// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertices<'a> {
+    /// Clip space.
+    pub clip: &'a [[f32; 4]],
+    /// In the window.
+    pub screen: &'a [ScreenVertex],
+    /// Distances to the user's planes.
+    pub user: &'a [f32],
+    /// Point sizes and fade factors; empty where no points are drawn.
+    pub sizes: &'a [[f32; 2]],
+}
+
+/// A corner of a polygon that is being clipped.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    clip: [f32; 4],
+    weights: [f32; 3],
+}
+
+impl<'a> Assembler<'a> {
+    /// Collects into `out`; records have `stride` numbers and begin where `out.records` ends.
+    pub fn new(
+        state: &'a PrimitiveState,
+        screen: &'a Screen,
+        out: &'a mut Primitives,
+        stride: usize,
+        vertices: &'a Vertices<'a>,
+    ) -> Self {
+        let first_slot = out.records.len() as u32;
+        let slots = vec![NONE; vertices.clip.len()];
+        let stride = stride as u32;
+        Self { state, screen, out, stride, vertices, slots, used: Vec::new(), derived: Vec::new(), first_slot }
+    }
+
+    /// The slot of a vertex: where its record begins.
+    #[inline(always)]
+    fn slot(&mut self, vertex: u32) -> u32 {
+        let slot = &mut self.slots[vertex as usize];
+        if *slot == NONE {
+            *slot = self.first_slot + self.used.len() as u32 * self.stride;
+            self.used.push(vertex);
+        }
+        *slot
+    }
+
+    fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {
+        // A corner that is a parent unchanged needs no vertex of its own.
+        for k in 0..3 {
+            if corner.weights[k] == 1.0 {
+                return self.slot(parents[k]);
+            }
+        }
+        let parents = [self.slot(parents[0]), self.slot(parents[1]), self.slot(parents[2])];
+        let slot = self.first_slot + self.used.len() as u32 * self.stride;
+        self.used.push(NONE);
+        let inverse_w = 1.0 / corner.clip[3];
+        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w });
+        slot
+    }
+
+    /// Triangles that are filled; the last corner provokes.
+    pub fn triangles(&mut self, triangles: &[[u32; 3]], first_vertex: u32) {
+        let plain = self.state.polygon_mode == [2, 2];
+        for t in triangles {
+            let corners = [t[0] - first_vertex, t[1] - first_vertex, t[2] - first_vertex];
+            if plain {
+                self.triangle(corners, corners[2]);
+            } else {
+                self.polygon(&corners, &[true; 3], corners[2]);
+            }
+        }
+    }
+
+    /// A filled triangle.
+    #[inline(always)]
+    pub fn triangle(&mut self, corners: [u32; 3], provoking: u32) {
+        let s = self.vertices.screen;
+        let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];
+        let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
+        if all & flag::FRUSTUM != 0 || any & flag::NOT_FINITE != 0 {
+            return;
+        }
+        if any & flag::CLIP != 0 || self.state.user_planes > 0 {
+            return self.clipped(&corners, provoking);
+        }
+        let position = |v: ScreenVertex| CornerPosition { x: v.x, y: v.y, z: v.z };
+        let positions = [position(a), position(b), position(c)];
+        let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
+        if area == 0 {
+            return;
+        }
+        let back = self.is_back(area);
+        if self.state.cull[usize::from(back)] {
+            return;
+        }
+        let Some(pixels) = self.pixels(&positions) else { return };
+        let plane = self.plane(positions, area, 2);
+        let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
+        let provoking = self.slot(provoking);
+        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+    }
+
+    /// With y upwards in the window, counter-clockwise corners have a positive area.
+    #[inline(always)]
+    fn is_back(&self, area: i64) -> bool {
+        (area > 0) != (self.state.counter_clockwise != self.state.flipped)
+    }
+
+    /// The pixels a triangle may cover, if any are allowed.
+    #[inline(always)]
+    fn pixels(&self, positions: &[CornerPosition; 3]) -> Option<[u32; 4]> {
+        let [x0, y0, x1, y1] = covered_pixels(positions, self.screen)?;
+        let clip = self.state.clip;
+        let (x0, y0) = ((x0 as i32).max(clip[0]), (y0 as i32).max(clip[1]));
+        let (x1, y1) = ((x1 as i32).min(clip[2] - 1), (y1 as i32).min(clip[3] - 1));
+        (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])
+    }
+
+    /// The depth plane, with the polygon offset of points, lines or filled polygons.
+    #[inline(always)]
+    fn plane(&self, [a, b, c]: [CornerPosition; 3], area: i64, offset: usize) -> DepthPlane {
+        let mut plane = DepthPlane::new(a, b, c, area);
+        let [factor, units] = self.state.offset[offset];
+        if factor != 0.0 || units != 0.0 {
+            let slope = plane.dz_dx.abs().max(plane.dz_dy.abs());
+            // A step of floating-point depth: 2^(exponent - 23).
+            let float_step = f32::from_bits(plane.z_max.to_bits() & 0x7f80_0000) * (1.0 / 8_388_608.0);
+            let step = if self.state.depth_step > 0.0 { self.state.depth_step } else { float_step };
+            let offset = slope * factor + step * units;
+            plane.z += offset;
+            plane.z_min = (plane.z_min + offset).clamp(0.0, 1.0);
+            plane.z_max = (plane.z_max + offset).clamp(0.0, 1.0);
+        }
+        plane
+    }
+
+    #[inline(always)]
+    fn push(
+        &mut self,
+        positions: [CornerPosition; 3],
+        area: i64,
+        plane: &DepthPlane,
+        pixels: [u32; 4],
+        [a, b, c]: [u32; 3],
+        provoking: u32,
+        kind: FacetKind,
+        back: bool,
+        shape: u32,
+    ) {
+        let facet = self.out.facets.len() as u32;
+        // The setup turns clockwise triangles over.
+        let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
+        self.out.facets.push(Facet { corners, provoking, draw: self.state.draw, kind, back, shape });
+        self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
+    }
+
+    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
+    fn cut(&self, corners: &[u32; 3], frustum: bool) -> Vec<Corner> {
+        let mut polygon: Vec<Corner> = (0..3)
+            .map(|k| {
+                let mut weights = [0.0; 3];
+                weights[k] = 1.0;
+                Corner { clip: self.vertices.clip[corners[k] as usize], weights }
+            })
+            .collect();
+        let planes = self.state.user_planes;
+        for plane in 0..planes {
+            let d = [0, 1, 2].map(|k| self.vertices.user[corners[k] as usize * planes + plane]);
+            polygon = cut(&polygon, |c| d[0] * c.weights[0] + d[1] * c.weights[1] + d[2] * c.weights[2]);
+        }
+        let near = self.state.window.near;
+        if !self.state.depth_clamp {
+            polygon = cut(&polygon, |c| c.clip[2] - near * c.clip[3]);
+            polygon = cut(&polygon, |c| c.clip[3] - c.clip[2]);
+        }
+        // Nothing at or behind the eye survives, whatever the depth range.
+        polygon = cut(&polygon, |c| c.clip[3] - 1e-30);
+        let guard = if frustum { [1.0, 1.0] } else { self.state.window.guard };
+        for axis in 0..2 {
+            polygon = cut(&polygon, |c| guard[axis] * c.clip[3] - c.clip[axis]);
+            polygon = cut(&polygon, |c| guard[axis] * c.clip[3] + c.clip[axis]);
+        }
+        polygon
+    }
+
+    #[cold]
+    fn clipped(&mut self, corners: &[u32; 3], provoking: u32) {
+        let polygon = self.cut(corners, false);
+        if polygon.len() < 3 {
+            return;
+        }
+        let positions: Vec<CornerPosition> = polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
+        let area_of = |i: usize| Setup::doubled_area(positions[0], positions[i], positions[i + 1]);
+        let total: i64 = (1..polygon.len() - 1).map(area_of).sum();
+        if total == 0 {
+            return;
+        }
+        let back = self.is_back(total);
+        if self.state.cull[usize::from(back)] {
+            return;
+        }
+        // One depth plane, that of the largest piece: the pieces of a fan must not differ along their seams.
+        let Some(largest) = (1..polygon.len() - 1).max_by_key(|&i| area_of(i).abs()) else { return };
+        let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
+        let mut plane = self.plane(fan(largest), area_of(largest), 2);
+        let offset = plane.z - positions[0].z;
+        for p in &positions {
+            plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
+            plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
+        }
+        let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
+        let provoking = self.slot(provoking);
+        for i in 1..polygon.len() - 1 {
+            let area = area_of(i);
+            if area != 0
+                && (area > 0) == (total > 0)
+                && let Some(pixels) = self.pixels(&fan(i))
+            {
+                let slots = [slots[0], slots[i], slots[i + 1]];
+                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+            }
+        }
+    }
+
+    /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
+    pub fn polygon(&mut self, corners: &[u32], edges: &[bool], provoking: u32) {
+        let (mut area, mut outside) = (0.0f64, true);
+        let s = self.vertices.screen;
+        if corners.iter().any(|&v| s[v as usize].flags & flag::NOT_FINITE != 0) {
+            return;
+        }
+        // The sign of the area in homogeneous coordinates needs no clipping.
+        for i in 1..corners.len() - 1 {
+            let [a, b, c] =
+                [corners[0], corners[i], corners[i + 1]].map(|v| self.vertices.clip[v as usize].map(f64::from));
+            area += a[3] * (b[0] * c[1] - b[1] * c[0]) - b[3] * (a[0] * c[1] - a[1] * c[0])
+                + c[3] * (a[0] * b[1] - a[1] * b[0]);
+            outside &= a[3] <= 0.0 && b[3] <= 0.0 && c[3] <= 0.0;
+        }
+        if outside || area == 0.0 {
+            return;
+        }
+        let back = (area > 0.0) != self.state.counter_clockwise;
+        if self.state.cull[usize::from(back)] {
+            return;
+        }
+        match self.state.polygon_mode[usize::from(back)] {
+            0 => {
+                for (i, &v) in corners.iter().enumerate() {
+                    if edges[i] {
+                        self.point_of(v, provoking, back, 0);
+                    }
+                }
+            }
+            1 => {
+                let mut stipple = 0.0;
+                for i in 0..corners.len() {
+                    if edges[i] {
+                        let pair = [corners[i], corners[(i + 1) % corners.len()]];
+                        stipple = self.line_of(pair, provoking, stipple, back, 1);
+                    }
+                }
+            }
+            _ => {
+                for i in 1..corners.len() - 1 {
+                    self.triangle([corners[0], corners[i], corners[i + 1]], provoking);
+                }
+            }
+        }
+    }
+
+    /// A line; gives the stipple count at its end. The offset is that of `LINE` polygons if `offset` is 1.
+    pub fn line(&mut self, corners: [u32; 2], provoking: u32, stipple: f32) -> f32 {
+        self.line_of(corners, provoking, stipple, false, usize::MAX)
+    }
+
+    fn line_of(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: f32, back: bool, offset: usize) -> f32 {
+        let s = self.vertices.screen;
+        let (a, b) = (s[from as usize], s[to as usize]);
+        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & flag::FRUSTUM != 0 {
+            return stipple;
+        }
+        let mut ends = [
+            Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0] },
+            Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0] },
+        ];
+        if (a.flags | b.flags) & (flag::CLIP | flag::FRUSTUM) != 0 || self.state.user_planes > 0 {
+            let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
+            ends = clipped;
+        }
+        let at = ends.map(|e| self.state.window.project_exact(e.clip));
+        let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
+        let provoking = self.slot(provoking);
+        let width = self.state.line_width;
+        let (dx, dy) = (at[1][0] - at[0][0], at[1][1] - at[0][1]);
+        let length = (dx * dx + dy * dy).sqrt();
+        if length == 0.0 {
+            return stipple;
+        }
+        let true_rectangle = self.state.line_smooth || self.state.multisample;
+        let quad = if true_rectangle {
+            // Smooth lines get half a pixel more on all sides for the soft border.
+            let border = if self.state.line_smooth { 0.5 } else { 0.0 };
+            let (ux, uy) = (dx / length, dy / length);
+            let (nx, ny) = (-uy * (width * 0.5 + border), ux * (width * 0.5 + border));
+            let (ex, ey) = (ux * border, uy * border);
+            [
+                [at[0][0] - ex - nx, at[0][1] - ey - ny],
+                [at[1][0] + ex - nx, at[1][1] + ey - ny],
+                [at[1][0] + ex + nx, at[1][1] + ey + ny],
+                [at[0][0] - ex + nx, at[0][1] - ey + ny],
+            ]
+        } else {
+            // Aliased lines are widened along the minor axis, to whole pixels.
+            let half = width.floor().max(1.0) * 0.5;
+            let (nx, ny) = if dx.abs() >= dy.abs() { (0.0, half) } else { (half, 0.0) };
+            [
+                [at[0][0] - nx, at[0][1] - ny],
+                [at[1][0] - nx, at[1][1] - ny],
+                [at[1][0] + nx, at[1][1] + ny],
+                [at[0][0] + nx, at[0][1] + ny],
+            ]
+        };
+        let span = if true_rectangle { length } else { dx.abs().max(dy.abs()) };
+        let shape = self.out.shapes.len() as u32;
+        let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
+        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, stipple });
+        let depths = [z0, z1, z1, z0];
+        let quad_slots = [slots[0], slots[1], slots[1], slots[0]];
+        self.quad(quad, depths, quad_slots, provoking, FacetKind::Line, back, shape, offset);
+        stipple + span
+    }
+
+    fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
+        let planes = self.state.user_planes;
+        let user = |plane: usize, c: &Corner| {
+            let d = corners.map(|v| self.vertices.user[v as usize * planes + plane]);
+            d[0] * c.weights[0] + d[1] * c.weights[1]
+        };
+        let near = self.state.window.near;
+        let clamp = self.state.depth_clamp;
+        let mut line = ends;
+        for plane in 0..planes + 7 {
+            let distance = |c: &Corner| match plane.checked_sub(planes) {
+                None => user(plane, c),
+                Some(0) => c.clip[3] - 1e-30,
+                Some(1 | 2) if clamp => 1.0,
+                Some(1) => c.clip[2] - near * c.clip[3],
+                Some(2) => c.clip[3] - c.clip[2],
+                Some(k @ (3 | 4)) => c.clip[3] - c.clip[k - 3],
+                Some(k) => c.clip[3] + c.clip[k - 5],
+            };
+            let d = [distance(&line[0]), distance(&line[1])];
+            match (d[0] >= 0.0, d[1] >= 0.0) {
+                (false, false) => return None,
+                (true, true) => {}
+                (true, false) => line[1] = between(&line[0], &line[1], d[0], d[1]),
+                (false, true) => line[0] = between(&line[1], &line[0], d[1], d[0]),
+            }
+        }
+        Some(line)
+    }
+
+    /// A point.
+    pub fn point(&mut self, vertex: u32) {
+        self.point_of(vertex, vertex, false, usize::MAX);
+    }
+
+    fn point_of(&mut self, vertex: u32, provoking: u32, back: bool, offset: usize) {
+        let v = self.vertices.screen[vertex as usize];
+        let planes = self.state.user_planes;
+        let user = &self.vertices.user[vertex as usize * planes..][..planes];
+        if v.flags & (flag::NOT_FINITE | flag::FRUSTUM | flag::CLIP) != 0 || user.iter().any(|d| !(*d >= 0.0)) {
+            return;
+        }
+        let [x, y, z] = self.state.window.project_exact(self.vertices.clip[vertex as usize]);
+        let [size, fade] = self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0]);
+        let slot = self.slot(vertex);
+        let provoking = self.slot(provoking);
+        let (center, half) = if self.state.point_smooth || self.state.multisample {
+            ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
+        } else {
+            // An aliased point is a square of whole pixels round the vertex.
+            let size = (size + 0.5).floor().max(1.0);
+            let snapped = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
+            ([snapped(x), snapped(y)], size * 0.5)
+        };
+        let shape = self.out.shapes.len() as u32;
+        self.out.shapes.push(Shape::Point { center, size, fade });
+        let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
+            .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
+        self.quad(quad, [z; 4], [slot; 4], provoking, FacetKind::Point, back, shape, offset);
+    }
+
+    /// Two triangles that share the diagonal, with one depth plane.
+    fn quad(
+        &mut self,
+        quad: [[f32; 2]; 4],
+        depths: [f32; 4],
+        slots: [u32; 4],
+        provoking: u32,
+        kind: FacetKind,
+        back: bool,
+        shape: u32,
+        offset: usize,
+    ) {
+        let corner = |i: usize| CornerPosition {
+            x: (quad[i][0] * SUBPIXEL as f32 + 0.5).floor() as i32,
+            y: (quad[i][1] * SUBPIXEL as f32 + 0.5).floor() as i32,
+            z: depths[i],
+        };
+        for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
+            let positions = [corner(i), corner(j), corner(k)];
+            let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
+            let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
+            let plane = if offset < 3 {
+                self.plane(positions, area, offset)
+            } else {
+                DepthPlane::new(positions[0], positions[1], positions[2], area)
+            };
+            self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
+        }
+    }
+
+    /// Ends the piece: makes room for the records of all used vertices and gives their range.
+    pub fn finish(&mut self) -> Range<usize> {
+        let start = self.out.records.len();
+        self.out.records.resize(start + self.used.len() * self.stride as usize, 0.0);
+        start..self.out.records.len()
+    }
+
+    /// All records, by slot.
+    pub fn records(&mut self) -> &mut [f32] {
+        &mut self.out.records
+    }
+
+    /// Fills the records of the vertices that clipping made from their parents'. The first number is `1 / w`.
+    pub fn derive(&mut self) {
+        let stride = self.stride as usize;
+        for d in &self.derived {
+            for k in 1..stride {
+                let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
+                let value = parent(0) * d.weights[0] + parent(1) * d.weights[1] + parent(2) * d.weights[2];
+                self.out.records[d.slot as usize + k] = value;
+            }
+            self.out.records[d.slot as usize] = d.inverse_w;
+        }
+    }
+
+    /// Whether `vertex` of [`Self::used`] is one of the piece's own.
+    pub fn is_own(vertex: u32) -> bool {
+        vertex != NONE
+    }
+}
+
+/// The point where the way from the inner to the outer corner leaves.
+fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32) -> Corner {
+    let t = d_inner / (d_inner - d_outer);
+    let mix = |a: f32, b: f32| a + (b - a) * t;
+    Corner {
+        clip: std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k])),
+        weights: std::array::from_fn(|k| mix(inner.weights[k], outer.weights[k])),
+    }
+}
+
+/// Keeps the part of a convex polygon where `distance` is not negative.
+fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
+    let d: Vec<f32> = polygon.iter().map(&distance).collect();
+    if d.iter().all(|&d| d >= 0.0) {
+        return polygon.to_vec();
+    }
+    let mut result = Vec::with_capacity(polygon.len() + 1);
+    for i in 0..polygon.len() {
+        let j = (i + 1) % polygon.len();
+        if d[i] >= 0.0 {
+            result.push(polygon[i]);
+        }
+        // Always from the inner to the outer corner: neighbours that share the edge get the same point.
+        if d[i] >= 0.0 && !(d[j] >= 0.0) {
+            result.push(between(&polygon[i], &polygon[j], d[i], d[j]));
+        } else if d[j] >= 0.0 && !(d[i] >= 0.0) {
+            result.push(between(&polygon[j], &polygon[i], d[j], d[i]));
+        }
+    }
+    result
+}
+
+/// The screen for a target.
+pub(crate) fn screen(viewport: Viewport, pattern: &SamplePattern) -> Screen {
+    Screen::new(viewport, pattern)
+}

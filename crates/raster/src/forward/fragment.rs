@@ -1,0 +1,361 @@
+//! What happens to the fragments of a row of eight pixels: the specification's per-fragment operations, in their order.
+//!
+//! Scissor (the clip rectangle), alpha test, stencil test, depth test, blending, logic operation, masks. Depth is looked at
+//! once before colours are computed, without writing, so that hidden fragments are not shaded; nothing can tell, because
+//! a fragment that fails the depth test changes at most the stencil.
+
+use super::fragment_ops::blend::blend;
+use super::fragment_ops::compare::{alpha_test, depth_test};
+use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
+use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
+use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
+use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
+use super::plane::PlaneTile;
+use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace};
+use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
+use crate::{TILE, TILE_PIXELS};
+use std::sync::atomic::Ordering;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
+
+/// The colour samples of a tile.
+pub(crate) enum ColorTile<'a> {
+    /// Packed bytes.
+    Rgba8(&'a mut PlaneTile<u32>),
+    /// Floating point.
+    RgbaF32(&'a mut PlaneTile<[f32; 4]>),
+}
+
+/// The planes of one tile.
+pub(crate) struct TilePlanes<'a> {
+    /// Colour.
+    pub color: Option<ColorTile<'a>>,
+    /// Depth and its scale.
+    pub depth: Option<(&'a mut PlaneTile<f32>, f32)>,
+    /// Stencil.
+    pub stencil: Option<&'a mut PlaneTile<u8>>,
+    /// Samples a pixel.
+    pub samples: usize,
+}
+
+/// Most samples a pixel.
+pub(crate) const SAMPLES: usize = 4;
+
+/// Depths of a row's samples as they would be stored.
+pub(crate) type Depths<S> = [F32x8<S>; SAMPLES];
+
+/// Depth in `0..=1` as stored: scaled and rounded to whole numbers, unless the scale is 1.
+#[inline(always)]
+pub(crate) fn stored_depth<S: Simd>(simd: S, depth: F32x8<S>, scale: f32) -> F32x8<S> {
+    if scale == 1.0 {
+        return depth;
+    }
+    let scaled = depth * scale;
+    // From 2^23 on every number is whole, and adding a half would round again.
+    let half = select(scaled.simd_lt(splat(simd, 8_388_608.0)), splat(simd, 0.5), splat(simd, 0.0));
+    floor(scaled + half)
+}
+
+/// How colours meet stored ones, decided once a draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mixing {
+    Replace,
+    Add,
+    AddScaled,
+    Mix,
+    General,
+}
+
+/// The part of a draw's fragment state that needs some work first.
+#[derive(Debug)]
+pub(crate) struct FragmentOps {
+    mixing: Mixing,
+    protected: u32,
+    all_protected: bool,
+    coverage: u32,
+}
+
+impl FragmentOps {
+    pub(crate) fn new(state: &FragmentState, samples: usize) -> Self {
+        let all = (1u32 << samples) - 1;
+        let coverage = match state.sample_coverage {
+            Some(c) if state.multisample && samples > 1 => sample_coverage_bits(c, samples),
+            _ => all,
+        };
+        let protected = protected_bits(state.masked);
+        Self { mixing: mixing(state), protected, all_protected: state.masked == [true; 4], coverage }
+    }
+}
+
+fn mixing(state: &FragmentState) -> Mixing {
+    use BlendFactor::{One, OneMinusSrcAlpha, SrcAlpha, Zero};
+    let Some(Blend { source, destination, equation, .. }) = state.blend else { return Mixing::Replace };
+    if state.logic_op.is_some() {
+        return Mixing::Replace;
+    }
+    if equation != [BlendEquation::Add; 2] {
+        return Mixing::General;
+    }
+    match (source, destination) {
+        ([One, One], [Zero, Zero]) => Mixing::Replace,
+        ([One, One], [One, One]) => Mixing::Add,
+        ([SrcAlpha, SrcAlpha], [One, One]) => Mixing::AddScaled,
+        ([SrcAlpha, SrcAlpha], [OneMinusSrcAlpha, OneMinusSrcAlpha]) => Mixing::Mix,
+        _ => Mixing::General,
+    }
+}
+
+/// A row of eight pixels of a tile: where it begins in each sample's part of a plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    /// `y * TILE + x`, x a multiple of 8.
+    pub at: usize,
+}
+
+impl TilePlanes<'_> {
+    /// Which of the covered samples would pass the depth test, if that can be told before stencil and alpha test.
+    #[inline(always)]
+    pub(crate) fn visible<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        row: Row,
+        bits: &[u32; SAMPLES],
+        depths: &Depths<S>,
+    ) -> [u32; SAMPLES] {
+        let mut visible = *bits;
+        let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &self.depth) else { return visible };
+        if test.func == Compare::Always {
+            return visible;
+        }
+        for s in 0..self.samples {
+            if bits[s] == 0 {
+                continue;
+            }
+            let at = s * TILE_PIXELS + row.at;
+            let stored = match tile {
+                PlaneTile::Cleared(value) => splat(simd, *value),
+                PlaneTile::Stored(values) => F32x8::from_slice(simd, &values[at..at + LANES]),
+            };
+            visible[s] &= bits_of(depth_test(simd, test, depths[s], stored));
+        }
+        visible
+    }
+
+    /// Alpha test, coverage by alpha, stencil and depth test with their writes, and the colour of what passes.
+    #[inline(always)]
+    pub(crate) fn fragments<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        ops: &FragmentOps,
+        row: Row,
+        back: bool,
+        mut bits: [u32; SAMPLES],
+        depths: &Depths<S>,
+        mut color: Rgba<S>,
+    ) {
+        let samples = self.samples;
+        if let Some(test) = state.alpha_test {
+            let passed = bits_of(alpha_test(simd, test, color[3]));
+            for s in 0..samples {
+                bits[s] &= passed;
+            }
+        }
+        if samples > 1 && state.multisample {
+            for s in 0..samples {
+                if state.alpha_to_coverage {
+                    bits[s] &= alpha_coverage(simd, color[3], s, samples);
+                }
+                if ops.coverage >> s & 1 == 0 {
+                    bits[s] = 0;
+                }
+            }
+            if state.alpha_to_one {
+                color[3] = splat(simd, 1.0);
+            }
+        }
+        let any = bits[0] | bits[1] | bits[2] | bits[3];
+        if any == 0 {
+            return;
+        }
+        let mut passed = bits;
+        let mut count = 0;
+        for s in 0..samples {
+            if bits[s] != 0 {
+                passed[s] = self.tests(simd, state, s, row, back, bits[s], depths[s]);
+                count += u64::from(passed[s].count_ones());
+            }
+        }
+        if let Some(query) = &state.query {
+            query.fetch_add(count, Ordering::Relaxed);
+        }
+        if count > 0 && !ops.all_protected {
+            self.write_colors(simd, state, ops, row, &passed, &color);
+        }
+    }
+
+    /// Stencil and depth test of one sample plane; which pixels pass.
+    #[inline(always)]
+    fn tests<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        s: usize,
+        row: Row,
+        back: bool,
+        bits: u32,
+        depth: F32x8<S>,
+    ) -> u32 {
+        let samples = self.samples;
+        let at = s * TILE_PIXELS + row.at;
+        let covered = mask_of(simd, bits);
+        let mut stencil = None;
+        let mut reached = covered;
+        if let (Some(test), Some(tile)) = (&state.stencil, &mut self.stencil) {
+            let face: StencilFace = if back { test.back } else { test.front };
+            let values = &mut tile.stored(samples)[at..at + LANES];
+            let stored = load_stencil(simd, values);
+            let passed = stencil_test(simd, &face, stored);
+            reached = covered & passed;
+            stencil = Some((face, stored, passed));
+        }
+        let mut passed = reached;
+        if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
+            let plain = test.func == Compare::Always;
+            if !(plain && !test.write) {
+                let values = &mut tile.stored(samples)[at..at + LANES];
+                let stored = F32x8::from_slice(simd, values);
+                passed = reached & depth_test(simd, test, depth, stored);
+                if test.write {
+                    select(passed, depth, stored).store_slice(values);
+                }
+            }
+        }
+        if let (Some((face, stored, stencil_passed)), Some(tile)) = (stencil, &mut self.stencil) {
+            let updated = stencil_update(simd, &face, stored, covered, stencil_passed, passed);
+            store_stencil(updated, &mut tile.stored(samples)[at..at + LANES]);
+        }
+        bits_of(passed)
+    }
+
+    #[inline(always)]
+    fn write_colors<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        ops: &FragmentOps,
+        row: Row,
+        bits: &[u32; SAMPLES],
+        color: &Rgba<S>,
+    ) {
+        let samples = self.samples;
+        match &mut self.color {
+            None => {}
+            Some(ColorTile::Rgba8(tile)) => {
+                let values = tile.stored(samples);
+                let color = saturate_rgba(*color);
+                let packed = pack(&color);
+                for s in 0..samples {
+                    if bits[s] == 0 {
+                        continue;
+                    }
+                    let at = s * TILE_PIXELS + row.at;
+                    let values = &mut values[at..at + LANES];
+                    write_packed(simd, state, ops, bits[s], &color, packed, values);
+                }
+            }
+            Some(ColorTile::RgbaF32(tile)) => {
+                let values = tile.stored(samples);
+                for s in 0..samples {
+                    if bits[s] != 0 {
+                        let at = s * TILE_PIXELS + row.at;
+                        write_floats(simd, state, bits[s], color, &mut values[at..at + LANES]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn write_packed<S: Simd>(
+    simd: S,
+    state: &FragmentState,
+    ops: &FragmentOps,
+    bits: u32,
+    color: &Rgba<S>,
+    packed: U32x8<S>,
+    values: &mut [u32],
+) {
+    let stored = U32x8::from_slice(simd, values);
+    let mut new = match ops.mixing {
+        Mixing::Replace => packed,
+        Mixing::Add => add_packed(packed, stored),
+        Mixing::AddScaled => add_scaled_packed(packed, stored),
+        Mixing::Mix => mix_packed(packed, stored),
+        Mixing::General => match &state.blend {
+            Some(b) => blend_packed(simd, b, color, stored),
+            None => packed,
+        },
+    };
+    if let Some(op) = state.logic_op {
+        new = logic_op(simd, op, packed, stored);
+    }
+    if ops.protected != 0 {
+        new = write_unprotected(new, stored, ops.protected);
+    }
+    mask_of(simd, bits).select(new, stored).store_slice(values);
+}
+
+/// The seldom factors and equations, kept out of line.
+#[inline(never)]
+fn blend_packed<S: Simd>(simd: S, state: &Blend, color: &Rgba<S>, stored: U32x8<S>) -> U32x8<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || pack(&saturate_rgba(blend(simd, state, *color, unpack(stored), true))),
+    )
+}
+
+#[inline(never)]
+fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba<S>, values: &mut [[f32; 4]]) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut soa = [[0.0f32; LANES]; 4];
+            for lane in 0..LANES {
+                for k in 0..4 {
+                    soa[k][lane] = values[lane][k];
+                }
+            }
+            let mut new = *color;
+            if let (Some(b), None) = (&state.blend, state.logic_op) {
+                let stored = [
+                    F32x8::from_slice(simd, &soa[0]),
+                    F32x8::from_slice(simd, &soa[1]),
+                    F32x8::from_slice(simd, &soa[2]),
+                    F32x8::from_slice(simd, &soa[3]),
+                ];
+                new = blend(simd, b, *color, stored, false);
+            }
+            let new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
+            for lane in 0..LANES {
+                for k in 0..4 {
+                    if bits >> lane & 1 == 1 && !state.masked[k] {
+                        values[lane][k] = new[k][lane];
+                    }
+                }
+            }
+        },
+    );
+}
+
+/// The bits of a row's eight pixels whose columns lie in `x0..x1`, given the row's first column.
+#[inline(always)]
+pub(crate) fn columns(first: i32, x0: i32, x1: i32) -> u32 {
+    let low = (x0 - first).clamp(0, 8);
+    let high = (x1 - first).clamp(0, 8);
+    if high <= low { 0 } else { ((1u32 << high) - 1) & !((1u32 << low) - 1) }
+}
+
+const _: () = assert!(TILE % LANES == 0, "rows of a tile are cut into whole rows of eight");

@@ -1,0 +1,159 @@
+//! Clip space to window space, eight vertices at a time or one.
+
+use crate::geometry::{ScreenVertex, flag};
+use crate::setup::CornerPosition;
+use crate::{GUARD_BAND, SUBPIXEL};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Mask8, Simd, U32x8, dispatch};
+
+/// The viewport and depth range as a map from normalised device coordinates. Row 0 is the lowest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowTransform {
+    /// Half the viewport's size, pixels.
+    pub scale: [f32; 2],
+    /// Its centre, pixels.
+    pub center: [f32; 2],
+    /// Window depth = `ndc * z_scale + z_center`.
+    pub z_scale: f32,
+    /// See `z_scale`.
+    pub z_center: f32,
+    /// Depth of the near plane in normalised device coordinates: -1, or 0 with `ZERO_TO_ONE`.
+    pub near: f32,
+    /// The guard band, in multiples of the view.
+    pub guard: [f32; 2],
+}
+
+impl WindowTransform {
+    /// For a viewport `x, y, width, height`, depth range `near, far`, and whether clip depth runs from 0 to 1, and
+    /// whether y points down (`UPPER_LEFT`).
+    pub fn new([x, y, w, h]: [i32; 4], [near, far]: [f64; 2], zero_to_one: bool, upper_left: bool) -> Self {
+        let half = [w as f32 * 0.5, h as f32 * 0.5];
+        let scale = [half[0], if upper_left { -half[1] } else { half[1] }];
+        let (z_scale, z_center, ndc_near) = if zero_to_one {
+            ((far - near) as f32, near as f32, 0.0)
+        } else {
+            (((far - near) * 0.5) as f32, ((far + near) * 0.5) as f32, -1.0)
+        };
+        // Coordinates are measured from the target's corner: what the viewport is off counts against the band.
+        let center = [x as f32 + half[0], y as f32 + half[1]];
+        let band = |k: usize| ((GUARD_BAND - center[k].abs()) / half[k].max(0.5)).max(1.0);
+        Self { scale, center, z_scale, z_center, near: ndc_near, guard: [band(0), band(1)] }
+    }
+
+    /// Projects and snaps a clipped point.
+    pub fn project(&self, clip: [f32; 4]) -> CornerPosition {
+        let [x, y, z] = self.project_exact(clip);
+        let snapped = |v: f32| (v * SUBPIXEL as f32 + 0.5).floor() as i32;
+        CornerPosition { x: snapped(x), y: snapped(y), z }
+    }
+
+    /// Window x and y in pixels, and depth, of a point with `w > 0`.
+    pub fn project_exact(&self, clip: [f32; 4]) -> [f32; 3] {
+        let w = clip[3];
+        [
+            clip[0] / w * self.scale[0] + self.center[0],
+            clip[1] / w * self.scale[1] + self.center[1],
+            (clip[2] / w * self.z_scale + self.z_center).clamp(0.0, 1.0),
+        ]
+    }
+}
+
+/// `matrix * position` for each position (column-major, clip space), and the same in the window.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn project(
+    level: Level,
+    positions: &[[f32; 4]],
+    matrix: &[f32; 16],
+    window: &WindowTransform,
+    clip: &mut [[f32; 4]],
+    screen: &mut [ScreenVertex],
+) {
+    assert!(positions.len() == clip.len() && positions.len() == screen.len(), "one result for each position");
+    dispatch!(level, simd => project_all(simd, positions, matrix, window, clip, screen));
+}
+
+#[inline(always)]
+fn project_all<S: Simd>(
+    simd: S,
+    positions: &[[f32; 4]],
+    m: &[f32; 16],
+    window: &WindowTransform,
+    clip: &mut [[f32; 4]],
+    screen: &mut [ScreenVertex],
+) {
+    let chunks = positions.chunks(LANES).zip(clip.chunks_mut(LANES)).zip(screen.chunks_mut(LANES));
+    for ((p, clip), screen) in chunks {
+        let mut soa = [[0.0f32; LANES]; 4];
+        for lane in 0..LANES {
+            let v = p[lane.min(p.len() - 1)];
+            for k in 0..4 {
+                soa[k][lane] = v[k];
+            }
+        }
+        let [x, y, z, w] = [load(simd, &soa[0]), load(simd, &soa[1]), load(simd, &soa[2]), load(simd, &soa[3])];
+        let c = [
+            x * m[0] + y * m[4] + z * m[8] + w * m[12],
+            x * m[1] + y * m[5] + z * m[9] + w * m[13],
+            x * m[2] + y * m[6] + z * m[10] + w * m[14],
+            x * m[3] + y * m[7] + z * m[11] + w * m[15],
+        ];
+        let (sx, sy, depth, flags) = to_window(simd, c, window);
+        let (cx, cy, cz, cw) = (c[0].to_array(), c[1].to_array(), c[2].to_array(), c[3].to_array());
+        let (sx, sy, depth, flags) = (sx.to_array(), sy.to_array(), depth.to_array(), flags.to_array());
+        for lane in 0..clip.len() {
+            clip[lane] = [cx[lane], cy[lane], cz[lane], cw[lane]];
+            screen[lane] = ScreenVertex { x: sx[lane], y: sy[lane], z: depth[lane], flags: flags[lane] };
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> F32x8<S> {
+    F32x8::from_slice(simd, lanes)
+}
+
+#[inline(always)]
+fn bit<S: Simd>(simd: S, mask: Mask8<S>, bit: u32) -> U32x8<S> {
+    mask.select(U32x8::splat(simd, bit), U32x8::splat(simd, 0))
+}
+
+#[inline(always)]
+fn whole<S: Simd>(mask: Mask8<S>, v: F32x8<S>) -> I32x8<S> {
+    mask.select(v.floor(), F32x8::splat(mask.token(), 0.0)).to_int()
+}
+
+/// From clip space to snapped window coordinates, depth and flags.
+#[inline(always)]
+fn to_window<S: Simd>(
+    simd: S,
+    [x, y, z, w]: [F32x8<S>; 4],
+    window: &WindowTransform,
+) -> (I32x8<S>, I32x8<S>, F32x8<S>, U32x8<S>) {
+    let (zero, one) = (F32x8::splat(simd, 0.0), F32x8::splat(simd, 1.0));
+    let near = w * window.near;
+
+    // Mark what is outside. Comparisons are written so that NaN counts as outside.
+    let outside = bit(simd, !x.simd_ge(-w), flag::LEFT)
+        | bit(simd, !x.simd_le(w), flag::RIGHT)
+        | bit(simd, !y.simd_ge(-w), flag::BOTTOM)
+        | bit(simd, !y.simd_le(w), flag::TOP)
+        | bit(simd, !z.simd_ge(near), flag::FAR)
+        | bit(simd, !z.simd_le(w), flag::NEAR);
+    let (gx, gy) = (w * window.guard[0], w * window.guard[1]);
+    let in_band = x.simd_ge(-gx) & x.simd_le(gx) & y.simd_ge(-gy) & y.simd_le(gy) & z.simd_ge(near) & z.simd_le(w);
+    let in_band = in_band & w.simd_gt(F32x8::splat(simd, 1e-30));
+    // 0 x is 0 for finite numbers only.
+    let finite = (x * 0.0 + y * 0.0 + z * 0.0 + w * 0.0).simd_eq(zero);
+    let flags = outside | bit(simd, !in_band, flag::CLIP) | bit(simd, !finite, flag::NOT_FINITE);
+
+    // Divide and snap; lanes that will be clipped get harmless numbers. The order of operations is `project_exact`'s.
+    let safe_w = in_band.select(w, one);
+    let sx = x / safe_w * window.scale[0] + window.center[0];
+    let sy = y / safe_w * window.scale[1] + window.center[1];
+    let sz = z / safe_w * window.z_scale + window.z_center;
+    let sz = vitral_math::lanes::Lanes::saturate(sz);
+    let sub = SUBPIXEL as f32;
+    (whole(in_band, sx * sub + 0.5), whole(in_band, sy * sub + 0.5), sz, flags)
+}

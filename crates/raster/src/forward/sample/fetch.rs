@@ -1,0 +1,261 @@
+//! Texels of one level, fetched for eight lanes.
+//!
+//! Fetched colours are raw: bytes stay 0..=255 until a lookup is finished, so that they are divided once instead of
+//! once a texel. [`Image::raw`] brings other colours to that scale.
+
+use crate::forward::fragment_ops::packed::unpack_bytes;
+use crate::forward::plane::{DepthPlane, PlaneTile};
+use crate::forward::texture::{Level, Texels, Texture};
+use crate::forward::wide::{Rgba, splat};
+use crate::{TILE, TILE_PIXELS};
+use std::sync::{LazyLock, MutexGuard, PoisonError};
+use vitral_math::color::linear_from_srgb_table;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U32x8};
+
+/// Linear light of each sRGB byte.
+static LINEAR_FROM_SRGB: LazyLock<[f32; 256]> = LazyLock::new(linear_from_srgb_table);
+
+/// The level `level` of face 0, if there is one.
+#[inline(always)]
+pub(super) fn level_of(texture: &Texture, level: usize) -> Option<&Level> {
+    level_of_face(texture, 0, level)
+}
+
+/// The level `level` of a face.
+#[inline(always)]
+pub(super) fn level_of_face(texture: &Texture, face: usize, level: usize) -> Option<&Level> {
+    Some(&**texture.faces.get(face)?.get(level)?)
+}
+
+/// Sizes of a level without its border.
+#[inline(always)]
+pub(super) fn interior(level: &Level, dimensions: usize) -> [u32; 3] {
+    let mut size = level.size;
+    for side in &mut size[..dimensions] {
+        *side = side.saturating_sub(2 * level.border);
+    }
+    size
+}
+
+/// One texel a lane; 0 where there is none.
+#[inline(always)]
+fn gather<S: Simd, T: Copy + Default>(texels: &[T], index: I32x8<S>) -> [T; LANES] {
+    let index = index.to_array();
+    let mut out = [T::default(); LANES];
+    for lane in 0..LANES {
+        out[lane] = texels.get(index[lane] as usize).copied().unwrap_or_default();
+    }
+    out
+}
+
+/// Texels of 8 bits a component.
+#[derive(Clone, Copy)]
+pub(super) struct Words<'a> {
+    texels: &'a [u32],
+    /// What colour bytes mean, if they are sRGB-encoded.
+    decode: Option<&'a [f32; 256]>,
+}
+
+impl<'a> Words<'a> {
+    /// Those of a level, if it has such.
+    #[inline(always)]
+    pub(super) fn new(level: &'a Level) -> Option<Self> {
+        match &level.texels {
+            Texels::Rgba8(texels) => Some(Self { texels, decode: None }),
+            Texels::Srgb8(texels) => Some(Self { texels, decode: Some(&LINEAR_FROM_SRGB) }),
+            _ => None,
+        }
+    }
+
+    /// The texels numbered `index`.
+    #[inline(always)]
+    pub(super) fn words<S: Simd>(&self, simd: S, index: I32x8<S>) -> U32x8<S> {
+        U32x8::from_slice(simd, &gather(self.texels, index))
+    }
+
+    /// The texels numbered `index`, and their right neighbours: two texels a load.
+    #[inline(always)]
+    pub(super) fn pairs<S: Simd>(&self, simd: S, index: I32x8<S>) -> (U32x8<S>, U32x8<S>) {
+        let index = index.to_array();
+        let mut pairs = [[0u32; 2]; LANES];
+        for lane in 0..LANES {
+            if let Some(pair) = self.texels.get(index[lane] as usize..).and_then(|rest| rest.first_chunk()) {
+                pairs[lane] = *pair;
+            }
+        }
+        let flat: &[u32] = bytemuck::cast_slice(&pairs);
+        let (low, high) = flat.split_at(LANES);
+        U32x8::from_slice(simd, low).deinterleave(U32x8::from_slice(simd, high))
+    }
+
+    /// Raw colours of texels.
+    #[inline(always)]
+    pub(super) fn meaning<S: Simd>(&self, simd: S, words: U32x8<S>) -> Rgba<S> {
+        match self.decode {
+            None => unpack_bytes(words),
+            Some(table) => decode(simd, words, table),
+        }
+    }
+
+    /// Raw colours of the texels numbered `index`.
+    #[inline(always)]
+    pub(super) fn colors<S: Simd>(&self, simd: S, index: I32x8<S>) -> Rgba<S> {
+        self.meaning(simd, self.words(simd, index))
+    }
+
+    /// From raw colours to colours.
+    #[inline(always)]
+    pub(super) fn finish<S: Simd>(&self, color: Rgba<S>) -> Rgba<S> {
+        let [r, g, b, a] = color;
+        match self.decode {
+            None => [r / 255.0, g / 255.0, b / 255.0, a / 255.0],
+            Some(_) => [r, g, b, a / 255.0],
+        }
+    }
+}
+
+/// Colours in linear light, alpha as 0..=255.
+#[inline(always)]
+fn decode<S: Simd>(simd: S, words: U32x8<S>, table: &[f32; 256]) -> Rgba<S> {
+    let bytes = words.to_array();
+    let mut colors = [[0.0f32; LANES]; 3];
+    for lane in 0..LANES {
+        let bytes = bytes[lane].to_le_bytes();
+        for k in 0..3 {
+            colors[k][lane] = table[usize::from(bytes[k])];
+        }
+    }
+    let alpha: I32x8<S> = (words >> 24).bitcast();
+    let [r, g, b] = &colors;
+    [F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b), alpha.to_float()]
+}
+
+/// Texels of any kind, as colours.
+#[derive(Clone, Copy)]
+pub(super) enum Image<'a> {
+    Words(Words<'a>),
+    Floats(&'a [[f32; 4]]),
+    /// A depth in all components.
+    Depths(&'a [f32]),
+}
+
+impl<'a> Image<'a> {
+    /// Those of a level; a depth plane has no colours.
+    #[inline(always)]
+    pub(super) fn new(level: &'a Level) -> Self {
+        match &level.texels {
+            Texels::RgbaF32(texels) => Self::Floats(texels),
+            Texels::Depth(texels) => Self::Depths(texels),
+            _ => Words::new(level).map_or(Self::Floats(&[]), Self::Words),
+        }
+    }
+
+    /// Raw colours.
+    #[inline(always)]
+    pub(super) fn colors<S: Simd>(&self, simd: S, index: I32x8<S>) -> Rgba<S> {
+        match self {
+            Self::Words(words) => words.colors(simd, index),
+            Self::Floats(texels) => columns(simd, &gather(texels, index)),
+            Self::Depths(texels) => [F32x8::from_slice(simd, &gather(texels, index)); 4],
+        }
+    }
+
+    /// One raw colour.
+    pub(super) fn color(&self, index: usize) -> [f32; 4] {
+        match self {
+            Self::Words(words) => {
+                let bytes = words.texels.get(index).copied().unwrap_or(0).to_le_bytes();
+                let [r, g, b] = [0, 1, 2].map(|k: usize| match words.decode {
+                    None => f32::from(bytes[k]),
+                    Some(table) => table[usize::from(bytes[k])],
+                });
+                [r, g, b, f32::from(bytes[3])]
+            }
+            Self::Floats(texels) => texels.get(index).copied().unwrap_or_default(),
+            Self::Depths(texels) => [texels.get(index).copied().unwrap_or_default(); 4],
+        }
+    }
+
+    /// A colour as if it were fetched.
+    #[inline(always)]
+    pub(super) fn raw(&self, color: [f32; 4]) -> [f32; 4] {
+        let [r, g, b, a] = color;
+        match self {
+            Self::Words(Words { decode: None, .. }) => [r * 255.0, g * 255.0, b * 255.0, a * 255.0],
+            Self::Words(_) => [r, g, b, a * 255.0],
+            _ => color,
+        }
+    }
+
+    /// From raw colours to colours.
+    #[inline(always)]
+    pub(super) fn finish<S: Simd>(&self, color: Rgba<S>) -> Rgba<S> {
+        match self {
+            Self::Words(words) => words.finish(color),
+            _ => color,
+        }
+    }
+}
+
+/// Colours of eight lanes by component.
+#[inline(always)]
+pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
+    let mut columns = [[0.0f32; LANES]; 4];
+    for lane in 0..LANES {
+        for k in 0..4 {
+            columns[k][lane] = colors[lane][k];
+        }
+    }
+    let [r, g, b, a] = &columns;
+    [F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b), F32x8::from_slice(simd, a)]
+}
+
+/// Depths of a level.
+pub(super) enum Depths<'a> {
+    Stored(&'a [f32]),
+    /// Held until the lookup is done.
+    Plane(MutexGuard<'a, DepthPlane>),
+}
+
+impl<'a> Depths<'a> {
+    /// Those of a level; what is no depth image has none.
+    #[inline(always)]
+    pub(super) fn new(level: &'a Level) -> Self {
+        match &level.texels {
+            Texels::Depth(texels) => Self::Stored(texels),
+            Texels::DepthPlane(plane) => Self::Plane(plane.lock().unwrap_or_else(PoisonError::into_inner)),
+            _ => Self::Stored(&[]),
+        }
+    }
+
+    /// Depths of the texels `(x, y)` of an image `width` wide; 0 where there is none.
+    #[inline(always)]
+    pub(super) fn at<S: Simd>(&self, simd: S, x: I32x8<S>, y: I32x8<S>, width: u32, active: u32) -> F32x8<S> {
+        match self {
+            Self::Stored(texels) => F32x8::from_slice(simd, &gather(texels, y * width as i32 + x)),
+            Self::Plane(plane) => plane_depths(simd, plane, x, y, active),
+        }
+    }
+}
+
+/// Depths of sample 0 of a plane's pixels; other lanes than the active ones are 0.
+#[inline(always)]
+fn plane_depths<S: Simd>(simd: S, depth: &DepthPlane, x: I32x8<S>, y: I32x8<S>, active: u32) -> F32x8<S> {
+    const SHIFT: u32 = TILE.trailing_zeros();
+    const INSIDE: i32 = TILE as i32 - 1;
+    let tiles_x = depth.plane.viewport().tiles_x() as i32;
+    let tile = ((y >> SHIFT) * tiles_x + (x >> SHIFT)).to_array();
+    let at = ((y & INSIDE) * TILE as i32 + (x & INSIDE)).to_array();
+    let mut out = [0.0f32; LANES];
+    for lane in 0..LANES {
+        if active >> lane & 1 == 1 {
+            out[lane] = match depth.plane.tiles.get(tile[lane] as usize) {
+                Some(PlaneTile::Cleared(value)) => *value,
+                Some(PlaneTile::Stored(values)) => values[at[lane] as usize % TILE_PIXELS],
+                None => 0.0,
+            };
+        }
+    }
+    F32x8::from_slice(simd, &out) / splat(simd, depth.scale)
+}

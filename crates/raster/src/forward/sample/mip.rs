@@ -1,0 +1,183 @@
+//! Level of detail: from derivatives to levels and filters.
+
+use super::cube;
+use super::fetch::interior;
+use crate::forward::texture::{Filter, Sampler, Texture, TextureKind};
+use crate::forward::wide::{Rgba, bits_of, clamp, floor, mask_of, max, mix, select, splat};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Simd};
+
+/// Whether the level of detail can matter: otherwise any number will do.
+pub(crate) fn needs_lod(texture: &Texture) -> bool {
+    let Sampler { min, mag, .. } = texture.sampler;
+    min != mag
+}
+
+/// The level of detail of level 0 from how many texels a step of one pixel to the right crosses in each dimension, and
+/// a step up: the logarithm to base 2 of the longer step. -63 for no step at all.
+#[inline(always)]
+pub(crate) fn lod<S: Simd>(
+    du_dx: F32x8<S>,
+    dv_dx: F32x8<S>,
+    dw_dx: F32x8<S>,
+    du_dy: F32x8<S>,
+    dv_dy: F32x8<S>,
+    dw_dy: F32x8<S>,
+) -> F32x8<S> {
+    let across = du_dx * du_dx + dv_dx * dv_dx + dw_dx * dw_dx;
+    let up = du_dy * du_dy + dv_dy * dv_dy + dw_dy * dw_dy;
+    lanes::Lanes::log2(max(across, up)) * 0.5
+}
+
+/// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of
+/// (s, t, r, q) as interpolated.
+#[inline(always)]
+pub(crate) fn derivatives<S: Simd>(
+    simd: S,
+    texture: &Texture,
+    coords: [F32x8<S>; 4],
+    dx: [F32x8<S>; 4],
+    dy: [F32x8<S>; 4],
+) -> [[F32x8<S>; 3]; 2] {
+    let zero = splat(simd, 0.0);
+    let dimensions = dimensions(texture.kind);
+    let size = match super::fetch::level_of(texture, 0) {
+        Some(level) => interior(level, dimensions),
+        None => [1; 3],
+    };
+    if texture.kind == TextureKind::Cube {
+        return cube::derivatives(simd, size[0], coords, dx, dy);
+    }
+    let size = if texture.kind == TextureKind::Rectangle { [1; 3] } else { size };
+    let mut steps = [[zero; 3]; 2];
+    for k in 0..dimensions {
+        // d(s / q) = (ds - s / q * dq) / q, times the size.
+        let scale = splat(simd, size[k] as f32) / coords[3];
+        let projected = coords[k] / coords[3];
+        steps[0][k] = (dx[k] - projected * dx[3]) * scale;
+        steps[1][k] = (dy[k] - projected * dy[3]) * scale;
+    }
+    steps
+}
+
+/// How many coordinates a kind uses.
+pub(super) fn dimensions(kind: TextureKind) -> usize {
+    match kind {
+        TextureKind::One => 1,
+        TextureKind::Two | TextureKind::Rectangle | TextureKind::Cube => 2,
+        TextureKind::Three => 3,
+    }
+}
+
+/// What each lane reads.
+struct Choice<S: Simd> {
+    /// Level, or the finer of two.
+    level: F32x8<S>,
+    /// How much of the next coarser level is mixed in.
+    fraction: F32x8<S>,
+    /// Which lanes filter linearly within a level.
+    linear: u32,
+}
+
+/// How a minification filter treats levels.
+#[derive(Clone, Copy, PartialEq)]
+enum Mip {
+    None,
+    Nearest,
+    Linear,
+}
+
+/// The filter within a level and between levels.
+fn split(filter: Filter) -> (bool, Mip) {
+    match filter {
+        Filter::Nearest => (false, Mip::None),
+        Filter::Linear => (true, Mip::None),
+        Filter::NearestMipmapNearest => (false, Mip::Nearest),
+        Filter::LinearMipmapNearest => (true, Mip::Nearest),
+        Filter::NearestMipmapLinear => (false, Mip::Linear),
+        Filter::LinearMipmapLinear => (true, Mip::Linear),
+    }
+}
+
+/// Levels and filters for levels `0..=last`.
+#[inline(always)]
+fn choose<S: Simd>(simd: S, sampler: &Sampler, last: usize, lod: F32x8<S>) -> Choice<S> {
+    let zero = splat(simd, 0.0);
+    let (magnify_linear, _) = split(sampler.mag);
+    let (minify_linear, mip) = split(sampler.min);
+    let lod = clamp(lod, sampler.lod[0], sampler.lod[1]);
+
+    // Where texels are larger than pixels, only level 0 is read.
+    let from_nearest = matches!(sampler.min, Filter::NearestMipmapNearest | Filter::NearestMipmapLinear);
+    let switch_over = if magnify_linear && from_nearest { 0.5 } else { 0.0 };
+    let magnified = lod.simd_le(splat(simd, switch_over));
+    let linear = match (magnify_linear, minify_linear) {
+        (true, true) => u32::MAX,
+        (true, false) => bits_of(magnified),
+        (false, true) => !bits_of(magnified),
+        (false, false) => 0,
+    };
+
+    let last = last as f32;
+    let (level, fraction) = match mip {
+        Mip::None => (zero, zero),
+        // ceil(lod + 1/2) - 1: half way between two levels the finer one is read.
+        Mip::Nearest => (clamp(-floor(-(lod + 0.5)) - 1.0, 0.0, last), zero),
+        Mip::Linear => {
+            let lod = clamp(lod, 0.0, last);
+            let level = floor(lod);
+            (level, lod - level)
+        }
+    };
+    Choice { level: select(magnified, zero, level), fraction: select(magnified, zero, fraction), linear }
+}
+
+/// Mixes what `lookup(level, linear, lanes)` yields on the levels that the active lanes call for.
+#[inline(always)]
+pub(super) fn mipped<S: Simd, const N: usize>(
+    simd: S,
+    texture: &Texture,
+    lod: F32x8<S>,
+    active: u32,
+    lookup: impl Fn(usize, bool, u32) -> [F32x8<S>; N],
+) -> [F32x8<S>; N] {
+    if !needs_lod(texture) {
+        return lookup(0, texture.sampler.mag == Filter::Linear, active);
+    }
+    let last = texture.faces.first().map_or(0, Vec::len).saturating_sub(1);
+    let choice = choose(simd, &texture.sampler, last, lod);
+    let levels = choice.level.to_array();
+    let between = bits_of(choice.fraction.simd_gt(splat(simd, 0.0)));
+    let mut result = [splat(simd, 0.0); N];
+    let mut rest = active & 0xff;
+    while rest != 0 {
+        // Take all lanes that read what the first one reads.
+        let first = rest.trailing_zeros() as usize;
+        let level = levels[first];
+        let linear = choice.linear >> first & 1 == 1;
+        let same_filter = if linear { choice.linear } else { !choice.linear };
+        let group = bits_of(choice.level.simd_eq(splat(simd, level))) & same_filter & rest | 1 << first;
+
+        let level = level as usize;
+        let mut color = [splat(simd, 0.0); N];
+        let steps = if group & between == 0 { 1 } else { 2 };
+        for step in 0..steps {
+            let texel = lookup((level + step).min(last), linear, group);
+            for k in 0..N {
+                color[k] = if step == 0 { texel[k] } else { mix(color[k], texel[k], choice.fraction) };
+            }
+        }
+        let counts = mask_of(simd, group);
+        for k in 0..N {
+            result[k] = select(counts, color[k], result[k]);
+        }
+        rest &= !group;
+    }
+    result
+}
+
+/// All components mixed alike.
+#[inline(always)]
+pub(super) fn mix_rgba<S: Simd>(a: Rgba<S>, b: Rgba<S>, t: F32x8<S>) -> Rgba<S> {
+    [mix(a[0], b[0], t), mix(a[1], b[1], t), mix(a[2], b[2], t), mix(a[3], b[3], t)]
+}

@@ -1,0 +1,62 @@
+//! Looking eight points up in a texture: choose levels, wrap, fetch, compare, filter.
+//!
+//! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`] is the logarithm of the larger
+//! step, and [`sample`] reads the levels it calls for. Lanes that choose the same level are looked up together, so that
+//! a row of pixels on one surface takes one or two passes. Texels are fetched lane by lane, everything else is done in
+//! lanes. A lookup never fails: what is missing reads as opaque black, and a coordinate that is not finite reads the
+//! texel at the low edge.
+//!
+//! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear light.
+//! Cost: one texel (nearest), two, four or eight (linear in one to three dimensions); twice that between two levels.
+//! Source: OpenGL 1.5 specification, sections 3.8.7 to 3.8.11, 3.8.14; ARB_seamless_cube_map, EXT_texture_sRGB,
+//! EXT_texture_filter_anisotropic. Departs from it: texels are fetched once a lane, also where a lane is not active.
+
+pub(crate) mod anisotropic;
+mod cube;
+mod depth;
+mod fetch;
+mod flat;
+pub(crate) mod mip;
+mod packed;
+mod wrap;
+
+#[cfg(test)]
+mod tests;
+
+use super::texture::{Texels, Texture, TextureKind, Wrap};
+use super::wide::{Rgba, splat_rgba};
+use vitral_math::lanes::{F32x8, Simd};
+
+/// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here, but for
+/// cube maps, where s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus
+/// the bias; see [`mip::needs_lod`]. Lanes without their bit in `active` yield something harmless.
+///
+/// Depth textures yield what their mode makes of the depth, or with a comparison of its result; the reference is r / q,
+/// for cube maps q.
+#[inline(always)]
+pub(crate) fn sample<S: Simd>(
+    simd: S,
+    texture: &Texture,
+    coords: [F32x8<S>; 4],
+    lod: F32x8<S>,
+    active: u32,
+) -> Rgba<S> {
+    let Some(first) = texture.faces.first().and_then(|face| face.first()) else {
+        return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
+    };
+    let packed = matches!(first.texels, Texels::Rgba8(_) | Texels::Srgb8(_));
+    let is_depth = matches!(first.texels, Texels::Depth(_) | Texels::DepthPlane(_));
+    match texture.kind {
+        TextureKind::Cube => cube::sample(simd, texture, coords, lod, active),
+        TextureKind::Two if packed && first.border == 0 && stays_inside(&texture.sampler.wrap) => {
+            packed::sample(simd, texture, coords, lod, active)
+        }
+        _ if is_depth => depth::sample(simd, texture, coords, lod, active),
+        _ => flat::sample(simd, texture, coords, lod, active),
+    }
+}
+
+/// Whether no lookup can reach a border along s and t.
+fn stays_inside(wrap: &[Wrap; 3]) -> bool {
+    wrap[..2].iter().all(|wrap| !matches!(wrap, Wrap::Clamp | Wrap::ClampToBorder))
+}

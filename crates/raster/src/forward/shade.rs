@@ -1,0 +1,363 @@
+//! From a facet to the colours of a row of eight pixels: interpolation, textures, fog.
+
+use super::assemble::{Facet, FacetKind, Shape};
+use super::environment::fog::{color_sum, fog};
+use super::environment::{UNITS, environment};
+use super::sample::anisotropic::sample_anisotropic;
+use super::sample::mip::{derivatives, lod, needs_lod};
+use super::sample::sample;
+use super::state::{FragmentState, Unit};
+use super::wide::{Rgba, clamp, max, min, saturate_rgba, splat, splat_rgba};
+use crate::{SUBPIXEL, Setup};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, Simd};
+
+/// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// Numbers in a record.
+    pub stride: usize,
+    /// Front colour, RGBA.
+    pub color: usize,
+    /// Back colour, RGBA, with two-sided lighting.
+    pub back_color: Option<usize>,
+    /// Secondary colour, RGB.
+    pub secondary: Option<usize>,
+    /// Back secondary colour, RGB.
+    pub back_secondary: Option<usize>,
+    /// Fog coordinate.
+    pub fog: Option<usize>,
+    /// Texture coordinates s, t, r, q of units.
+    pub tex: [Option<usize>; UNITS],
+    /// Units whose coordinates point sprites replace.
+    pub sprites: u8,
+    /// Line stipple: factor and pattern.
+    pub line_stipple: Option<(i32, u16)>,
+    /// Coverage of lines, points, polygons is computed and multiplies alpha.
+    pub smooth: [bool; 3],
+}
+
+/// A facet made ready to be interpolated.
+#[derive(Default)]
+pub(crate) struct Interpolation {
+    origin: [f32; 2],
+    /// Screen-space barycentric coordinates of corners 1 and 2: change with x, with y.
+    l1: [f32; 2],
+    l2: [f32; 2],
+    inverse_w: [f32; 3],
+    flat_w: bool,
+    corners: [usize; 3],
+    /// Unit edge normals and offsets of the triangle, for smooth polygons: distance = a x + b y + c.
+    edges: [[f32; 3]; 3],
+}
+
+impl Interpolation {
+    /// For a setup, with corner records by `facet.corners`; places are in pixels of the target.
+    #[inline(always)]
+    pub(crate) fn new(setup: &Setup, facet: &Facet, records: &[f32]) -> Self {
+        let corners = [facet.corners[0] as usize, facet.corners[1] as usize, facet.corners[2] as usize];
+        let scale = 1.0 / SUBPIXEL as f32;
+        let (x0, y0) = (setup.x[0] as f32 * scale, setup.y[0] as f32 * scale);
+        let (dx1, dy1) = ((setup.x[1] - setup.x[0]) as f32 * scale, (setup.y[1] - setup.y[0]) as f32 * scale);
+        let (dx2, dy2) = ((setup.x[2] - setup.x[0]) as f32 * scale, (setup.y[2] - setup.y[0]) as f32 * scale);
+        let inverse = 1.0 / (dx1 * dy2 - dx2 * dy1);
+        let inverse_w = [records[corners[0]], records[corners[1]], records[corners[2]]];
+        Self {
+            origin: [x0, y0],
+            l1: [dy2 * inverse, -dx2 * inverse],
+            l2: [-dy1 * inverse, dx1 * inverse],
+            inverse_w,
+            flat_w: inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2],
+            corners,
+            edges: [[0.0; 3]; 3],
+        }
+    }
+
+    fn prepare_edges(&mut self, setup: &Setup) {
+        let scale = 1.0 / SUBPIXEL as f32;
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (dx, dy) = ((setup.x[j] - setup.x[i]) as f32 * scale, (setup.y[j] - setup.y[i]) as f32 * scale);
+            let length = (dx * dx + dy * dy).sqrt();
+            let (a, b) = (-dy / length, dx / length);
+            let (x, y) = (setup.x[i] as f32 * scale, setup.y[i] as f32 * scale);
+            self.edges[i] = [a, b, -(a * x + b * y)];
+        }
+    }
+}
+
+/// Perspective-correct barycentric coordinates at eight points.
+struct Weights<S: Simd> {
+    b1: F32x8<S>,
+    b2: F32x8<S>,
+    /// `1 / Σ l / w`.
+    w: F32x8<S>,
+}
+
+/// A facet, its draw and its job: what a row's colour needs.
+pub(crate) struct Shader<'a> {
+    pub state: &'a FragmentState,
+    pub layout: &'a Layout,
+    pub facet: Facet,
+    pub records: &'a [f32],
+    pub shape: Option<Shape>,
+    pub interpolation: Interpolation,
+}
+
+impl<'a> Shader<'a> {
+    pub(crate) fn new(
+        setup: &Setup,
+        facet: Facet,
+        state: &'a FragmentState,
+        layout: &'a Layout,
+        records: &'a [f32],
+        shapes: &[Shape],
+        shaded: bool,
+    ) -> Self {
+        let mut interpolation =
+            if shaded { Interpolation::new(setup, &facet, records) } else { Interpolation::default() };
+        if facet.kind == FacetKind::Polygon && layout.smooth[2] {
+            interpolation.prepare_edges(setup);
+        }
+        let shape = if facet.kind == FacetKind::Polygon { None } else { shapes.get(facet.shape as usize).copied() };
+        Self { state, layout, facet, records, shape, interpolation }
+    }
+
+    #[inline(always)]
+    fn weights<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> Weights<S> {
+        let i = &self.interpolation;
+        let (dx, dy) = (x - i.origin[0], y - i.origin[1]);
+        let l1 = dx * i.l1[0] + dy * i.l1[1];
+        let l2 = dx * i.l2[0] + dy * i.l2[1];
+        if i.flat_w {
+            return Weights { b1: l1, b2: l2, w: splat(simd, 1.0 / i.inverse_w[0]) };
+        }
+        let l0 = splat(simd, 1.0) - l1 - l2;
+        let (q1, q2) = (l1 * i.inverse_w[1], l2 * i.inverse_w[2]);
+        let w = splat(simd, 1.0) / (l0 * i.inverse_w[0] + q1 + q2);
+        Weights { b1: q1 * w, b2: q2 * w, w }
+    }
+
+    /// Number `k` of the records, interpolated.
+    #[inline(always)]
+    fn value<S: Simd>(&self, simd: S, weights: &Weights<S>, k: usize) -> F32x8<S> {
+        let [c0, c1, c2] = self.interpolation.corners;
+        let a = self.records[c0 + k];
+        let (d1, d2) = (self.records[c1 + k] - a, self.records[c2 + k] - a);
+        if d1 == 0.0 && d2 == 0.0 {
+            return splat(simd, a);
+        }
+        weights.b1 * d1 + weights.b2 * d2 + a
+    }
+
+    /// Numbers `at..at + 4`, interpolated.
+    #[inline(always)]
+    fn four<S: Simd>(&self, simd: S, weights: &Weights<S>, at: usize) -> Rgba<S> {
+        [
+            self.value(simd, weights, at),
+            self.value(simd, weights, at + 1),
+            self.value(simd, weights, at + 2),
+            self.value(simd, weights, at + 3),
+        ]
+    }
+
+    /// Primary colour, before textures.
+    #[inline(always)]
+    fn primary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Rgba<S> {
+        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
+        if self.state.flat {
+            let r = &self.records[self.facet.provoking as usize + at..][..4];
+            return splat_rgba(simd, [r[0], r[1], r[2], r[3]]);
+        }
+        // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
+        saturate_rgba(self.four(simd, weights, at))
+    }
+
+    #[inline(always)]
+    fn secondary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Option<[F32x8<S>; 3]> {
+        let front = self.layout.secondary?;
+        let at = if self.facet.back { self.layout.back_secondary.unwrap_or(front) } else { front };
+        if self.state.flat {
+            let r = &self.records[self.facet.provoking as usize + at..][..3];
+            return Some([splat(simd, r[0]), splat(simd, r[1]), splat(simd, r[2])]);
+        }
+        Some([
+            clamp(self.value(simd, weights, at), 0.0, 1.0),
+            clamp(self.value(simd, weights, at + 1), 0.0, 1.0),
+            clamp(self.value(simd, weights, at + 2), 0.0, 1.0),
+        ])
+    }
+
+    /// The colours of eight pixels whose centres are `x`, `y`; `active` says which matter. Gives also which of them
+    /// stipples let pass.
+    #[inline(always)]
+    pub(crate) fn row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, active: u32) -> (Rgba<S>, u32) {
+        let weights = self.weights(simd, x, y);
+        let primary = self.primary(simd, &weights);
+        let mut color = primary;
+        if !self.state.units.is_empty() {
+            color = self.textured(simd, &weights, &primary, x, y, active);
+        }
+        if self.state.color_sum
+            && let Some(secondary) = self.secondary(simd, &weights)
+        {
+            color = color_sum(color, &secondary);
+        }
+        if let (Some(f), Some(at)) = (&self.state.fog, self.layout.fog) {
+            color = fog(simd, f, color, self.value(simd, &weights, at));
+        }
+        self.covered(simd, x, y, color)
+    }
+
+    /// All units' textures and environments.
+    #[inline(always)]
+    fn textured<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        primary: &Rgba<S>,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        active: u32,
+    ) -> Rgba<S> {
+        let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
+        for unit in &self.state.units {
+            textures[unit.index % UNITS] = self.texture(simd, weights, unit, x, y, active);
+        }
+        let mut color = *primary;
+        for unit in &self.state.units {
+            color = environment(simd, unit, &textures, primary, color);
+        }
+        color
+    }
+
+    #[inline(always)]
+    fn texture<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        unit: &Unit,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        active: u32,
+    ) -> Rgba<S> {
+        let texture = &*unit.texture;
+        let mut coords = match self.layout.tex[unit.index % UNITS] {
+            Some(at) => self.four(simd, weights, at),
+            None => splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]),
+        };
+        let bias = splat(simd, unit.lod_bias);
+        let mut sprite = None;
+        if self.layout.sprites >> unit.index & 1 == 1
+            && let Some(Shape::Point { center, size, .. }) = self.shape
+        {
+            // s runs to the right, t downwards.
+            coords[0] = (x - center[0]) / size + 0.5;
+            coords[1] = (-(y - center[1])) / size + 0.5;
+            (coords[2], coords[3]) = (splat(simd, 0.0), splat(simd, 1.0));
+            sprite = Some(1.0 / size);
+        }
+        let anisotropic = texture.sampler.anisotropy > 1.0;
+        if !needs_lod(texture) && !anisotropic {
+            return sample(simd, texture, coords, bias, active);
+        }
+        let [dx, dy] = match sprite {
+            Some(step) => {
+                let (zero, step) = (splat(simd, 0.0), splat(simd, step));
+                [[step, zero, zero, zero], [zero, -step, zero, zero]]
+            }
+            None => self.steps(simd, weights, self.layout.tex[unit.index % UNITS]),
+        };
+        let steps = derivatives(simd, texture, coords, dx, dy);
+        if anisotropic {
+            return sample_anisotropic(simd, texture, coords, steps, bias, active);
+        }
+        let level = lod(steps[0][0], steps[0][1], steps[0][2], steps[1][0], steps[1][1], steps[1][2]);
+        sample(simd, texture, coords, level + bias, active)
+    }
+
+    /// How s, t, r, q change with one pixel to the right, and one up.
+    #[inline(always)]
+    fn steps<S: Simd>(&self, simd: S, weights: &Weights<S>, at: Option<usize>) -> [Rgba<S>; 2] {
+        let zero = splat_rgba(simd, [0.0; 4]);
+        let Some(at) = at else { return [zero; 2] };
+        let i = &self.interpolation;
+        let [c0, c1, c2] = i.corners;
+        let mut steps = [zero; 2];
+        for axis in 0..2 {
+            // b = (l / w) / Σ, so db = (d(l / w) - b dΣ) / Σ.
+            let (q1, q2) = (i.l1[axis] * i.inverse_w[1], i.l2[axis] * i.inverse_w[2]);
+            let sum = q1 + q2 - (i.l1[axis] + i.l2[axis]) * i.inverse_w[0];
+            let db1 = (splat(simd, q1) - weights.b1 * sum) * weights.w;
+            let db2 = (splat(simd, q2) - weights.b2 * sum) * weights.w;
+            for k in 0..4 {
+                let a = self.records[c0 + at + k];
+                let (d1, d2) = (self.records[c1 + at + k] - a, self.records[c2 + at + k] - a);
+                steps[axis][k] = db1 * d1 + db2 * d2;
+            }
+        }
+        steps
+    }
+
+    /// Stipples and the soft borders of smooth primitives.
+    #[inline(always)]
+    fn covered<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, color: Rgba<S>) -> (Rgba<S>, u32) {
+        let smooth = self.layout.smooth;
+        match self.facet.kind {
+            FacetKind::Polygon if !smooth[2] => (color, 0xff),
+            _ => self.soft(simd, x, y, color),
+        }
+    }
+
+    #[inline(never)]
+    fn soft<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, mut color: Rgba<S>) -> (Rgba<S>, u32) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (mut pass, one) = (0xff, splat(simd, 1.0));
+                match self.shape {
+                    None => {
+                        let mut coverage = one;
+                        for [a, b, c] in self.interpolation.edges {
+                            coverage = min(coverage, clamp(x * a + y * b + (c + 0.5), 0.0, 1.0));
+                        }
+                        color[3] *= coverage;
+                    }
+                    Some(Shape::Line { from, to, width, stipple }) => {
+                        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+                        let length = (dx * dx + dy * dy).sqrt();
+                        let (ux, uy) = (dx / length, dy / length);
+                        let along = (x - from[0]) * ux + (y - from[1]) * uy;
+                        if self.layout.smooth[1] {
+                            let across = (x - from[0]) * -uy + (y - from[1]) * ux;
+                            let across = max(across, -across);
+                            let side = clamp(-across + (width * 0.5 + 0.5), 0.0, 1.0);
+                            let ends = min(clamp(along + 0.5, 0.0, 1.0), clamp(-along + (length + 0.5), 0.0, 1.0));
+                            color[3] *= side * ends;
+                        }
+                        if let Some((factor, pattern)) = self.layout.line_stipple {
+                            // Aliased lines count pixels along the major axis.
+                            let rate = if self.layout.smooth[1] { 1.0 } else { dx.abs().max(dy.abs()) / length };
+                            let count = (along * rate + stipple).to_array();
+                            for lane in 0..8 {
+                                let bit = ((count[lane].max(0.0) as u32) / factor.max(1) as u32) % 16;
+                                if pattern >> bit & 1 == 0 {
+                                    pass &= !(1 << lane);
+                                }
+                            }
+                        }
+                    }
+                    Some(Shape::Point { center, size, fade }) => {
+                        if self.layout.smooth[0] {
+                            let (dx, dy) = (x - center[0], y - center[1]);
+                            let distance = (dx * dx + dy * dy).sqrt();
+                            color[3] *= clamp(-distance + (size * 0.5 + 0.5), 0.0, 1.0);
+                        }
+                        color[3] *= fade;
+                    }
+                }
+                (color, pass)
+            },
+        )
+    }
+}

@@ -1,0 +1,399 @@
+//! One tile walks a pass: clears, images, facets.
+
+use super::assemble::{FacetKind, Primitives};
+use super::environment::fog::{color_sum, fog};
+use super::environment::{UNITS, environment};
+use super::fragment::FragmentOps;
+use super::fragment::{ColorTile, Depths, Row, SAMPLES, TilePlanes, columns, stored_depth};
+use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
+use super::plane::PlaneTile;
+use super::sample::sample;
+use super::shade::Shader;
+use super::state::FragmentState;
+use super::wide::{Rgba, splat, splat_rgba};
+use crate::kernel::traverse::{Block, BlockSink, traverse};
+use crate::sink::row_depth;
+use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, LANES, Simd};
+
+/// A tile of the target and its planes.
+pub(crate) struct TileRun<'a> {
+    index: usize,
+    x: u32,
+    y: u32,
+    width: i32,
+    height: i32,
+    planes: TilePlanes<'a>,
+}
+
+const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
+
+impl<'a> TileRun<'a> {
+    /// Tile number `index` at pixel `(x, y)`.
+    pub(crate) fn new(index: usize, x: u32, y: u32, viewport: Viewport, planes: TilePlanes<'a>) -> Self {
+        let width = (viewport.width - x).min(TILE as u32) as i32;
+        let height = (viewport.height - y).min(TILE as u32) as i32;
+        Self { index, x, y, width, height, planes }
+    }
+
+    /// Everything that happens in this tile.
+    #[inline(always)]
+    pub(crate) fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+        for item in items {
+            match item {
+                Item::Clear(clear) => self.clear(clear),
+                Item::Image(image, state, ops) => self.image(simd, image, state, ops),
+                Item::Job { primitives, draws } => self.job(simd, primitives, draws, many, one),
+            }
+        }
+    }
+
+    /// The part of a rectangle that lies in this tile, in its own pixels.
+    fn part(&self, [x0, y0, x1, y1]: [i32; 4]) -> [i32; 4] {
+        let (x, y) = (self.x as i32, self.y as i32);
+        [(x0 - x).max(0), (y0 - y).max(0), (x1 - x).min(self.width), (y1 - y).min(self.height)]
+    }
+
+    fn clear(&mut self, clear: &Clear) {
+        let [x0, y0, x1, y1] = self.part(clear.clip);
+        if x0 >= x1 || y0 >= y1 {
+            return;
+        }
+        let whole = [x0, y0] == [0, 0] && [x1, y1] == [self.width, self.height];
+        let area = [x0 as usize, y0 as usize, x1 as usize, y1 as usize];
+        let samples = self.planes.samples;
+        if let (Some((color, masked)), Some(tile)) = (clear.color, &mut self.planes.color) {
+            clear_color(tile, color, masked, whole, area, samples);
+        }
+        if let (Some(depth), Some((tile, scale))) = (clear.depth, &mut self.planes.depth) {
+            let scaled = depth.clamp(0.0, 1.0) * *scale;
+            let value = if *scale == 1.0 { scaled } else { (f64::from(scaled) + 0.5).floor() as f32 };
+            fill(tile, value, whole, area, samples, |_, new| new);
+        }
+        if let (Some((value, mask)), Some(tile)) = (clear.stencil, &mut self.planes.stencil) {
+            fill(tile, value, whole && mask == 0xff, area, samples, |old, new| old & !mask | new & mask);
+        }
+    }
+
+    /// The facets of a job.
+    fn job<S: Simd>(
+        &mut self,
+        simd: S,
+        primitives: &Primitives,
+        draws: &[DrawContext<'_>],
+        many: &SamplePattern,
+        one: &SamplePattern,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for setup in primitives.batch.tile(self.index) {
+                    let facet = facet_of(primitives, setup.facet);
+                    let draw = &draws[facet.draw as usize];
+                    let clip = self.part(draw.clip);
+                    if clip[0] >= clip[2] || clip[1] >= clip[3] {
+                        continue;
+                    }
+                    let pattern = if draw.multisample { many } else { one };
+                    let (records, shapes) = (&primitives.records, &primitives.shapes);
+                    let shader = Shader::new(setup, facet, draw.state, draw.layout, records, shapes, draw.shaded);
+                    let (x, y) = (self.x, self.y);
+                    let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
+                    traverse(simd, setup, (x, y), pattern, &mut sink);
+                }
+            },
+        );
+    }
+
+    /// The fragments of an image.
+    fn image<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.image_inlined(simd, image, state, ops),
+        );
+    }
+
+    #[inline(always)]
+    fn image_inlined<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
+        let [x0, y0, x1, y1] = self.part(image.bounds(state.clip));
+        for y in y0..y1 {
+            let Some(j) = image.source(1, self.y as i32 + y) else { continue };
+            let first = x0 & !(LANES as i32 - 1);
+            for x in (first..x1).step_by(LANES) {
+                let mut bits = columns(x, x0, x1);
+                let mut at = [0usize; LANES];
+                for lane in 0..LANES {
+                    if bits >> lane & 1 == 1 {
+                        match image.source(0, self.x as i32 + x + lane as i32) {
+                            Some(i) => at[lane] = j * image.size[0] as usize + i,
+                            None => bits &= !(1 << lane),
+                        }
+                        if image.bits.as_ref().is_some_and(|b| !b[at[lane]]) {
+                            bits &= !(1 << lane);
+                        }
+                    }
+                }
+                if bits != 0 {
+                    let row = Row { at: y as usize * TILE + x as usize };
+                    self.image_row(simd, image, state, ops, row, bits, &at);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn image_row<S: Simd>(
+        &mut self,
+        simd: S,
+        image: &ImageFragments,
+        state: &FragmentState,
+        ops: &FragmentOps,
+        row: Row,
+        bits: u32,
+        at: &[usize; LANES],
+    ) {
+        if let Some(stencils) = &image.stencils {
+            if let Some(tile) = &mut self.planes.stencil {
+                let (mask, samples) = (image.stencil_mask, self.planes.samples);
+                let values = tile.stored(samples);
+                for s in 0..samples {
+                    for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
+                        let value = &mut values[s * TILE_PIXELS + row.at + lane];
+                        *value = *value & !mask | stencils[at[lane]] & mask;
+                    }
+                }
+            }
+            if image.depths.is_none() {
+                return;
+            }
+        }
+        let mut depth = [image.z; LANES];
+        if let Some(depths) = &image.depths {
+            for lane in 0..LANES {
+                depth[lane] = depths[at[lane]];
+            }
+        }
+        let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
+        let depth = stored_depth(simd, F32x8::from_slice(simd, &depth), scale);
+        let color = image_color(simd, image, state, bits, at);
+        let bits = [bits; SAMPLES];
+        self.planes.fragments(simd, state, ops, row, false, bits, &[depth; SAMPLES], color);
+    }
+}
+
+impl ImageFragments {
+    /// The pixels it may touch, within `clip`.
+    fn bounds(&self, clip: [i32; 4]) -> [i32; 4] {
+        let span = |k: usize| {
+            let end = self.origin[k] + self.zoom[k] * self.size[k] as f32;
+            let (low, high) = (self.origin[k].min(end), self.origin[k].max(end));
+            let whole = |v: f32| v.clamp(-1e6, 1e6) as i32;
+            (whole(low.floor()), whole(high.ceil()))
+        };
+        let ((x0, x1), (y0, y1)) = (span(0), span(1));
+        [x0.max(clip[0]), y0.max(clip[1]), x1.min(clip[2]), y1.min(clip[3])]
+    }
+
+    /// Which source column (row) the pixel in window column (row) `at` shows.
+    fn source(&self, axis: usize, at: i32) -> Option<usize> {
+        let place = (at as f32 + 0.5 - self.origin[axis]) / self.zoom[axis];
+        let index = place.floor();
+        (index >= 0.0 && index < self.size[axis] as f32).then_some(index as usize)
+    }
+}
+
+/// An image's colours after textures and fog.
+#[inline(always)]
+fn image_color<S: Simd>(
+    simd: S,
+    image: &ImageFragments,
+    state: &FragmentState,
+    bits: u32,
+    at: &[usize; LANES],
+) -> Rgba<S> {
+    let mut primary = splat_rgba(simd, image.color);
+    if let Some(colors) = &image.colors {
+        let mut soa = [[0.0f32; LANES]; 4];
+        for lane in 0..LANES {
+            for k in 0..4 {
+                soa[k][lane] = colors[at[lane]][k];
+            }
+        }
+        primary = [
+            F32x8::from_slice(simd, &soa[0]),
+            F32x8::from_slice(simd, &soa[1]),
+            F32x8::from_slice(simd, &soa[2]),
+            F32x8::from_slice(simd, &soa[3]),
+        ];
+    }
+    let mut color = primary;
+    if !state.units.is_empty() {
+        let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
+        for unit in &state.units {
+            let coords = splat_rgba(simd, image.tex[unit.index % UNITS]);
+            let lod = splat(simd, unit.lod_bias - 63.0);
+            textures[unit.index % UNITS] = sample(simd, &unit.texture, coords, lod, bits);
+        }
+        for unit in &state.units {
+            color = environment(simd, unit, &textures, &primary, color);
+        }
+    }
+    if state.color_sum {
+        let s = image.secondary;
+        color = color_sum(color, &[splat(simd, s[0]), splat(simd, s[1]), splat(simd, s[2])]);
+    }
+    if let Some(f) = &state.fog {
+        color = fog(simd, f, color, splat(simd, image.fog));
+    }
+    color
+}
+
+/// Covered blocks become fragments.
+struct FragmentSink<'r, 'a, 'd> {
+    run: &'r mut TileRun<'a>,
+    draw: &'d DrawContext<'d>,
+    shader: Shader<'d>,
+    /// Allowed pixels within the tile.
+    clip: [i32; 4],
+    pattern: &'d SamplePattern,
+}
+
+impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
+    #[inline(always)]
+    fn rejects(&self, _setup: &Setup, block: &Block) -> bool {
+        let [x0, y0, x1, y1] = self.clip;
+        let (x, y) = (block.x as i32, block.y as i32);
+        x >= x1 || y >= y1 || x + BLOCK as i32 <= x0 || y + BLOCK as i32 <= y0
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let [x0, y0, x1, y1] = self.clip;
+        let allowed = columns(block.x as i32, x0, x1);
+        for row in block.rows.clone() {
+            let y = (block.y + row) as i32;
+            if y < y0 || y >= y1 {
+                continue;
+            }
+            let mut bits = [0; SAMPLES];
+            for (s, mask) in masks.iter().enumerate() {
+                bits[s] = (mask >> (8 * row)) as u32 & 0xff & allowed;
+            }
+            if bits[0] | bits[1] | bits[2] | bits[3] != 0 {
+                self.row(simd, setup, block, row, bits);
+            }
+        }
+    }
+}
+
+impl FragmentSink<'_, '_, '_> {
+    #[inline(always)]
+    fn row<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
+        let (state, samples) = (self.draw.state, self.run.planes.samples);
+        let y = block.y + row;
+        let (left, top) = (self.run.x as usize + block.x, self.run.y as usize + y);
+        if self.shader.facet.kind == FacetKind::Polygon
+            && let Some(pattern) = &state.polygon_stipple
+        {
+            let word = pattern[top % 32];
+            // The leftmost pixel is the highest bit.
+            let eight = (word >> (24 - left % 32)) as u8;
+            let allowed = u32::from(eight.reverse_bits());
+            for b in &mut bits {
+                *b &= allowed;
+            }
+        }
+        let mut depths: Depths<S> = [splat(simd, 0.0); SAMPLES];
+        if let Some((_, scale)) = self.run.planes.depth {
+            for s in 0..self.pattern.len() {
+                let [sx, sy] = self.pattern.position(s);
+                let (x, y) = (left as i32 * SUBPIXEL + sx, top as i32 * SUBPIXEL + sy);
+                depths[s] = stored_depth(simd, row_depth(simd, setup, x, y), scale);
+            }
+        }
+        if !self.draw.multisample && samples > 1 {
+            (bits, depths) = ([bits[0]; SAMPLES], [depths[0]; SAMPLES]);
+        }
+        let at = Row { at: y * TILE + block.x };
+        let visible = self.run.planes.visible(simd, state, at, &bits, &depths);
+        let mut active = visible[0] | visible[1] | visible[2] | visible[3];
+        if active == 0 {
+            return;
+        }
+        if state.stencil.is_none() {
+            bits = visible;
+        }
+        let mut color = splat_rgba(simd, [0.0; 4]);
+        if self.draw.shaded {
+            let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
+            let passed;
+            (color, passed) = self.shader.row(simd, x, splat(simd, top as f32 + 0.5), active);
+            active &= passed;
+            for b in &mut bits {
+                *b &= passed;
+            }
+        }
+        if active != 0 {
+            let back = self.shader.facet.back;
+            self.run.planes.fragments(simd, state, &self.draw.ops, at, back, bits, &depths, color);
+        }
+    }
+}
+
+fn clear_color(
+    tile: &mut ColorTile<'_>,
+    color: [f32; 4],
+    masked: [bool; 4],
+    whole: bool,
+    area: [usize; 4],
+    samples: usize,
+) {
+    let unmasked = masked == [false; 4];
+    match tile {
+        ColorTile::Rgba8(tile) => {
+            let byte = |k: usize| u32::from((color[k].clamp(0.0, 1.0) * 255.0 + 0.5) as u8) << (8 * k);
+            let value = byte(0) | byte(1) | byte(2) | byte(3);
+            let protected = super::fragment_ops::logic::protected_bits(masked);
+            fill(tile, value, whole && unmasked, area, samples, |old, new| old & protected | new & !protected);
+        }
+        ColorTile::RgbaF32(tile) => {
+            fill(tile, color, whole && unmasked, area, samples, |old, new| {
+                std::array::from_fn(|k| if masked[k] { old[k] } else { new[k] })
+            });
+        }
+    }
+}
+
+/// Sets a rectangle of all samples; the whole tile becomes a cleared one.
+fn fill<T: Copy + PartialEq>(
+    tile: &mut PlaneTile<T>,
+    value: T,
+    whole: bool,
+    [x0, y0, x1, y1]: [usize; 4],
+    samples: usize,
+    combine: impl Fn(T, T) -> T,
+) {
+    if whole {
+        // A tile that is drawn to in every frame keeps its memory.
+        match tile {
+            PlaneTile::Cleared(old) => *old = value,
+            PlaneTile::Stored(values) => values.fill(value),
+        }
+        return;
+    }
+    if let PlaneTile::Cleared(old) = tile
+        && combine(*old, value) == *old
+    {
+        return;
+    }
+    let values = tile.stored(samples);
+    for s in 0..samples {
+        for y in y0..y1 {
+            let start = s * TILE_PIXELS + y * TILE;
+            for v in &mut values[start + x0..start + x1] {
+                *v = combine(*v, value);
+            }
+        }
+    }
+}

@@ -70,7 +70,7 @@ fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Se
     let what = cause.downcast_ref::<String>().map(String::as_str).or_else(|| cause.downcast_ref::<&str>().copied());
     let what = what.unwrap_or("no reason given");
     environment::say(&format!("{name}: this is a fault of vitral: {what}"));
-    let record = AssertUnwindSafe(|| context.report(enums::INVALID_OPERATION, name, "the library failed"));
+    let record = AssertUnwindSafe(|| context.record_error(enums::INVALID_OPERATION, name, "the library failed"));
     if catch_unwind(record).is_err() {
         environment::say(&format!("{name}: and the error could not be recorded"));
     }

@@ -4,6 +4,7 @@ use crate::attributes::Attributes;
 use crate::environment;
 use crate::memory::ProcessMemory;
 use crate::messages::Messages;
+use crate::pool;
 use std::cell::UnsafeCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -45,7 +46,7 @@ impl Handle {
         };
         let messages = Arc::<Messages>::default();
         let mut context = Context::new(Arc::<ProcessMemory>::clone(&memory), Arc::clone(&shared));
-        context.set_threads(environment::threads());
+        context.set_runner_source(pool::runner);
         context.set_debug_printer(environment::debug().then_some(environment::say as fn(&str)));
         context.set_debug_hook(Some(messages.hook()));
         let Attributes { format, depth_bits, stencil_bits, accum_bits } = attributes;

@@ -13,5 +13,6 @@ mod environment;
 mod handle;
 mod memory;
 mod messages;
+mod pool;
 mod procedures;
 mod unsupported;

@@ -10,7 +10,7 @@ use vitral_gl::enums::INVALID_OPERATION;
 #[inline(never)]
 fn refuse(name: &'static str) -> usize {
     call(name, |context| {
-        context.report(INVALID_OPERATION, name, "this is beyond OpenGL 1.5 and the extensions that are there");
+        context.record_error(INVALID_OPERATION, name, "this is beyond OpenGL 1.5 and the extensions that are there");
         0
     })
 }

@@ -48,7 +48,7 @@ fn error_name(error: u32) -> &'static str {
 impl Context {
     /// Records `error` if none is pending, and tells the debug output: `call` is the entry point (`glEnable`), `why` a
     /// sentence.
-    pub(crate) fn record_error(&mut self, error: u32, call: &str, why: &str) {
+    pub fn record_error(&mut self, error: u32, call: &str, why: &str) {
         if self.error == gl::NO_ERROR {
             self.error = error;
         }

@@ -40,6 +40,8 @@ pub(crate) enum Verb {
     Algorithms(ListArgs),
     /// List the formats that are read and written
     Formats(ListArgs),
+    /// Print the line that makes programs use vitral's OpenGL (libOSMesa), for the shell's `eval`
+    OsmesaEnv(OsmesaEnvArgs),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -98,6 +100,14 @@ pub(crate) struct ListArgs {
     /// One JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `vitral osmesa-env`.
+#[derive(Args, Debug)]
+pub(crate) struct OsmesaEnvArgs {
+    /// The folder with libOSMesa.so.8 [default: looked for beside this program]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) lib: Option<PathBuf>,
 }
 
 /// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`.

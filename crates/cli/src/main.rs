@@ -6,6 +6,7 @@ mod compare_command;
 mod info_command;
 mod interrupt;
 mod light_spec;
+mod osmesa_env_command;
 mod outputs;
 mod progress;
 mod render_args;
@@ -48,6 +49,7 @@ fn run() -> Result<u8, Failure> {
         Verb::Compare(args) => compare_command::run(&args),
         Verb::Algorithms(args) => tables::algorithms(&args),
         Verb::Formats(args) => tables::formats(&args),
+        Verb::OsmesaEnv(args) => osmesa_env_command::run(&args),
         Verb::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "vitral", &mut script);

@@ -34,6 +34,11 @@ impl Failure {
         Self { code: 1, message: Some(message.into()), hint: None }
     }
 
+    /// Anything that has one.
+    pub(crate) fn with_code(code: u8, message: impl Into<String>) -> Self {
+        Self { code, message: Some(message.into()), hint: None }
+    }
+
     /// With a hint.
     #[must_use]
     pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {

@@ -1,9 +1,10 @@
-//! Developer commands: `cargo xtask test | check | bless | compare`.
+//! Developer commands: `cargo xtask test | check | bless | osmesa | compare`.
 #![forbid(unsafe_code)]
 
 mod bless;
 mod check;
 mod compare;
+mod osmesa;
 mod prepare;
 mod shell;
 mod tally;
@@ -16,6 +17,7 @@ const USAGE: &str = "\
 cargo xtask test                  install what the tests need, run all of them, close with the count
 cargo xtask check                 the floors and the rules of the house that the compiler does not know
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
+cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask compare [--quick] [--peers-only]
                                   install the peers, run them in turns with vitral, print ratios";
 
@@ -27,6 +29,7 @@ fn main() -> ExitCode {
         ["check"] => check::run(),
         ["bless"] => bless::run(None),
         ["bless", filter] => bless::run(Some(filter)),
+        ["osmesa"] => osmesa::run_all(),
         ["compare", options @ ..] => compare::run(options),
         _ => Err(format!("usage:\n{USAGE}")),
     };

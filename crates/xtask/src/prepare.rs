@@ -12,10 +12,10 @@ pub(crate) struct Prepared {
     pub(crate) no_wasm: Option<String>,
 }
 
-/// Looks for node and the WebAssembly target, and installs them if they are missing.
+/// Looks for node, the WebAssembly target and Mesa's OSMesa, and installs them if they are missing.
 pub(crate) fn prepare() -> Prepared {
     let problems: Vec<String> = [wasm_target(), node()].into_iter().filter_map(Result::err).collect();
-    for problem in &problems {
+    for problem in problems.iter().cloned().chain(mesa().err()) {
         println!("could not install: {problem}");
     }
     Prepared { no_wasm: (!problems.is_empty()).then(|| problems.join("; ")) }
@@ -59,6 +59,12 @@ fn wasm_target() -> shell::Outcome {
         Ok(_) => Err(format!("the Rust target {WASM_TARGET}: rustup serves another toolchain")),
         Err(why) => Err(format!("the Rust target {WASM_TARGET}: {why}")),
     }
+}
+
+/// Mesa's library, which ours is compared with, and what reads a library's tables. Tests that want them say so when they
+/// are not there.
+fn mesa() -> shell::Outcome {
+    debian_packages(&["libosmesa6", "binutils"])
 }
 
 fn node() -> shell::Outcome {

@@ -1,0 +1,99 @@
+//! The calling thread's context, and the way of every call into it.
+
+use crate::environment;
+use crate::handle::Handle;
+use crate::messages::Waiting;
+use std::any::Any;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr;
+use std::sync::Arc;
+use vitral_gl::{Context, enums};
+
+/// Lets go of the current context when the thread ends. Kept apart from the pointer, so that reading that costs nothing.
+struct AtThreadEnd;
+
+impl Drop for AtThreadEnd {
+    fn drop(&mut self) {
+        // The client's buffer may be gone by now: nothing is stored.
+        replace(ptr::null());
+    }
+}
+
+thread_local! {
+    static CURRENT: Cell<*const Handle> = const { Cell::new(ptr::null()) };
+    static AT_THREAD_END: AtThreadEnd = const { AtThreadEnd };
+}
+
+/// The calling thread's context, or null.
+pub(crate) fn current() -> *const Handle {
+    CURRENT.get()
+}
+
+/// Makes `handle` (null: none) the calling thread's context, and lets go of the one before.
+pub(crate) fn replace(handle: *const Handle) {
+    // SAFETY: a handle that the client gives is alive.
+    if let Some(handle) = unsafe { handle.as_ref() } {
+        handle.acquire();
+        // A thread that is ending has nothing to register any more.
+        let _ = AT_THREAD_END.try_with(|_| ());
+    }
+    let before = CURRENT.replace(handle);
+    if !before.is_null() {
+        // SAFETY: it was acquired when it became current.
+        unsafe { Handle::release(before) };
+    }
+}
+
+/// Calls `body` with the calling thread's context. Without one nothing happens, and the result is 0. A panic becomes an
+/// error of OpenGL.
+#[inline]
+pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) -> R) -> R {
+    // SAFETY: the current handle is alive until it is replaced.
+    let Some(handle) = (unsafe { CURRENT.get().as_ref() }) else { return R::default() };
+    // SAFETY: the machine belongs to this thread. Calls do not nest: `body` runs no code of the client, whose debug
+    // callback is called below, when this borrow has ended.
+    let context = unsafe { &mut (*handle.machine()).context };
+    let result = match catch_unwind(AssertUnwindSafe(|| body(context))) {
+        Ok(result) => result,
+        Err(cause) => panicked(context, name, &*cause),
+    };
+    if handle.messages.any() {
+        deliver(handle);
+    }
+    result
+}
+
+/// Turns a panic into INVALID_OPERATION.
+#[cold]
+fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Send)) -> R {
+    let what = cause.downcast_ref::<String>().map(String::as_str).or_else(|| cause.downcast_ref::<&str>().copied());
+    let what = what.unwrap_or("no reason given");
+    environment::say(&format!("{name}: this is a fault of vitral: {what}"));
+    let record = AssertUnwindSafe(|| context.report(enums::INVALID_OPERATION, name, "the library failed"));
+    if catch_unwind(record).is_err() {
+        environment::say(&format!("{name}: and the error could not be recorded"));
+    }
+    R::default()
+}
+
+/// `GLDEBUGPROC`.
+type DebugProc = unsafe extern "C" fn(u32, u32, u32, u32, i32, *const u8, usize);
+
+/// Calls the client's debug callback with each message that waits. The callback may call OpenGL, and even destroy the
+/// context.
+#[cold]
+fn deliver(handle: &Handle) {
+    let messages = Arc::clone(&handle.messages);
+    while let Some(Waiting { callback, user, mut message }) = messages.next() {
+        let length = i32::try_from(message.text.len()).unwrap_or(i32::MAX);
+        message.text.push(0);
+        let callback = ptr::with_exposed_provenance::<()>(callback);
+        // SAFETY: the client gave this address as a GLDEBUGPROC; the state machine calls no hook for address 0.
+        let callback = unsafe { std::mem::transmute::<*const (), DebugProc>(callback) };
+        // SAFETY: a call as KHR_debug says, with a terminated text that lives until it returns.
+        unsafe {
+            callback(message.source, message.kind, message.id, message.severity, length, message.text.as_ptr(), user);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The library as a file and as a part of a process: what it exports and needs, threads, forks, endings, wild calls.
+
+use crate::common::{ours, run, runner};
+use std::process::Command;
+
+/// Runs a mode of the runner with our library.
+fn lifecycle(mode: &str, threads: Option<&str>) {
+    let mut command = runner();
+    if let Some(threads) = threads {
+        command.env("VITRAL_THREADS", threads);
+    }
+    let ended = run(command.args(["--lifecycle", mode]).arg(ours()));
+    assert!(ended.fine, "{}", ended.errors);
+}
+
+#[test]
+fn a_forked_process_draws() {
+    for threads in ["1", "4"] {
+        lifecycle("fork", Some(threads));
+    }
+}
+
+#[test]
+fn each_thread_has_its_contexts() {
+    lifecycle("threads", None);
+    lifecycle("threads", Some("3"));
+}
+
+#[test]
+fn a_context_moves_from_thread_to_thread() {
+    lifecycle("moved", None);
+}
+
+#[test]
+fn a_context_destroyed_elsewhere_lives_until_it_is_let_go() {
+    lifecycle("destroyed-elsewhere", None);
+}
+
+#[test]
+fn a_process_ends_with_work_pending() {
+    lifecycle("exit", Some("4"));
+}
+
+#[test]
+fn a_process_ends_while_a_thread_draws() {
+    lifecycle("exit-beside-thread", Some("4"));
+}
+
+#[test]
+fn the_library_can_be_closed() {
+    lifecycle("close", Some("4"));
+}
+
+#[test]
+fn the_debug_callback_may_call_opengl() {
+    lifecycle("callback", None);
+}
+
+#[test]
+fn osmesa_functions_answer_as_documented() {
+    lifecycle("functions", None);
+}
+
+#[test]
+fn attributes_are_checked() {
+    lifecycle("attributes", None);
+}
+
+#[test]
+fn no_function_takes_the_process_down() {
+    lifecycle("wild", None);
+}
+
+#[test]
+fn errors_are_told_on_request() {
+    let mut command = runner();
+    command.env("VITRAL_GL_DEBUG", "1").args(["--lifecycle", "attributes"]).arg(ours());
+    let ended = run(&mut command);
+    assert!(ended.fine && ended.errors.contains("core"), "{}", ended.errors);
+    let quiet = run(runner().args(["--lifecycle", "attributes"]).arg(ours()));
+    assert_eq!(quiet.errors, "");
+}
+
+/// Runs a tool of the binutils on the library.
+fn tool(name: &str, options: &[&str]) -> Option<String> {
+    let output = Command::new(name).args(options).arg(ours()).output().ok().filter(|output| output.status.success());
+    if output.is_none() {
+        println!("skipped: {name} is not installed (Debian: binutils)");
+    }
+    output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[test]
+fn exactly_the_functions_are_exported() {
+    let Some(symbols) = tool("nm", &["-D", "--defined-only"]) else { return };
+    let names: Vec<&str> = symbols.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    let others: Vec<_> = names.iter().filter(|name| !name.starts_with("gl") && !name.starts_with("OSMesa")).collect();
+    assert!(others.is_empty(), "{others:?}");
+    assert_eq!(names.iter().filter(|name| name.starts_with("OSMesa")).count(), 13);
+    let table = include_str!("../../src/procedures.rs");
+    let table = table.split_once("procedures! {\n").and_then(|(_, rest)| rest.split_once('}')).unwrap().0;
+    let mut expected: Vec<&str> = table.split_whitespace().collect();
+    let mut found = names;
+    expected.sort_unstable();
+    found.sort_unstable();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn it_needs_the_c_library_alone() {
+    let Some(dynamic) = tool("readelf", &["-d"]) else { return };
+    assert!(dynamic.contains("soname: [libOSMesa.so.8]"), "{dynamic}");
+    for line in dynamic.lines().filter(|line| line.contains("(NEEDED)")) {
+        let known = ["libc.so", "libm.so", "libgcc_s.so", "ld-linux"];
+        assert!(known.iter().any(|name| line.contains(name)), "{line}");
+    }
+}

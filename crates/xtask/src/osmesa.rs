@@ -1,0 +1,82 @@
+//! `cargo xtask osmesa`: builds libOSMesa and lays it out as a folder that programs can be pointed at.
+
+use crate::shell::{Outcome, cargo, relative, repository, run, target_folder};
+use std::path::Path;
+
+/// What programs are linked with; the name that is looked for at run time.
+const SONAME: &str = "libOSMesa.so.8";
+
+/// pkg-config's file; `pcfiledir` is the folder that it lies in, so that the whole folder can be moved.
+const PKG_CONFIG: &str = "\
+prefix=${pcfiledir}/..
+libdir=${prefix}
+includedir=${prefix}/include
+
+Name: osmesa
+Description: OpenGL without a screen, by vitral
+Version: 8.0.0
+Libs: -L${libdir} -lOSMesa
+Cflags: -I${includedir}
+";
+
+/// Builds the library in release and fills `target/osmesa`.
+pub(crate) fn run_all() -> Outcome {
+    run(cargo().args(["build", "--release", "--package", "vitral-osmesa", "--lib"]))?;
+    let target = target_folder();
+    let (built, folder) = (target.join("release/libOSMesa.so"), target.join("osmesa"));
+    lay_out(&built, &folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+
+    let size = std::fs::metadata(folder.join(SONAME)).map_or(0, |m| m.len());
+    let shown = relative(&folder);
+    println!("{shown}/{SONAME}: {:.1} MB", size as f64 / 1e6);
+    println!("{shown}/libOSMesa.so, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc");
+    println!();
+    println!("Run a program with it:");
+    println!("  eval \"$(cargo run --release --quiet -- osmesa-env --lib {shown})\"");
+    println!("  MUJOCO_GL=osmesa PYOPENGL_PLATFORM=osmesa LD_LIBRARY_PATH={shown} python3 PROGRAM.py");
+    println!("Build a program with it:");
+    println!("  cc PROGRAM.c $(PKG_CONFIG_PATH={shown}/pkgconfig pkg-config --cflags --libs osmesa)");
+    println!("docs/osmesa.md tells more.");
+    Ok(())
+}
+
+fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {
+    for part in ["include/GL", "pkgconfig"] {
+        std::fs::create_dir_all(folder.join(part))?;
+    }
+    // A library that a process has loaded must not be written over: the new one takes the old one's place.
+    let library = folder.join(SONAME);
+    let fresh = folder.join(format!("{SONAME}.new"));
+    std::fs::copy(built, &fresh)?;
+    std::fs::rename(&fresh, &library)?;
+    let link = folder.join("libOSMesa.so");
+    let _ = std::fs::remove_file(&link);
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(SONAME, &link)?;
+    #[cfg(not(unix))]
+    std::fs::copy(&library, &link)?;
+    std::fs::copy(repository().join("crates/osmesa/include/GL/osmesa.h"), folder.join("include/GL/osmesa.h"))?;
+    std::fs::write(folder.join("pkgconfig/osmesa.pc"), PKG_CONFIG)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_folder_is_complete_and_can_be_made_again() {
+        let folder = std::env::temp_dir().join(format!("vitral-xtask-osmesa-{}", std::process::id()));
+        let built = folder.join("built.so");
+        std::fs::create_dir_all(&folder).unwrap();
+        for content in ["one", "two"] {
+            std::fs::write(&built, content).unwrap();
+            lay_out(&built, &folder).unwrap();
+            for name in [SONAME, "libOSMesa.so"] {
+                assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), content);
+            }
+        }
+        assert!(folder.join("include/GL/osmesa.h").exists() && folder.join("pkgconfig/osmesa.pc").exists());
+        assert!(!folder.join("libOSMesa.so.8.new").exists());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -26,3 +26,4 @@ pub use context::Context;
 pub use memory::ClientMemory;
 pub use objects::Shared;
 pub use pixels::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};
+pub use tnl::RunnerSource;

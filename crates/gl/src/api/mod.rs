@@ -67,6 +67,7 @@ impl Context {
     pub fn flush(&mut self) {
         if self.may_set("glFlush") {
             self.flush_recorded();
+            self.store_default_framebuffer();
         }
     }
 
@@ -74,6 +75,7 @@ impl Context {
     pub fn finish(&mut self) {
         if self.may_set("glFinish") {
             self.flush_recorded();
+            self.store_default_framebuffer();
         }
     }
 }

@@ -41,7 +41,7 @@ fn for_rows(plane: &mut Plane<[f32; 4]>, clip: [i32; 4], mut f: impl FnMut(u32, 
 
 impl Context {
     /// Clears a part of the accumulation buffer.
-    pub(crate) fn clear_accum(&mut self, clip: [i32; 4]) {
+    pub(crate) fn clear_accum_plane(&mut self, clip: [i32; 4]) {
         let value = self.state.color_buffer.accum_clear;
         let Some(plane) = self.default_framebuffer.accum() else { return };
         let viewport = plane.viewport();

@@ -39,7 +39,7 @@ impl Context {
         let Some(viewport) = surfaces.size else { return };
         let clip = self.scissored(viewport);
         if mask & ACCUM_BUFFER_BIT != 0 && self.framebuffers.draw == 0 {
-            self.clear_accum(clip);
+            self.clear_accum_plane(clip);
         }
         if clip[0] >= clip[2] || clip[1] >= clip[3] {
             return;

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use vitral_raster::forward as raster;
 use vitral_raster::forward::{
     Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare, DepthTest,
-    EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Target, Unit,
+    EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Target,
+    Unit,
 };
 
 /// A comparison's token.
@@ -91,8 +92,22 @@ fn blend(b: &state::Blend) -> Blend {
 fn logic_op(token: u32) -> LogicOp {
     use LogicOp::*;
     const IN_ORDER: [LogicOp; 16] = [
-        Clear, And, AndReverse, Copy, AndInverted, Noop, Xor, Or, Nor, Equiv, Invert, OrReverse, CopyInverted,
-        OrInverted, Nand, Set,
+        Clear,
+        And,
+        AndReverse,
+        Copy,
+        AndInverted,
+        Noop,
+        Xor,
+        Or,
+        Nor,
+        Equiv,
+        Invert,
+        OrReverse,
+        CopyInverted,
+        OrInverted,
+        Nand,
+        Set,
     ];
     IN_ORDER[(token.wrapping_sub(gl::CLEAR) & 15) as usize]
 }
@@ -174,6 +189,7 @@ impl Context {
     /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
         let units = self.sampled_units(target);
+        let missing = self.missing_components();
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -193,16 +209,15 @@ impl Context {
             depth: s.depth.enabled.then(|| DepthTest { func: compare(s.depth.func), write: s.depth.write }),
             blend: (s.blend.enabled && !logic).then(|| blend(&s.blend)),
             logic_op: logic.then(|| logic_op(s.logic_op.1)),
-            masked: s.color_buffer.mask.map(|written| !written),
+            masked: [0, 1, 2, 3].map(|k| !s.color_buffer.mask[k] || missing[k]),
             clip: target.map_or([0; 4], |t| clip(s, t)),
             polygon_stipple: (s.polygons.stipple && !images).then(|| s.polygons.stipple_pattern.clone()),
             multisample: s.multisample,
             alpha_to_coverage: s.sample_alpha_to_coverage,
             alpha_to_one: s.sample_alpha_to_one,
-            sample_coverage: s.sample_coverage.then_some(SampleCoverage {
-                value: s.sample_coverage_value.0,
-                invert: s.sample_coverage_value.1,
-            }),
+            sample_coverage: s
+                .sample_coverage
+                .then_some(SampleCoverage { value: s.sample_coverage_value.0, invert: s.sample_coverage_value.1 }),
             flat: s.lighting.shade_model == gl::FLAT,
             depth_clamp: s.depth_clamp,
             query: self.queries.active(),
@@ -222,7 +237,8 @@ impl Context {
             }
             let environment = &self.state.units[index].environment;
             let (mode, color) = (environment_mode(environment), environment.color);
-            let lod_bias = self.texture_lod_bias(index);
+            let most = state::MAX_TEXTURE_LOD_BIAS;
+            let lod_bias = (environment.lod_bias + self.texture_lod_bias(index)).clamp(-most, most);
             units.push(Unit { index, texture, mode, color, lod_bias });
         }
         units

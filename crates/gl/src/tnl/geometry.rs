@@ -8,7 +8,9 @@ use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::ScreenVertex;
-use vitral_raster::forward::{Assembler, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project};
+use vitral_raster::forward::{
+    Assembler, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project,
+};
 
 /// Point parameters.
 #[derive(Clone, Copy, Debug)]

@@ -11,3 +11,4 @@ mod vertices;
 pub use assembled::AssembledCell;
 pub(crate) use process::ProcessedVertex;
 pub(crate) use record::Recorder;
+pub use record::RunnerSource;

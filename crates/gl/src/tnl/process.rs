@@ -6,6 +6,7 @@ use crate::Context;
 use crate::enums as gl;
 use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
 use crate::vertex::VertexBatch;
+use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::WindowTransform;
 
@@ -67,7 +68,8 @@ impl Context {
         let m = &snapshot.clip_from_model;
         for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {
             vertex.clip = [0, 1, 2, 3].map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
-            vertex.user = planes.map(|plane| plane.map_or(0.0, |q| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]));
+            vertex.user =
+                planes.map(|plane| plane.map_or(0.0, |q| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]));
             vertex.edge = batch.edges.as_ref().map_or(self.state.current.edge, |edges| edges[i]);
         }
         out

@@ -8,9 +8,7 @@ use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::lanes::Level;
-use vitral_raster::forward::{
-    Command, FragmentState, Layout, Pass, PrimitiveState, Runner, Target, WindowTransform,
-};
+use vitral_raster::forward::{Command, FragmentState, Layout, Pass, PrimitiveState, Runner, Target, WindowTransform};
 
 /// Gives the threads that run passes; asked each time, since a process may have forked.
 pub type RunnerSource = fn() -> Arc<Runner>;
@@ -55,10 +53,10 @@ impl Context {
 
     /// Records the drawing of `batch` with a snapshot of the state.
     pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>) {
-        let Some(target) = self.draw_target() else {
-            self.record_error(gl::INVALID_FRAMEBUFFER_OPERATION, "draw", "the draw framebuffer is not complete");
+        if !self.draw_framebuffer_complete("draw") {
             return;
-        };
+        }
+        let Some(target) = self.draw_target() else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
         let Some(geometry) = self.draw_geometry(batch, &fragment, &target) else { return };
@@ -68,10 +66,7 @@ impl Context {
 
     /// Records a command on the current draw target.
     pub(crate) fn record(&mut self, command: Command) {
-        let Some(target) = self.draw_target() else {
-            self.record_error(gl::INVALID_FRAMEBUFFER_OPERATION, "draw", "the draw framebuffer is not complete");
-            return;
-        };
+        let Some(target) = self.draw_target() else { return };
         self.record_on(target, command);
     }
 
@@ -145,11 +140,8 @@ impl Context {
         }
         layout.stride = next;
         let sharp = s.multisample && self.recorder.pass.as_ref().is_some_and(|p| p.target.samples > 1);
-        layout.smooth = [
-            s.points.smooth && !sharp && !s.points.sprite,
-            s.lines.smooth && !sharp,
-            s.polygons.smooth && !sharp,
-        ];
+        layout.smooth =
+            [s.points.smooth && !sharp && !s.points.sprite, s.lines.smooth && !sharp, s.polygons.smooth && !sharp];
         layout.line_stipple = s.lines.stipple.then_some(s.lines.pattern);
         layout
     }
@@ -164,9 +156,8 @@ impl Context {
         let flipped = origin == gl::UPPER_LEFT;
         let range = [s.viewport.depth_range.near, s.viewport.depth_range.far];
         let window = WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
-        let culled = |face: u32| {
-            s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK)
-        };
+        let culled =
+            |face: u32| s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK);
         let mode = |token: u32| match token {
             gl::POINT => 0,
             gl::LINE => 1,
@@ -175,12 +166,7 @@ impl Context {
         let multisample = s.multisample && target.samples > 1;
         let offset = |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
         let c = fragment.clip;
-        let clip = [
-            c[0].max(x),
-            c[1].max(y),
-            c[2].min(x.saturating_add(w)),
-            c[3].min(y.saturating_add(h)),
-        ];
+        let clip = [c[0].max(x), c[1].max(y), c[2].min(x.saturating_add(w)), c[3].min(y.saturating_add(h))];
         Some(PrimitiveState {
             window,
             user_planes: s.clip_plane_enabled.iter().filter(|e| **e).count(),
@@ -203,8 +189,9 @@ impl Context {
 
 /// The smallest step of a fixed-point depth plane, 0 for floating point.
 fn depth_step(target: &Target) -> f32 {
-    let scale = target.depth.as_ref().map_or(16_777_215.0, |depth| {
-        depth.lock().unwrap_or_else(std::sync::PoisonError::into_inner).scale
-    });
+    let scale = target
+        .depth
+        .as_ref()
+        .map_or(16_777_215.0, |depth| depth.lock().unwrap_or_else(std::sync::PoisonError::into_inner).scale);
     if scale == 1.0 { 0.0 } else { 1.0 / scale }
 }

@@ -92,9 +92,7 @@ impl VertexSnapshot {
             normalize,
             lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, lights)),
             units: units.iter().map(|&u| unit(state, u)).collect(),
-            fog: fog.then(|| {
-                if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given }
-            }),
+            fog: fog.then(|| if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given }),
             clip_planes: planes.map(|(p, _)| model_plane(p)).collect(),
             color_sum: state.color_sum,
         }

@@ -258,7 +258,8 @@ fn lit<S: Simd>(
             // Without a specular colour the halfway vectors need not be computed.
             let dull = !tracked.specular && m.specular[0] == 0.0 && m.specular[1] == 0.0 && m.specular[2] == 0.0;
             let model = if dull { Illumination::Lambert } else { Illumination::BlinnPhong };
-            let Reflected { diffuse, specular } = phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible);
+            let Reflected { diffuse, specular } =
+                phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible);
             let primary = diffuse + of(tracked.emission, m.emission);
             let alpha = if tracked.diffuse { color[3] } else { splat(simd, m.diffuse[3]) };
             if lighting.separate_specular {

@@ -1,7 +1,7 @@
 //! The groups of server state, and how they are saved.
 
 use crate::api::capabilities::saved_capabilities;
-use crate::api::foreign::BoundTextures;
+use crate::pixels::BoundTextures;
 use crate::state::{
     Blend, ColorBuffer, Current, DepthState, Fog, Lighting, Lines, MAX_CLIP_PLANES, MAX_TEXTURE_UNITS, PixelMode,
     PixelTransfer, Points, Polygons, RasterPosition, Scissor, StencilState, TextureUnit, Viewport,

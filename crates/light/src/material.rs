@@ -67,7 +67,7 @@ impl Default for Material {
 
 /// Reflection coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "form", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Reflectance {
     /// The empirical model's: ambient, diffuse and specular coefficients and the exponent `n`.
     Phong {
@@ -99,7 +99,7 @@ impl Default for Reflectance {
 
 /// How opacity is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "mode", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "mode", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum AlphaMode {
     /// Not at all: the surface is opaque.
     #[default]

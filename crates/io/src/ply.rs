@@ -16,7 +16,7 @@
 //!
 //! In:   bytes. Out: one mesh in model space.
 //! Cost: `O(bytes)`; counts in the header allocate nothing that the file could not hold.
-//! Source: Turk, "The PLY polygon file format", 1994; see docs/bibliography.md.
+//! Source: \[PLY\].
 
 mod ascii;
 mod binary;

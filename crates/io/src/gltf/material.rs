@@ -1,6 +1,6 @@
 //! Materials: metallic-roughness with the extensions that change what is seen.
 //!
-//! Source: glTF 2.0 specification, section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
+//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
 //! Departs from it: occlusion and transmission textures are left out (with a warning). A transmissive surface becomes
 //! a blended one whose opacity is what transmission leaves.
 

@@ -3,7 +3,7 @@
 //! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour or data), on all
 //! workers. A picture that cannot be had is a warning, and materials do without it.
 //!
-//! Source: glTF 2.0 specification, sections 3.8 and 5.26; KHR_texture_transform.
+//! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform.
 
 use super::accessor::Source;
 use super::buffers::read_target;

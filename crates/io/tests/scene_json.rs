@@ -91,6 +91,8 @@ fn full_materials() -> Vec<Material> {
         emission_texture: Some(TextureRef::new(0)),
         opacity_texture: Some(reference),
         metallic_roughness_texture: Some(reference),
+        occlusion_texture: Some(reference),
+        occlusion_strength: 0.6,
         normal_texture: Some(reference),
         normal_scale: 0.9,
     };

@@ -104,15 +104,7 @@ pub(crate) fn settle(
         })
         .collect();
     for m in materials {
-        let slots = [
-            &mut m.base_texture,
-            &mut m.specular_texture,
-            &mut m.emission_texture,
-            &mut m.opacity_texture,
-            &mut m.metallic_roughness_texture,
-            &mut m.normal_texture,
-        ];
-        for slot in slots {
+        for slot in m.texture_slots_mut() {
             *slot = slot.and_then(|r| Some(TextureRef { texture: places[r.texture as usize]?, ..r }));
         }
     }

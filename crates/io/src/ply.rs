@@ -188,6 +188,10 @@ impl Content {
         };
         let (element, layout) = (&header.elements[v], &layouts[v]);
         let place = Place::Line(element.line);
+        if let Some(again) = layouts.iter().skip(v + 1).position(|l| l.role == Role::Vertex) {
+            let place = Place::Line(header.elements[v + 1 + again].line);
+            return Err(Error::malformed(file, place, "a second element `vertex`, one is required"));
+        }
         if !layout.has_slots(slot::POSITION, 3) {
             return Err(Error::malformed(file, place, "`vertex` must have the properties `x`, `y` and `z`"));
         }

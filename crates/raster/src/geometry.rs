@@ -341,6 +341,22 @@ impl Batch {
         &self.setups
     }
 
+    /// Where the tile's entries lie among all.
+    pub(crate) fn tile_range(&self, tile: usize) -> Range<usize> {
+        self.starts[tile] as usize..self.starts[tile + 1] as usize
+    }
+
+    /// The setup of an entry.
+    #[inline(always)]
+    pub(crate) fn item(&self, at: usize) -> &Setup {
+        &self.setups[self.items[at] as usize]
+    }
+
+    /// The setups of all entries, tile by tile.
+    pub(crate) fn items(&self) -> &[u32] {
+        &self.items
+    }
+
     /// The triangles that touch tile `tile`, in order of submission.
     pub fn tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;

@@ -190,7 +190,8 @@ impl Context {
         if let (true, Some(from), Some(to)) = (wants(DEPTH_BUFFER_BIT), &read.depth, &draw.depth)
             && let (Some(a), Some(b)) = (&from.depth, &to.depth)
         {
-            with_both(a, b, |a, b| plan.plain(&a.plane, &mut b.plane));
+            lock(a).resolved();
+            with_both(a, b, |a, b| plan.plain(a.plane(), b.resolved()));
         }
         if let (true, Some(from), Some(to)) = (wants(STENCIL_BUFFER_BIT), &read.stencil, &draw.stencil)
             && let (Some(a), Some(b)) = (&from.stencil, &to.stencil)

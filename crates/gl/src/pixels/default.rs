@@ -203,7 +203,7 @@ impl DefaultFramebuffer {
             };
             let format = InternalFormat { token, base: DEPTH_COMPONENT, storage: Storage::Depth(bits) };
             let scale = format.depth_scale();
-            let plane = DepthPlane { plane: Plane::new(viewport, 1, scale), scale };
+            let plane = DepthPlane::new(Plane::new(viewport, 1, scale), scale);
             Surface { depth: Some(Arc::new(Mutex::new(plane))), ..surface(format, viewport) }
         });
         self.stencil = (self.stencil_bits > 0).then(|| {
@@ -367,13 +367,13 @@ impl Context {
         self.flush_recorded();
         let surface = self.default_framebuffer.depth.as_ref()?;
         let bits = surface.format.bits().depth;
-        let plane = lock(surface.depth.as_ref()?);
+        let mut plane = lock(surface.depth.as_ref()?);
         let Viewport { width, height } = surface.viewport;
         let bytes_per_value = if bits == 16 { 2 } else { 4 };
         let mut row = vec![0.0; width as usize];
         let mut bytes = Vec::with_capacity(row.len() * height as usize * bytes_per_value);
         for y in 0..height {
-            plane.plane.read_row(0, y, 0, &mut row);
+            plane.resolved().read_row(0, y, 0, &mut row);
             match bits {
                 16 => row.iter().for_each(|&d| bytes.extend((d as u16).to_ne_bytes())),
                 24 => row.iter().for_each(|&d| bytes.extend((d as u32).to_ne_bytes())),

@@ -108,7 +108,8 @@ impl TextureImage {
     fn blank_level(&self) -> Arc<Level> {
         let texels = match (self.viewport(), self.format.has_depth() && self.border == 0 && self.size[2] == 1) {
             (Some(viewport), true) => {
-                let plane = DepthPlane { plane: Plane::new(viewport, 1, 0.0), scale: self.format.depth_scale() };
+                let mut plane = DepthPlane::new(Plane::new(viewport, 1, 0.0), self.format.depth_scale());
+                plane.sampled = true;
                 Texels::DepthPlane(Arc::new(Mutex::new(plane)))
             }
             _ => texels::blank(&self.format, self.texel_count()),
@@ -189,12 +190,13 @@ impl TextureImage {
             return Some(plane.clone());
         }
         let scale = self.format.depth_scale();
-        let mut plane = DepthPlane { plane: Plane::new(viewport, 1, 0.0), scale };
+        let mut plane = DepthPlane::new(Plane::new(viewport, 1, 0.0), scale);
+        plane.sampled = true;
         if let Texels::Depth(depths) = &level.texels {
             let rows = depths.chunks_exact(viewport.width as usize);
             for (y, row) in rows.enumerate() {
                 let row: Vec<f32> = row.iter().map(|&d| stored_depth(d, scale)).collect();
-                plane.plane.write_row(0, y as u32, &row);
+                plane.resolved().write_row(0, y as u32, &row);
             }
         }
         let plane = Arc::new(Mutex::new(plane));
@@ -284,11 +286,11 @@ impl TextureImage {
         match &self.level().texels {
             Texels::Depth(depths) => depths.clone(),
             Texels::DepthPlane(plane) => {
-                let plane = lock(plane);
-                let viewport = plane.plane.viewport();
+                let mut plane = lock(plane);
+                let viewport = plane.viewport();
                 let mut depths = vec![0.0; (viewport.width * viewport.height) as usize];
                 for (y, row) in depths.chunks_exact_mut(viewport.width as usize).enumerate() {
-                    plane.plane.read_row(0, y as u32, 0, row);
+                    plane.resolved().read_row(0, y as u32, 0, row);
                     row.iter_mut().for_each(|d| *d = (f64::from(*d) / f64::from(plane.scale)) as f32);
                 }
                 depths
@@ -332,7 +334,7 @@ pub(crate) fn write_depths(plane: &mut DepthPlane, origin: [usize; 3], size: [us
     let mut stored = vec![0.0; size[0]];
     for (y, row) in depths.chunks_exact(size[0].max(1)).enumerate() {
         stored.iter_mut().zip(row).for_each(|(s, &d)| *s = stored_depth(d, plane.scale));
-        plane.plane.write_row(origin[0] as u32, (origin[1] + y) as u32, &stored);
+        plane.resolved().write_row(origin[0] as u32, (origin[1] + y) as u32, &stored);
     }
 }
 
@@ -387,7 +389,7 @@ mod tests {
         let mut image = image(DEPTH24_STENCIL8, [2, 1, 1]);
         image.replace(TexelData::Depths(vec![0.0, 1.0], Some(vec![3, 4])));
         let plane = image.depth_plane().unwrap();
-        assert_eq!(lock(&plane).plane.get(1, 0, 0), 16_777_215.0);
+        assert_eq!(lock(&plane).resolved().get(1, 0, 0), 16_777_215.0);
         image.write([0; 3], [1, 1, 1], &TexelData::Depths(vec![1.0], Some(vec![9])));
         assert_eq!(image.depths(), [1.0, 1.0]);
         assert_eq!(image.stencils(), [9, 4]);

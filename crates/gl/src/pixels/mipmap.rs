@@ -1,8 +1,7 @@
-//! Mipmaps: each level is the box-filtered one before it.
+//! Mipmaps: each level is the one before it, looked up with a linear filter at its own texels' centres.
 //!
-//! A texel is the average of the source texels that its area covers, weighted by how much: for a side of `n` texels
-//! that becomes `m`, texel `i` covers `i * n / m` to `(i + 1) * n / m`. sRGB colours are averaged as light. Borders
-//! are filtered along their edge.
+//! For a side of even length that is the average of two texels; for an odd one, of the two nearest, as hardware does it
+//! when it draws a level from the one before. sRGB colours are averaged as light. Borders are filtered along their edge.
 
 use super::image::{TextureImage, lock};
 use super::internal_format::{InternalFormat, Storage};
@@ -18,17 +17,19 @@ use vitral_raster::forward::{Level, Texels};
 /// Source texels with weights, for each texel along one axis.
 type Taps = Vec<Vec<(usize, f32)>>;
 
-/// The taps from `from` to `to` texels inside borders of `border`.
+/// The taps from `from` to `to` texels inside borders of `border`: the two source texels round each new centre.
 fn taps(from: usize, to: usize, border: usize) -> Taps {
     let mut out: Taps = Vec::with_capacity(to + 2 * border);
     for i in 0..to {
-        let (first, end) = (i * from, (i + 1) * from);
-        // In units of 1 / to source texels; the weights add up to `from`.
-        let covered = (first / to..end.div_ceil(to)).map(|t| {
-            let part = end.min((t + 1) * to) - first.max(t * to);
-            (t + border, part as f32 / from as f32)
+        let center = ((2 * i + 1) * from) as f32 / (2 * to) as f32 - 0.5;
+        let low = center.floor().max(0.0);
+        let weight = center.max(0.0) - low;
+        let (low, high) = (low as usize, (low as usize + 1).min(from - 1));
+        out.push(if from == to {
+            vec![(i + border, 1.0)]
+        } else {
+            vec![(low + border, 1.0 - weight), (high + border, weight)]
         });
-        out.push(covered.collect());
     }
     if border > 0 {
         out.insert(0, vec![(0, 1.0)]);
@@ -154,9 +155,10 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         Texels::RgbaF32(colors) => colors.clone(),
         Texels::Depth(depths) => depths.iter().map(|&d| [d, 0.0, 0.0, 0.0]).collect(),
         Texels::DepthPlane(plane) => {
-            let plane = lock(plane);
+            let mut plane = lock(plane);
+            plane.resolved();
             let [width, height] = [level.size[0], level.size[1]];
-            let at = |i: u32| plane.plane.get(i % width, i / width, 0) / plane.scale;
+            let at = |i: u32| plane.plane().get(i % width, i / width, 0) / plane.scale;
             (0..width * height).map(|i| [at(i), 0.0, 0.0, 0.0]).collect()
         }
     };

@@ -79,10 +79,10 @@ pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectan
 }
 
 /// Depths of a rectangle, 0..=1.
-pub(crate) fn read_depths(plane: &DepthPlane, r: &Rectangle) -> Vec<f32> {
+pub(crate) fn read_depths(plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
     let mut depths = vec![0.0; r.size[0] * r.size[1]];
     for (y, row) in depths.chunks_exact_mut(r.size[0].max(1)).enumerate() {
-        plane.plane.read_row(r.x, r.y + y as u32, 0, row);
+        plane.resolved().read_row(r.x, r.y + y as u32, 0, row);
     }
     if plane.scale != 1.0 {
         depths.iter_mut().for_each(|d| *d /= plane.scale);
@@ -130,7 +130,7 @@ fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, tra
             .depth
             .as_ref()
             .and_then(|s| s.depth.as_ref())
-            .map_or_else(Vec::new, |plane| read_depths(&lock(plane), r));
+            .map_or_else(Vec::new, |plane| read_depths(&mut lock(plane), r));
         transfer.depths(&mut depths);
         if clamp && !transfer.keeps_depths() {
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));

@@ -40,7 +40,7 @@ impl RenderbufferStorage {
             color: format.is_color().then(|| Arc::new(Mutex::new(new_color_plane(&format, viewport, planes)))),
             depth: format.has_depth().then(|| {
                 let plane = Plane::new(viewport, planes, 0.0);
-                Arc::new(Mutex::new(DepthPlane { plane, scale: format.depth_scale() }))
+                Arc::new(Mutex::new(DepthPlane::new(plane, format.depth_scale())))
             }),
             stencil: format.has_stencil().then(|| Arc::new(Mutex::new(Plane::new(viewport, planes, 0)))),
         }

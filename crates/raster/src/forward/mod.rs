@@ -9,6 +9,7 @@ mod environment;
 mod fragment;
 mod fragment_ops;
 mod pass;
+mod pending;
 mod plane;
 mod project;
 mod sample;

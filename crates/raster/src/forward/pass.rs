@@ -4,10 +4,13 @@
 //! walks clears, images and the jobs' facets in the order of the commands.
 
 use super::assemble::{Facet, Primitives, screen};
+use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
+use super::pending::{PendingDepth, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::shade::Layout;
 use super::state::FragmentState;
+use super::texture::Texels;
 use super::tile::TileRun;
 use crate::geometry::Screen;
 use crate::{SamplePattern, TILE, Viewport};
@@ -188,6 +191,8 @@ pub(crate) struct DrawContext<'a> {
     pub multisample: bool,
     /// Colours matter: some are written, or decide.
     pub shaded: bool,
+    /// Depth planes that units sample.
+    pub planes: [Option<&'a DepthPlane>; UNITS],
 }
 
 /// A job before it runs.
@@ -200,6 +205,14 @@ struct Plan {
 enum PlanItem {
     Command(usize),
     Job(usize),
+}
+
+impl<'a> DrawContext<'a> {
+    /// A draw of depths alone, one sample a pixel.
+    pub(crate) fn depth_alone(state: &'a FragmentState, clip: [i32; 4], layout: &'a Layout) -> Self {
+        let ops = FragmentOps::new(state, 1);
+        Self { state, layout, ops, clip, multisample: false, shaded: false, planes: [None; UNITS] }
+    }
 }
 
 impl Runner {
@@ -218,7 +231,14 @@ impl Runner {
         };
         let mut jobs: Vec<Option<Primitives>> =
             self.workers.map(plans.len(), |j| Some(self.emit(&plans[j], &pass.commands, &forward)));
-        let items: Vec<Item<'_>> = order.iter().map(|item| self.item(item, pass, &plans, &mut jobs)).collect();
+        if self.leave_pending(pass, &plans, &mut jobs) {
+            return;
+        }
+        let sampled = sampled_planes(&pass.commands);
+        let sampled: Vec<(*const Mutex<DepthPlane>, MutexGuard<'_, DepthPlane>)> =
+            sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
+        let items: Vec<Item<'_>> =
+            order.iter().map(|item| self.item(item, pass, &plans, &mut jobs, &sampled)).collect();
         self.tiles(&pass.target, &items);
         let mut spare = lock(&self.spare);
         for item in items {
@@ -245,7 +265,39 @@ impl Runner {
         out
     }
 
-    fn item<'a>(&self, item: &PlanItem, pass: &'a Pass, plans: &[Plan], jobs: &mut [Option<Primitives>]) -> Item<'a> {
+    /// Leaves a pass that draws depths into a texture as it is, if it can; `jobs` are its primitives then.
+    fn leave_pending(&self, pass: &Pass, plans: &[Plan], jobs: &mut [Option<Primitives>]) -> bool {
+        let Some(target) = &pass.target.depth else { return false };
+        let mut target = lock(target);
+        if !target.sampled {
+            return false;
+        }
+        let Some(kind) = pendable(pass) else { return false };
+        if let Some(before) = target.pending.take() {
+            lock(&self.spare).extend(before.into_primitives());
+        }
+        let draws = |plan: &Plan| {
+            let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
+                Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
+                _ => None,
+            };
+            plan.pieces.iter().filter_map(draw).collect()
+        };
+        let jobs = plans.iter().zip(jobs).map(|(plan, job)| (job.take().unwrap_or_default(), draws(plan))).collect();
+        let viewport = target.viewport();
+        let tiles = (viewport.tiles_x() * viewport.tiles_y()) as usize;
+        target.pending = Some(Box::new(PendingDepth::new(kind, target.scale, viewport.tiles_x(), tiles, jobs)));
+        true
+    }
+
+    fn item<'a>(
+        &self,
+        item: &PlanItem,
+        pass: &'a Pass,
+        plans: &[Plan],
+        jobs: &mut [Option<Primitives>],
+        sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
+    ) -> Item<'a> {
         let samples = pass.target.samples;
         match item {
             PlanItem::Command(c) => match &pass.commands[*c] {
@@ -255,7 +307,7 @@ impl Runner {
             },
             PlanItem::Job(j) => {
                 let draws = plans[*j].pieces.iter().filter_map(|(command, _)| match &pass.commands[*command] {
-                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass)),
+                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass, sampled)),
                     _ => None,
                 });
                 let draws = draws.collect();
@@ -273,7 +325,7 @@ impl Runner {
         let count = (tiles_x * target.viewport.tiles_y()) as usize;
         let mut colors = color_tiles(&mut color);
         let scale = depth.as_ref().map_or(1.0, |d| d.scale);
-        let mut depths = plane_tiles(depth.as_mut().map(|d| &mut d.plane));
+        let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()));
         let mut stencils = plane_tiles(stencil.as_mut().map(|s| &mut **s));
         let runs: Vec<TileRun<'_>> = (0..count)
             .map(|index| {
@@ -292,6 +344,10 @@ impl Runner {
             dispatch!(self.level, simd => run.walk(simd, items, &many, &one));
         });
     }
+}
+
+fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
+    [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -314,11 +370,23 @@ fn plane_tiles<T>(plane: Option<&mut Plane<T>>) -> std::slice::IterMut<'_, Plane
     }
 }
 
-fn draw_context<'a>(geometry: &'a dyn Geometry, state: &'a FragmentState, pass: &Pass) -> DrawContext<'a> {
+fn draw_context<'a>(
+    geometry: &'a dyn Geometry,
+    state: &'a FragmentState,
+    pass: &Pass,
+    sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
+) -> DrawContext<'a> {
+    let mut planes = [None; UNITS];
+    for unit in &state.units {
+        if let Some(Texels::DepthPlane(plane)) = unit.texture.faces.first().and_then(|f| f.first()).map(|l| &l.texels) {
+            let guard = sampled.iter().find(|(p, _)| *p == Arc::as_ptr(plane));
+            planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
+        }
+    }
     let samples = pass.target.samples;
-    let (a, b) = (geometry.clip(), state.clip);
-    let clip = [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])];
+    let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
+    let decides = decides || geometry.layout().line_stipple.is_some();
     let shaded = decides || (pass.target.color.is_some() && state.masked != [true; 4]);
     DrawContext {
         state,
@@ -327,7 +395,24 @@ fn draw_context<'a>(geometry: &'a dyn Geometry, state: &'a FragmentState, pass: 
         clip,
         multisample: samples > 1 && state.multisample,
         shaded,
+        planes,
     }
+}
+
+/// The depth planes that draws sample, each once, in an order that all threads share.
+fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
+    let mut planes: Vec<Arc<Mutex<DepthPlane>>> = Vec::new();
+    for command in commands {
+        let (Command::Draw(_, state) | Command::Image(_, state)) = command else { continue };
+        for level in state.units.iter().flat_map(|u| u.texture.faces.iter().flatten()) {
+            if let Texels::DepthPlane(plane) = &level.texels {
+                planes.push(plane.clone());
+            }
+        }
+    }
+    planes.sort_by_key(Arc::as_ptr);
+    planes.dedup_by(|a, b| Arc::ptr_eq(a, b));
+    planes
 }
 
 /// Cuts draws into jobs; what is no draw stands between them.

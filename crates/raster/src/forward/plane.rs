@@ -1,5 +1,6 @@
 //! Planes of samples, stored in tiles of 64x64 pixels that are cleared lazily.
 
+use super::pending::PendingDepth;
 use crate::{TILE, TILE_PIXELS, Viewport};
 
 /// A tile's samples. Index: `sample * TILE_PIXELS + (y % 64) * TILE + x % 64`.
@@ -122,12 +123,54 @@ pub enum ColorPlane {
 }
 
 /// Depth samples: `scale` times the depth in 0..=1, whole numbers unless `scale` is 1 (floating-point depth).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct DepthPlane {
-    /// The samples.
-    pub plane: Plane<f32>,
+    /// The samples, before what is pending.
+    pub(crate) plane: Plane<f32>,
     /// 1 for floating point, else `2^bits - 1`.
     pub scale: f32,
+    /// It is a texture's: passes that draw depth alone may leave it pending, since few of its texels may ever be read.
+    pub sampled: bool,
+    pub(crate) pending: Option<Box<PendingDepth>>,
+}
+
+impl Clone for DepthPlane {
+    /// A copy of a plane without pending triangles, see [`Self::resolved`].
+    fn clone(&self) -> Self {
+        debug_assert!(self.pending.is_none(), "resolve the plane first");
+        Self { plane: self.plane.clone(), scale: self.scale, sampled: self.sampled, pending: None }
+    }
+}
+
+impl DepthPlane {
+    /// A plane of samples and their scale.
+    pub fn new(plane: Plane<f32>, scale: f32) -> Self {
+        Self { plane, scale, sampled: false, pending: None }
+    }
+
+    /// Size in pixels.
+    pub fn viewport(&self) -> Viewport {
+        self.plane.viewport()
+    }
+
+    /// Samples a pixel.
+    pub fn samples(&self) -> usize {
+        self.plane.samples()
+    }
+
+    /// All samples; nothing may be pending, see [`Self::resolved`].
+    pub fn plane(&self) -> &Plane<f32> {
+        debug_assert!(self.pending.is_none(), "resolve the plane first");
+        &self.plane
+    }
+
+    /// All samples, after drawing what is pending.
+    pub fn resolved(&mut self) -> &mut Plane<f32> {
+        if let Some(pending) = self.pending.take() {
+            pending.resolve(&mut self.plane, self.scale);
+        }
+        &mut self.plane
+    }
 }
 
 /// Stencil samples.

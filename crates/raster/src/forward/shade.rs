@@ -3,6 +3,8 @@
 use super::assemble::{Facet, FacetKind, Shape};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
+use super::pass::DrawContext;
+use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, lod, needs_lod};
 use super::sample::sample;
@@ -98,6 +100,7 @@ struct Weights<S: Simd> {
 pub(crate) struct Shader<'a> {
     pub state: &'a FragmentState,
     pub layout: &'a Layout,
+    pub planes: &'a [Option<&'a DepthPlane>; UNITS],
     pub facet: Facet,
     pub records: &'a [f32],
     pub shape: Option<Shape>,
@@ -108,19 +111,18 @@ impl<'a> Shader<'a> {
     pub(crate) fn new(
         setup: &Setup,
         facet: Facet,
-        state: &'a FragmentState,
-        layout: &'a Layout,
+        draw: &'a DrawContext<'a>,
         records: &'a [f32],
         shapes: &[Shape],
-        shaded: bool,
     ) -> Self {
+        let layout = draw.layout;
         let mut interpolation =
-            if shaded { Interpolation::new(setup, &facet, records) } else { Interpolation::default() };
+            if draw.shaded { Interpolation::new(setup, &facet, records) } else { Interpolation::default() };
         if facet.kind == FacetKind::Polygon && layout.smooth[2] {
             interpolation.prepare_edges(setup);
         }
         let shape = if facet.kind == FacetKind::Polygon { None } else { shapes.get(facet.shape as usize).copied() };
-        Self { state, layout, facet, records, shape, interpolation }
+        Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation }
     }
 
     #[inline(always)]
@@ -259,7 +261,8 @@ impl<'a> Shader<'a> {
         }
         let anisotropic = texture.sampler.anisotropy > 1.0;
         if !needs_lod(texture) && !anisotropic {
-            return sample(simd, texture, coords, bias, active);
+            let plane = self.planes[unit.index % UNITS];
+            return sample(simd, texture, plane, coords, bias, active);
         }
         let [dx, dy] = match sprite {
             Some(step) => {
@@ -273,7 +276,7 @@ impl<'a> Shader<'a> {
             return sample_anisotropic(simd, texture, coords, steps, bias, active);
         }
         let level = lod(steps[0][0], steps[0][1], steps[0][2], steps[1][0], steps[1][1], steps[1][2]);
-        sample(simd, texture, coords, level + bias, active)
+        sample(simd, texture, None, coords, level + bias, active)
     }
 
     /// How s, t, r, q change with one pixel to the right, and one up.

@@ -97,7 +97,7 @@ impl<'a> TileRun<'a> {
                     }
                     let pattern = if draw.multisample { many } else { one };
                     let (records, shapes) = (&primitives.records, &primitives.shapes);
-                    let shader = Shader::new(setup, facet, draw.state, draw.layout, records, shapes, draw.shaded);
+                    let shader = Shader::new(setup, facet, draw, records, shapes);
                     let (x, y) = (self.x, self.y);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
                     traverse(simd, setup, (x, y), pattern, &mut sink);
@@ -233,7 +233,7 @@ fn image_color<S: Simd>(
         for unit in &state.units {
             let coords = splat_rgba(simd, image.tex[unit.index % UNITS]);
             let lod = splat(simd, unit.lod_bias - 63.0);
-            textures[unit.index % UNITS] = sample(simd, &unit.texture, coords, lod, bits);
+            textures[unit.index % UNITS] = sample(simd, &unit.texture, None, coords, lod, bits);
         }
         for unit in &state.units {
             color = environment(simd, unit, &textures, &primary, color);

@@ -36,7 +36,7 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                 (TextureKind::Rectangle, Some(_)) => [1; 3],
                 _ => {
                     let lod = lod(dx[0], dx[1], dx[2], dy[0], dy[1], dy[2]);
-                    return sample(simd, texture, coords, lod + bias, active);
+                    return sample(simd, texture, None, coords, lod + bias, active);
                 }
             };
             let footprint = Footprint::new(simd, dx, dy, texture.sampler.anisotropy);
@@ -55,7 +55,7 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                     break;
                 }
                 let at = splat(simd, i) / (footprint.probes + 1.0) - 0.5;
-                let color = sample(simd, texture, [s + step_s * at, t + step_t * at, r, one], detail, lanes);
+                let color = sample(simd, texture, None, [s + step_s * at, t + step_t * at, r, one], detail, lanes);
                 let counts = mask_of(simd, lanes);
                 for k in 0..4 {
                     sum[k] = select(counts, sum[k] + color[k], sum[k]);

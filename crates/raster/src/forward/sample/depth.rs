@@ -7,8 +7,11 @@ use super::fetch::{Depths, level_of};
 use super::flat::{axes, corner_texels};
 use super::mip::mipped;
 use crate::forward::fragment_ops::compare::compare;
+use crate::forward::plane::DepthPlane;
+use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Texture, TextureKind};
 use crate::forward::wide::{Rgba, mix, saturate, select, splat, splat_rgba};
+use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Simd};
 
 /// As [`super::sample`].
@@ -16,6 +19,7 @@ use vitral_math::lanes::{F32x8, Simd};
 pub(super) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
+    plane: Option<&DepthPlane>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -34,8 +38,8 @@ pub(super) fn sample<S: Simd>(
                 |level, linear, lanes| {
                     // A constant number of dimensions unrolls the loops.
                     [match texture.kind {
-                        TextureKind::One => lookup::<S, 1>(simd, texture, level, linear, point, lanes),
-                        _ => lookup::<S, 2>(simd, texture, level, linear, point, lanes),
+                        TextureKind::One => lookup::<S, 1>(simd, texture, plane, level, linear, point, lanes),
+                        _ => lookup::<S, 2>(simd, texture, plane, level, linear, point, lanes),
                     }]
                 },
             );
@@ -67,25 +71,43 @@ pub(super) fn compared<S: Simd>(simd: S, texture: &Texture, reference: F32x8<S>,
     }
 }
 
+/// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
+#[inline(always)]
+fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<[f32; 8]> {
+    let sign = depths.pending()?;
+    // With a larger depth in the plane the comparison only fails more, so what is not above the reference is settled.
+    let settles = match texture.sampler.compare {
+        Some(Compare::GreaterOrEqual) => sign > 0.0,
+        Some(Compare::LessOrEqual) => sign < 0.0,
+        _ => false,
+    };
+    settles.then(
+        #[inline(always)]
+        || saturate(reference).to_array(),
+    )
+}
+
 /// One level, filtered.
 #[inline(always)]
 fn lookup<S: Simd, const DIMENSIONS: usize>(
     simd: S,
     texture: &Texture,
+    plane: Option<&DepthPlane>,
     level: usize,
     linear: bool,
     point: [F32x8<S>; 3],
     lanes: u32,
 ) -> F32x8<S> {
     let Some(shape) = level_of(texture, level) else { return splat(simd, 0.0) };
-    let depths = Depths::new(shape);
+    let depths = Depths::new(shape, plane);
+    let known = known(texture, &depths, point[2]);
     let axes = axes(simd, texture, shape, DIMENSIONS, linear, point);
     let border = splat_rgba(simd, texture.sampler.border)[0];
     let corners = if linear { 1 << DIMENSIONS } else { 1 };
     let mut values = [border; 4];
     for corner in 0..corners {
         let ([x, y, _], outside) = corner_texels(simd, shape, DIMENSIONS, &axes, corner);
-        let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes));
+        let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes, &known));
         values[corner] = compared(simd, texture, point[2], depth);
     }
     let mut count = corners;

@@ -215,33 +215,73 @@ pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
 pub(super) enum Depths<'a> {
     Stored(&'a [f32]),
     /// Held until the lookup is done.
-    Plane(MutexGuard<'a, DepthPlane>),
+    Locked(MutexGuard<'a, DepthPlane>),
+    /// Held by the caller.
+    Plane(&'a DepthPlane),
 }
 
 impl<'a> Depths<'a> {
     /// Those of a level; what is no depth image has none.
     #[inline(always)]
-    pub(super) fn new(level: &'a Level) -> Self {
-        match &level.texels {
-            Texels::Depth(texels) => Self::Stored(texels),
-            Texels::DepthPlane(plane) => Self::Plane(plane.lock().unwrap_or_else(PoisonError::into_inner)),
+    pub(super) fn new(level: &'a Level, plane: Option<&'a DepthPlane>) -> Self {
+        match (&level.texels, plane) {
+            (Texels::DepthPlane(_), Some(plane)) => Self::Plane(plane),
+            (Texels::Depth(texels), _) => Self::Stored(texels),
+            (Texels::DepthPlane(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
             _ => Self::Stored(&[]),
         }
     }
 
+    /// Sign of triangles that are pending, see [`crate::forward::pending`].
+    #[inline(always)]
+    pub(super) fn pending(&self) -> Option<f32> {
+        let plane = match self {
+            Self::Stored(_) => return None,
+            Self::Locked(plane) => &**plane,
+            Self::Plane(plane) => plane,
+        };
+        plane.pending.as_ref().map(|p| p.sign())
+    }
+
     /// Depths of the texels `(x, y)` of an image `width` wide; 0 where there is none.
     #[inline(always)]
-    pub(super) fn at<S: Simd>(&self, simd: S, x: I32x8<S>, y: I32x8<S>, width: u32, active: u32) -> F32x8<S> {
+    pub(super) fn at<S: Simd>(
+        &self,
+        simd: S,
+        x: I32x8<S>,
+        y: I32x8<S>,
+        width: u32,
+        active: u32,
+        known: &Option<[f32; LANES]>,
+    ) -> F32x8<S> {
         match self {
             Self::Stored(texels) => F32x8::from_slice(simd, &gather(texels, y * width as i32 + x)),
-            Self::Plane(plane) => plane_depths(simd, plane, x, y, active),
+            Self::Locked(plane) => plane_depths(simd, plane, x, y, active, known),
+            Self::Plane(plane) => plane_depths(simd, plane, x, y, active, known),
         }
     }
 }
 
 /// Depths of sample 0 of a plane's pixels; other lanes than the active ones are 0.
 #[inline(always)]
-fn plane_depths<S: Simd>(simd: S, depth: &DepthPlane, x: I32x8<S>, y: I32x8<S>, active: u32) -> F32x8<S> {
+fn plane_depths<S: Simd>(
+    simd: S,
+    depth: &DepthPlane,
+    x: I32x8<S>,
+    y: I32x8<S>,
+    active: u32,
+    known: &Option<[f32; LANES]>,
+) -> F32x8<S> {
+    if let Some(pending) = &depth.pending {
+        let (x, y) = (x.to_array(), y.to_array());
+        let mut out = [0.0f32; LANES];
+        for lane in 0..LANES {
+            if active >> lane & 1 == 1 {
+                out[lane] = pending.texel(x[lane], y[lane], known.as_ref().map(|k| k[lane]));
+            }
+        }
+        return F32x8::from_slice(simd, &out);
+    }
     const SHIFT: u32 = TILE.trailing_zeros();
     const INSIDE: i32 = TILE as i32 - 1;
     let tiles_x = depth.plane.viewport().tiles_x() as i32;

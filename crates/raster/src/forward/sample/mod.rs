@@ -23,6 +23,7 @@ mod wrap;
 #[cfg(test)]
 mod tests;
 
+use super::plane::DepthPlane;
 use super::texture::{Texels, Texture, TextureKind, Wrap};
 use super::wide::{Rgba, splat_rgba};
 use vitral_math::lanes::{F32x8, Simd};
@@ -31,12 +32,15 @@ use vitral_math::lanes::{F32x8, Simd};
 /// cube maps, where s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus
 /// the bias; see [`mip::needs_lod`]. Lanes without their bit in `active` yield something harmless.
 ///
+/// `plane` is that of a depth texture whose texels are one, where the caller holds it already.
+///
 /// Depth textures yield what their mode makes of the depth, or with a comparison of its result; the reference is r / q,
 /// for cube maps q.
 #[inline(always)]
 pub(crate) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
+    plane: Option<&DepthPlane>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -51,7 +55,7 @@ pub(crate) fn sample<S: Simd>(
         TextureKind::Two if packed && first.border == 0 && stays_inside(&texture.sampler.wrap) => {
             packed::sample(simd, texture, coords, lod, active)
         }
-        _ if is_depth => depth::sample(simd, texture, coords, lod, active),
+        _ if is_depth => depth::sample(simd, texture, plane, coords, lod, active),
         _ => flat::sample(simd, texture, coords, lod, active),
     }
 }

@@ -1,0 +1,195 @@
+//! Shadow maps that are never drawn: a depth plane may keep the triangles of a pass in place of its texels.
+//!
+//! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those alone. A pass that
+//! clears a texture's depth plane and draws nothing but depths into it, all kept by the same comparison, leaves its tile lists
+//! behind. A texel's value is then the nearest (or farthest) of its tile's triangles there, by the same coverage and depth
+//! that drawing uses: the bits are the same. For a lookup that compares, a bound of each triangle's depths decides most
+//! triangles, and a bound of all the tile's most lookups. Whoever needs all texels draws them: [`PendingDepth::resolve`].
+//!
+//! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
+//! Cost: a lookup is linear in its tile's triangles, eight bounds a step.
+
+use super::assemble::Primitives;
+use super::fragment::TilePlanes;
+use super::pass::{DrawContext, Item, Pass, pattern};
+use super::plane::{Plane, PlaneTile};
+use super::state::{Compare, FragmentState};
+use super::tile::TileRun;
+use crate::{SUBPIXEL, Setup, TILE};
+use std::sync::Arc;
+use vitral_math::lanes::{Level, dispatch};
+
+/// A job's triangles and what bounds them.
+#[derive(Debug)]
+struct PendingJob {
+    primitives: Primitives,
+    /// State and allowed pixels of each draw.
+    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
+    /// For each entry of the tile lists, a bound of its depths as read, times the sign.
+    bounds: Vec<f32>,
+    /// The largest of a tile's.
+    tile_bounds: Vec<f32>,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct PendingDepth {
+    /// 1 where the larger depth stays, -1 where the smaller does.
+    sign: f32,
+    clear: f32,
+    scale: f32,
+    jobs: Vec<PendingJob>,
+    /// The largest bound of each tile over all jobs.
+    tile_bounds: Vec<f32>,
+    tiles_x: i32,
+}
+
+/// Whether a pass can be left pending: 1 or -1 for which depth stays, and the depth it clears to.
+pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
+    use super::pass::Command;
+    let (first, rest) = pass.commands.split_first()?;
+    let Command::Clear(clear) = first else { return None };
+    let whole = [0, 0, pass.target.viewport.width as i32, pass.target.viewport.height as i32];
+    if pass.target.samples != 1 || clear.clip != whole || clear.color.is_some() || clear.stencil.is_some() {
+        return None;
+    }
+    let mut sign = 0.0;
+    for command in rest {
+        let Command::Draw(_, state) = command else { return None };
+        let test = state.depth.filter(|t| t.write)?;
+        let colorless = pass.target.color.is_none() || state.masked == [true; 4];
+        let plain = state.stencil.is_none() && state.alpha_test.is_none() && state.query.is_none();
+        if !(colorless && plain && state.polygon_stipple.is_none()) {
+            return None;
+        }
+        let its = match test.func {
+            Compare::Greater | Compare::GreaterOrEqual => 1.0,
+            Compare::Less | Compare::LessOrEqual => -1.0,
+            _ => return None,
+        };
+        if sign != 0.0 && sign != its {
+            return None;
+        }
+        sign = its;
+    }
+    Some((if sign == 0.0 { 1.0 } else { sign }, clear.depth?))
+}
+
+/// A depth in `0..=1` as stored.
+pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
+    if scale == 1.0 {
+        return depth;
+    }
+    let scaled = depth * scale;
+    if scaled < 8_388_608.0 { (scaled + 0.5).floor() } else { scaled.floor() }
+}
+
+impl PendingDepth {
+    /// Keeps a pass's primitives. `jobs` are with their draws' states and allowed pixels.
+    pub(crate) fn new(
+        (sign, clear): (f32, f32),
+        scale: f32,
+        tiles_x: u32,
+        tiles: usize,
+        jobs: Vec<(Primitives, Vec<(Arc<FragmentState>, [i32; 4])>)>,
+    ) -> Self {
+        let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
+        let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
+        for job in &jobs {
+            for (all, its) in tile_bounds.iter_mut().zip(&job.tile_bounds) {
+                *all = all.max(*its);
+            }
+        }
+        let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
+        Self { sign, clear, scale, jobs, tile_bounds, tiles_x: tiles_x as i32 }
+    }
+
+    /// The primitives, to use their memory again.
+    pub(crate) fn into_primitives(self) -> impl Iterator<Item = Primitives> {
+        self.jobs.into_iter().map(|job| job.primitives)
+    }
+
+    /// The depth of a texel in `0..=1` as it would be read, from the farther of `known` and the clear value on: triangles that cannot beat
+    /// `known` are not looked at. Pass `None` for the exact depth.
+    pub(crate) fn texel(&self, x: i32, y: i32, known: Option<f32>) -> f32 {
+        let tile = ((y / TILE as i32) * self.tiles_x + x / TILE as i32) as usize;
+        let floor = known.map_or(f32::NEG_INFINITY, |k| k * self.sign);
+        let mut best = self.clear / self.scale * self.sign;
+        if self.tile_bounds.get(tile).is_none_or(|bound| *bound <= best.max(floor)) {
+            return best * self.sign;
+        }
+        let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
+        for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
+            let list = job.primitives.batch.tile_range(tile);
+            for at in list {
+                if job.bounds[at] <= best.max(floor) {
+                    continue;
+                }
+                let setup = job.primitives.batch.item(at);
+                if setup.covers(px, py) && job.allows(setup, x, y) {
+                    best = best.max(stored(setup.depth(px, py), self.scale) / self.scale * self.sign);
+                }
+            }
+        }
+        best * self.sign
+    }
+
+    /// Which depth stays: 1 the larger, -1 the smaller.
+    pub(crate) fn sign(&self) -> f32 {
+        self.sign
+    }
+
+    /// Draws everything into the plane.
+    pub(crate) fn resolve(self: Box<Self>, plane: &mut Plane<f32>, scale: f32) {
+        let viewport = plane.viewport();
+        let tiles_x = viewport.tiles_x();
+        let layout = super::shade::Layout::default();
+        let states: Vec<Vec<(Arc<FragmentState>, [i32; 4])>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
+        let items: Vec<Item<'_>> = self
+            .jobs
+            .into_iter()
+            .zip(&states)
+            .map(|(job, draws)| Item::Job {
+                primitives: job.primitives,
+                draws: draws.iter().map(|(state, clip)| DrawContext::depth_alone(state, *clip, &layout)).collect(),
+            })
+            .collect();
+        let one = pattern(1);
+        for (index, tile) in plane.tiles.iter_mut().enumerate() {
+            *tile = PlaneTile::Cleared(self.clear);
+            let (x, y) = (index as u32 % tiles_x * TILE as u32, index as u32 / tiles_x * TILE as u32);
+            let planes = TilePlanes { color: None, depth: Some((tile, scale)), stencil: None, samples: 1 };
+            let mut run = TileRun::new(index, x, y, viewport, planes);
+            dispatch!(Level::new(), simd => run.walk(simd, &items, &one, &one));
+        }
+    }
+}
+
+impl PendingJob {
+    fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
+        let draw = self.primitives.facets[setup.facet as usize].draw;
+        let [x0, y0, x1, y1] = self.draws[draw as usize].1;
+        (x0..x1).contains(&x) && (y0..y1).contains(&y)
+    }
+}
+
+fn job(
+    primitives: Primitives,
+    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
+    sign: f32,
+    scale: f32,
+    tiles: usize,
+) -> PendingJob {
+    let of_setup: Vec<f32> = primitives
+        .batch
+        .setups()
+        .iter()
+        .map(|s| if sign > 0.0 { stored(s.z_max, scale) / scale } else { -stored(s.z_min, scale) / scale })
+        .collect();
+    let items = primitives.batch.items();
+    let bounds: Vec<f32> = items.iter().map(|&i| of_setup[i as usize]).collect();
+    let tile_bounds = (0..tiles)
+        .map(|t| bounds[primitives.batch.tile_range(t)].iter().copied().fold(f32::NEG_INFINITY, f32::max))
+        .collect();
+    PendingJob { primitives, draws, bounds, tile_bounds }
+}

@@ -106,16 +106,17 @@ fn textured(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], repeat: f32) {
     gl.glEnd();
 }
 
-/// A square with a different colour in each corner, in the plane z.
+/// A square with a different colour in each corner, in the plane z. The colours lie in a plane as well, so that it does not
+/// matter along which diagonal a library cuts.
 fn rainbow(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], z: f32) {
     gl.glBegin(QUADS);
     gl.glColor4f(1.0, 0.0, 0.0, 1.0);
     gl.glVertex3f(x0, y0, z);
-    gl.glColor4f(0.0, 1.0, 0.0, 0.75);
+    gl.glColor4f(1.0, 1.0, 0.0, 0.75);
     gl.glVertex3f(x1, y0, z);
-    gl.glColor4f(0.0, 0.0, 1.0, 0.5);
+    gl.glColor4f(0.0, 1.0, 1.0, 0.5);
     gl.glVertex3f(x1, y1, z);
-    gl.glColor4f(1.0, 1.0, 1.0, 0.25);
+    gl.glColor4f(0.0, 0.0, 1.0, 0.75);
     gl.glVertex3f(x0, y1, z);
     gl.glEnd();
 }

@@ -148,7 +148,7 @@ fn sphere(gl: &Gl, radius: f32, slices: usize, stacks: usize) {
 fn checks(size: usize, cell: usize) -> Vec<[u8; 4]> {
     let texel = |i: usize| {
         let (x, y) = (i % size, i / size);
-        let light = (x / cell + y / cell) % 2 == 0;
+        let light = (x / cell + y / cell).is_multiple_of(2);
         let red = (255 * x / (size - 1).max(1)) as u8;
         if light { [red, 255, 255, 255] } else { [red, 40, 80, 100] }
     };

@@ -29,7 +29,9 @@ pub(crate) fn levels(gl: &Gl, size: usize) {
     let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [0, 255, 255], [255, 0, 255], [255, 255, 255]];
     for (level, [r, g, b]) in colors.into_iter().enumerate().take_while(|(level, _)| size >> level > 0) {
         let side = size >> level;
-        let texel = |i: usize| if (i % side + i / side) % 2 == 0 { [r, g, b, 255] } else { [r / 2, g / 2, b / 2, 128] };
+        let texel = |i: usize| {
+            if (i % side + i / side).is_multiple_of(2) { [r, g, b, 255] } else { [r / 2, g / 2, b / 2, 128] }
+        };
         let texels: Vec<[u8; 4]> = (0..side * side).map(texel).collect();
         let side = side as i32;
         gl.glTexImage2D(TEXTURE_2D, level as i32, RGBA as i32, side, side, 0, RGBA, UNSIGNED_BYTE, at(&texels));

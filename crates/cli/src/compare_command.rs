@@ -48,10 +48,10 @@ pub(crate) fn threshold_byte(share: f64) -> u8 {
     (share * 255.0 + 1e-3).floor().clamp(0.0, 255.0) as u8
 }
 
-/// Reads a PNG or JPEG picture.
+/// Reads a picture in any format that is written.
 pub(crate) fn read(path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
     let bytes = vitral::read(path, MAX_FILE_BYTES)?;
-    let plane = vitral::io::image::decode(&bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?;
+    let plane = vitral::io::encode::decode_picture(&bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?;
     Ok(plane)
 }
 

@@ -15,14 +15,20 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Bytes that a decoder may take besides its output.
 const DECODER_MEMORY: usize = 64 << 20;
 
+/// Most pixels that a byte of a JPEG file can stand for: each block of 64 takes at least one bit of its first scan.
+const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
+
 /// Decodes a picture. `file` is its name, for messages.
 ///
 /// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
-    let unsupported = |what: &str| Error::Unsupported {
-        file: file.to_owned(),
-        what: format!("{what} is not read; PNG and JPEG are"),
-    };
+    decode_else(bytes, file, "PNG and JPEG are")
+}
+
+/// [`decode`]; `readable` is what the message about another format says in its place.
+pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Plane<[u8; 4]>, Error> {
+    let unsupported =
+        |what: &str| Error::Unsupported { file: file.to_owned(), what: format!("{what} is not read; {readable}") };
     match bytes {
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
@@ -89,6 +95,10 @@ fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes)).map_err(bad)?;
     let (width, height) = decoder.dimensions();
     check_size(width, height, file)?;
+    if u64::from(width) * u64::from(height) > JPEG_PIXELS_A_BYTE * bytes.len() as u64 {
+        let what = format!("JPEG: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
+        return Err(Error::malformed(file, Place::File, what));
+    }
     let rgba = image::DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
     plane(width, height, rgba_from_bytes(rgba), file)
 }
@@ -162,6 +172,17 @@ mod tests {
                 && check_size(16_385, 1, "x").is_err()
                 && check_size(0, 1, "x").is_err()
         );
+    }
+
+    #[test]
+    fn a_short_jpeg_is_no_large_picture() {
+        let picture = Plane::filled(16, 16, [9, 9, 9, 255]);
+        let mut bytes = crate::encode::jpeg(&picture, 90).unwrap();
+        assert!(decode(&bytes, "a.jpg").is_ok());
+        let frame = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
+        bytes[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
+        let error = decode(&bytes, "a.jpg").unwrap_err().to_string();
+        assert!(error.contains("16384 x 16384 pixels are announced"), "{error}");
     }
 
     #[test]

@@ -15,7 +15,7 @@
 //! the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
 //! turns `v` to `1 - v`, and so scale and offset along v become `s v + 1 - s - o`.
 //!
-//! Source: Wavefront's "MTL material format", version 4.2, 1995, as given in docs/bibliography.md.
+//! Source: \[MTL\].
 
 use crate::Place;
 use crate::text::{Cursor, to_utf8};

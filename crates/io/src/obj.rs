@@ -20,7 +20,7 @@
 //!
 //! In:   UTF-8 or UTF-16 text. Out: a scene in model space, right-handed, any orientation of axes.
 //! Cost: `O(bytes)`; the memory of the mesh twice, for a moment.
-//! Source: Wavefront's "Advanced Visualizer" manual, appendix B1; see docs/bibliography.md.
+//! Source: \[OBJ\].
 
 mod chunk;
 mod materials;

@@ -11,7 +11,7 @@
 //!
 //! In:   text. Out: one mesh in model space.
 //! Cost: `O(bytes)`; counts in the file allocate nothing.
-//! Source: Geomview manual, "OFF: Object File Format"; see docs/bibliography.md.
+//! Source: \[OFF\].
 
 use crate::text::{Cursor, to_utf8};
 use crate::warnings::Warnings;

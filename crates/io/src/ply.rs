@@ -16,7 +16,7 @@
 //!
 //! In:   bytes. Out: one mesh in model space.
 //! Cost: `O(bytes)`; counts in the header allocate nothing that the file could not hold.
-//! Source: Turk, "The PLY polygon file format", 1994; see docs/bibliography.md.
+//! Source: \[PLY\].
 
 mod ascii;
 mod binary;
@@ -188,6 +188,10 @@ impl Content {
         };
         let (element, layout) = (&header.elements[v], &layouts[v]);
         let place = Place::Line(element.line);
+        if let Some(again) = layouts.iter().skip(v + 1).position(|l| l.role == Role::Vertex) {
+            let place = Place::Line(header.elements[v + 1 + again].line);
+            return Err(Error::malformed(file, place, "a second element `vertex`, one is required"));
+        }
         if !layout.has_slots(slot::POSITION, 3) {
             return Err(Error::malformed(file, place, "`vertex` must have the properties `x`, `y` and `z`"));
         }

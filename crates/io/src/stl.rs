@@ -11,7 +11,7 @@
 //!
 //! In:   bytes. Out: one mesh in model space.
 //! Cost: `O(bytes)`, welding included; records are read where they lie.
-//! Source: 3D Systems, "Stereolithography interface specification", 1988; see docs/bibliography.md.
+//! Source: \[STL\].
 
 use crate::text::{Cursor, to_utf8};
 use crate::warnings::Warnings;

@@ -12,7 +12,8 @@
 //! Cost: `O(n)` for convex polygons; ear clipping takes `O(n * r)` ear tests of `O(r)` with `r` inward corners. Its work is
 //!       limited to a multiple of `n` plus a constant; what is left then becomes a fan (a polygon of 100 000 corners must
 //!       not stop the program).
-//! Source: Meisters 1975 (every simple polygon has two ears); Newell's normal after Sutherland, Sproull & Schumacker 1974.
+//! Source: [Meisters 1975] (every simple polygon has two ears); Newell's normal after
+//! [Sutherland, Sproull & Schumacker 1974].
 
 /// Cuts the polygon whose corners are `corners` (indices into `positions`, at least three) into triangles and appends
 /// them to `out`. The triangles' indices count the polygon's corners: `0` is `corners[0]`. Fewer than three corners

@@ -1,6 +1,6 @@
 //! URIs of buffers and images: `data:` URIs with base64 (RFC 2397, RFC 4648), and relative paths with percent escapes.
 //!
-//! Cost: linear in the length of the URI. Source: the RFCs named above, RFC 3986 for the escapes.
+//! Cost: linear in the length of the URI. Source: \[URI\]: the RFCs named above, RFC 3986 for the escapes.
 
 /// What a URI stands for.
 #[derive(Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@
 //! In:   a function that gives the three corners of each triangle. `-0` equals `0`; a NaN equals the same NaN.
 //! Out:  vertices, and triangles of indices to them.
 //! Cost: `O(n)`, or `O(n log n)` for positions made to collide in the hash; about 8 bytes of working memory a corner.
-//! Source: partitioned hash join, Shatdal, Kant & Naughton 1994.
+//! Source: partitioned hash join, [Shatdal, Kant & Naughton 1994].
 
 use vitral_exec::Workers;
 

@@ -477,7 +477,7 @@ fn samplers_and_texture_sets() {
     let text = r#"{"asset":{"version":"2.0"},"materials":[{
         "pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1},"metallicRoughnessTexture":{"index":0}},
         "normalTexture":{"index":0,"scale":0.5,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"texCoord":1}}},
-        "emissiveTexture":{"index":0,"texCoord":3},"occlusionTexture":{"index":0}}],
+        "emissiveTexture":{"index":0,"texCoord":3},"occlusionTexture":{"index":0,"strength":0.25}}],
         "textures":[{"source":0,"sampler":0}],"images":[{"uri":"a%20b.png"}],
         "samplers":[{"magFilter":9728,"minFilter":9985,"wrapS":33071,"wrapT":33648}]}"#;
     let scene = gltf::load(text.as_bytes(), "a.gltf", &Memory(files), &Workers::new(2)).unwrap();
@@ -487,6 +487,7 @@ fn samplers_and_texture_sets() {
         (m.base_texture.unwrap(), m.metallic_roughness_texture.unwrap(), m.normal_texture.unwrap());
     assert_eq!(scene.textures.len(), 2, "once as colour, once as data");
     assert_eq!((base.texture, base.uv_set, rough.texture, normal.texture), (0, 1, 1, 1));
+    assert_eq!((m.occlusion_texture.unwrap().texture, m.occlusion_strength), (1, 0.25));
     assert_eq!((m.normal_scale, normal.uv_set, normal.transform[0][2]), (0.5, 1, 0.5));
     use vitral_frame::{Encoding, Filter, MipFilter, Sampler, Wrap};
     let expected = Sampler {
@@ -498,7 +499,7 @@ fn samplers_and_texture_sets() {
     };
     assert_eq!(base.sampler, expected);
     assert_eq!([0, 1].map(|i| scene.textures[i].encoding), [Encoding::Srgb, Encoding::Linear]);
-    assert_eq!(scene.warnings.iter().filter(|w| w.contains("texCoord 3") || w.contains("occlusion")).count(), 2);
+    assert_eq!(scene.warnings.iter().filter(|w| w.contains("texCoord 3") || w.contains("occlusion")).count(), 1);
 }
 
 #[test]

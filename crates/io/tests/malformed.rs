@@ -4,10 +4,13 @@ mod common;
 
 use common::{Folder, files, models};
 use proptest::prelude::*;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use vitral_exec::Workers;
 use vitral_io::{Error, NoFiles, load};
-use vitral_scene::{Scene, World};
+use vitral_scene::Scene;
+use vitral_testkit::fixture::repository;
+use vitral_testkit::fuzz::{self, Beside, Target, assert_sound};
 
 /// What the table in the models' README demands of a file.
 enum Expected {
@@ -41,24 +44,13 @@ const TABLE: &[(&str, Expected)] = &[
     ("gltf/issue_3269/", Sound),
 ];
 
-fn is_sound(scene: &Scene) {
-    for mesh in &scene.meshes {
-        mesh.check().unwrap();
-    }
-    let textures = scene.textures.len() as u32;
-    for material in scene.materials.clone().iter_mut() {
-        assert!(material.textures_mut().all(|t| t.texture < textures));
-    }
-    World::new(scene).unwrap();
-}
-
 fn holds_all(text: &str, pieces: &[&str]) -> bool {
     pieces.iter().all(|piece| text.contains(piece))
 }
 
 fn check(name: &str, result: Result<Scene, Error>, expected: &Expected) {
     if let Ok(scene) = &result {
-        is_sound(scene);
+        assert_sound(scene);
     }
     match (expected, result) {
         (Refused(pieces), Err(e)) => {
@@ -148,44 +140,64 @@ fn claimed_counts_allocate_nothing() {
     }
 }
 
-/// Small valid files of every text and binary format, to be damaged.
-fn seeds() -> Vec<(&'static str, Vec<u8>)> {
-    let obj = "mtllib a.mtl\no x\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\ns 1\nusemtl m\nf 1/1/1 2/2/1 3//1 -1\nl 1 2\np 3\n";
-    let off = "COFF\n4 2 0\n0 0 0 255 0 0\n1 0 0 0 255 0\n1 1 0 0 0 255\n0 1 0 0 0 0\n4 0 1 2 3\n3 0 1 2\n";
-    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
-    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n";
-    let mut binary_stl = vec![b' '; 80];
-    binary_stl.extend(2u32.to_le_bytes());
-    for _ in 0..2 {
-        binary_stl.extend(
-            [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|f| f.to_le_bytes()),
-        );
-        binary_stl.extend([0; 2]);
-    }
-    let mut binary_ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n".as_bytes().to_vec();
-    binary_ply.extend([0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|f| f.to_le_bytes()));
-    for _ in 0..2 {
-        binary_ply.push(3);
-        binary_ply.extend([0u32, 1, 2].iter().flat_map(|i| i.to_le_bytes()));
-    }
-    let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
-    vec![
-        ("s.obj", obj.into()),
-        ("s.off", off.into()),
-        ("s.stl", stl.into()),
-        ("b.stl", binary_stl),
-        ("s.ply", ply.into()),
-        ("b.ply", binary_ply),
-        ("s.gltf", gltf.into()),
-    ]
+/// Valid files of the fuzzer's corpus, to be damaged: the target and the file.
+const SEEDS: [(&str, &str); 11] = [
+    ("gltf", "triangle.gltf"),
+    ("gltf", "scene.glb"),
+    ("obj", "square.obj"),
+    ("off", "square.off"),
+    ("ply", "ascii.ply"),
+    ("ply", "little.ply"),
+    ("scene_json", "scene.json"),
+    ("stl", "ascii.stl"),
+    ("stl", "binary.stl"),
+    ("image", "palette.png"),
+    ("mtl", "materials.mtl"),
+];
+/// How many of them are models.
+const MODELS: usize = 9;
+
+fn seed(index: usize) -> (Target, PathBuf, Vec<u8>) {
+    let (name, file) = SEEDS[index];
+    let path = repository().join("fuzz/corpus").join(name).join(file);
+    let bytes = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    (fuzz::target(name), path, bytes)
 }
 
 #[test]
 fn the_seeds_are_valid() {
-    for (name, bytes) in seeds() {
-        let scene = load(&bytes, name, &NoFiles, &Workers::single()).unwrap_or_else(|e| panic!("{e}"));
-        is_sound(&scene);
-        assert!(!scene.meshes[0].triangles.is_empty(), "{name}");
+    for index in 0..MODELS {
+        let (_, path, bytes) = seed(index);
+        let scene = load(&bytes, &path.to_string_lossy(), &Beside { library: b"newmtl m" }, &Workers::single())
+            .unwrap_or_else(|e| panic!("{e}"));
+        assert_sound(&scene);
+        assert!(!scene.meshes[0].triangles.is_empty(), "{}", path.display());
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+}
+
+/// Every fuzz target, over every file that its fuzzer starts from.
+#[test]
+fn the_fuzzers_corpus_is_read_without_a_panic() {
+    for target in fuzz::TARGETS {
+        let corpus = target.corpus();
+        assert!(corpus.len() >= 2, "{} has no corpus", target.name);
+        for file in corpus {
+            println!("{}", file.display());
+            (target.run)(&std::fs::read(&file).unwrap());
+        }
+    }
+}
+
+/// The fuzz crate is no member of the workspace, so nothing else would miss a target there.
+#[test]
+fn the_fuzz_crate_has_every_target() {
+    let manifest = std::fs::read_to_string(repository().join("fuzz/Cargo.toml")).unwrap();
+    assert_eq!(manifest.matches("[[bin]]").count(), fuzz::TARGETS.len());
+    for Target { name, .. } in fuzz::TARGETS {
+        assert!(manifest.contains(&format!("name = \"{name}\"\npath = \"fuzz_targets/{name}.rs\"")), "{name}");
+        let source = std::fs::read_to_string(repository().join(format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
+        assert!(source.contains(&format!("vitral_testkit::fuzz::{name}(bytes)")), "{name}");
     }
 }
 
@@ -193,30 +205,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300), format in 0usize..7) {
-        let (name, _) = seeds()[format];
-        type Loader = fn(&[u8], &str) -> Result<Scene, Error>;
-        let loaders: [Loader; 6] = [
-            |b, n| load(b, n, &NoFiles, &Workers::single()),
-            |b, n| vitral_io::obj::load(b, n, &NoFiles, &Workers::single()),
-            |b, n| vitral_io::stl::load(b, n, &Workers::single()),
-            |b, n| vitral_io::ply::load(b, n, &Workers::single()),
-            |b, n| vitral_io::off::load(b, n, &Workers::single()),
-            |b, n| vitral_io::gltf::load(b, n, &NoFiles, &Workers::single()),
-        ];
-        for loader in loaders {
-            if let Ok(scene) = loader(&bytes, name) {
-                is_sound(&scene);
-            }
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300), format in 0..MODELS) {
+        let (_, path, _) = seed(format);
+        if let Ok(scene) = load(&bytes, &path.to_string_lossy(), &NoFiles, &Workers::single()) {
+            assert_sound(&scene);
+        }
+        for target in fuzz::TARGETS {
+            (target.run)(&bytes);
         }
     }
 
     #[test]
     fn damaged_files_never_panic(
-        format in 0usize..7,
+        format in 0..SEEDS.len(),
         edits in proptest::collection::vec((any::<prop::sample::Index>(), 0u8..5, any::<u8>()), 1..6),
     ) {
-        let (name, mut bytes) = seeds().swap_remove(format);
+        let (target, path, mut bytes) = seed(format);
         for (index, kind, value) in edits {
             let at = index.index(bytes.len());
             match kind {
@@ -232,8 +236,9 @@ proptest! {
                 }
             }
         }
-        if let Ok(scene) = load(&bytes, name, &NoFiles, &Workers::single()) {
-            is_sound(&scene);
+        (target.run)(&bytes);
+        if let Ok(scene) = load(&bytes, &path.to_string_lossy(), &NoFiles, &Workers::single()) {
+            assert_sound(&scene);
         }
     }
 }

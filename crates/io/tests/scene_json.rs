@@ -91,6 +91,8 @@ fn full_materials() -> Vec<Material> {
         emission_texture: Some(TextureRef::new(0)),
         opacity_texture: Some(reference),
         metallic_roughness_texture: Some(reference),
+        occlusion_texture: Some(reference),
+        occlusion_strength: 0.6,
         normal_texture: Some(reference),
         normal_scale: 0.9,
     };
@@ -350,4 +352,27 @@ proptest! {
         scene.nodes[0].transform = NodeTransform::Parts { translation: DVec3::splat(x), rotation: DQuat::IDENTITY, scale: DVec3::ONE };
         assert_equal(&scene, &load(&scene_json::write(&scene).unwrap()).unwrap());
     }
+}
+
+/// What docs/scene-format.md shows can be copied.
+#[test]
+fn the_examples_of_the_documentation_are_read() {
+    let text = std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md")).unwrap();
+    let examples: Vec<&str> = text.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(examples.len(), 2);
+    for example in examples {
+        let beside = vitral_testkit::fuzz::Beside::default();
+        let scene = scene_json::load(example.as_bytes(), "a.json", &beside, &Workers::single());
+        let scene = scene.unwrap_or_else(|e| panic!("{e}\n{example}"));
+        assert!(scene.warnings.is_empty() && !scene.meshes.is_empty(), "{:?}", scene.warnings);
+    }
+}
+
+/// Every key is written with hyphens, as the documentation says.
+#[test]
+fn keys_have_hyphens() {
+    let text = scene_json::write(&full_scene()).unwrap();
+    let keys = text.split('"').skip(1).step_by(2);
+    let wrong: Vec<&str> = keys.filter(|key| key.contains('_') && !key.starts_with("data:")).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
 }

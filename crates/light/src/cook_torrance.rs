@@ -44,6 +44,8 @@ pub struct Microfacet<T> {
     pub metallic: T,
     /// 0: mirror, 1: rough; clamped. Its square is the RMS slope `m` of the facets.
     pub roughness: T,
+    /// How much of the ambient light arrives, `0..=1`.
+    pub occlusion: T,
 }
 
 /// What a point reflects by the physical model. `visibility` as in [`crate::phong`].
@@ -68,10 +70,11 @@ pub fn cook_torrance<T: Lanes>(
     let albedo = m.base_color.scale(inside);
     let facets = Facets::new(m.roughness);
 
-    let mut sum = Reflected { diffuse: tint(m.base_color, global_ambient), specular: V3::new(zero, zero, zero) };
+    let ambient = m.base_color.scale(m.occlusion);
+    let mut sum = Reflected { diffuse: tint(ambient, global_ambient), specular: V3::new(zero, zero, zero) };
     for (j, light) in lights.iter().enumerate() {
         let incident = light.incident(s.position);
-        sum.diffuse = sum.diffuse + tint(m.base_color, light.ambient).scale(incident.ambient_intensity);
+        sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
         let n_l = s.n.dot(incident.l).saturate();
         let arriving = incident.intensity * visibility(j);
         let entering = n_l * (-schlick(zero.splat(DIELECTRIC_F0), n_l) + 1.0);
@@ -160,7 +163,7 @@ mod tests {
             n: V3::new(0.0, 0.0, 1.0),
             v: V3::splat(0.0, v.as_vec3().to_array()),
         };
-        let m = Microfacet { base_color: V3::splat(0.0, [base; 3]), metallic, roughness };
+        let m = Microfacet { base_color: V3::splat(0.0, [base; 3]), metallic, roughness, occlusion: 1.0 };
         cook_torrance(&[sun(l)], [0.0; 3], &s, &m, |_| 1.0)
     }
 
@@ -178,7 +181,7 @@ mod tests {
     fn ambient_light_shows_metals_too() {
         let z = V3::new(0.0f32, 0.0, 1.0);
         let s = Surface { position: z, n: z, v: z };
-        let m = Microfacet { base_color: V3::new(1.0f32, 0.5, 0.25), metallic: 1.0, roughness: 0.3 };
+        let m = Microfacet { base_color: V3::new(1.0f32, 0.5, 0.25), metallic: 1.0, roughness: 0.3, occlusion: 1.0 };
         let r = cook_torrance(&[], [0.5; 3], &s, &m, |_| 1.0);
         assert_eq!((r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x), (0.5, 0.25, 0.125, 0.0));
     }

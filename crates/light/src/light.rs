@@ -45,7 +45,7 @@ impl Default for Light {
 
 /// Where a light's rays come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "type", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum LightKind {
     /// From everywhere, without direction.
     Ambient,
@@ -82,7 +82,7 @@ pub enum LightKind {
 
 /// Outline of an area light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "shape", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum AreaShape {
     /// A disc.
     Disc {
@@ -102,7 +102,7 @@ pub enum AreaShape {
 
 /// Loss of intensity over the distance `d` from a point, spot or area light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "form", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Attenuation {
     /// No loss.
     #[default]

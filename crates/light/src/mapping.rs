@@ -34,7 +34,7 @@ pub fn phong_from_microfacet<T: Lanes>(m: &Microfacet<T>) -> Phong<T> {
     let brightest = f0.x.max(f0.y).max(f0.z).max(one.splat(1e-6));
     let height = (inverse_square * 0.25).min(one / brightest);
     let shininess = ((inverse_square * 2.0 - 2.0) * 0.25).max(one).min(one.splat(MOST_SHININESS));
-    Phong { ka: m.base_color, kd: m.base_color.scale(dielectric), ks: f0.scale(height), shininess }
+    Phong { ka: m.base_color.scale(m.occlusion), kd: m.base_color.scale(dielectric), ks: f0.scale(height), shininess }
 }
 
 /// Metallic-roughness coefficients for a Phong material:
@@ -57,7 +57,7 @@ pub fn microfacet_from_phong<T: Lanes>(k: &Phong<T>) -> Microfacet<T> {
     let low = (-metallic + 1.0) * (DIELECTRIC_F0 * 0.25) / greatest.max(tiny);
     let square = wide.max(low).min(one);
     let base_color = k.kd.scale(-metallic + 1.0) + k.ks.scale(metallic);
-    Microfacet { base_color, metallic, roughness: square.sqrt().sqrt() }
+    Microfacet { base_color, metallic, roughness: square.sqrt().sqrt(), occlusion: one }
 }
 
 #[cfg(test)]
@@ -71,17 +71,20 @@ mod tests {
 
     #[test]
     fn p29_microfacets_become_a_highlight_of_the_same_width_and_height() {
-        let k = phong_from_microfacet(&Microfacet { base_color: grey(0.5), metallic: 0.0, roughness: 0.5 });
+        let k =
+            phong_from_microfacet(&Microfacet { base_color: grey(0.5), metallic: 0.0, roughness: 0.5, occlusion: 1.0 });
         // m = 1/4: n = (32 - 2)/4, ks = 0.04 * 4.
         assert_eq!(k.shininess, 7.5);
         assert!((k.ks.x - 0.16).abs() < 1e-6 && k.kd.x == 0.5 && k.ka.x == 0.5);
 
-        let gold = Microfacet { base_color: V3::new(1.0f32, 0.75, 0.25), metallic: 1.0, roughness: 0.3 };
+        let gold =
+            Microfacet { base_color: V3::new(1.0f32, 0.75, 0.25), metallic: 1.0, roughness: 0.3, occlusion: 1.0 };
         let k = phong_from_microfacet(&gold);
         assert_eq!((k.kd.x, k.ks.x, k.ks.y, k.ks.z), (0.0, 1.0, 0.75, 0.25), "limited to 1, the hue kept");
         let mirror = phong_from_microfacet(&Microfacet { roughness: 0.0, ..gold });
         assert_eq!(mirror.shininess, 1000.0);
-        let black = phong_from_microfacet(&Microfacet { base_color: grey(0.0), metallic: 1.0, roughness: 0.3 });
+        let black =
+            phong_from_microfacet(&Microfacet { base_color: grey(0.0), metallic: 1.0, roughness: 0.3, occlusion: 1.0 });
         assert_eq!((black.ks.x, black.kd.x), (0.0, 0.0));
     }
 
@@ -101,7 +104,7 @@ mod tests {
     #[test]
     fn a_dielectric_comes_home() {
         for roughness in [0.35f32, 0.5, 0.7, 0.8] {
-            let m = Microfacet { base_color: V3::new(0.2f32, 0.4, 0.6), metallic: 0.0, roughness };
+            let m = Microfacet { base_color: V3::new(0.2f32, 0.4, 0.6), metallic: 0.0, roughness, occlusion: 1.0 };
             let back = microfacet_from_phong(&phong_from_microfacet(&m));
             assert!((back.roughness - roughness).abs() < 0.01, "{roughness} became {}", back.roughness);
             assert_eq!((back.metallic, back.base_color.y), (0.0, 0.4));

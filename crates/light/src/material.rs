@@ -36,6 +36,10 @@ pub struct Material {
     pub opacity_texture: Option<TextureRef>,
     /// Green multiplies roughness, blue multiplies metallic (glTF).
     pub metallic_roughness_texture: Option<TextureRef>,
+    /// Its red channel says how much of the ambient light arrives (glTF).
+    pub occlusion_texture: Option<TextureRef>,
+    /// How much the occlusion texture counts, 0 to 1.
+    pub occlusion_strength: f32,
     /// Normals in tangent space, `0..=255` for `-1..=1`.
     pub normal_texture: Option<TextureRef>,
     /// Scales x and y of the normal texture.
@@ -59,6 +63,8 @@ impl Default for Material {
             emission_texture: None,
             opacity_texture: None,
             metallic_roughness_texture: None,
+            occlusion_texture: None,
+            occlusion_strength: 1.0,
             normal_texture: None,
             normal_scale: 1.0,
         }
@@ -67,7 +73,7 @@ impl Default for Material {
 
 /// Reflection coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "form", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Reflectance {
     /// The empirical model's: ambient, diffuse and specular coefficients and the exponent `n`.
     Phong {
@@ -99,7 +105,7 @@ impl Default for Reflectance {
 
 /// How opacity is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "mode", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "mode", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum AlphaMode {
     /// Not at all: the surface is opaque.
     #[default]
@@ -163,18 +169,22 @@ impl Material {
 }
 
 impl Material {
-    /// Every texture that the material uses, to change.
-    pub fn textures_mut(&mut self) -> impl Iterator<Item = &mut TextureRef> {
+    /// Every place for a texture, to change.
+    pub fn texture_slots_mut(&mut self) -> [&mut Option<TextureRef>; 7] {
         [
             &mut self.base_texture,
             &mut self.specular_texture,
             &mut self.emission_texture,
             &mut self.opacity_texture,
             &mut self.metallic_roughness_texture,
+            &mut self.occlusion_texture,
             &mut self.normal_texture,
         ]
-        .into_iter()
-        .filter_map(Option::as_mut)
+    }
+
+    /// Every texture that the material uses, to change.
+    pub fn textures_mut(&mut self) -> impl Iterator<Item = &mut TextureRef> {
+        self.texture_slots_mut().into_iter().filter_map(Option::as_mut)
     }
 }
 

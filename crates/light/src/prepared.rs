@@ -3,7 +3,7 @@
 //! In:   a [`Light`] in world space, and the transform to the space in which surfaces are illuminated.
 //! Out:  for a point, the unit direction towards the light and how much of the light arrives there.
 //! Cost: one square root and two divisions a point; a spot with an exponent adds a power.
-//! Source: course notes, part P (light types, attenuation); OpenGL 2.1 specification, section 2.14 (spot exponent, GL attenuation);
+//! Source: course notes, part P (light types, attenuation); [OpenGL 2.1], section 2.14 (spot exponent, GL attenuation);
 //!         KHR_lights_punctual (smooth edge of a spot, range).
 //! Departs from them: an area light counts as one sample at its centroid, weighted with the cosine of emission (its
 //! surface shines like a Lambert surface, and not to the back).

@@ -144,7 +144,7 @@ fn p35_a_highlight_has_the_colour_of_the_light_except_on_metals() {
     // A red apple, polished: the highlight outshines the red.
     let base_color = V3::new(0.8f32, 0.05, 0.05);
     let shown = |metallic: f32, lamp: &Light| {
-        let m = Microfacet { base_color, metallic, roughness: 0.2 };
+        let m = Microfacet { base_color, metallic, roughness: 0.2, occlusion: 1.0 };
         let r = cook_torrance(&prepared(std::slice::from_ref(lamp)), [0.0; 3], &point(DVec3::Z), &m, |_| 1.0);
         (rgb(r.specular), rgb(r.diffuse + r.specular))
     };
@@ -331,7 +331,7 @@ proptest! {
         let s = Surface { position, n, v };
         let [metallic, roughness, shininess] = scalars;
         let k = Phong { ks: V3::splat(0.0, ks), ..material(0.3, 0.5, 0.0, shininess) };
-        let m = Microfacet { base_color: k.ks, metallic, roughness };
+        let m = Microfacet { base_color: k.ks, metallic, roughness, occlusion: 1.0 };
         let mut results = vec![];
         for model in Illumination::ALL {
             results.push(phong(model, &lights, [0.1; 3], &s, &k, |_| 1.0));

@@ -61,7 +61,7 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
     };
     let color = V3::new(r.abs(), g.abs(), b.abs());
     let k = Phong { ka: color, kd: color, ks: V3::new(b.abs(), r.abs(), a.abs()), shininess: (e + 1.0) * 60.0 };
-    let m = Microfacet { base_color: color, metallic: a.abs(), roughness: e.abs() };
+    let m = Microfacet { base_color: color, metallic: a.abs(), roughness: e.abs(), occlusion: b.abs() };
     let mut put = |r: Reflected<T>| {
         for channel in [r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x, r.specular.y, r.specular.z] {
             out(channel);

@@ -7,7 +7,7 @@
 //! In:   points in any space.
 //! Out:  a sphere that holds them all, usually within 5 % of the smallest.
 //! Cost: `O(n)`, five passes.
-//! Source: Ritter 1990, "An efficient bounding sphere" (Graphics Gems).
+//! Source: [Ritter 1990].
 
 use crate::{Aabb, Sphere};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! The sRGB encoding (IEC 61966-2-1), one value at a time. Whole rows are encoded lane-wise in [`crate::lanes`].
+//! The sRGB encoding (\[sRGB\]), one value at a time. Whole rows are encoded lane-wise in [`crate::lanes`].
 
 use crate::func::pow32;
 

@@ -1,6 +1,6 @@
 //! The view volume as six planes in any space, to reject boxes and spheres before anything else is done with them.
 //!
-//! Source: the rows of the clip matrix are the planes (Gribb & Hartmann 2001). The volume is
+//! Source: the rows of the clip matrix are the planes [Gribb & Hartmann 2001]. The volume is
 //! `-w <= x, y <= w`, `0 <= z <= w`.
 
 use crate::bounds::{Aabb, Sphere};

@@ -7,7 +7,8 @@
 //! In:   points in any space.
 //! Out:  centre, three perpendicular directions and half lengths; every point is inside.
 //! Cost: `O(n)`, three passes over the points.
-//! Source: Gottschalk, Lin & Manocha 1996; the eigenvectors by Jacobi's rotations (Golub & Van Loan, section 8.5).
+//! Source: [Gottschalk, Lin & Manocha 1996]; the eigenvectors by Jacobi's rotations,
+//! [Golub & Van Loan 1996], section 8.4.
 //! Departs from it: covariance of the points themselves, not of their convex hull.
 
 use glam::{DMat3, DVec3};

@@ -90,7 +90,8 @@ fn render_color(
     drop(constants);
     drop(view);
     session.grid = Some(grid);
-    stats.geometry = resolved?;
+    let resolved = resolved?;
+    stats.geometry = resolved.geometry;
 
     // Put the tiles together.
     let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
@@ -98,7 +99,8 @@ fn render_color(
     let t4 = clock();
     stats.seconds.prepare = t1 - t0;
     stats.seconds.marks = t2 - t1;
-    stats.seconds.tiles = t3 - t2;
+    stats.seconds.geometry = resolved.geometry_seconds;
+    stats.seconds.tiles = t3 - t2 - resolved.geometry_seconds;
     stats.seconds.assemble = t4 - t3;
     Ok(())
 }
@@ -121,7 +123,7 @@ fn render_data(
     let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
-    stats.geometry = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
+    stats.geometry = algorithm.resolve(&view, None, &mut grid, execution, &sink)?.geometry;
     let (tiles, workers) = (&sink.tiles, &execution.workers);
     let (w, h) = (viewport.width, viewport.height);
     let wanted = settings.channels;

@@ -160,7 +160,7 @@ pub enum Lines {
 
 /// Behind everything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "type", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Background {
     /// Alpha 0.
     Transparent,

@@ -98,7 +98,8 @@ impl PictureCounters {
     }
 }
 
-/// Seconds a stage. Rasterising and shading share the tiles, so they count as one.
+/// Seconds a stage of the colour picture; the passes for data channels count in the total alone. Rasterising and shading
+/// share the tiles, so they count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct StageSeconds {

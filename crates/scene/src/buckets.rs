@@ -8,7 +8,7 @@
 //! In:   a source that visits the records of a range of items, with the bucket of each.
 //! Out:  for each bucket, its records in input order.
 //! Cost: two readings of the input and one writing, `O(records + runs * buckets)`.
-//! Source: Knuth, The Art of Computer Programming 3, 5.2 (distribution counting) and 5.2.5 (radix sorting).
+//! Source: [Knuth 1998], sections 5.2 (distribution counting) and 5.2.5 (radix sorting).
 
 use std::ops::Range;
 use vitral_exec::Workers;

@@ -27,7 +27,7 @@ pub struct Camera {
 
 /// Perspective or parallel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "type", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Projection {
     /// Projectors through the position.
     Perspective {

@@ -8,7 +8,7 @@
 //! Out:  normals, and for each corner of a face which one it takes.
 //! Cost: `O(k²)` at a vertex with `k` faces. From 257 faces on (the tip of a fine cone), faces are first gathered by
 //!       direction into cells about 6° wide, and the cells are compared: at most 1536² pairs, whatever the mesh.
-//! Source: the crease angle is VRML's (ISO/IEC 14772-1); smoothing groups are those of Wavefront OBJ.
+//! Source: the crease angle is that of \[VRML97\]; smoothing groups are those of \[OBJ\].
 
 use crate::normals::{DEFAULT_NORMAL, FaceData, face_corner_list, unit};
 use crate::weld::Weld;

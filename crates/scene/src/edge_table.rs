@@ -7,7 +7,7 @@
 //! In:   outlines of faces over welded vertices.
 //! Out:  one call for each edge, with its uses; within one bucket in order of (lower, higher vertex).
 //! Cost: `O(sides)` for meshes of bounded valence; never worse than `O(sides log sides)`.
-//! Source: the winged-edge literature builds its tables so (Baumgart 1975); the sort is distribution counting.
+//! Source: the winged-edge literature builds its tables so [Baumgart 1975]; the sort is distribution counting.
 
 use crate::buckets::{Buckets, Source, shift_and_count};
 use crate::{Faces, Mesh};

@@ -7,7 +7,7 @@
 //! In:   a mesh, model space; equal positions are welded first.
 //! Out:  each edge once, in order of its vertices.
 //! Cost: `O(corners)` expected.
-//! Source: the table is `edge_table`; the classes are those of Bénard & Hertzmann 2019, section 2.
+//! Source: the table is `edge_table`; the classes are those of [Bénard & Hertzmann 2019], section 2.
 
 use crate::Mesh;
 use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge};

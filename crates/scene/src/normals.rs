@@ -10,8 +10,8 @@
 //! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
 //! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
 //! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see `corner_fans`).
-//! Source: Gouraud 1971 (the average); Thürmer & Wüthrich 1998 (the angle as weight); Newell's normal after
-//! Sutherland, Sproull & Schumacker 1974; arc tangent: Abramowitz & Stegun 4.4.49.
+//! Source: [Gouraud 1971] (the average); [Thürmer & Wüthrich 1998] (the angle as weight); Newell's normal after
+//! [Sutherland, Sproull & Schumacker 1974]; arc tangent: [Abramowitz & Stegun 1964], 4.4.49.
 //!
 //! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial normal. Where the
 //! faces of a vertex cancel each other (two sheets back to back, smoothed together), it gets its first face's normal.

@@ -8,8 +8,8 @@
 //! In:   a mesh, model space. Faces with more than three corners count as triangulated.
 //! Out:  [`Topology`] for the reader of `vitral info`, [`Solidity`] for back-face culling.
 //! Cost: `O(triangles)` expected; about 50 ms for a million triangles on two cores.
-//! Source: Mäntylä 1988 (manifolds, Euler's formula); Mirtich 1996 and others for the volume as a sum of signed
-//! tetrahedra; union-find after Tarjan 1975.
+//! Source: [Mäntylä 1988] (manifolds, Euler's formula); [Mirtich 1996] and others for the volume as a sum of signed
+//! tetrahedra; union-find after [Tarjan 1975].
 
 use crate::edge_table::{MAX_FACES, Outlines, for_each_edge};
 use crate::weld::Weld;

@@ -8,7 +8,7 @@
 //! Out:  for each vertex the first vertex with the same position.
 //! Cost: expected `O(n)`: dealt into buckets by a hash, then one open-addressing table a bucket, small enough for the
 //!       cache.
-//! Source: Knuth, The Art of Computer Programming 3, 6.4 (linear probing).
+//! Source: [Knuth 1998], section 6.4 (linear probing).
 
 use crate::buckets::{Buckets, Source, shift_and_count};
 use std::ops::Range;

@@ -32,17 +32,27 @@ fn find(path: &str) -> Option<PathBuf> {
 /// All files of the shared corpus below `folder` whose extension (in lower case) is in `extensions`, sorted by path.
 /// Empty, with a skip line, if the folder is absent.
 pub fn shared_models(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = shared_files(folder);
+    found.retain(|path| {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        extension.is_some_and(|e| extensions.contains(&e.as_str()))
+    });
+    found
+}
+
+/// All files of the shared corpus below `folder`, sorted by path. Empty, with a skip line, if the folder is absent.
+pub fn shared_files(folder: &str) -> Vec<PathBuf> {
+    shared_model(folder).map(|folder| files_below(&folder)).unwrap_or_default()
+}
+
+/// All files below `folder`, sorted by path.
+pub fn files_below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
-    let mut folders: Vec<_> = shared_model(folder).into_iter().collect();
+    let mut folders = vec![folder.to_path_buf()];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
             let path = entry.path();
-            let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-            if path.is_dir() {
-                folders.push(path);
-            } else if extension.is_some_and(|e| extensions.contains(&e.as_str())) {
-                found.push(path);
-            }
+            if path.is_dir() { folders.push(path) } else { found.push(path) }
         }
     }
     found.sort();

@@ -1,8 +1,9 @@
-//! Beside the house: what tests share. [`golden`] images, the [`matrix`] of SIMD levels and thread counts, and
-//! [`fixture`] files. Nothing in the house depends on this crate except its tests.
+//! Beside the house: what tests share. [`golden`] images, the [`matrix`] of SIMD levels and thread counts, [`fixture`]
+//! files, and what the [`fuzz`] targets call. Nothing in the house depends on this crate except its tests.
 #![forbid(unsafe_code)]
 
 pub mod fixture;
+pub mod fuzz;
 pub mod golden;
 pub mod matrix;
 mod page;

@@ -54,7 +54,7 @@ enum Failure {
 }
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 18] = [
+const PROPERTIES: [(&str, &str, Setter); 19] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -71,6 +71,9 @@ const PROPERTIES: [(&str, &str, Setter); 18] = [
     ("ior", "index of refraction, 1 or more", set_ior),
     ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
+    ("occlusion-strength", "how much the occlusion texture counts, 0 to 1", |m, v| {
+        put(&mut m.occlusion_strength, unit(v))
+    }),
     ("normal-scale", "strength of the normal texture", |m, v| put(&mut m.normal_scale, number(v))),
     ("textures", "false drops them", set_textures),
 ];
@@ -258,8 +261,7 @@ fn set_textures(material: &mut Material, value: &str) -> Result<(), Failure> {
     if boolean(value)? {
         return Err(Failure::Value("false"));
     }
-    let bare = Material { base_texture: None, specular_texture: None, emission_texture: None, ..material.clone() };
-    *material = Material { opacity_texture: None, metallic_roughness_texture: None, normal_texture: None, ..bare };
+    material.texture_slots_mut().into_iter().for_each(|slot| *slot = None);
     Ok(())
 }
 

@@ -7,7 +7,7 @@
 //! In:   texture coordinates (origin at the top left, one texture wide), `lod`, and a table that makes colour bytes linear.
 //! Out:  RGBA with straight alpha. Texels are mixed in straight form, after decoding, as OpenGL and glTF define it.
 //! Cost: one texel (nearest), four (bilinear) or eight (trilinear), read one by one.
-//! Source: \[Williams 1983\] for trilinear lookup; OpenGL 2.1 specification, section 3.8, for wrap modes and texel centres.
+//! Source: \[Williams 1983\] for trilinear lookup; [OpenGL 2.1], section 3.8, for wrap modes and texel centres.
 //! Departs from it: magnification begins at `lod <= 0` whatever the filters are.
 
 use super::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap};

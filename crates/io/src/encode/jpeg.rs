@@ -1,6 +1,6 @@
 //! JPEG out: 8-bit RGB, baseline.
 //!
-//! Source: ITU-T T.81; the coder is the `image` crate's.
+//! Source: \[JPEG\]; the coder is the `image` crate's.
 
 use super::{check_sides, over_white};
 use crate::Error;

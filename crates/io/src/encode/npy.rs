@@ -1,6 +1,6 @@
 //! NPY out: arrays for numpy, version 1.0, little-endian, C order, shape `(height, width)` or `(height, width, 3)`.
 //!
-//! Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays".
+//! Source: \[NPY\].
 
 use vitral_frame::Plane;
 

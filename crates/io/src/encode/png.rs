@@ -5,7 +5,7 @@
 //! rows between threads needs another deflate coder (4.5 ms and more at the same size), so it would not pay on two
 //! cores.
 //!
-//! Source: W3C, Portable Network Graphics, third edition.
+//! Source: \[PNG\].
 
 use super::check_sides;
 use crate::Error;

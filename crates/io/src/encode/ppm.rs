@@ -3,7 +3,7 @@
 //! A header of words (format, width, height, largest value), one white space, then the samples row by row, one byte
 //! each or two (the high one first) where the largest value is above 255.
 //!
-//! Source: the Netpbm manual, ppm(5) and pgm(5).
+//! Source: \[PPM\].
 
 use super::{check_sides, over_white};
 use crate::image::check_size;

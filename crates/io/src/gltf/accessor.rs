@@ -6,7 +6,7 @@
 //! In:   an accessor's index and the range of elements that is wanted. Out: the elements as `f32` or `u32`.
 //! Cost: linear in the range. Memory: at most 4 bytes for each component that the file holds; an accessor without
 //! bytes may claim no more elements than the buffers have bytes (or 65536).
-//! Source: glTF 2.0 specification, section 3.6.2.
+//! Source: [glTF 2.0], section 3.6.2.
 
 use super::buffers::Buffers;
 use crate::{Error, Place};

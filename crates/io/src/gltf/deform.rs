@@ -3,7 +3,7 @@
 //! Morphing adds weighted displacements. Skinning moves each vertex by the weighted mean of its joints' matrices
 //! `world_from_joint * joint_from_mesh`, so that the result is in world space and the node's own place is not used.
 //!
-//! Cost: vertices times targets, vertices times influences. Source: glTF 2.0 specification, sections 3.7.2.2 and 3.7.3.
+//! Cost: vertices times targets, vertices times influences. Source: [glTF 2.0], sections 3.7.2.2 and 3.7.3.
 //! Departs from it: weights are scaled to a sum of 1; a vertex without weights stays where it is.
 
 use super::accessor::{Integers, Source};

@@ -6,7 +6,7 @@
 //! left out. Afterwards every index in the document points at something.
 //!
 //! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
-//! Cost: linear. Source: glTF 2.0 specification, Khronos 2021, sections 3 and 4.
+//! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
 
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};

@@ -1,6 +1,6 @@
 //! Topology: what a primitive's mode makes of a list of vertices, and which vertices it needs.
 //!
-//! Cost: linear in the number of indices. Source: glTF 2.0 specification, section 3.7.2.
+//! Cost: linear in the number of indices. Source: [glTF 2.0], section 3.7.2.
 
 use super::accessor::Source;
 use crate::Error;

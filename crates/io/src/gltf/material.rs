@@ -1,7 +1,7 @@
 //! Materials: metallic-roughness with the extensions that change what is seen.
 //!
-//! Source: glTF 2.0 specification, section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
-//! Departs from it: occlusion and transmission textures are left out (with a warning). A transmissive surface becomes
+//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
+//! Departs from it: transmission textures are left out (with a warning). A transmissive surface becomes
 //! a blended one whose opacity is what transmission leaves.
 
 use super::accessor::Source;
@@ -45,9 +45,6 @@ pub(crate) fn read(
     apply_extensions(source, json, &path, &mut material, warnings);
 
     ask_textures(source, json, &path, &mut material, wanted, warnings)?;
-    if json.occlusion_texture.is_some() {
-        warnings.push(format!("{}: {path}: the occlusion texture is not used", source.file));
-    }
     Ok(material)
 }
 
@@ -80,6 +77,17 @@ fn ask_textures(
         let reference = Reference { texture: normal.index.value(), uv_set: normal.tex_coord, transform, path: &path };
         material.normal_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
         material.normal_scale = finite(normal.scale, 1.0);
+    }
+    if let Some(occlusion) = &json.occlusion_texture {
+        let path = format!("{path}.occlusionTexture");
+        let transform = match &occlusion.extensions {
+            Some(extensions) => transform_in(&extensions.others, &path, source)?,
+            None => None,
+        };
+        let (texture, uv_set) = (occlusion.index.value(), occlusion.tex_coord);
+        let reference = Reference { texture, uv_set, transform, path: &path };
+        material.occlusion_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
+        material.occlusion_strength = unit(occlusion.strength.0, 1.0);
     }
     Ok(())
 }

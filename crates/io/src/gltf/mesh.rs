@@ -7,7 +7,7 @@
 //! In:   primitives and their accessors. Out: a sound [`Mesh`] in model space (skinned: world space).
 //! Cost: linear in vertices and indices. Memory is estimated before anything large is made, and refused when a small
 //! file would unfold into a huge scene.
-//! Source: glTF 2.0 specification, section 3.7.2.
+//! Source: [glTF 2.0], section 3.7.2.
 //! Departs from it: a mesh wholly without normals keeps none (the renderer makes them with a crease angle, not flat).
 
 use super::accessor::{Integers, Source};

@@ -6,7 +6,7 @@
 //!
 //! In:   the file's bytes and a resolver for the files that it names. Out: a [`Scene`].
 //! Cost: linear in the bytes; meshes and images are made on all workers.
-//! Source: glTF 2.0 specification, Khronos 2021, and the extensions named in `document.rs`.
+//! Source: [glTF 2.0], and the extensions named in `document.rs`.
 
 mod accessor;
 mod buffers;

@@ -1,7 +1,7 @@
 //! The node tree: transforms, which scene is shown, cameras and lights.
 //!
 //! Cost: linear in the number of nodes; nothing recurses, so a deep tree is no danger.
-//! Source: glTF 2.0 specification, sections 3.5, 3.10; KHR_lights_punctual.
+//! Source: [glTF 2.0], sections 3.5, 3.10; KHR_lights_punctual.
 
 use super::accessor::Source;
 use crate::Error;

@@ -4,7 +4,7 @@
 //! bad ones (zero, not finite) among good ones: the mean of the faces round the vertex. Mostly bad ones: as if the
 //! block had none.
 //!
-//! Cost: linear in vertices and triangles. Source: glTF 2.0 specification, section 3.7.2.1.
+//! Cost: linear in vertices and triangles. Source: [glTF 2.0], section 3.7.2.1.
 
 use super::mesh::Block;
 use vitral_math::Vec3;

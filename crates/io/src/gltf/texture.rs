@@ -3,7 +3,7 @@
 //! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour or data), on all
 //! workers. A picture that cannot be had is a warning, and materials do without it.
 //!
-//! Source: glTF 2.0 specification, sections 3.8 and 5.26; KHR_texture_transform.
+//! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform.
 
 use super::accessor::Source;
 use super::buffers::read_target;
@@ -104,15 +104,7 @@ pub(crate) fn settle(
         })
         .collect();
     for m in materials {
-        let slots = [
-            &mut m.base_texture,
-            &mut m.specular_texture,
-            &mut m.emission_texture,
-            &mut m.opacity_texture,
-            &mut m.metallic_roughness_texture,
-            &mut m.normal_texture,
-        ];
-        for slot in slots {
+        for slot in m.texture_slots_mut() {
             *slot = slot.and_then(|r| Some(TextureRef { texture: places[r.texture as usize]?, ..r }));
         }
     }

@@ -150,15 +150,7 @@ fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'
                 return Err(report.at(path, format!("uv-set {}, there are 0 and 1", texture.uv_set)));
             }
         }
-        let slots = [
-            &mut material.base_texture,
-            &mut material.specular_texture,
-            &mut material.emission_texture,
-            &mut material.opacity_texture,
-            &mut material.metallic_roughness_texture,
-            &mut material.normal_texture,
-        ];
-        for slot in slots {
+        for slot in material.texture_slots_mut() {
             *slot = slot.and_then(|mut r| {
                 r.texture = places[r.texture as usize]?;
                 Some(r)

@@ -41,6 +41,7 @@ pub(crate) struct MaterialConstants<'a> {
     pub emission: Option<TextureConstants<'a>>,
     pub opacity: Option<TextureConstants<'a>>,
     pub metallic_roughness: Option<TextureConstants<'a>>,
+    pub occlusion: Option<TextureConstants<'a>>,
     pub normal: Option<TextureConstants<'a>>,
     /// Below this alpha nothing is there (cut-outs), else `None`.
     pub cutoff: Option<f32>,
@@ -180,6 +181,7 @@ fn material_constants<'a>(
         emission: texture(material.emission_texture),
         opacity: texture(material.opacity_texture),
         metallic_roughness: texture(material.metallic_roughness_texture),
+        occlusion: texture(material.occlusion_texture),
         normal: texture(material.normal_texture),
         cutoff,
         blend,

@@ -80,12 +80,11 @@ pub(crate) struct Surface<S: Simd> {
     values: [F<S>; 3],
 }
 
-/// An unscaled barycentric coordinate `c + a x + b y`.
+/// The slope of an unscaled barycentric coordinate `c + a x + b y`.
 #[derive(Clone, Copy)]
 struct Edge<S: Simd> {
     a: F<S>,
     b: F<S>,
-    c: F<S>,
 }
 
 /// A row of an affine map times `(p, 1)`.
@@ -178,7 +177,7 @@ fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surfa
     // Weigh the corners.
     let x = F32x8::from_slice(simd, &slots.x) - x0;
     let y = F32x8::from_slice(simd, &slots.y) - y0;
-    let edges = [Edge { a: a0, b: b0, c: c0 }, Edge { a: a1, b: b1, c: c1 }, Edge { a: a2, b: b2, c: c2 }];
+    let edges = [Edge { a: a0, b: b0 }, Edge { a: a1, b: b1 }, Edge { a: a2, b: b2 }];
     let values = [c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y];
     let w = normalized(values);
     // Snapping may put a sample a hair outside the facet: stay on it.

@@ -241,6 +241,8 @@ struct Looks<S: Simd> {
     emission: V3<F<S>>,
     metallic_factor: F<S>,
     roughness_factor: F<S>,
+    /// How much of the ambient light arrives.
+    occlusion: F<S>,
     alpha: F<S>,
 }
 
@@ -310,6 +312,10 @@ impl<S: Simd> Looks<S> {
         if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
             (metallic_factor, roughness_factor) = (b, g);
         }
+        let mut occlusion = one;
+        if let Some([r, ..]) = lookup(&material.occlusion) {
+            occlusion = one + (r - one) * material.material.occlusion_strength;
+        }
         Self {
             texture,
             base: texture.times(vertex_color),
@@ -318,6 +324,7 @@ impl<S: Simd> Looks<S> {
             emission,
             metallic_factor,
             roughness_factor,
+            occlusion,
             alpha,
         }
     }
@@ -346,13 +353,16 @@ impl<S: Simd> Looks<S> {
         match (material.material.reflectance, material.model) {
             (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
                 let k = Phong {
-                    ka: V3::splat(one, ka).times(color),
+                    ka: V3::splat(one, ka).times(color).scale(self.occlusion),
                     kd: V3::splat(one, kd).times(color),
                     ks: V3::splat(one, ks).times(self.specular),
                     shininess: constant(simd, shininess),
                 };
                 match model {
-                    Model::Microfacet => Coefficients::Microfacet(microfacet_from_phong(&k)),
+                    Model::Microfacet => {
+                        let m = microfacet_from_phong(&k);
+                        Coefficients::Microfacet(Microfacet { occlusion: self.occlusion, ..m })
+                    }
                     _ => Coefficients::Empirical(k),
                 }
             }
@@ -361,6 +371,7 @@ impl<S: Simd> Looks<S> {
                     base_color: V3::splat(one, base_color).times(color),
                     metallic: self.metallic_factor * metallic,
                     roughness: self.roughness_factor * roughness,
+                    occlusion: self.occlusion,
                 };
                 match model {
                     Model::Microfacet => Coefficients::Microfacet(m),

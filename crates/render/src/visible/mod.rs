@@ -13,6 +13,15 @@ pub trait TileSink: Sync {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>);
 }
 
+/// What an algorithm did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resolved {
+    /// Triangles on their way to the screen.
+    pub geometry: GeometryStats,
+    /// Seconds of the budget's clock spent on that, the rest went into the tiles.
+    pub geometry_seconds: f64,
+}
+
 /// An algorithm that finds the visible surface at each sample.
 pub trait VisibleSurface: Sync {
     /// Fills `grid` and hands each finished tile to `sink`. `marks` are lines and points already on the screen, to be
@@ -24,5 +33,5 @@ pub trait VisibleSurface: Sync {
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
-    ) -> Result<GeometryStats, Limit>;
+    ) -> Result<Resolved, Limit>;
 }

@@ -12,7 +12,7 @@
 //! Source: [Catmull 1974], [Straßer 1974]; hierarchical depth after [Greene et al. 1993]. Departs from them: equal
 //! depths go to the lower facet, so the order of triangles cannot be seen.
 
-use super::{TileSink, VisibleSurface};
+use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::GeometryStats;
 use crate::{Execution, PreparedView};
 use std::ops::Range;
@@ -57,8 +57,8 @@ impl VisibleSurface for ZBuffer {
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
-    ) -> Result<GeometryStats, Limit> {
-        let mut stats = GeometryStats::default();
+    ) -> Result<Resolved, Limit> {
+        let mut resolved = Resolved::default();
         let jobs = jobs(view);
         let rounds = rounds(&jobs);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
@@ -67,11 +67,13 @@ impl VisibleSurface for ZBuffer {
             execution.budget.check("visibility")?;
             let last = number + 1 == rounds.len();
             let jobs = &jobs[round.clone()];
-            transform_vertices(view, jobs, &mut vertices, execution, &mut stats);
+            let start = execution.budget.elapsed();
+            transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
             let batches = set_up(view, jobs, &vertices, execution);
             for (_, batch) in &batches {
-                stats.add(&batch.counters);
+                resolved.geometry.add(&batch.counters);
             }
+            resolved.geometry_seconds += execution.budget.elapsed() - start;
             if !last {
                 retire_vertices(view, jobs, &mut vertices);
             }
@@ -93,7 +95,7 @@ impl VisibleSurface for ZBuffer {
         }
         let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
         spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
-        Ok(stats)
+        Ok(resolved)
     }
 }
 

@@ -10,7 +10,7 @@
 //! Out:  a mesh, y up, standing on `y = 0`, radius 2 and height 3.15 units; vertices shared between patches. It is
 //!       open, as the original is: between lid and rim, and where handle and spout enter the body.
 //! Cost: `O(32 divisions²)`.
-//! Source: Newell 1975 (measured from a Melitta teapot); bottom after Crow 1987, "The origins of the teapot".
+//! Source: [Newell 1975] (measured from a Melitta teapot); bottom after [Crow 1987].
 
 use super::builder::{Builder, Corner};
 use crate::weld::Weld;

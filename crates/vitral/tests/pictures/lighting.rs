@@ -4,7 +4,8 @@ use crate::common::{
     all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun,
 };
 use std::collections::{BTreeMap, HashSet};
-use vitral::light::{Light, LightKind, Reflectance};
+use vitral::frame::{Encoding, Plane, Texture};
+use vitral::light::{Light, LightKind, Reflectance, TextureRef};
 use vitral::math::{DMat4, DVec2, DVec3};
 use vitral::scene::builtin::solids;
 use vitral::scene::{NodeTransform, lab};
@@ -318,4 +319,34 @@ fn l16_lights_stay_in_the_world_while_the_objects_move() {
         colors(&mut renderer)
     };
     assert_ne!(lit(DVec3::ZERO), lit(DVec3::new(6.0, 0.0, 0.0)), "LIGHT0 is now on the other side");
+}
+
+#[test]
+fn an_occlusion_texture_takes_ambient_light_only() {
+    let dark = Texture::new("dark".into(), Plane::filled(1, 1, [0, 255, 255, 255]), Encoding::Linear);
+    let middle = |illumination, ambient: f32, suns: &[Light], strength| {
+        let material = Material {
+            reflectance: Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 1.0 },
+            occlusion_texture: Some(TextureRef::new(0)),
+            occlusion_strength: strength,
+            ..Material::default()
+        };
+        let mut scene = one(solids::plane(2.0, 2.0, 1, 1), material);
+        scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
+        scene.textures.push(std::sync::Arc::new(dark.clone()));
+        (scene.ambient, scene.lights) = ([ambient; 3], suns.to_vec());
+        let mut renderer = exact(scene, 33, 33);
+        renderer.camera = Some(on_z(4.0, 0.4));
+        renderer.settings.illumination = illumination;
+        colors(&mut renderer)[16 * 33 + 16][0]
+    };
+    // A light that is out keeps the lights of a scene without any away.
+    let out = [sun(DVec3::Z, 0.0)];
+    for illumination in [Illumination::Ambient, Illumination::Phong, Illumination::CookTorrance] {
+        assert_eq!([0.0, 0.5, 1.0].map(|strength| middle(illumination, 0.8, &out, strength)), [204, 102, 0]);
+    }
+    for illumination in [Illumination::Lambert, Illumination::CookTorrance] {
+        let lit = |strength| middle(illumination, 0.0, &[sun(DVec3::Z, 0.5)], strength);
+        assert!(lit(1.0) > 50 && lit(1.0) == lit(0.0), "{illumination}");
+    }
 }

@@ -2,6 +2,9 @@
 //!
 //! Input: `cargo metadata --no-deps`. A crate may use crates of lower floors, and on its own floor those that stand
 //! before it. Dev-dependencies are free: tests may look anywhere.
+//!
+//! Threads stay behind the face's feature `threads`: nothing in the house may turn on the default features of
+//! `vitral-exec`, or a build for WebAssembly would bring a thread pool along.
 
 use serde_json::Value;
 
@@ -66,6 +69,9 @@ pub(super) fn check(metadata: &Value) -> Vec<String> {
                 continue;
             }
             let Some(to) = place(used) else { continue };
+            if from != Place::Beside && used == "vitral-exec" && dependency["uses_default_features"] == true {
+                violations.push(format!("{name}: uses {used} with its default features, which bring threads along"));
+            }
             match (from, to) {
                 (Place::Beside, _) => {}
                 (Place::House(..), Place::Beside) => {
@@ -126,6 +132,16 @@ mod tests {
         assert!(violations[0].contains("no floor"), "{violations:?}");
         let serde = json!({"name": "serde", "kind": null, "path": null});
         assert!(check(&json!({"packages": [{"name": "vitral-io", "dependencies": [serde]}]})).is_empty());
+    }
+
+    #[test]
+    fn threads_are_not_brought_along() {
+        let uses = |name: &str, defaults: bool| {
+            let exec = json!({"name": "vitral-exec", "kind": null, "path": "x", "uses_default_features": defaults});
+            check(&json!({"packages": [{"name": name, "dependencies": [exec]}]}))
+        };
+        assert!(uses("vitral-io", false).is_empty() && uses("vitral-testkit", true).is_empty());
+        assert!(uses("vitral-io", true)[0].contains("default features"));
     }
 
     #[test]

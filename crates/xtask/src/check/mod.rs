@@ -1,5 +1,6 @@
-//! `cargo xtask check`: the floors, and the rules of the house that the compiler does not know.
+//! `cargo xtask check`: the floors, the bibliography, and the rules of the house that the compiler does not know.
 
+mod bibliography;
 mod floors;
 mod source;
 mod tokens;
@@ -9,6 +10,9 @@ use std::path::{Path, PathBuf};
 
 /// Folders with sources of ours.
 const FOLDERS: [&str; 6] = ["crates", "benches", "examples", "tests", "fuzz", "lab"];
+
+/// Texts that may cite.
+const DOCUMENTS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "docs/materials.md", "docs/scene-format.md"];
 
 /// Kinds of files that the line limit holds for.
 const SOURCES: [&str; 5] = ["rs", "py", "ts", "mjs", "sh"];
@@ -23,15 +27,26 @@ pub(crate) fn run() -> Outcome {
     let mut files = Vec::new();
     FOLDERS.iter().for_each(|folder| collect(&repository().join(folder), &mut files));
     files.sort();
+    let read = |path: &Path| std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));
+    let mut texts = Vec::new();
     for file in &files {
-        let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
-        violations.extend(source::check(&relative(file), &text));
+        let (path, text) = (relative(file).replace('\\', "/"), read(file)?);
+        violations.extend(source::check(&path, &text));
+        texts.push((path, text));
     }
+
+    // Look citations up, those of the documentation too.
+    texts.retain(|(path, _)| path.ends_with(".rs"));
+    for path in DOCUMENTS {
+        texts.push((path.to_owned(), read(&repository().join(path))?));
+    }
+    let cited_in = texts.iter().map(|(path, text)| (path.as_str(), text.as_str()));
+    violations.extend(bibliography::check(&read(&repository().join(bibliography::FILE))?, cited_in));
 
     violations.iter().for_each(|violation| println!("{violation}"));
     match violations.len() {
         0 => {
-            println!("{} source files and the floors: nothing to object to", files.len());
+            println!("{} source files, the floors and the bibliography: nothing to object to", files.len());
             Ok(())
         }
         count => Err(format!("{count} violation(s)")),

@@ -292,8 +292,10 @@ impl Context {
         if fb.buffer == Some(new) {
             return true;
         }
-        self.store_default_framebuffer();
+        // The buffer before may be gone: what was drawn to it since the last store is not stored.
+        self.flush_recorded();
         let fb = &mut self.default_framebuffer;
+        fb.drawn = false;
         fb.buffer = Some(new);
         fb.loaded = false;
         fb.version += 1;

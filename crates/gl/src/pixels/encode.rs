@@ -59,11 +59,15 @@ fn push_element(element: u32, bytes: usize, out: &mut Vec<u8>) {
     }
 }
 
-/// Colours in a colour format. Luminance is the sum of red, green and blue.
+/// Colours in a colour format. Luminance is the sum of red, green and blue; where these are clamped, so is the sum.
 pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut Vec<u8>) {
     let places = format.places();
     if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
-        let sums: Vec<[f32; 4]> = colors.iter().map(|c| [c[0] + c[1] + c[2], 0.0, 0.0, c[3]]).collect();
+        let sum = |c: &[f32; 4]| {
+            let (sum, clamped) = (c[0] + c[1] + c[2], c[..3].iter().all(|v| (0.0..=1.0).contains(v)));
+            [if clamped { sum.min(1.0) } else { sum }, 0.0, 0.0, c[3]]
+        };
+        let sums: Vec<[f32; 4]> = colors.iter().map(sum).collect();
         return components(&sums, places, format.kind, out);
     }
     let Some(packed) = format.packed() else { return components(colors, places, format.kind, out) };

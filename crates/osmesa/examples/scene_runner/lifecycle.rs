@@ -16,6 +16,7 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
         "threads" => threads(&gl),
         "moved" => moved(&gl),
         "destroyed-elsewhere" => destroyed_elsewhere(&gl),
+        "buffer-gone" => buffer_gone(&gl),
         "exit" => exit(&gl),
         "exit-beside-thread" => exit_beside_thread(gl),
         "callback" => callback(&gl),
@@ -135,6 +136,31 @@ fn destroyed_elsewhere(gl: &Gl) -> Result<(), String> {
     window.frame(gl)?;
     gl.OSMesaMakeCurrent(0, 0, 0, 0, 0);
     Ok(())
+}
+
+/// A context gets another buffer after the one before was freed, with work pending; then it is destroyed, likewise.
+fn buffer_gone(gl: &Gl) -> Result<(), String> {
+    let bytes = 4 * (SIDE * SIDE) as usize;
+    let pages = || {
+        let (access, kind) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
+        // SAFETY: new pages.
+        unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) }
+    };
+    let mut window = Window::new(gl);
+    for end in [false, true] {
+        let buffer = pages();
+        gl.OSMesaMakeCurrent(window.context, buffer.expose_provenance(), UNSIGNED_BYTE, SIDE, SIDE);
+        gl.glRectf(-0.2, -0.2, 0.2, 0.2);
+        // SAFETY: our pages; no one may use them from here on.
+        unsafe { libc::munmap(buffer, bytes) };
+        if end {
+            gl.OSMesaDestroyContext(window.context);
+        } else {
+            window.make_current(gl);
+            window.frame(gl)?;
+        }
+    }
+    Window::new(gl).frame(gl)
 }
 
 /// The process ends with a current context, work pending and the buffer gone.

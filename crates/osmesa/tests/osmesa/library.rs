@@ -37,6 +37,11 @@ fn a_context_destroyed_elsewhere_lives_until_it_is_let_go() {
 }
 
 #[test]
+fn a_buffer_that_is_gone_is_left_alone() {
+    lifecycle("buffer-gone", None);
+}
+
+#[test]
 fn a_process_ends_with_work_pending() {
     lifecycle("exit", Some("4"));
 }

@@ -95,10 +95,10 @@ impl Context {
             }
             match mode {
                 enums::FILL => {
-                    for i in i1..i2 {
-                        c.mesh_row(enums::QUAD_STRIP, rows.clone(), |c, j| {
+                    for j in j1..j2 {
+                        c.mesh_row(enums::QUAD_STRIP, columns.clone(), |c, i| {
                             c.exec_point_2(i, j);
-                            c.exec_point_2(i + 1, j);
+                            c.exec_point_2(i, j + 1);
                         });
                     }
                 }

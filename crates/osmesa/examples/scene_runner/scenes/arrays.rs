@@ -134,7 +134,7 @@ fn interleaved(gl: &mut Stage<'_>) {
 fn attributes(gl: &mut Stage<'_>) {
     pixels(gl);
     let positions: [[f32; 2]; 4] = [[4.0, 4.0], [60.0, 4.0], [60.0, 60.0], [4.0, 60.0]];
-    let second: [[f32; 3]; 4] = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5], [0.3, 0.3, 0.0]];
+    let second: [[f32; 3]; 4] = [[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.0, 0.5]];
     let fog: [f32; 4] = [0.0, 0.3, 0.8, 0.5];
     let coordinates: [[i16; 2]; 4] = [[0, 0], [2, 0], [2, 2], [0, 2]];
     gl.glEnableClientState(VERTEX_ARRAY);

@@ -138,14 +138,14 @@ fn color_mask(gl: &mut Stage<'_>) {
 
 fn accumulation(gl: &mut Stage<'_>) {
     pixels(gl);
-    gl.glClearAccum(0.1, 0.0, -0.2, 0.0);
+    gl.glClearAccum(0.05, 0.0, -0.2, 0.0);
     gl.glClear(ACCUM_BUFFER_BIT);
     for i in 0..4 {
         gl.glClear(COLOR_BUFFER_BIT);
         rainbow(gl, [4.0 + 5.0 * i as f32, 4.0, 44.0 + 5.0 * i as f32, 60.0], 0.0);
-        gl.glAccum(ACCUM, 0.25);
+        gl.glAccum(ACCUM, 0.2);
     }
-    gl.glAccum(MULT, 1.5);
+    gl.glAccum(MULT, 0.8);
     gl.glAccum(ADD, 0.05);
     gl.glEnable(SCISSOR_TEST);
     gl.glScissor(0, 0, 64, 32);

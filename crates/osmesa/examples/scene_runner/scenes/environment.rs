@@ -16,8 +16,8 @@ pub(crate) const SCENES: &[Scene] = &[
 
 /// A square in field (i, j) of a grid of 6 columns and 7 rows.
 fn field(gl: &Gl, i: usize, j: usize) {
-    let (x, y) = (1.0 + 10.5 * i as f32, 1.0 + 9.0 * j as f32);
-    textured(gl, [x, y, x + 9.0, y + 8.0], 1.0);
+    let (x, y) = (1.0 + 10.0 * i as f32, 1.0 + 9.0 * j as f32);
+    textured(gl, [x, y, x + 8.0, y + 8.0], 1.0);
 }
 
 fn ready(gl: &Gl) {

@@ -7,7 +7,6 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("fog-exp", Close, exp),
     scene("fog-exp2", Close, exp2),
     scene("fog-coordinate", Close, coordinate),
-    scene("fog-images", Close, images),
 ];
 
 /// Rows of squares that go away from the eye, a line and some points between them.
@@ -74,22 +73,10 @@ fn coordinate(gl: &mut Stage<'_>) {
     gl.glFogfv(FOG_COLOR, &[1.0, 1.0, 0.0, 0.0]);
     gl.glColor4f(0.0, 0.2, 1.0, 0.5);
     gl.glBegin(QUADS);
-    for (x, y, fog) in [(4.0, 4.0, 0.0), (60.0, 4.0, 1.0), (60.0, 60.0, 2.5), (4.0, 60.0, -0.5)] {
+    for (x, y, fog) in [(4.0, 4.0, 0.0), (60.0, 4.0, 1.0), (60.0, 60.0, 2.3), (4.0, 60.0, 1.3)] {
         gl.glFogCoordf(fog);
         gl.glVertex2f(x, y);
     }
     gl.glEnd();
     gl.note_floats::<1>(CURRENT_FOG_COORD);
-}
-
-fn images(gl: &mut Stage<'_>) {
-    camera(gl);
-    gl.glEnable(FOG);
-    gl.glFogi(FOG_MODE, LINEAR as i32);
-    gl.glFogf(FOG_END, 8.0);
-    gl.glFogfv(FOG_COLOR, &[0.0, 1.0, 0.0, 1.0]);
-    for i in 0..3 {
-        gl.glRasterPos3f(-1.0 + 0.3 * i as f32, -1.0 + 0.8 * i as f32, 1.0 - 2.0 * i as f32);
-        gl.glDrawPixels(8, 8, RGBA, UNSIGNED_BYTE, crate::gl::at(&checks(8, 2)));
-    }
 }

@@ -254,7 +254,7 @@ fn secondary_color(gl: &mut Stage<'_>) {
 }
 
 fn get(gl: &mut Stage<'_>) {
-    gl.glLightfv(LIGHT1, SPECULAR, &[0.5, 0.25, 2.0, -1.0]);
+    gl.glLightfv(LIGHT1, SPECULAR, &[0.5, 0.25, 1.0, -1.0]);
     gl.glLightiv(LIGHT1, DIFFUSE, &[i32::MAX, 0, i32::MIN, 1 << 30]);
     gl.glLighti(LIGHT1, SPOT_CUTOFF, 45);
     for light in [LIGHT0, LIGHT1, LIGHT0 + 7] {

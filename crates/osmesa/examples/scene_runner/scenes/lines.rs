@@ -129,7 +129,7 @@ fn lines_clipped(gl: &mut Stage<'_>) {
     camera(gl);
     gl.glBegin(LINES);
     for i in 0..12 {
-        let angle = i as f32 * 0.5236 + 0.1;
+        let angle = i as f32 * 0.52 + 0.1;
         gl.glColor3f(1.0, 1.0, 0.0);
         gl.glVertex3f(0.1 * angle.cos(), 0.1 * angle.sin(), -3.0);
         gl.glColor3f(0.0, 0.3, 1.0);

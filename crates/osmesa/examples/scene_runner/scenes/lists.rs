@@ -265,7 +265,6 @@ fn evaluator_1d(gl: &mut Stage<'_>) {
     gl.glEvalMesh1(LINE, 0, 8);
     gl.glPointSize(4.0);
     gl.glEvalMesh1(POINT, 1, 7);
-    gl.note_floats::<4>(CURRENT_COLOR);
     let mut points = [0.0; 12];
     gl.glGetMapfv(MAP1_VERTEX_3, COEFF, &mut points);
     gl.notes(&points);

@@ -106,16 +106,17 @@ fn textured(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], repeat: f32) {
     gl.glEnd();
 }
 
-/// A square with a different colour in each corner, in the plane z.
+/// A square with a different colour in each corner, in the plane z. The colours lie in a plane as well, so that it does not
+/// matter along which diagonal a library cuts.
 fn rainbow(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], z: f32) {
     gl.glBegin(QUADS);
     gl.glColor4f(1.0, 0.0, 0.0, 1.0);
     gl.glVertex3f(x0, y0, z);
-    gl.glColor4f(0.0, 1.0, 0.0, 0.75);
+    gl.glColor4f(1.0, 1.0, 0.0, 0.75);
     gl.glVertex3f(x1, y0, z);
-    gl.glColor4f(0.0, 0.0, 1.0, 0.5);
+    gl.glColor4f(0.0, 1.0, 1.0, 0.5);
     gl.glVertex3f(x1, y1, z);
-    gl.glColor4f(1.0, 1.0, 1.0, 0.25);
+    gl.glColor4f(0.0, 0.0, 1.0, 0.75);
     gl.glVertex3f(x0, y1, z);
     gl.glEnd();
 }
@@ -147,7 +148,7 @@ fn sphere(gl: &Gl, radius: f32, slices: usize, stacks: usize) {
 fn checks(size: usize, cell: usize) -> Vec<[u8; 4]> {
     let texel = |i: usize| {
         let (x, y) = (i % size, i / size);
-        let light = (x / cell + y / cell) % 2 == 0;
+        let light = (x / cell + y / cell).is_multiple_of(2);
         let red = (255 * x / (size - 1).max(1)) as u8;
         if light { [red, 255, 255, 255] } else { [red, 40, 80, 100] }
     };

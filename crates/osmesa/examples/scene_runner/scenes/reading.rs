@@ -29,6 +29,10 @@ fn formats(gl: &mut Stage<'_>) {
         let mut shorts = [0_i16; 16];
         gl.glReadPixels(50, 50, 2, 2, format, SHORT, at_mut(&mut shorts));
         gl.notes(&shorts.map(|s| f32::from(s) / 32767.0));
+        if matches!(format, LUMINANCE | LUMINANCE_ALPHA) {
+            // Mesa's sums overflow there.
+            continue;
+        }
         let mut integers = [0_u32; 16];
         gl.glReadPixels(50, 50, 2, 2, format, UNSIGNED_INT, at_mut(&mut integers));
         gl.notes(&integers.map(|i| (f64::from(i) / 4294967295.0) as f32));

@@ -87,13 +87,13 @@ fn texture_matrix(gl: &mut Stage<'_>) {
     gl.glRotatef(30.0, 0.0, 0.0, 1.0);
     gl.glScalef(1.5, 0.7, 1.0);
     gl.glMatrixMode(MODELVIEW);
-    textured(gl, [-1.5, -1.5, 1.5, 1.5], 2.0);
+    textured(gl, [-1.5, -1.5, 1.5, 1.5], 1.2);
     gl.note_floats::<16>(TEXTURE_MATRIX);
 }
 
 fn projective(gl: &mut Stage<'_>) {
     ready(gl);
-    gl.glBegin(QUADS);
+    gl.glBegin(TRIANGLE_FAN);
     for (x, y, q) in [(-1.5, -1.5, 1.0), (1.5, -1.5, 1.0), (1.0, 1.5, 3.0), (-1.0, 1.5, 3.0)] {
         gl.glTexCoord4f((x + 1.5) * q / 3.0, (y + 1.5) * q / 3.0, 0.0, q);
         gl.glVertex3f(x, y, 0.0);
@@ -118,8 +118,8 @@ fn units(gl: &mut Stage<'_>) {
     gl.glBegin(QUADS);
     for (x, y) in [(-1.5_f32, -1.5_f32), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5)] {
         for unit in 0..4 {
-            let turn = unit as f32 * 0.3;
-            gl.glMultiTexCoord2f(TEXTURE0 + unit, x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos());
+            let (sin, cos) = (0.1 + unit as f32 * 0.3).sin_cos();
+            gl.glMultiTexCoord2f(TEXTURE0 + unit, 0.8 * (x * cos - y * sin), 0.8 * (x * sin + y * cos));
         }
         gl.glVertex3f(x, y, 0.0);
     }

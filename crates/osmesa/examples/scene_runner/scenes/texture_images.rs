@@ -29,7 +29,9 @@ pub(crate) fn levels(gl: &Gl, size: usize) {
     let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [0, 255, 255], [255, 0, 255], [255, 255, 255]];
     for (level, [r, g, b]) in colors.into_iter().enumerate().take_while(|(level, _)| size >> level > 0) {
         let side = size >> level;
-        let texel = |i: usize| if (i % side + i / side) % 2 == 0 { [r, g, b, 255] } else { [r / 2, g / 2, b / 2, 128] };
+        let texel = |i: usize| {
+            if (i % side + i / side).is_multiple_of(2) { [r, g, b, 255] } else { [r / 2, g / 2, b / 2, 128] }
+        };
         let texels: Vec<[u8; 4]> = (0..side * side).map(texel).collect();
         let side = side as i32;
         gl.glTexImage2D(TEXTURE_2D, level as i32, RGBA as i32, side, side, 0, RGBA, UNSIGNED_BYTE, at(&texels));
@@ -61,7 +63,7 @@ pub(crate) fn cube(gl: &Gl, size: usize) {
 /// Draws the bound texture into field `i` of a grid of 8 x 8.
 fn field(gl: &Gl, i: usize) {
     let (x, y) = ((i % 8) as f32 * 8.0, (i / 8) as f32 * 8.0);
-    textured(gl, [x, y, x + 7.0, y + 7.0], 1.0);
+    textured(gl, [x, y, x + 8.0, y + 8.0], 1.0);
 }
 
 fn ready(gl: &Gl) {
@@ -111,9 +113,7 @@ fn internal_formats(gl: &mut Stage<'_>) {
         RGB12,
         RGB16,
         RGBA,
-        RGB5_A1,
         RGBA8,
-        RGB10_A2,
         RGBA12,
         RGBA16,
     ];
@@ -180,6 +180,7 @@ fn sub_image(gl: &mut Stage<'_>) {
 
 fn sub_image_others(gl: &mut Stage<'_>) {
     ready(gl);
+    gl.glDisable(TEXTURE_2D);
     gl.glTexImage1D(TEXTURE_1D, 0, RGBA as i32, 16, 0, RGBA, UNSIGNED_BYTE, at(&checks(4, 1)));
     gl.glTexSubImage1D(TEXTURE_1D, 0, 4, 8, RGBA, UNSIGNED_BYTE, at(&[[9_u8, 200, 100, 255]; 8]));
     gl.glTexImage3D(TEXTURE_3D, 0, RGBA as i32, 4, 4, 4, 0, RGBA, UNSIGNED_BYTE, at(&checks(8, 1)));
@@ -225,16 +226,16 @@ fn unpack(gl: &mut Stage<'_>) {
         gl.glPixelStorei(UNPACK_ALIGNMENT, alignment);
         gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, 8, 8, 0, RGBA, UNSIGNED_BYTE, at(&texels));
         let x = 32.0 * (i % 2) as f32;
-        textured(gl, [x, 0.0, x + 15.0, 15.0], 1.0);
+        textured(gl, [x, 0.0, x + 16.0, 16.0], 1.0);
         gl.glTexImage2D(TEXTURE_2D, 0, RGB as i32, 5, 8, 0, RGB, UNSIGNED_BYTE, at(&texels));
         let y = 16.0 * (1 + i / 2) as f32;
-        textured(gl, [x, y, x + 20.0, y + 15.0], 1.0);
+        textured(gl, [x, y, x + 20.0, y + 16.0], 1.0);
     }
 }
 
 fn transfer(gl: &mut Stage<'_>) {
     ready(gl);
-    gl.glPixelTransferf(RED_SCALE, 0.5);
+    gl.glPixelTransferf(RED_SCALE, 0.45);
     gl.glPixelTransferf(GREEN_BIAS, -0.3);
     gl.glPixelTransferf(BLUE_SCALE, -1.0);
     gl.glPixelTransferf(BLUE_BIAS, 1.0);
@@ -251,7 +252,7 @@ fn transfer(gl: &mut Stage<'_>) {
 fn level_queries(gl: &mut Stage<'_>) {
     ready(gl);
     gl.glTexImage2D(TEXTURE_2D, 0, RGBA8 as i32, 16, 8, 0, RGBA, UNSIGNED_BYTE, at(&checks(16, 4)));
-    gl.glTexImage2D(TEXTURE_2D, 1, RGBA8 as i32, 10, 6, 1, RGBA, UNSIGNED_BYTE, 0);
+    gl.glTexImage2D(TEXTURE_2D, 1, RGBA8 as i32, 8, 4, 0, RGBA, UNSIGNED_BYTE, 0);
     for level in 0..3 {
         for name in [TEXTURE_WIDTH, TEXTURE_HEIGHT, TEXTURE_DEPTH, TEXTURE_BORDER, TEXTURE_COMPRESSED] {
             let mut value = [-1];

@@ -17,7 +17,8 @@ use super::state::{Compare, FragmentState};
 use super::tile::TileRun;
 use crate::{SUBPIXEL, Setup, TILE};
 use std::sync::Arc;
-use vitral_math::lanes::{LANES, Level, dispatch};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
 
 /// A job's triangles and what bounds them.
 #[derive(Debug)]
@@ -83,7 +84,8 @@ pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
         return depth;
     }
     let scaled = depth * scale;
-    if scaled < 8_388_608.0 { (scaled + 0.5).floor() } else { scaled.floor() }
+    // From 2^23 on every number is whole, and adding a half would round again.
+    if scaled < 8_388_608.0 { (scaled + 0.5) as u32 as f32 } else { scaled as u32 as f32 }
 }
 
 impl PendingDepth {
@@ -114,13 +116,28 @@ impl PendingDepth {
 
     /// The depth of a texel in `0..=1` as it would be read, from the farther of `known` and the clear value on: triangles that cannot beat
     /// `known` are not looked at. Pass `None` for the exact depth.
-    pub(crate) fn texel(&self, x: i32, y: i32, known: Option<f32>) -> f32 {
+    #[inline(always)]
+    pub(crate) fn texel<S: Simd>(&self, simd: S, x: i32, y: i32, known: Option<f32>) -> f32 {
         let tile = ((y / TILE as i32) * self.tiles_x + x / TILE as i32) as usize;
         let floor = known.map_or(f32::NEG_INFINITY, |k| k * self.sign);
-        let mut best = self.clear / self.scale * self.sign;
+        let best = self.clear / self.scale * self.sign;
         if self.tile_bounds.get(tile).is_none_or(|bound| *bound <= best.max(floor)) {
             return best * self.sign;
         }
+        self.search(simd, x, y, tile, floor, best) * self.sign
+    }
+
+    /// The best of a tile's triangles at a texel, if better than `floor` and `best`; times the sign.
+    #[inline(never)]
+    fn search<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, best: f32) -> f32 {
+        simd.vectorize(
+            #[inline(always)]
+            || self.search_inlined(simd, x, y, tile, floor, best),
+        )
+    }
+
+    #[inline(always)]
+    fn search_inlined<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
         // Places within the tile, as the candidates' planes take them.
         let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
@@ -128,7 +145,7 @@ impl PendingDepth {
             let first = job.primitives.batch.tile_range(tile).start;
             let blocks = job.starts[tile] as usize..job.starts[tile + 1] as usize;
             for (number, block) in job.candidates[blocks].chunks_exact(ROWS * LANES).enumerate() {
-                let mut bits = above(block, u, v, best.max(floor));
+                let mut bits = above(simd, block, u, v, best.max(floor));
                 while bits != 0 {
                     let at = first + number * LANES + bits.trailing_zeros() as usize;
                     bits &= bits - 1;
@@ -140,7 +157,7 @@ impl PendingDepth {
                 }
             }
         }
-        best * self.sign
+        best
     }
 
     /// Which depth stays: 1 the larger, -1 the smaller.
@@ -224,7 +241,8 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
     let at = |k: usize| ((origin[k] * SUBPIXEL + SUBPIXEL / 2 - setup.origin[k]) as f32) / SUBPIXEL as f32;
     let (x, y) = (at(0) * dx, at(1) * dy);
     let size = setup.z.abs() + x.abs() + y.abs() + (dx.abs() + dy.abs()) * TILE as f32;
-    let margin = size * 1e-6 + 1.0 / scale.min(16_777_216.0).max(1.0e6);
+    // Half a step for rounding when stored, and what five roundings may be off.
+    let margin = size * 1.8e-7 + if scale == 1.0 { 0.0 } else { 0.5 / scale };
     let corner = setup.z * sign + x + y + margin;
     if corner.is_finite() && dx.is_finite() && dy.is_finite() {
         [corner, dx, dy, bound]
@@ -235,11 +253,12 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
 
 /// Which of a block's eight candidates may be above `floor` at a place of the tile.
 #[inline(always)]
-fn above(block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
-    let mut bits = 0;
-    for lane in 0..LANES {
-        let plane = block[lane] + block[LANES + lane] * u + block[2 * LANES + lane] * v;
-        bits |= u32::from((plane > floor) & (block[3 * LANES + lane] > floor)) << lane;
-    }
-    bits
+fn above<S: Simd>(simd: S, block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
+    let row = lanes::inlined(
+        #[inline(always)]
+        |k: usize| F32x8::from_slice(simd, &block[k * LANES..(k + 1) * LANES]),
+    );
+    let plane = row(0) + row(1) * u + row(2) * v;
+    let floor = <F32x8<S> as SimdBase<S>>::splat(simd, floor);
+    (plane.simd_gt(floor) & row(3).simd_gt(floor)).to_bitmask() as u32
 }

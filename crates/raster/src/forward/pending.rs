@@ -15,8 +15,8 @@ use super::pass::{DrawContext, Item, Pass, pattern};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::tile::TileRun;
-use crate::{SUBPIXEL, Setup, TILE};
-use std::sync::Arc;
+use crate::{BLOCK, SUBPIXEL, Setup, TILE};
+use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
 
@@ -32,7 +32,25 @@ struct PendingJob {
     starts: Vec<u32>,
     /// The largest of a tile's.
     tile_bounds: Vec<f32>,
+    /// Finer lists of tiles with many triangles, made when first searched.
+    grids: Vec<OnceLock<Box<Grid>>>,
 }
+
+/// A tile's triangles by blocks of 8x8 texels.
+#[derive(Debug)]
+struct Grid {
+    /// As [`PendingJob::candidates`], block by block.
+    candidates: Vec<f32>,
+    /// The entries that the candidates are.
+    entries: Vec<u32>,
+    /// Where each block's candidates begin, in eights.
+    starts: [u32; BLOCKS * BLOCKS + 1],
+}
+
+/// Blocks along a tile's side.
+const BLOCKS: usize = TILE / BLOCK;
+/// Tiles with more entries than this get a grid.
+const FEW: usize = 32;
 
 /// See the module.
 #[derive(Debug)]
@@ -142,12 +160,23 @@ impl PendingDepth {
         // Places within the tile, as the candidates' planes take them.
         let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
         for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
-            let first = job.primitives.batch.tile_range(tile).start;
-            let blocks = job.starts[tile] as usize..job.starts[tile + 1] as usize;
-            for (number, block) in job.candidates[blocks].chunks_exact(ROWS * LANES).enumerate() {
+            let range = job.primitives.batch.tile_range(tile);
+            let first = range.start;
+            let grid = (range.len() > FEW).then(|| job.grid(tile, self.sign, self.scale, self.tiles_x as usize));
+            let (candidates, entries) = match grid {
+                Some(grid) => {
+                    let block = (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK;
+                    let eights = grid.starts[block] as usize..grid.starts[block + 1] as usize;
+                    let entries = &grid.entries[eights.start * LANES..eights.end * LANES];
+                    (&grid.candidates[eights.start * ROWS * LANES..eights.end * ROWS * LANES], Some(entries))
+                }
+                None => (&job.candidates[job.starts[tile] as usize..job.starts[tile + 1] as usize], None),
+            };
+            for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
                 let mut bits = above(simd, block, u, v, best.max(floor));
                 while bits != 0 {
-                    let at = first + number * LANES + bits.trailing_zeros() as usize;
+                    let at = number * LANES + bits.trailing_zeros() as usize;
+                    let at = entries.map_or(first + at, |entries| entries[at] as usize);
                     bits &= bits - 1;
                     let setup = job.primitives.batch.item(at);
                     let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
@@ -192,6 +221,46 @@ impl PendingDepth {
 }
 
 impl PendingJob {
+    /// The finer lists of a tile.
+    fn grid(&self, tile: usize, sign: f32, scale: f32, tiles_x: usize) -> &Grid {
+        self.grids[tile].get_or_init(|| {
+            let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
+            let batch = &self.primitives.batch;
+            let mut lists: [Vec<u32>; BLOCKS * BLOCKS] = std::array::from_fn(|_| Vec::new());
+            for at in batch.tile_range(tile) {
+                let setup = batch.item(at);
+                // Texels whose centres may lie within the box.
+                let span = |v: [i32; 3], origin: i32| {
+                    let low = (v[0].min(v[1]).min(v[2]) / SUBPIXEL - 1 - origin).clamp(0, TILE as i32 - 1);
+                    let high = (v[0].max(v[1]).max(v[2]) / SUBPIXEL + 1 - origin).clamp(0, TILE as i32 - 1);
+                    low as usize / BLOCK..high as usize / BLOCK + 1
+                };
+                for y in span(setup.y, origin[1]) {
+                    for x in span(setup.x, origin[0]) {
+                        lists[y * BLOCKS + x].push(at as u32);
+                    }
+                }
+            }
+            let mut grid = Grid { candidates: Vec::new(), entries: Vec::new(), starts: [0; BLOCKS * BLOCKS + 1] };
+            for (block, list) in lists.iter().enumerate() {
+                for eight in list.chunks(LANES) {
+                    let rows = grid.candidates.len();
+                    grid.candidates.resize(rows + ROWS * LANES, f32::NEG_INFINITY);
+                    for (lane, &at) in eight.iter().enumerate() {
+                        let row = candidate(batch.item(at as usize), origin, sign, scale);
+                        for k in 0..ROWS {
+                            grid.candidates[rows + k * LANES + lane] = row[k];
+                        }
+                    }
+                    grid.entries.extend(eight);
+                    grid.entries.resize(grid.entries.len().next_multiple_of(LANES), 0);
+                }
+                grid.starts[block + 1] = (grid.entries.len() / LANES) as u32;
+            }
+            Box::new(grid)
+        })
+    }
+
     fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
         let draw = self.primitives.facets[setup.facet as usize].draw;
         let [x0, y0, x1, y1] = self.draws[draw as usize].1;
@@ -228,7 +297,8 @@ fn job(
         starts.push(candidates.len() as u32);
         tile_bounds.push(most);
     }
-    PendingJob { primitives, draws, candidates, starts, tile_bounds }
+    let grids = (0..tiles).map(|_| OnceLock::new()).collect();
+    PendingJob { primitives, draws, candidates, starts, tile_bounds, grids }
 }
 
 /// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the

@@ -58,7 +58,7 @@ pub(crate) fn stored_depth<S: Simd>(simd: S, depth: F32x8<S>, scale: f32) -> F32
 
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mixing {
+pub(crate) enum Mixing {
     Replace,
     Add,
     AddScaled,
@@ -69,8 +69,10 @@ enum Mixing {
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
-    mixing: Mixing,
+    pub(crate) mixing: Mixing,
     protected: u32,
+    /// Nothing needs the row-by-row operations, see [`super::block`].
+    pub(crate) common: bool,
     all_protected: bool,
     coverage: u32,
 }
@@ -83,7 +85,16 @@ impl FragmentOps {
             _ => all,
         };
         let protected = protected_bits(state.masked);
-        Self { mixing: mixing(state), protected, all_protected: state.masked == [true; 4], coverage }
+        let mixing = mixing(state);
+        let common = state.stencil.is_none()
+            && state.logic_op.is_none()
+            && state.query.is_none()
+            && state.polygon_stipple.is_none()
+            && state.sample_coverage.is_none()
+            && !(state.alpha_to_coverage || state.alpha_to_one)
+            && (protected == 0 || state.masked == [true; 4])
+            && mixing != Mixing::General;
+        Self { mixing, protected, common, all_protected: state.masked == [true; 4], coverage }
     }
 }
 

@@ -1,16 +1,19 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures, fog.
 
 use super::assemble::{Facet, FacetKind, Shape};
+use super::block::Words;
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
+use super::fragment_ops::compare::{alpha_test, holds};
+use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, lod, needs_lod};
 use super::sample::sample;
 use super::state::{FragmentState, Unit};
-use super::wide::{Rgba, clamp, max, min, saturate_rgba, splat, splat_rgba};
-use crate::{SUBPIXEL, Setup};
+use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
+use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Simd};
 
@@ -87,6 +90,8 @@ impl Interpolation {
         }
     }
 }
+
+const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
 /// Perspective-correct barycentric coordinates at eight points.
 struct Weights<S: Simd> {
@@ -213,6 +218,52 @@ impl<'a> Shader<'a> {
             color = fog(simd, f, color, self.value(simd, &weights, at));
         }
         self.covered(simd, x, y, color)
+    }
+
+    /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
+    pub(crate) fn block<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), any: u64) -> (Words, u64) {
+        if let Some(color) = self.constant() {
+            let passed = self.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
+            return (Words::One(word), if passed { any } else { 0 });
+        }
+        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0);
+        for row in 0..BLOCK {
+            let active = (any >> (8 * row)) as u32 & 0xff;
+            if active != 0 {
+                let out = &mut words[BLOCK * row..BLOCK * (row + 1)];
+                passed |=
+                    u64::from(self.block_row(simd, left as f32, (bottom + row) as f32 + 0.5, active, out)) << (8 * row);
+            }
+        }
+        (Words::Each(words), passed)
+    }
+
+    #[inline(never)]
+    fn block_row<S: Simd>(&self, simd: S, left: f32, y: f32, active: u32, out: &mut [u32]) -> u32 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let x = F32x8::from_slice(simd, &CENTERS) + left;
+                let (color, mut passed) = self.row(simd, x, splat(simd, y), active);
+                if let Some(test) = self.state.alpha_test {
+                    passed &= bits_of(alpha_test(simd, test, color[3]));
+                }
+                pack(&saturate_rgba(color)).store_slice(out);
+                passed & active
+            },
+        )
+    }
+
+    /// The colour of all pixels, where it is the same for all.
+    fn constant(&self) -> Option<[f32; 4]> {
+        let plain = self.state.units.is_empty() && self.state.fog.is_none() && !self.state.color_sum;
+        if !(plain && self.state.flat) {
+            return None;
+        }
+        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
+        let r = &self.records[self.facet.provoking as usize + at..][..4];
+        Some([r[0], r[1], r[2], r[3]].map(|c| c.clamp(0.0, 1.0)))
     }
 
     /// All units' textures and environments.

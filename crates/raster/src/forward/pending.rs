@@ -19,12 +19,15 @@ use crate::{SUBPIXEL, Setup, TILE};
 use std::sync::Arc;
 use vitral_math::lanes::{Level, dispatch};
 
+/// State of a draw, and the pixels that it may touch.
+type ClippedState = (Arc<FragmentState>, [i32; 4]);
+
 /// A job's triangles and what bounds them.
 #[derive(Debug)]
 struct PendingJob {
     primitives: Primitives,
     /// State and allowed pixels of each draw.
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
+    draws: Vec<ClippedState>,
     /// For each entry of the tile lists, a bound of its depths as read, times the sign.
     bounds: Vec<f32>,
     /// The largest of a tile's.
@@ -91,7 +94,7 @@ impl PendingDepth {
         scale: f32,
         tiles_x: u32,
         tiles: usize,
-        jobs: Vec<(Primitives, Vec<(Arc<FragmentState>, [i32; 4])>)>,
+        jobs: Vec<(Primitives, Vec<ClippedState>)>,
     ) -> Self {
         let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
         let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
@@ -140,11 +143,11 @@ impl PendingDepth {
     }
 
     /// Draws everything into the plane.
-    pub(crate) fn resolve(self: Box<Self>, plane: &mut Plane<f32>, scale: f32) {
+    pub(crate) fn resolve(self, plane: &mut Plane<f32>, scale: f32) {
         let viewport = plane.viewport();
         let tiles_x = viewport.tiles_x();
         let layout = super::shade::Layout::default();
-        let states: Vec<Vec<(Arc<FragmentState>, [i32; 4])>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
+        let states: Vec<Vec<ClippedState>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
         let items: Vec<Item<'_>> = self
             .jobs
             .into_iter()
@@ -173,13 +176,7 @@ impl PendingJob {
     }
 }
 
-fn job(
-    primitives: Primitives,
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    sign: f32,
-    scale: f32,
-    tiles: usize,
-) -> PendingJob {
+fn job(primitives: Primitives, draws: Vec<ClippedState>, sign: f32, scale: f32, tiles: usize) -> PendingJob {
     let of_setup: Vec<f32> = primitives
         .batch
         .setups()

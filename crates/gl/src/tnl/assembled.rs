@@ -53,7 +53,7 @@ pub(crate) struct Assembled {
     pub others: bool,
 }
 
-/// A place for [`Assembled`] in a batch: no part of its value.
+/// A place for `Assembled` in a batch: no part of its value.
 #[derive(Default)]
 pub struct AssembledCell(OnceLock<Arc<Assembled>>);
 

@@ -548,7 +548,7 @@ impl<'a> Assembler<'a> {
         let v = self.vertices.screen[vertex as usize];
         let planes = self.state.user_planes;
         let user = &self.vertices.user[vertex as usize * planes..][..planes];
-        if v.flags & (flag::NOT_FINITE | flag::FRUSTUM | flag::CLIP) != 0 || user.iter().any(|d| !(*d >= 0.0)) {
+        if v.flags & (flag::NOT_FINITE | flag::FRUSTUM | flag::CLIP) != 0 || !user.iter().all(|d| *d >= 0.0) {
             return;
         }
         let [x, y, z] = self.state.window.project_exact(self.vertices.clip[vertex as usize]);
@@ -647,16 +647,17 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
     if d.iter().all(|&d| d >= 0.0) {
         return polygon.to_vec();
     }
+    let inside = |i: usize| d[i] >= 0.0;
     let mut result = Vec::with_capacity(polygon.len() + 1);
     for i in 0..polygon.len() {
         let j = (i + 1) % polygon.len();
-        if d[i] >= 0.0 {
+        if inside(i) {
             result.push(polygon[i]);
         }
         // Always from the inner to the outer corner: neighbours that share the edge get the same point.
-        if d[i] >= 0.0 && !(d[j] >= 0.0) {
+        if inside(i) && !inside(j) {
             result.push(between(&polygon[i], &polygon[j], d[i], d[j]));
-        } else if d[j] >= 0.0 && !(d[i] >= 0.0) {
+        } else if inside(j) && !inside(i) {
             result.push(between(&polygon[j], &polygon[i], d[j], d[i]));
         }
     }

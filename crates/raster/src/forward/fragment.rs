@@ -260,7 +260,7 @@ impl TilePlanes<'_> {
         let mut passed = reached;
         if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
             let plain = test.func == Compare::Always;
-            if !(plain && !test.write) {
+            if !plain || test.write {
                 let values = &mut tile.stored(samples)[at..at + LANES];
                 let stored = F32x8::from_slice(simd, values);
                 passed = reached & depth_test(simd, test, depth, stored);
@@ -399,4 +399,4 @@ pub(crate) fn columns(first: i32, x0: i32, x1: i32) -> u32 {
     if high <= low { 0 } else { ((1u32 << high) - 1) & !((1u32 << low) - 1) }
 }
 
-const _: () = assert!(TILE % LANES == 0, "rows of a tile are cut into whole rows of eight");
+const _: () = assert!(TILE.is_multiple_of(LANES), "rows of a tile are cut into whole rows of eight");

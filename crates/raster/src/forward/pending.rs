@@ -20,26 +20,27 @@ use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
 
+/// State of a draw, and the pixels that it may touch.
+type ClippedState = (Arc<FragmentState>, [i32; 4]);
+
 /// A job's triangles and what bounds them.
 #[derive(Debug)]
 struct PendingJob {
     primitives: Primitives,
     /// State and allowed pixels of each draw.
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    /// For each entry of the tile lists, in blocks of eight entries: the rows of [`candidate`].
-    candidates: Vec<f32>,
-    /// Where each tile's blocks begin.
-    starts: Vec<u32>,
+    draws: Vec<ClippedState>,
     /// The largest of a tile's.
     tile_bounds: Vec<f32>,
-    /// Finer lists of tiles with many triangles, made when first searched.
+    /// What searching a tile needs, made when it is first searched.
     grids: Vec<OnceLock<Box<Grid>>>,
 }
 
 /// A tile's triangles by blocks of 8x8 texels.
 #[derive(Debug)]
 struct Grid {
-    /// As [`PendingJob::candidates`], block by block.
+    /// One list for the whole tile.
+    whole: bool,
+    /// Blocks of eight entries, the rows of [`candidate`].
     candidates: Vec<f32>,
     /// The entries that the candidates are.
     entries: Vec<u32>,
@@ -49,7 +50,7 @@ struct Grid {
 
 /// Blocks along a tile's side.
 const BLOCKS: usize = TILE / BLOCK;
-/// Tiles with more entries than this get a grid.
+/// Tiles with no more entries than this have one list for all blocks.
 const FEW: usize = 32;
 
 /// See the module.
@@ -113,10 +114,9 @@ impl PendingDepth {
         scale: f32,
         tiles_x: u32,
         tiles: usize,
-        jobs: Vec<(Primitives, Vec<(Arc<FragmentState>, [i32; 4])>)>,
+        jobs: Vec<(Primitives, Vec<ClippedState>)>,
     ) -> Self {
-        let jobs: Vec<PendingJob> =
-            jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles_x as usize, tiles)).collect();
+        let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
         let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
         for job in &jobs {
             for (all, its) in tile_bounds.iter_mut().zip(&job.tile_bounds) {
@@ -160,23 +160,15 @@ impl PendingDepth {
         // Places within the tile, as the candidates' planes take them.
         let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
         for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
-            let range = job.primitives.batch.tile_range(tile);
-            let first = range.start;
-            let grid = (range.len() > FEW).then(|| job.grid(tile, self.sign, self.scale, self.tiles_x as usize));
-            let (candidates, entries) = match grid {
-                Some(grid) => {
-                    let block = (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK;
-                    let eights = grid.starts[block] as usize..grid.starts[block + 1] as usize;
-                    let entries = &grid.entries[eights.start * LANES..eights.end * LANES];
-                    (&grid.candidates[eights.start * ROWS * LANES..eights.end * ROWS * LANES], Some(entries))
-                }
-                None => (&job.candidates[job.starts[tile] as usize..job.starts[tile + 1] as usize], None),
-            };
+            let grid = job.grid(tile, self.sign, self.scale, self.tiles_x as usize);
+            let block = if grid.whole { 0 } else { (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK };
+            let eights = grid.starts[block] as usize..grid.starts[block + 1] as usize;
+            let candidates = &grid.candidates[eights.start * ROWS * LANES..eights.end * ROWS * LANES];
+            let entries = &grid.entries[eights.start * LANES..eights.end * LANES];
             for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
                 let mut bits = above(simd, block, u, v, best.max(floor));
                 while bits != 0 {
-                    let at = number * LANES + bits.trailing_zeros() as usize;
-                    let at = entries.map_or(first + at, |entries| entries[at] as usize);
+                    let at = entries[number * LANES + bits.trailing_zeros() as usize] as usize;
                     bits &= bits - 1;
                     let setup = job.primitives.batch.item(at);
                     let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
@@ -195,11 +187,11 @@ impl PendingDepth {
     }
 
     /// Draws everything into the plane.
-    pub(crate) fn resolve(self: Box<Self>, plane: &mut Plane<f32>, scale: f32) {
+    pub(crate) fn resolve(self, plane: &mut Plane<f32>, scale: f32) {
         let viewport = plane.viewport();
         let tiles_x = viewport.tiles_x();
         let layout = super::shade::Layout::default();
-        let states: Vec<Vec<(Arc<FragmentState>, [i32; 4])>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
+        let states: Vec<Vec<ClippedState>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
         let items: Vec<Item<'_>> = self
             .jobs
             .into_iter()
@@ -227,8 +219,14 @@ impl PendingJob {
             let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
             let batch = &self.primitives.batch;
             let mut lists: [Vec<u32>; BLOCKS * BLOCKS] = std::array::from_fn(|_| Vec::new());
-            for at in batch.tile_range(tile) {
+            let range = batch.tile_range(tile);
+            let whole = range.len() <= FEW;
+            for at in range {
                 let setup = batch.item(at);
+                if whole {
+                    lists[0].push(at as u32);
+                    continue;
+                }
                 // Texels whose centres may lie within the box.
                 let span = |v: [i32; 3], origin: i32| {
                     let low = (v[0].min(v[1]).min(v[2]) / SUBPIXEL - 1 - origin).clamp(0, TILE as i32 - 1);
@@ -241,7 +239,8 @@ impl PendingJob {
                     }
                 }
             }
-            let mut grid = Grid { candidates: Vec::new(), entries: Vec::new(), starts: [0; BLOCKS * BLOCKS + 1] };
+            let mut grid =
+                Grid { whole, candidates: Vec::new(), entries: Vec::new(), starts: [0; BLOCKS * BLOCKS + 1] };
             for (block, list) in lists.iter().enumerate() {
                 for eight in list.chunks(LANES) {
                     let rows = grid.candidates.len();
@@ -268,37 +267,18 @@ impl PendingJob {
     }
 }
 
-fn job(
-    primitives: Primitives,
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    sign: f32,
-    scale: f32,
-    tiles_x: usize,
-    tiles: usize,
-) -> PendingJob {
+fn job(primitives: Primitives, draws: Vec<ClippedState>, sign: f32, scale: f32, tiles: usize) -> PendingJob {
     let batch = &primitives.batch;
-    let (mut candidates, mut starts) = (Vec::new(), vec![0u32]);
-    let mut tile_bounds = Vec::with_capacity(tiles);
-    for tile in 0..tiles {
-        let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
-        let mut most = f32::NEG_INFINITY;
+    let bound = |s: &Setup| if sign > 0.0 { s.z_max } else { -s.z_min };
+    let tile_bounds = (0..tiles).map(|tile| {
         let range = batch.tile_range(tile);
-        for eight in range.clone().step_by(LANES) {
-            let block = candidates.len();
-            candidates.resize(block + ROWS * LANES, f32::NEG_INFINITY);
-            for (lane, at) in (eight..range.end.min(eight + LANES)).enumerate() {
-                let row = candidate(batch.item(at), origin, sign, scale);
-                most = most.max(row[3]);
-                for k in 0..ROWS {
-                    candidates[block + k * LANES + lane] = row[k];
-                }
-            }
-        }
-        starts.push(candidates.len() as u32);
-        tile_bounds.push(most);
-    }
+        let most = range.clone().map(|at| bound(batch.item(at))).fold(f32::NEG_INFINITY, f32::max);
+        // As read: stored and divided again. Both keep the order.
+        if range.is_empty() { most } else { stored(most.abs(), scale) / scale * sign }
+    });
+    let tile_bounds = tile_bounds.collect();
     let grids = (0..tiles).map(|_| OnceLock::new()).collect();
-    PendingJob { primitives, draws, candidates, starts, tile_bounds, grids }
+    PendingJob { primitives, draws, tile_bounds, grids }
 }
 
 /// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the

@@ -7,7 +7,9 @@
 use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored_depth};
 use super::fragment_ops::compare::compare;
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
-use super::state::Compare;
+use super::fragment_ops::stencil::{load_stencil, stencil_test};
+use super::plane::PlaneTile;
+use super::state::{Compare, StencilFace};
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;
 use crate::{BLOCK, SUBPIXEL, Setup, TILE, TILE_PIXELS};
@@ -87,6 +89,45 @@ pub(crate) fn depths<S: Simd>(
                     }
                 }
                 masks[s] = passed;
+            }
+        },
+    );
+}
+
+/// Leaves in `masks` the samples that pass a stencil test which changes nothing.
+pub(crate) fn stencil<S: Simd>(
+    simd: S,
+    block: &Block,
+    planes: &mut TilePlanes<'_>,
+    face: &StencilFace,
+    masks: &mut [u64; SAMPLES],
+) {
+    let samples = planes.samples;
+    let Some(tile) = &mut planes.stencil else { return };
+    let values = match tile {
+        PlaneTile::Stored(values) => values,
+        PlaneTile::Cleared(value) => {
+            // One value decides for all.
+            let stored = load_stencil(simd, &[*value; LANES]);
+            if bits_of(stencil_test(simd, face, stored)) == 0 {
+                *masks = [0; SAMPLES];
+            }
+            return;
+        }
+    };
+    debug_assert_eq!(values.len(), samples * TILE_PIXELS);
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for (s, plane) in values.chunks_exact(TILE_PIXELS).enumerate() {
+                for row in block.rows.clone() {
+                    if (masks[s] >> (8 * row)) & 0xff != 0 {
+                        let at = (block.y + row) * TILE + block.x;
+                        let stored = load_stencil(simd, &plane[at..at + LANES]);
+                        let passed = u64::from(bits_of(stencil_test(simd, face, stored)) & 0xff);
+                        masks[s] &= !(0xff << (8 * row)) | passed << (8 * row);
+                    }
+                }
             }
         },
     );

@@ -11,7 +11,7 @@ use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace};
+use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace, StencilOp};
 use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
@@ -86,7 +86,7 @@ impl FragmentOps {
         };
         let protected = protected_bits(state.masked);
         let mixing = mixing(state);
-        let common = state.stencil.is_none()
+        let common = state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back))
             && state.logic_op.is_none()
             && state.query.is_none()
             && state.polygon_stipple.is_none()
@@ -96,6 +96,11 @@ impl FragmentOps {
             && mixing != Mixing::General;
         Self { mixing, protected, common, all_protected: state.masked == [true; 4], coverage }
     }
+}
+
+/// Whether a stencil test changes nothing.
+fn keeps(face: &StencilFace) -> bool {
+    face.write_mask == 0 || [face.fail, face.depth_fail, face.pass] == [StencilOp::Keep; 3]
 }
 
 fn mixing(state: &FragmentState) -> Mixing {

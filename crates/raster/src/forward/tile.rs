@@ -303,6 +303,13 @@ impl FragmentSink<'_, '_, '_> {
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
         }
+        if let Some(test) = &state.stencil {
+            let face = if self.shader.facet.back { &test.back } else { &test.front };
+            block::stencil(simd, block, &mut self.run.planes, face, &mut bits);
+            if bits == [0; SAMPLES] {
+                return;
+            }
+        }
         let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.

@@ -15,7 +15,7 @@ use super::state::{FragmentState, Unit};
 use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Simd};
+use vitral_math::lanes::{F32x8, LANES, Simd};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -227,25 +227,48 @@ impl<'a> Shader<'a> {
             let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
             return (Words::One(word), if passed { any } else { 0 });
         }
-        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0);
-        for row in 0..BLOCK {
-            let active = (any >> (8 * row)) as u32 & 0xff;
-            if active != 0 {
+        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
+        if any == u64::MAX {
+            let x = CENTERS.map(|c| c + left as f32);
+            for row in 0..BLOCK {
                 let out = &mut words[BLOCK * row..BLOCK * (row + 1)];
-                passed |=
-                    u64::from(self.block_row(simd, left as f32, (bottom + row) as f32 + 0.5, active, out)) << (8 * row);
+                let y = [(bottom + row) as f32 + 0.5; LANES];
+                passed |= u64::from(self.eight(simd, &x, &y, 0xff, out)) << (8 * row);
+            }
+            return (Words::Each(words), passed);
+        }
+        // Small facets cover few pixels of a row: eight of any rows go together.
+        let mut rest = any;
+        while rest != 0 {
+            let (mut places, mut x, mut y, mut count) = ([0; LANES], [0.0; LANES], [0.0; LANES], 0);
+            while rest != 0 && count < LANES {
+                places[count] = rest.trailing_zeros();
+                rest &= rest - 1;
+                count += 1;
+            }
+            for lane in 0..LANES {
+                let place = places[lane.min(count - 1)] as usize;
+                x[lane] = (left + place % BLOCK) as f32 + 0.5;
+                y[lane] = (bottom + place / BLOCK) as f32 + 0.5;
+            }
+            let mut out = [0; LANES];
+            let pass = self.eight(simd, &x, &y, (1 << count) - 1, &mut out);
+            for lane in 0..count {
+                words[places[lane] as usize] = out[lane];
+                passed |= u64::from(pass >> lane & 1) << places[lane];
             }
         }
         (Words::Each(words), passed)
     }
 
+    /// The packed colours of eight pixels, and which of `active` pass the alpha test.
     #[inline(never)]
-    fn block_row<S: Simd>(&self, simd: S, left: f32, y: f32, active: u32, out: &mut [u32]) -> u32 {
+    fn eight<S: Simd>(&self, simd: S, x: &[f32; LANES], y: &[f32; LANES], active: u32, out: &mut [u32]) -> u32 {
         simd.vectorize(
             #[inline(always)]
             || {
-                let x = F32x8::from_slice(simd, &CENTERS) + left;
-                let (color, mut passed) = self.row(simd, x, splat(simd, y), active);
+                let (x, y) = (F32x8::from_slice(simd, x), F32x8::from_slice(simd, y));
+                let (color, mut passed) = self.row(simd, x, y, active);
                 if let Some(test) = self.state.alpha_test {
                     passed &= bits_of(alpha_test(simd, test, color[3]));
                 }

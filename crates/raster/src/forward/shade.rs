@@ -3,7 +3,7 @@
 use super::assemble::{Facet, FacetKind, Shape};
 use super::block::Words;
 use super::environment::fog::{color_sum, fog};
-use super::environment::{UNITS, environment};
+use super::environment::{UNITS, environment, format_of, modulate};
 use super::fragment_ops::compare::{alpha_test, holds};
 use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
@@ -11,7 +11,7 @@ use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, lod, needs_lod};
 use super::sample::sample;
-use super::state::{FragmentState, Unit};
+use super::state::{EnvironmentMode, FragmentState, Unit};
 use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
@@ -300,6 +300,29 @@ impl<'a> Shader<'a> {
         y: F32x8<S>,
         active: u32,
     ) -> Rgba<S> {
+        // The mode that nearly all programs use needs no other unit's texture.
+        if self.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
+            let mut color = *primary;
+            for unit in &self.state.units {
+                let texture = self.texture(simd, weights, unit, x, y, active);
+                color = modulate(format_of(&unit.texture), &texture, color);
+            }
+            return color;
+        }
+        self.combined(simd, weights, primary, x, y, active)
+    }
+
+    /// All units' textures and environments, where one may use another's texture.
+    #[inline(never)]
+    fn combined<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        primary: &Rgba<S>,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        active: u32,
+    ) -> Rgba<S> {
         let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
         for unit in &self.state.units {
             textures[unit.index % UNITS] = self.texture(simd, weights, unit, x, y, active);
@@ -311,8 +334,24 @@ impl<'a> Shader<'a> {
         color
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn texture<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        unit: &Unit,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        active: u32,
+    ) -> Rgba<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.texture_inlined(simd, weights, unit, x, y, active),
+        )
+    }
+
+    #[inline(always)]
+    fn texture_inlined<S: Simd>(
         &self,
         simd: S,
         weights: &Weights<S>,

@@ -55,7 +55,7 @@ fn keep_other_parts<S: Simd>(format: BaseFormat, color: Rgba<S>, previous: Rgba<
 
 /// `MODULATE`, the mode that nearly all programs use.
 #[inline(always)]
-fn modulate<S: Simd>(format: BaseFormat, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
+pub(crate) fn modulate<S: Simd>(format: BaseFormat, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
     let product = [p[0] * t[0], p[1] * t[1], p[2] * t[2], p[3] * t[3]];
     saturate_rgba(keep_other_parts(format, product, p))
 }

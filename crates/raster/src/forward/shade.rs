@@ -1,18 +1,21 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures, fog.
 
 use super::assemble::{Facet, FacetKind, Shape};
+use super::block::Words;
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
+use super::fragment_ops::compare::{alpha_test, holds};
+use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, lod, needs_lod};
 use super::sample::sample;
 use super::state::{FragmentState, Unit};
-use super::wide::{Rgba, clamp, max, min, saturate_rgba, splat, splat_rgba};
-use crate::{SUBPIXEL, Setup};
+use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
+use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Simd};
+use vitral_math::lanes::{F32x8, LANES, Simd};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -87,6 +90,8 @@ impl Interpolation {
         }
     }
 }
+
+const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
 /// Perspective-correct barycentric coordinates at eight points.
 struct Weights<S: Simd> {
@@ -213,6 +218,75 @@ impl<'a> Shader<'a> {
             color = fog(simd, f, color, self.value(simd, &weights, at));
         }
         self.covered(simd, x, y, color)
+    }
+
+    /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
+    pub(crate) fn block<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), any: u64) -> (Words, u64) {
+        if let Some(color) = self.constant() {
+            let passed = self.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
+            return (Words::One(word), if passed { any } else { 0 });
+        }
+        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
+        if any == u64::MAX {
+            let x = CENTERS.map(|c| c + left as f32);
+            for row in 0..BLOCK {
+                let out = &mut words[BLOCK * row..BLOCK * (row + 1)];
+                let y = [(bottom + row) as f32 + 0.5; LANES];
+                passed |= u64::from(self.eight(simd, &x, &y, 0xff, out)) << (8 * row);
+            }
+            return (Words::Each(words), passed);
+        }
+        // Small facets cover few pixels of a row: eight of any rows go together.
+        let mut rest = any;
+        while rest != 0 {
+            let (mut places, mut x, mut y, mut count) = ([0; LANES], [0.0; LANES], [0.0; LANES], 0);
+            while rest != 0 && count < LANES {
+                places[count] = rest.trailing_zeros();
+                rest &= rest - 1;
+                count += 1;
+            }
+            for lane in 0..LANES {
+                let place = places[lane.min(count - 1)] as usize;
+                x[lane] = (left + place % BLOCK) as f32 + 0.5;
+                y[lane] = (bottom + place / BLOCK) as f32 + 0.5;
+            }
+            let mut out = [0; LANES];
+            let pass = self.eight(simd, &x, &y, (1 << count) - 1, &mut out);
+            for lane in 0..count {
+                words[places[lane] as usize] = out[lane];
+                passed |= u64::from(pass >> lane & 1) << places[lane];
+            }
+        }
+        (Words::Each(words), passed)
+    }
+
+    /// The packed colours of eight pixels, and which of `active` pass the alpha test.
+    #[inline(never)]
+    fn eight<S: Simd>(&self, simd: S, x: &[f32; LANES], y: &[f32; LANES], active: u32, out: &mut [u32]) -> u32 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (x, y) = (F32x8::from_slice(simd, x), F32x8::from_slice(simd, y));
+                let (color, mut passed) = self.row(simd, x, y, active);
+                if let Some(test) = self.state.alpha_test {
+                    passed &= bits_of(alpha_test(simd, test, color[3]));
+                }
+                pack(&saturate_rgba(color)).store_slice(out);
+                passed & active
+            },
+        )
+    }
+
+    /// The colour of all pixels, where it is the same for all.
+    fn constant(&self) -> Option<[f32; 4]> {
+        let plain = self.state.units.is_empty() && self.state.fog.is_none() && !self.state.color_sum;
+        if !(plain && self.state.flat) {
+            return None;
+        }
+        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
+        let r = &self.records[self.facet.provoking as usize + at..][..4];
+        Some([r[0], r[1], r[2], r[3]].map(|c| c.clamp(0.0, 1.0)))
     }
 
     /// All units' textures and environments.

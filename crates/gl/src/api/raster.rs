@@ -157,7 +157,7 @@ impl Context {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::api::testing::{context, put};
+    use crate::api::testing::{RESULT, context, put};
     use crate::state::{Lines, Points, Polygons};
 
     #[test]
@@ -190,6 +190,8 @@ mod tests {
     #[test]
     fn setters() {
         let mut c = context();
+        c.configure_default_framebuffer(gl::RGBA, 24, 8, 0);
+        assert!(c.make_current(RESULT, gl::UNSIGNED_BYTE, 1, 1));
         c.polygon_mode(gl::BACK, gl::LINE);
         c.line_stipple(1000, 0x0F0F);
         let at = put(&c, &[1.0_f32, 2.0, 3.0]);

@@ -261,13 +261,13 @@ mod tests {
     }
 
     #[test]
-    fn odd_sides_weigh_by_area() {
-        // 3 texels become 1; 5 become 2: the middle one is shared.
+    fn odd_sides_interpolate_at_the_new_centres() {
+        // 3 texels become 1; 5 become 2, with centres at 1.25 and 3.75.
         assert_eq!(taps(3, 1, 0).len(), 1);
         let weights: f32 = taps(3, 1, 0)[0].iter().map(|t| t.1).sum();
         assert!((weights - 1.0).abs() < 1e-6);
-        assert_eq!(taps(5, 2, 0)[0], [(0, 0.4), (1, 0.4), (2, 0.2)]);
-        assert_eq!(taps(5, 2, 0)[1], [(2, 0.2), (3, 0.4), (4, 0.4)]);
+        assert_eq!(taps(5, 2, 0)[0], [(0, 0.25), (1, 0.75)]);
+        assert_eq!(taps(5, 2, 0)[1], [(3, 0.75), (4, 0.25)]);
         assert_eq!(taps(2, 1, 1), [vec![(0, 1.0)], vec![(1, 0.5), (2, 0.5)], vec![(3, 1.0)]]);
     }
 

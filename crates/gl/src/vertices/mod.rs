@@ -55,7 +55,10 @@ mod tests {
 
     /// A new context with 64 KiB of client memory at [`BASE`].
     pub(super) fn context() -> Context {
-        Context::new(Arc::new(Arena::new(BASE, 1 << 16)), Arc::new(Shared::default()))
+        let mut c = Context::new(Arc::new(Arena::new(BASE, 1 << 16)), Arc::new(Shared::default()));
+        c.configure_default_framebuffer(enums::RGBA, 24, 8, 0);
+        assert!(c.make_current(BASE + 0xF000, enums::UNSIGNED_BYTE, 16, 16));
+        c
     }
 
     /// Numbers without order, some of them wild.

@@ -208,8 +208,8 @@ mod tests {
         c.state.eval.map2_enabled[7] = true;
         c.map_grid_2f(2, 0.0, 1.0, 3, 0.0, 1.0);
         c.eval_mesh_2(enums::FILL, 0, 2, 0, 3);
-        let strip = |first| Primitive { mode: enums::QUAD_STRIP, first, count: 8 };
-        assert_eq!(c.builder.log[0].primitives, [strip(0), strip(8)]);
+        let strip = |first| Primitive { mode: enums::QUAD_STRIP, first, count: 6 };
+        assert_eq!(c.builder.log[0].primitives, [strip(0), strip(6), strip(12)]);
         c.eval_mesh_2(enums::FILL, i32::MIN, i32::MAX, i32::MIN, i32::MAX);
         assert_eq!(std::mem::take(&mut c.error), enums::OUT_OF_MEMORY);
         c.eval_mesh_1(enums::FILL, 0, 1);

@@ -352,11 +352,6 @@ impl Batch {
         &self.setups[self.items[at] as usize]
     }
 
-    /// The setups of all entries, tile by tile.
-    pub(crate) fn items(&self) -> &[u32] {
-        &self.items
-    }
-
     /// The triangles that touch tile `tile`, in order of submission.
     pub fn tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;

@@ -14,6 +14,8 @@ pub(crate) struct Piece {
     pub triangles: Vec<[u32; 3]>,
     /// Vertices of the batch.
     pub vertices: PieceVertices,
+    /// Smallest and largest coordinates, if all positions have `w = 1`.
+    pub bounds: Option<[[f32; 3]; 2]>,
 }
 
 /// Which vertices a piece uses.
@@ -88,7 +90,7 @@ impl Assembled {
             add_triangles(primitive, &mut triangles);
         }
         let corner = |i: u32| batch.vertex(i) as u32;
-        let pieces = triangles.chunks(PIECE).map(|t| piece(t, corner)).collect();
+        let pieces = triangles.chunks(PIECE).map(|t| piece(t, corner, &batch.positions)).collect();
         Self { pieces, others }
     }
 }
@@ -117,13 +119,14 @@ fn add_triangles(p: &Primitive, out: &mut Vec<[u32; 3]>) {
     }
 }
 
-fn piece(triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32) -> Piece {
+fn piece(triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32, positions: &[[f32; 4]]) -> Piece {
     let mut triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(&corner)).collect();
+    let bounds = bounds(triangles.iter().flatten().map(|&v| positions[v as usize]));
     let all = || triangles.iter().flatten().copied();
     let (low, high) = (all().min().unwrap_or(0), all().max().map_or(0, |v| v + 1));
     if (high - low) as usize <= 4 * triangles.len() + 64 {
         triangles.iter_mut().flatten().for_each(|v| *v -= low);
-        return Piece { triangles, vertices: PieceVertices::Range(low, high) };
+        return Piece { triangles, vertices: PieceVertices::Range(low, high), bounds };
     }
     let mut list: Vec<u32> = all().collect();
     list.sort_unstable();
@@ -131,7 +134,42 @@ fn piece(triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32) -> Piece {
     for v in triangles.iter_mut().flatten() {
         *v = list.binary_search(v).unwrap_or(0) as u32;
     }
-    Piece { triangles, vertices: PieceVertices::List(list) }
+    Piece { triangles, vertices: PieceVertices::List(list), bounds }
+}
+
+fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
+    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    for p in positions {
+        if p[3] != 1.0 || !(p[0] + p[1] + p[2]).is_finite() {
+            return None;
+        }
+        for k in 0..3 {
+            bounds[0][k] = bounds[0][k].min(p[k]);
+            bounds[1][k] = bounds[1][k].max(p[k]);
+        }
+    }
+    Some(bounds)
+}
+
+impl Piece {
+    /// Whether the whole piece lies outside one plane of the view volume, or of `planes` (model space).
+    pub(crate) fn is_outside(&self, m: &[f32; 16], near: f32, planes: &[[f32; 4]]) -> bool {
+        let Some([low, high]) = self.bounds else { return false };
+        let row = |r: usize| [m[r], m[4 + r], m[8 + r], m[12 + r]];
+        let [x, y, z, w] = [row(0), row(1), row(2), row(3)];
+        let sum = |a: [f32; 4], s: f32, b: [f32; 4]| [0, 1, 2, 3].map(|k| a[k] + s * b[k]);
+        let sides =
+            [sum(w, 1.0, x), sum(w, -1.0, x), sum(w, 1.0, y), sum(w, -1.0, y), sum(w, -1.0, z), sum(z, -near, w)];
+        sides.iter().chain(planes).any(|p| {
+            // The corner that is farthest inside, with room for rounding.
+            let (mut most, mut size) = (p[3], p[3].abs());
+            for k in 0..3 {
+                most += (p[k] * low[k]).max(p[k] * high[k]);
+                size += p[k].abs() * low[k].abs().max(high[k].abs());
+            }
+            most < size * -1e-5
+        })
+    }
 }
 
 #[cfg(test)]
@@ -155,10 +193,10 @@ mod tests {
 
     #[test]
     fn pieces_keep_their_vertices_together() {
-        let p = piece(&[[7, 8, 9], [9, 8, 10]], |v| v);
+        let p = piece(&[[7, 8, 9], [9, 8, 10]], |v| v, &vec![[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
         assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
-        let p = piece(&[[7, 80_000, 9]], |v| v);
+        let p = piece(&[[7, 80_000, 9]], |v| v, &vec![[0.0; 4]; 80_001]);
         assert_eq!((p.vertices.len(), p.vertices.get(2)), (3, 80_000));
     }
 }

@@ -68,7 +68,13 @@ impl Geometry for DrawGeometry {
         let mut state = self.primitive.clone();
         state.draw = draw;
         if piece < self.filled_pieces() {
-            let Piece { triangles, vertices } = &self.assembled.pieces[piece];
+            let whole = &self.assembled.pieces[piece];
+            let Piece { triangles, vertices, .. } = whole;
+            let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
+            // With depth clamping near and far do not bound the view.
+            if !state.depth_clamp && whole.is_outside(matrix, state.window.near, planes) {
+                return;
+            }
             self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles, 0));
         } else {
             let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
@@ -154,7 +160,13 @@ impl DrawGeometry {
     fn user_distances(&self, positions: &[[f32; 4]]) -> Vec<f32> {
         let planes = &self.snapshot.clip_planes;
         let distance = |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
-        positions.iter().flat_map(|p| planes.iter().map(move |plane| distance(plane, p))).collect()
+        let mut distances = Vec::with_capacity(positions.len() * planes.len());
+        if !planes.is_empty() {
+            for p in positions {
+                distances.extend(planes.iter().map(|plane| distance(plane, p)));
+            }
+        }
+        distances
     }
 
     fn needs_sizes(&self) -> bool {

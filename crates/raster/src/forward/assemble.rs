@@ -161,6 +161,14 @@ pub struct Vertices<'a> {
     pub sizes: &'a [[f32; 2]],
 }
 
+/// On which side of the user's planes something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum UserSide {
+    Inside,
+    Across,
+    Outside,
+}
+
 /// A corner of a polygon that is being clipped.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
@@ -232,7 +240,11 @@ impl<'a> Assembler<'a> {
             return;
         }
         if any & flag::CLIP != 0 || self.state.user_planes > 0 {
-            return self.clipped(&corners, provoking);
+            match self.user_side(corners) {
+                UserSide::Outside => return,
+                UserSide::Inside if any & flag::CLIP == 0 => {}
+                _ => return self.clipped(&corners, provoking),
+            }
         }
         let position = |v: ScreenVertex| CornerPosition { x: v.x, y: v.y, z: v.z };
         let positions = [position(a), position(b), position(c)];
@@ -249,6 +261,21 @@ impl<'a> Assembler<'a> {
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
         self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+    }
+
+    /// Where a triangle lies to the user's planes.
+    fn user_side(&self, corners: [u32; 3]) -> UserSide {
+        let planes = self.state.user_planes;
+        let mut side = UserSide::Inside;
+        for plane in 0..planes {
+            let inside = |v: u32| self.vertices.user[v as usize * planes + plane] >= 0.0;
+            match (inside(corners[0]), inside(corners[1]), inside(corners[2])) {
+                (true, true, true) => {}
+                (false, false, false) => return UserSide::Outside,
+                _ => side = UserSide::Across,
+            }
+        }
+        side
     }
 
     /// With y upwards in the window, counter-clockwise corners have a positive area.

@@ -142,7 +142,8 @@ impl TilePlanes<'_> {
         visible
     }
 
-    /// Alpha test, coverage by alpha, stencil and depth test with their writes, and the colour of what passes.
+    /// Alpha test, coverage by alpha, stencil and depth test with their writes, and the colour of what passes. `settled`:
+    /// [`Self::visible`] has left the samples that pass stencil and depth test.
     #[inline(always)]
     pub(crate) fn fragments<S: Simd>(
         &mut self,
@@ -151,6 +152,7 @@ impl TilePlanes<'_> {
         ops: &FragmentOps,
         row: Row,
         back: bool,
+        settled: bool,
         mut bits: [u32; SAMPLES],
         depths: &Depths<S>,
         mut color: Rgba<S>,
@@ -181,7 +183,13 @@ impl TilePlanes<'_> {
         }
         let mut passed = bits;
         let mut count = 0;
-        for s in 0..samples {
+        if settled {
+            for s in 0..samples {
+                count += u64::from(bits[s].count_ones());
+                self.write_depth(simd, state, s, row, bits[s], depths[s]);
+            }
+        }
+        for s in 0..if settled { 0 } else { samples } {
             if bits[s] != 0 {
                 passed[s] = self.tests(simd, state, s, row, back, bits[s], depths[s]);
                 count += u64::from(passed[s].count_ones());
@@ -192,6 +200,24 @@ impl TilePlanes<'_> {
         }
         if count > 0 && !ops.all_protected {
             self.write_colors(simd, state, ops, row, &passed, &color);
+        }
+    }
+
+    /// Writes the depths of pixels that have passed.
+    #[inline(always)]
+    fn write_depth<S: Simd>(&mut self, simd: S, state: &FragmentState, s: usize, row: Row, bits: u32, depth: F32x8<S>) {
+        if bits == 0 || !state.depth.is_some_and(|test| test.write) {
+            return;
+        }
+        if let Some((tile, _)) = &mut self.depth {
+            let at = s * TILE_PIXELS + row.at;
+            let values = &mut tile.stored(self.samples)[at..at + LANES];
+            if bits == 0xff {
+                depth.store_slice(values);
+            } else {
+                let stored = F32x8::from_slice(simd, values);
+                select(mask_of(simd, bits), depth, stored).store_slice(values);
+            }
         }
     }
 
@@ -305,7 +331,11 @@ fn write_packed<S: Simd>(
     if ops.protected != 0 {
         new = write_unprotected(new, stored, ops.protected);
     }
-    mask_of(simd, bits).select(new, stored).store_slice(values);
+    if bits == 0xff {
+        new.store_slice(values);
+    } else {
+        mask_of(simd, bits).select(new, stored).store_slice(values);
+    }
 }
 
 /// The seldom factors and equations, kept out of line.

@@ -17,7 +17,7 @@ use super::state::{Compare, FragmentState};
 use super::tile::TileRun;
 use crate::{SUBPIXEL, Setup, TILE};
 use std::sync::Arc;
-use vitral_math::lanes::{Level, dispatch};
+use vitral_math::lanes::{LANES, Level, dispatch};
 
 /// A job's triangles and what bounds them.
 #[derive(Debug)]
@@ -25,8 +25,10 @@ struct PendingJob {
     primitives: Primitives,
     /// State and allowed pixels of each draw.
     draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    /// For each entry of the tile lists, a bound of its depths as read, times the sign.
-    bounds: Vec<f32>,
+    /// For each entry of the tile lists, in blocks of eight entries: the rows of [`candidate`].
+    candidates: Vec<f32>,
+    /// Where each tile's blocks begin.
+    starts: Vec<u32>,
     /// The largest of a tile's.
     tile_bounds: Vec<f32>,
 }
@@ -93,7 +95,8 @@ impl PendingDepth {
         tiles: usize,
         jobs: Vec<(Primitives, Vec<(Arc<FragmentState>, [i32; 4])>)>,
     ) -> Self {
-        let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
+        let jobs: Vec<PendingJob> =
+            jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles_x as usize, tiles)).collect();
         let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
         for job in &jobs {
             for (all, its) in tile_bounds.iter_mut().zip(&job.tile_bounds) {
@@ -119,15 +122,21 @@ impl PendingDepth {
             return best * self.sign;
         }
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
+        // Places within the tile, as the candidates' planes take them.
+        let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
         for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
-            let list = job.primitives.batch.tile_range(tile);
-            for at in list {
-                if job.bounds[at] <= best.max(floor) {
-                    continue;
-                }
-                let setup = job.primitives.batch.item(at);
-                if setup.covers(px, py) && job.allows(setup, x, y) {
-                    best = best.max(stored(setup.depth(px, py), self.scale) / self.scale * self.sign);
+            let first = job.primitives.batch.tile_range(tile).start;
+            let blocks = job.starts[tile] as usize..job.starts[tile + 1] as usize;
+            for (number, block) in job.candidates[blocks].chunks_exact(ROWS * LANES).enumerate() {
+                let mut bits = above(block, u, v, best.max(floor));
+                while bits != 0 {
+                    let at = first + number * LANES + bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    let setup = job.primitives.batch.item(at);
+                    let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
+                    if depth > best.max(floor) && setup.covers(px, py) && job.allows(setup, x, y) {
+                        best = depth;
+                    }
                 }
             }
         }
@@ -178,18 +187,59 @@ fn job(
     draws: Vec<(Arc<FragmentState>, [i32; 4])>,
     sign: f32,
     scale: f32,
+    tiles_x: usize,
     tiles: usize,
 ) -> PendingJob {
-    let of_setup: Vec<f32> = primitives
-        .batch
-        .setups()
-        .iter()
-        .map(|s| if sign > 0.0 { stored(s.z_max, scale) / scale } else { -stored(s.z_min, scale) / scale })
-        .collect();
-    let items = primitives.batch.items();
-    let bounds: Vec<f32> = items.iter().map(|&i| of_setup[i as usize]).collect();
-    let tile_bounds = (0..tiles)
-        .map(|t| bounds[primitives.batch.tile_range(t)].iter().copied().fold(f32::NEG_INFINITY, f32::max))
-        .collect();
-    PendingJob { primitives, draws, bounds, tile_bounds }
+    let batch = &primitives.batch;
+    let (mut candidates, mut starts) = (Vec::new(), vec![0u32]);
+    let mut tile_bounds = Vec::with_capacity(tiles);
+    for tile in 0..tiles {
+        let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
+        let mut most = f32::NEG_INFINITY;
+        let range = batch.tile_range(tile);
+        for eight in range.clone().step_by(LANES) {
+            let block = candidates.len();
+            candidates.resize(block + ROWS * LANES, f32::NEG_INFINITY);
+            for (lane, at) in (eight..range.end.min(eight + LANES)).enumerate() {
+                let row = candidate(batch.item(at), origin, sign, scale);
+                most = most.max(row[3]);
+                for k in 0..ROWS {
+                    candidates[block + k * LANES + lane] = row[k];
+                }
+            }
+        }
+        starts.push(candidates.len() as u32);
+        tile_bounds.push(most);
+    }
+    PendingJob { primitives, draws, candidates, starts, tile_bounds }
+}
+
+/// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the
+/// bound of its depths; times the sign.
+const ROWS: usize = 4;
+
+fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; ROWS] {
+    let bound = if sign > 0.0 { stored(setup.z_max, scale) / scale } else { -stored(setup.z_min, scale) / scale };
+    let (dx, dy) = (setup.dz_dx * sign, setup.dz_dy * sign);
+    let at = |k: usize| ((origin[k] * SUBPIXEL + SUBPIXEL / 2 - setup.origin[k]) as f32) / SUBPIXEL as f32;
+    let (x, y) = (at(0) * dx, at(1) * dy);
+    let size = setup.z.abs() + x.abs() + y.abs() + (dx.abs() + dy.abs()) * TILE as f32;
+    let margin = size * 1e-6 + 1.0 / scale.min(16_777_216.0).max(1.0e6);
+    let corner = setup.z * sign + x + y + margin;
+    if corner.is_finite() && dx.is_finite() && dy.is_finite() {
+        [corner, dx, dy, bound]
+    } else {
+        [f32::MAX, 0.0, 0.0, bound]
+    }
+}
+
+/// Which of a block's eight candidates may be above `floor` at a place of the tile.
+#[inline(always)]
+fn above(block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
+    let mut bits = 0;
+    for lane in 0..LANES {
+        let plane = block[lane] + block[LANES + lane] * u + block[2 * LANES + lane] * v;
+        bits |= u32::from((plane > floor) & (block[3 * LANES + lane] > floor)) << lane;
+    }
+    bits
 }

@@ -105,24 +105,28 @@ pub(crate) struct Shader<'a> {
     pub records: &'a [f32],
     pub shape: Option<Shape>,
     pub interpolation: Interpolation,
+    ready: bool,
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(
-        setup: &Setup,
-        facet: Facet,
-        draw: &'a DrawContext<'a>,
-        records: &'a [f32],
-        shapes: &[Shape],
-    ) -> Self {
+    #[inline(always)]
+    pub(crate) fn new(facet: Facet, draw: &'a DrawContext<'a>, records: &'a [f32], shapes: &[Shape]) -> Self {
         let layout = draw.layout;
-        let mut interpolation =
-            if draw.shaded { Interpolation::new(setup, &facet, records) } else { Interpolation::default() };
-        if facet.kind == FacetKind::Polygon && layout.smooth[2] {
-            interpolation.prepare_edges(setup);
-        }
         let shape = if facet.kind == FacetKind::Polygon { None } else { shapes.get(facet.shape as usize).copied() };
-        Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation }
+        let interpolation = Interpolation::default();
+        Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation, ready: false }
+    }
+
+    /// Makes the facet ready to be interpolated: before the first row that shows.
+    #[inline(always)]
+    pub(crate) fn prepare(&mut self, setup: &Setup) {
+        if !self.ready {
+            self.ready = true;
+            self.interpolation = Interpolation::new(setup, &self.facet, self.records);
+            if self.facet.kind == FacetKind::Polygon && self.layout.smooth[2] {
+                self.interpolation.prepare_edges(setup);
+            }
+        }
     }
 
     #[inline(always)]

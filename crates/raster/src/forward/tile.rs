@@ -97,7 +97,7 @@ impl<'a> TileRun<'a> {
                     }
                     let pattern = if draw.multisample { many } else { one };
                     let (records, shapes) = (&primitives.records, &primitives.shapes);
-                    let shader = Shader::new(setup, facet, draw, records, shapes);
+                    let shader = Shader::new(facet, draw, records, shapes);
                     let (x, y) = (self.x, self.y);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
                     traverse(simd, setup, (x, y), pattern, &mut sink);
@@ -178,7 +178,7 @@ impl<'a> TileRun<'a> {
         let depth = stored_depth(simd, F32x8::from_slice(simd, &depth), scale);
         let color = image_color(simd, image, state, bits, at);
         let bits = [bits; SAMPLES];
-        self.planes.fragments(simd, state, ops, row, false, bits, &[depth; SAMPLES], color);
+        self.planes.fragments(simd, state, ops, row, false, false, bits, &[depth; SAMPLES], color);
     }
 }
 
@@ -328,6 +328,7 @@ impl FragmentSink<'_, '_, '_> {
         if self.draw.shaded {
             let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
             let passed;
+            self.shader.prepare(setup);
             (color, passed) = self.shader.row(simd, x, splat(simd, top as f32 + 0.5), active);
             active &= passed;
             for b in &mut bits {
@@ -336,7 +337,8 @@ impl FragmentSink<'_, '_, '_> {
         }
         if active != 0 {
             let back = self.shader.facet.back;
-            self.run.planes.fragments(simd, state, &self.draw.ops, at, back, bits, &depths, color);
+            let settled = state.stencil.is_none();
+            self.run.planes.fragments(simd, state, &self.draw.ops, at, back, settled, bits, &depths, color);
         }
     }
 }

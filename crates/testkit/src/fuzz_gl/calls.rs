@@ -8,8 +8,12 @@ use vitral_gl::Context;
 pub(super) type Call = fn(&mut Context, &mut Source<'_>);
 
 macro_rules! argument {
-    ($source:ident _) => { $source.any() };
-    ($source:ident $group:ident) => { $source.of($group) };
+    ($source:ident _) => {
+        $source.any()
+    };
+    ($source:ident $group:ident) => {
+        $source.of($group)
+    };
 }
 
 macro_rules! calls {

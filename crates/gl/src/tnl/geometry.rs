@@ -4,6 +4,7 @@ use super::assembled::{Assembled, Piece, PieceVertices};
 use super::snapshot::VertexSnapshot;
 use super::vertices::{Eight, shade};
 use crate::enums as gl;
+use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
@@ -182,9 +183,12 @@ impl DrawGeometry {
             let [a, b, c] = points.attenuation;
             let loss = a + b * d + c * d * d;
             let size = if loss > 0.0 { points.size / loss.sqrt() } else { points.limits[1] };
-            let size = size.clamp(points.limits[0], points.limits[1].max(points.limits[0]));
+            let most = points.limits[1].min(state::MAX_POINT_SIZE);
+            let size = size.max(points.limits[0]).min(most).max(1.0);
             match points.fade {
-                Some(threshold) if size < threshold => [threshold, (size / threshold) * (size / threshold)],
+                Some(threshold) if size < threshold => {
+                    [threshold.min(state::MAX_POINT_SIZE), (size / threshold) * (size / threshold)]
+                }
                 _ => [size, 1.0],
             }
         };

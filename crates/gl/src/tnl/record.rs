@@ -4,6 +4,7 @@ use super::geometry::{DrawGeometry, PointSizes};
 use super::snapshot::{LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
+use crate::state;
 use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_exec::Workers;
@@ -177,7 +178,7 @@ impl Context {
             offset: [offset(0), offset(1), offset(2)],
             depth_step: depth_step(target),
             polygon_mode: s.polygons.mode.map(mode),
-            line_width: s.lines.width,
+            line_width: s.lines.width.clamp(1.0, state::MAX_POINT_SIZE),
             line_smooth: s.lines.smooth && !multisample,
             multisample,
             point_smooth: s.points.smooth && !multisample && !s.points.sprite,
@@ -187,11 +188,12 @@ impl Context {
     }
 }
 
-/// The smallest step of a fixed-point depth plane, 0 for floating point.
+/// The unit of polygon offset in a fixed-point depth plane: two of its steps, since rounding may swallow part of one. 0 for
+/// floating point.
 fn depth_step(target: &Target) -> f32 {
     let scale = target
         .depth
         .as_ref()
         .map_or(16_777_215.0, |depth| depth.lock().unwrap_or_else(std::sync::PoisonError::into_inner).scale);
-    if scale == 1.0 { 0.0 } else { 1.0 / scale }
+    if scale == 1.0 { 0.0 } else { 2.0 / (scale + 1.0) }
 }

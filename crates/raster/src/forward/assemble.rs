@@ -10,7 +10,7 @@
 use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
-use crate::{Batch, SUBPIXEL, SamplePattern, Viewport};
+use crate::{Batch, GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
 use std::ops::Range;
 
 /// How a facet's interior is found and coloured.
@@ -96,7 +96,7 @@ pub struct PrimitiveState {
     pub cull: [bool; 2],
     /// Polygon offset factor and units for points, lines, fill; 0 when disabled.
     pub offset: [[f32; 2]; 3],
-    /// The smallest depth step; 0 for floating point, where it depends on the depth.
+    /// The unit of polygon offset; 0 for floating point, where it depends on the depth.
     pub depth_step: f32,
     /// How front and back polygons are drawn: 0 points, 1 lines, 2 filled.
     pub polygon_mode: [u8; 2],
@@ -236,7 +236,7 @@ impl<'a> Assembler<'a> {
         let s = self.vertices.screen;
         let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];
         let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
-        if all & flag::FRUSTUM != 0 || any & flag::NOT_FINITE != 0 {
+        if all & self.outside() != 0 || any & flag::NOT_FINITE != 0 {
             return;
         }
         if any & flag::CLIP != 0 || self.state.user_planes > 0 {
@@ -278,6 +278,12 @@ impl<'a> Assembler<'a> {
         side
     }
 
+    /// The flags any of which puts a primitive out of view if all its vertices have it.
+    #[inline(always)]
+    fn outside(&self) -> u32 {
+        if self.state.depth_clamp { flag::FRUSTUM & !(flag::NEAR | flag::FAR) } else { flag::FRUSTUM }
+    }
+
     /// With y upwards in the window, counter-clockwise corners have a positive area.
     #[inline(always)]
     fn is_back(&self, area: i64) -> bool {
@@ -297,7 +303,11 @@ impl<'a> Assembler<'a> {
     /// The depth plane, with the polygon offset of points, lines or filled polygons.
     #[inline(always)]
     fn plane(&self, [a, b, c]: [CornerPosition; 3], area: i64, offset: usize) -> DepthPlane {
-        let mut plane = DepthPlane::new(a, b, c, area);
+        self.offset(DepthPlane::new(a, b, c, area), offset)
+    }
+
+    #[inline(always)]
+    fn offset(&self, mut plane: DepthPlane, offset: usize) -> DepthPlane {
         let [factor, units] = self.state.offset[offset];
         if factor != 0.0 || units != 0.0 {
             let slope = plane.dz_dx.abs().max(plane.dz_dy.abs());
@@ -333,7 +343,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
-    fn cut(&self, corners: &[u32; 3], frustum: bool) -> Vec<Corner> {
+    fn cut(&self, corners: &[u32; 3]) -> Vec<Corner> {
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let mut weights = [0.0; 3];
@@ -353,17 +363,17 @@ impl<'a> Assembler<'a> {
         }
         // Nothing at or behind the eye survives, whatever the depth range.
         polygon = cut(&polygon, |c| c.clip[3] - 1e-30);
-        let guard = if frustum { [1.0, 1.0] } else { self.state.window.guard };
+        let guard = self.state.window.guard;
         for axis in 0..2 {
-            polygon = cut(&polygon, |c| guard[axis] * c.clip[3] - c.clip[axis]);
-            polygon = cut(&polygon, |c| guard[axis] * c.clip[3] + c.clip[axis]);
+            polygon = cut(&polygon, |c| guard[axis][1] * c.clip[3] - c.clip[axis]);
+            polygon = cut(&polygon, |c| c.clip[axis] - guard[axis][0] * c.clip[3]);
         }
         polygon
     }
 
     #[cold]
     fn clipped(&mut self, corners: &[u32; 3], provoking: u32) {
-        let polygon = self.cut(corners, false);
+        let polygon = self.cut(corners);
         if polygon.len() < 3 {
             return;
         }
@@ -380,12 +390,18 @@ impl<'a> Assembler<'a> {
         // One depth plane, that of the largest piece: the pieces of a fan must not differ along their seams.
         let Some(largest) = (1..polygon.len() - 1).max_by_key(|&i| area_of(i).abs()) else { return };
         let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
-        let mut plane = self.plane(fan(largest), area_of(largest), 2);
-        let offset = plane.z - positions[0].z;
-        for p in &positions {
-            plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
-            plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
-        }
+        let plane = if self.state.depth_clamp {
+            let Some(plane) = self.clamped_plane(corners, positions[0]) else { return };
+            plane
+        } else {
+            let mut plane = self.plane(fan(largest), area_of(largest), 2);
+            let offset = plane.z - positions[0].z;
+            for p in &positions {
+                plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
+                plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
+            }
+            plane
+        };
         let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
         let provoking = self.slot(provoking);
         for i in 1..polygon.len() - 1 {
@@ -398,6 +414,15 @@ impl<'a> Assembler<'a> {
                 self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
             }
         }
+    }
+
+    /// The plane of a polygon that near and far do not clip: each fragment's depth is clamped to the depth range. The
+    /// corners that are left may lie near the eye's plane, where depth is not a number; the whole polygon's do not.
+    fn clamped_plane(&self, corners: &[u32; 3], origin: CornerPosition) -> Option<DepthPlane> {
+        let window = &self.state.window;
+        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), [origin.x, origin.y])?;
+        let [z_min, z_max] = window.depth_range();
+        Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) })
     }
 
     /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
@@ -455,7 +480,7 @@ impl<'a> Assembler<'a> {
     fn line_of(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: f32, back: bool, offset: usize) -> f32 {
         let s = self.vertices.screen;
         let (a, b) = (s[from as usize], s[to as usize]);
-        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & flag::FRUSTUM != 0 {
+        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.outside() != 0 {
             return stipple;
         }
         let mut ends = [
@@ -466,7 +491,7 @@ impl<'a> Assembler<'a> {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
             ends = clipped;
         }
-        let at = ends.map(|e| self.state.window.project_exact(e.clip));
+        let at = ends.map(|e| self.project(e.clip));
         let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
         let provoking = self.slot(provoking);
         let width = self.state.line_width;
@@ -509,13 +534,24 @@ impl<'a> Assembler<'a> {
         stipple + span
     }
 
+    /// Window coordinates of a line's end or a point.
+    fn project(&self, clip: [f32; 4]) -> [f32; 3] {
+        let window = &self.state.window;
+        if self.state.depth_clamp {
+            let [x, y, z] = window.project_beyond(clip);
+            [x, y, z.clamp(-1e20, 1e20)]
+        } else {
+            window.project_exact(clip)
+        }
+    }
+
     fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
         let planes = self.state.user_planes;
         let user = |plane: usize, c: &Corner| {
             let d = corners.map(|v| self.vertices.user[v as usize * planes + plane]);
             d[0] * c.weights[0] + d[1] * c.weights[1]
         };
-        let near = self.state.window.near;
+        let (near, guard) = (self.state.window.near, self.state.window.guard);
         let clamp = self.state.depth_clamp;
         let mut line = ends;
         for plane in 0..planes + 7 {
@@ -525,8 +561,8 @@ impl<'a> Assembler<'a> {
                 Some(1 | 2) if clamp => 1.0,
                 Some(1) => c.clip[2] - near * c.clip[3],
                 Some(2) => c.clip[3] - c.clip[2],
-                Some(k @ (3 | 4)) => c.clip[3] - c.clip[k - 3],
-                Some(k) => c.clip[3] + c.clip[k - 5],
+                Some(k @ (3 | 4)) => guard[k - 3][1].min(1.0) * c.clip[3] - c.clip[k - 3],
+                Some(k) => c.clip[k - 5] - guard[k - 5][0].max(-1.0) * c.clip[3],
             };
             let d = [distance(&line[0]), distance(&line[1])];
             match (d[0] >= 0.0, d[1] >= 0.0) {
@@ -548,10 +584,14 @@ impl<'a> Assembler<'a> {
         let v = self.vertices.screen[vertex as usize];
         let planes = self.state.user_planes;
         let user = &self.vertices.user[vertex as usize * planes..][..planes];
-        if v.flags & (flag::NOT_FINITE | flag::FRUSTUM | flag::CLIP) != 0 || !user.iter().all(|d| *d >= 0.0) {
+        let clip = self.vertices.clip[vertex as usize];
+        // The band's flag also tells of near and far, which clamping ignores.
+        let outside = self.outside() | if self.state.depth_clamp { 0 } else { flag::CLIP };
+        if v.flags & (flag::NOT_FINITE | outside) != 0 || !(clip[3] > 1e-30) || !user.iter().all(|d| *d >= 0.0) {
             return;
         }
-        let [x, y, z] = self.state.window.project_exact(self.vertices.clip[vertex as usize]);
+        let [x, y, z] = self.project(clip);
+        let z = z.clamp(0.0, 1.0);
         let [size, fade] = self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0]);
         let slot = self.slot(vertex);
         let provoking = self.slot(provoking);
@@ -582,20 +622,23 @@ impl<'a> Assembler<'a> {
         shape: u32,
         offset: usize,
     ) {
-        let corner = |i: usize| CornerPosition {
-            x: (quad[i][0] * SUBPIXEL as f32 + 0.5).floor() as i32,
-            y: (quad[i][1] * SUBPIXEL as f32 + 0.5).floor() as i32,
-            z: depths[i],
-        };
+        // The width may carry it over the end of the guard band, which is beyond the target.
+        let whole = |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
+        let corner = |i: usize| CornerPosition { x: whole(quad[i][0]), y: whole(quad[i][1]), z: depths[i] };
+        let [low, high] = self.state.window.depth_range();
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
             let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
-            let plane = if offset < 3 {
+            let mut plane = if offset < 3 {
                 self.plane(positions, area, offset)
             } else {
                 DepthPlane::new(positions[0], positions[1], positions[2], area)
             };
+            if self.state.depth_clamp {
+                plane.z_min = plane.z_min.clamp(low, high);
+                plane.z_max = plane.z_max.clamp(low, high);
+            }
             self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
         }
     }

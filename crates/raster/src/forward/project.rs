@@ -1,7 +1,7 @@
 //! Clip space to window space, eight vertices at a time or one.
 
 use crate::geometry::{ScreenVertex, flag};
-use crate::setup::CornerPosition;
+use crate::setup::{CornerPosition, DepthPlane};
 use crate::{GUARD_BAND, SUBPIXEL};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Mask8, Simd, U32x8, dispatch};
@@ -19,8 +19,9 @@ pub struct WindowTransform {
     pub z_center: f32,
     /// Depth of the near plane in normalised device coordinates: -1, or 0 with `ZERO_TO_ONE`.
     pub near: f32,
-    /// The guard band, in multiples of the view.
-    pub guard: [f32; 2],
+    /// Where the guard band ends: lowest and highest x, y in normalised device coordinates. The band holds the target, not
+    /// always the viewport.
+    pub guard: [[f32; 2]; 2],
 }
 
 impl WindowTransform {
@@ -34,27 +35,67 @@ impl WindowTransform {
         } else {
             (((far - near) * 0.5) as f32, ((far + near) * 0.5) as f32, -1.0)
         };
-        // Coordinates are measured from the target's corner: what the viewport is off counts against the band.
         let center = [x as f32 + half[0], y as f32 + half[1]];
-        let band = |k: usize| ((GUARD_BAND - center[k].abs()) / half[k].max(0.5)).max(1.0);
+        let band = |k: usize| {
+            let ends = [(-GUARD_BAND - center[k]) / scale[k], (GUARD_BAND - center[k]) / scale[k]];
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
         Self { scale, center, z_scale, z_center, near: ndc_near, guard: [band(0), band(1)] }
     }
 
-    /// Projects and snaps a clipped point.
+    /// Projects and snaps a clipped point. Rounding of very large numbers may have left it outside the guard band.
     pub fn project(&self, clip: [f32; 4]) -> CornerPosition {
         let [x, y, z] = self.project_exact(clip);
-        let snapped = |v: f32| (v * SUBPIXEL as f32 + 0.5).floor() as i32;
+        let snapped = |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
         CornerPosition { x: snapped(x), y: snapped(y), z }
     }
 
     /// Window x and y in pixels, and depth, of a point with `w > 0`.
     pub fn project_exact(&self, clip: [f32; 4]) -> [f32; 3] {
+        let [x, y, z] = self.project_beyond(clip);
+        [x, y, z.clamp(0.0, 1.0)]
+    }
+
+    /// The same for a point before the near or behind the far plane, whose depth lies beyond the depth range.
+    pub(crate) fn project_beyond(&self, clip: [f32; 4]) -> [f32; 3] {
         let w = clip[3];
         [
             clip[0] / w * self.scale[0] + self.center[0],
             clip[1] / w * self.scale[1] + self.center[1],
-            (clip[2] / w * self.z_scale + self.z_center).clamp(0.0, 1.0),
+            clip[2] / w * self.z_scale + self.z_center,
         ]
+    }
+
+    /// The lower and the higher end of the depth range.
+    pub(crate) fn depth_range(&self) -> [f32; 2] {
+        let ends = [self.near * self.z_scale + self.z_center, self.z_scale + self.z_center];
+        [ends[0].min(ends[1]).clamp(0.0, 1.0), ends[0].max(ends[1]).clamp(0.0, 1.0)]
+    }
+
+    /// The depth plane of the triangle with these corners in clip space, wherever they are: depth is `a x + b y + c w` for
+    /// all three, before any of them is divided. `origin` is in 1/256 pixel. `None` if the triangle is seen edge on.
+    pub(crate) fn homogeneous_plane(&self, corners: [[f32; 4]; 3], origin: [i32; 2]) -> Option<DepthPlane> {
+        let [p, q, r] = corners.map(|c| c.map(f64::from));
+        let column = |k: usize| [p[k], q[k], r[k]];
+        let determinant = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+            a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+        };
+        let [x, y, z, w] = [column(0), column(1), column(2), column(3)];
+        let all = determinant(x, y, w);
+        let factors = [determinant(z, y, w) / all, determinant(x, z, w) / all, determinant(x, y, z) / all];
+        if !factors.iter().all(|f| f.is_finite()) {
+            return None;
+        }
+        let slope = |k: usize| factors[k] * f64::from(self.z_scale) / f64::from(self.scale[k]);
+        let from_center = |k: usize| f64::from(origin[k]) / f64::from(SUBPIXEL) - f64::from(self.center[k]);
+        let depth = slope(0) * from_center(0)
+            + slope(1) * from_center(1)
+            + factors[2] * f64::from(self.z_scale)
+            + f64::from(self.z_center);
+        // Far beyond the range one number is as good as another, and these do not overflow.
+        let held = |v: f64| v.clamp(-1e20, 1e20) as f32;
+        let [z_min, z_max] = self.depth_range();
+        Some(DepthPlane { z: held(depth), dz_dx: held(slope(0)), dz_dy: held(slope(1)), origin, z_min, z_max })
     }
 }
 
@@ -141,8 +182,9 @@ fn to_window<S: Simd>(
         | bit(simd, !y.simd_le(w), flag::TOP)
         | bit(simd, !z.simd_ge(near), flag::FAR)
         | bit(simd, !z.simd_le(w), flag::NEAR);
-    let (gx, gy) = (w * window.guard[0], w * window.guard[1]);
-    let in_band = x.simd_ge(-gx) & x.simd_le(gx) & y.simd_ge(-gy) & y.simd_le(gy) & z.simd_ge(near) & z.simd_le(w);
+    let [[x0, x1], [y0, y1]] = window.guard;
+    let in_band = x.simd_ge(w * x0) & x.simd_le(w * x1) & y.simd_ge(w * y0) & y.simd_le(w * y1);
+    let in_band = in_band & z.simd_ge(near) & z.simd_le(w);
     let in_band = in_band & w.simd_gt(F32x8::splat(simd, 1e-30));
     // 0 x is 0 for finite numbers only.
     let finite = (x * 0.0 + y * 0.0 + z * 0.0 + w * 0.0).simd_eq(zero);

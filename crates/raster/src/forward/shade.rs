@@ -450,9 +450,8 @@ impl<'a> Shader<'a> {
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
                         if self.layout.smooth[1] {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
-                            let across = max(across, -across);
-                            let side = clamp(-across + (width * 0.5 + 0.5), 0.0, 1.0);
-                            let ends = min(clamp(along + 0.5, 0.0, 1.0), clamp(-along + (length + 0.5), 0.0, 1.0));
+                            let side = overlap(across, -width * 0.5, width * 0.5);
+                            let ends = overlap(along, 0.0, length);
                             color[3] *= side * ends;
                         }
                         if let Some((factor, pattern)) = self.layout.line_stipple {
@@ -469,9 +468,7 @@ impl<'a> Shader<'a> {
                     }
                     Some(Shape::Point { center, size, fade }) => {
                         if self.layout.smooth[0] {
-                            let (dx, dy) = (x - center[0], y - center[1]);
-                            let distance = (dx * dx + dy * dy).sqrt();
-                            color[3] *= clamp(-distance + (size * 0.5 + 0.5), 0.0, 1.0);
+                            color[3] *= disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
                         }
                         color[3] *= fade;
                     }
@@ -480,4 +477,24 @@ impl<'a> Shader<'a> {
             },
         )
     }
+}
+
+/// How much of the pixel's width round `at` lies between `low` and `high`.
+#[inline(always)]
+fn overlap<S: Simd>(at: F32x8<S>, low: f32, high: f32) -> F32x8<S> {
+    let simd = at.token();
+    clamp(min(at + 0.5, splat(simd, high)) - max(at - 0.5, splat(simd, low)), 0.0, 1.0)
+}
+
+/// The part of the pixel round `(x, y)` that a disc round the origin covers: the mean of its chords' overlaps.
+#[inline(always)]
+fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: f32) -> F32x8<S> {
+    const CHORDS: u32 = 16;
+    let mut sum = splat(simd, 0.0);
+    for i in 0..CHORDS {
+        let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
+        let half = max(-(at * at) + radius * radius, splat(simd, 0.0)).sqrt();
+        sum += clamp(min(y + 0.5, half) - max(y - 0.5, -half), 0.0, 1.0);
+    }
+    sum * (1.0 / CHORDS as f32)
 }

@@ -1,0 +1,519 @@
+//! Corners of the specification, each worked out by hand: clipping and depth, polygon offset, provoking vertices, level
+//! selection, antialiasing, window-system buffers, pixel transfer, feedback, evaluators, accumulation.
+
+mod common;
+
+use common::{BUFFER, Stage, assert_color};
+use vitral_gl::{OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, enums as gl};
+
+#[test]
+fn a_floor_through_the_eye_with_depth_clamp() {
+    // Near 1, far 3: depth in ndc is 2 - 3 / d. The floor y = -1/2 is at distance 0.5 / |y| of a pixel at y in ndc.
+    for range in [[0.0, 1.0], [0.25, 0.75], [1.0, 0.0]] {
+        let mut c = Stage::new(32, 32);
+        c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+        c.frustum(-1.0, 1.0, -1.0, 1.0, 1.0, 3.0);
+        c.enable(gl::DEPTH_TEST);
+        c.depth_func(gl::ALWAYS);
+        c.enable(gl::DEPTH_CLAMP);
+        c.depth_range(range[0], range[1]);
+        c.begin(gl::QUADS);
+        for [x, z] in [[-500.0, 50.0], [500.0, 50.0], [500.0, -400.0], [-500.0, -400.0]] {
+            c.vertex_3f(x, -0.5, z);
+        }
+        c.end();
+        let (depths, colors) = (c.depths(), c.bytes());
+        for y in 0..16 {
+            let ndc = (y as f64 + 0.5) / 16.0 - 1.0;
+            let depth = (2.0 - 3.0 / (0.5 / -ndc)).clamp(-1.0, 1.0) * 0.5 + 0.5;
+            let expected = range[0] + depth * (range[1] - range[0]);
+            for x in 0..32 {
+                assert_eq!(colors[y * 32 + x][0], 255, "({x}, {y}) is not covered");
+                let found = f64::from(depths[y * 32 + x]);
+                assert!((found - expected).abs() < 1e-4, "({x}, {y}): {found} instead of {expected}");
+            }
+        }
+        assert!(colors[17 * 32..].iter().all(|p| p[0] == 0));
+    }
+}
+
+#[test]
+fn depth_clamp_of_lines_and_points() {
+    let mut c = Stage::new(32, 4);
+    c.clear(gl::DEPTH_BUFFER_BIT);
+    c.enable(gl::DEPTH_TEST);
+    c.depth_func(gl::ALWAYS);
+    c.enable(gl::DEPTH_CLAMP);
+    c.begin(gl::LINES);
+    c.vertex_3f(-1.0, 0.25, -3.0);
+    c.vertex_3f(1.0, 0.25, 3.0);
+    c.end();
+    let depths = c.depths();
+    for x in 0..32 {
+        let expected = (((x as f32 + 0.5) / 16.0 - 1.0) * 3.0).clamp(-1.0, 1.0) * 0.5 + 0.5;
+        assert!((depths[2 * 32 + x] - expected).abs() < 1e-4, "{x}: {} instead of {expected}", depths[64 + x]);
+    }
+    c.depth_range(0.25, 0.5);
+    c.begin(gl::POINTS);
+    c.vertex_3f(0.0, -0.6, -9.0);
+    c.vertex_3f(0.5, -0.6, 9.0);
+    c.end();
+    let depths = c.depths();
+    assert!((depths[16] - 0.25).abs() < 1e-6 && (depths[24] - 0.5).abs() < 1e-6);
+    // Without clamping they are clipped.
+    c.disable(gl::DEPTH_CLAMP);
+    c.clear(gl::DEPTH_BUFFER_BIT);
+    c.begin(gl::POINTS);
+    c.vertex_3f(0.0, -0.6, -9.0);
+    c.end();
+    assert_eq!(c.depths()[16], 1.0);
+}
+
+#[test]
+fn near_and_far_clip_polygons_by_their_depth() {
+    // z runs from -3 to 3 across the window: a third of it is inside.
+    let mut c = Stage::new(30, 4);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    c.enable(gl::DEPTH_TEST);
+    c.begin(gl::QUADS);
+    for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+        c.vertex_3f(x, y, 3.0 * x);
+    }
+    c.end();
+    let (depths, colors) = (c.depths(), c.bytes());
+    for x in 0..30 {
+        let z = (x as f32 + 0.5) / 5.0 - 3.0;
+        assert_eq!(colors[30 + x][0] == 255, z.abs() < 1.0, "{x}");
+        if z.abs() < 1.0 {
+            assert!((depths[30 + x] - (z * 0.5 + 0.5)).abs() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn polygon_offset_is_slope_times_factor_and_units() {
+    let mut c = Stage::new(8, 8);
+    c.enable(gl::DEPTH_TEST);
+    c.depth_func(gl::ALWAYS);
+    let mut depths = |c: &mut Stage, factor: f32, units: f32, slope: f32| {
+        c.polygon_offset(factor, units);
+        c.begin(gl::QUADS);
+        for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+            c.vertex_3f(x, y, -0.5 + slope * x);
+        }
+        c.end();
+        f64::from(c.depths()[27]) * 16_777_215.0
+    };
+    let plain = depths(&mut c, 3.0, 8.0, 0.0);
+    c.enable(gl::POLYGON_OFFSET_FILL);
+    // The unit is two steps of 24 bits.
+    for units in [1.0, 8.0, -64.0] {
+        let moved = depths(&mut c, 3.0, units, 0.0);
+        assert!((moved - plain - 2.0 * f64::from(units)).abs() < 1.01, "{units}: {}", moved - plain);
+    }
+    // Depth changes by 0.25 * 0.5 / 4 for a pixel.
+    c.disable(gl::POLYGON_OFFSET_FILL);
+    let plain = depths(&mut c, 0.0, 0.0, 0.25);
+    c.enable(gl::POLYGON_OFFSET_FILL);
+    let moved = depths(&mut c, 2.0, 0.0, 0.25);
+    assert!(((moved - plain) / 16_777_215.0 - 2.0 * 0.03125).abs() < 1e-6);
+    // The result is clamped.
+    assert_eq!(depths(&mut c, 0.0, 1e9, 0.0), 16_777_215.0);
+    assert_eq!(depths(&mut c, 0.0, -1e9, 0.0), 0.0);
+}
+
+#[test]
+fn provoking_vertices_of_all_primitives() {
+    // Vertex i has red i * 20; the last pixel drawn by a primitive tells whose colour it has.
+    let table: [(u32, &[[f32; 2]], u8); 9] = [
+        (gl::TRIANGLES, &[[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]], 2),
+        (gl::TRIANGLE_STRIP, &[[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]], 2),
+        (gl::TRIANGLE_FAN, &[[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]], 2),
+        (gl::QUADS, &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], 3),
+        (gl::QUAD_STRIP, &[[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]], 3),
+        (gl::POLYGON, &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], 0),
+        (gl::LINES, &[[-1.0, 0.0], [1.0, 0.0]], 1),
+        (gl::LINE_STRIP, &[[-1.0, 0.0], [1.0, 0.0]], 1),
+        (gl::LINE_LOOP, &[[-1.0, 0.0], [1.0, 0.0]], 0),
+    ];
+    let mut c = Stage::new(8, 8);
+    c.shade_model(gl::FLAT);
+    c.line_width(9.0);
+    for (mode, vertices, provoking) in table {
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.begin(mode);
+        for (i, [x, y]) in vertices.iter().enumerate() {
+            c.color_3ub(i as u8 * 20 + 10, 0, 0);
+            c.vertex_2f(*x, *y);
+        }
+        c.end();
+        for [x, y] in [[1, 3], [6, 4], [4, 4]] {
+            assert_eq!(c.pixel(x, y)[0], provoking * 20 + 10, "{mode:#x} ({x}, {y})");
+        }
+    }
+}
+
+/// A window filled with a texture whose level 0 is red, level 1 green, so large that `lod` levels are skipped.
+fn mixed_levels(mag: u32, min: u32, lod: f64) -> [u8; 4] {
+    let mut c = Stage::new(16, 16);
+    let level = |size: usize, color: [u8; 4]| (size as i32, vec![color; size * size]);
+    let blue = [0, 0, 255, 255];
+    c.texture(&[level(8, [255, 0, 0, 255]), level(4, [0, 255, 0, 255]), level(2, blue), level(1, blue)]);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, mag as i32);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, min as i32);
+    // The rectangle's coordinates run from 0 to 1 over 16 pixels: texels per pixel are 8 s / 16.
+    let s = 2.0 * f64::exp2(lod);
+    c.matrix_mode(gl::TEXTURE);
+    c.scaled(s, s, 1.0);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.fill([1.0; 4], 0.0);
+    c.no_error();
+    c.pixel(5, 5)
+}
+
+#[test]
+fn magnification_ends_at_a_half_for_linear_over_nearest_mipmap() {
+    let near = |found: [u8; 4], red: f64| (f64::from(found[0]) - 255.0 * red).abs() < 4.0;
+    // MAG LINEAR with NEAREST_MIPMAP_*: c = 1/2.
+    let min = gl::NEAREST_MIPMAP_LINEAR;
+    assert_eq!(mixed_levels(gl::LINEAR, min, 0.3), [255, 0, 0, 255]);
+    assert!(near(mixed_levels(gl::LINEAR, min, 0.6), 0.4));
+    assert_eq!(mixed_levels(gl::LINEAR, gl::NEAREST_MIPMAP_NEAREST, 0.45), [255, 0, 0, 255]);
+    assert_eq!(mixed_levels(gl::LINEAR, gl::NEAREST_MIPMAP_NEAREST, 0.55), [0, 255, 0, 255]);
+    // All others: c = 0.
+    assert!(near(mixed_levels(gl::NEAREST, min, 0.3), 0.7));
+    assert!(near(mixed_levels(gl::LINEAR, gl::LINEAR_MIPMAP_LINEAR, 0.3), 0.7));
+}
+
+/// Sum of alpha over a window of black.
+fn alpha_sum(c: &mut Stage) -> f32 {
+    c.bytes().iter().map(|p| f32::from(p[3]) / 255.0).sum()
+}
+
+#[test]
+fn a_smooth_point_covers_its_area() {
+    let mut c = Stage::new(32, 32);
+    c.pixels();
+    c.enable(gl::POINT_SMOOTH);
+    for size in [1.0, 1.5, 2.0, 3.3, 5.0, 10.0, 20.0] {
+        for center in [[16.0, 16.0], [15.5, 15.5], [16.2, 15.9]] {
+            c.clear(gl::COLOR_BUFFER_BIT);
+            c.point_size(size);
+            c.begin(gl::POINTS);
+            c.vertex_2f(center[0], center[1]);
+            c.end();
+            let (sum, area) = (alpha_sum(&mut c), std::f32::consts::PI * size * size / 4.0);
+            assert!((sum / area - 1.0).abs() < 0.03, "{size} at {center:?}: {sum} instead of {area}");
+        }
+    }
+}
+
+#[test]
+fn a_smooth_line_has_the_coverage_of_its_rectangle() {
+    let mut c = Stage::new(32, 32);
+    c.pixels();
+    c.enable(gl::LINE_SMOOTH);
+    let mut line = |c: &mut Stage, width: f32, [x0, y0, x1, y1]: [f32; 4]| {
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.line_width(width);
+        c.begin(gl::LINES);
+        c.vertex_2f(x0, y0);
+        c.vertex_2f(x1, y1);
+        c.end();
+    };
+    // From x 4.25 to 20.5, y from 8.3 to 10.7.
+    line(&mut c, 2.4, [4.25, 9.5, 20.5, 9.5]);
+    let profile: Vec<f32> = (7..12).map(|y| f32::from(c.pixel(10, y)[3]) / 255.0).collect();
+    for (found, expected) in profile.iter().zip([0.0, 0.7, 1.0, 0.7, 0.0]) {
+        assert!((found - expected).abs() < 0.01, "{profile:?}");
+    }
+    let ends: Vec<f32> = [3, 4, 20, 21].map(|x| f32::from(c.pixel(x, 9)[3]) / 255.0).to_vec();
+    for (found, expected) in ends.iter().zip([0.0, 0.75, 0.5, 0.0]) {
+        assert!((found - expected).abs() < 0.01, "{ends:?}");
+    }
+    for (width, [x, y]) in [(1.0, [24.0, 4.0]), (1.0, [20.0, 13.0]), (3.0, [11.0, 27.0]), (5.5, [25.0, 25.0])] {
+        line(&mut c, width, [4.0, 4.0, x, y]);
+        let (sum, area) = (alpha_sum(&mut c), width * ((x - 4.0).powi(2) + (y - 4.0).powi(2)).sqrt());
+        assert!((sum / area - 1.0).abs() < 0.03, "{width} to ({x}, {y}): {sum} instead of {area}");
+    }
+}
+
+#[test]
+fn a_smooth_polygon_covers_its_area() {
+    let mut c = Stage::new(32, 32);
+    c.pixels();
+    c.enable(gl::POLYGON_SMOOTH);
+    let triangles = [[[4.3, 5.1], [27.2, 9.4], [11.6, 26.8]], [[3.0, 3.0], [25.0, 3.0], [3.0, 25.0]]];
+    for [a, b, d] in triangles {
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.begin(gl::TRIANGLES);
+        for [x, y] in [a, b, d] {
+            c.vertex_2f(x, y);
+        }
+        c.end();
+        let area: f32 = ((b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0])) / 2.0;
+        let sum = alpha_sum(&mut c);
+        assert!((sum / area - 1.0).abs() < 0.03, "{sum} instead of {area}");
+        assert!(c.bytes().iter().any(|p| (40..=215).contains(&p[3])), "no soft border");
+    }
+}
+
+#[test]
+fn window_system_buffers_of_all_formats() {
+    let table: [(u32, &[u8]); 5] = [
+        (gl::RGBA, &[255, 51, 102, 204]),
+        (OSMESA_BGRA, &[102, 51, 255, 204]),
+        (OSMESA_ARGB, &[204, 255, 51, 102]),
+        (gl::RGB, &[255, 51, 102]),
+        (OSMESA_BGR, &[102, 51, 255]),
+    ];
+    for (format, expected) in table {
+        let mut c = Stage::with_buffer(3, 2, format, gl::UNSIGNED_BYTE);
+        c.fill([1.0, 0.2, 0.4, 0.8], 0.0);
+        c.finish();
+        let n = expected.len();
+        let bytes: Vec<u8> = c.take(BUFFER, 6 * n);
+        assert!(bytes.chunks(n).all(|pixel| pixel == expected), "{format:#x}: {bytes:?}");
+    }
+}
+
+#[test]
+fn each_component_has_its_own_pixel_map() {
+    let mut c = Stage::new(2, 2);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    let maps = [
+        (gl::PIXEL_MAP_R_TO_R, [0.0f32, 0.2]),
+        (gl::PIXEL_MAP_G_TO_G, [0.4, 0.6]),
+        (gl::PIXEL_MAP_B_TO_B, [0.8, 1.0]),
+        (gl::PIXEL_MAP_A_TO_A, [0.6, 0.0]),
+    ];
+    for (map, values) in maps {
+        let at = c.put(&values);
+        c.pixel_mapfv(map, 2, at);
+    }
+    c.pixel_transferi(gl::MAP_COLOR, 1);
+    let pixels = c.put(&[[0u8, 0, 0, 0], [255, 255, 255, 255], [255, 0, 255, 0], [0, 255, 0, 255]]);
+    c.raster_pos_2f(-1.0, -1.0);
+    c.draw_pixels(2, 2, gl::RGBA, gl::UNSIGNED_BYTE, pixels);
+    c.pixel_transferi(gl::MAP_COLOR, 0);
+    let expected = [[0, 102, 204, 153], [51, 153, 255, 0], [51, 102, 255, 153], [0, 153, 204, 0]];
+    assert_eq!(c.bytes(), expected);
+}
+
+#[test]
+fn index_shift_and_offset_come_before_the_maps() {
+    let mut c = Stage::new(4, 1);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    // Index 2 i + 1 for i = 0..4 in maps of 8.
+    for (map, scale) in [
+        (gl::PIXEL_MAP_I_TO_R, 0.1f32),
+        (gl::PIXEL_MAP_I_TO_G, 0.05),
+        (gl::PIXEL_MAP_I_TO_B, 0.0),
+        (gl::PIXEL_MAP_I_TO_A, 0.125),
+    ] {
+        let values: Vec<f32> = (0..8).map(|i| i as f32 * scale).collect();
+        let at = c.put(&values);
+        c.pixel_mapfv(map, 8, at);
+    }
+    c.pixel_transferi(gl::INDEX_SHIFT, 1);
+    c.pixel_transferi(gl::INDEX_OFFSET, 1);
+    let pixels = c.put(&[0u8, 1, 2, 3]);
+    c.raster_pos_2f(-1.0, -1.0);
+    c.draw_pixels(4, 1, gl::COLOR_INDEX, gl::UNSIGNED_BYTE, pixels);
+    for (i, found) in c.bytes().into_iter().enumerate() {
+        let index = (2 * i + 1) as f32;
+        assert_color(found, [index * 0.1, index * 0.05, 0.0, index * 0.125]);
+    }
+    // A bitmap of indices: bits are the numbers 0 and 1.
+    c.pixel_transferi(gl::INDEX_SHIFT, 0);
+    c.pixel_transferi(gl::INDEX_OFFSET, 0);
+    let bits = c.put(&[0b0101_0000u8]);
+    c.draw_pixels(4, 1, gl::COLOR_INDEX, gl::BITMAP, bits);
+    c.no_error();
+    for (i, found) in c.bytes().into_iter().enumerate() {
+        let bit = (i % 2) as f32;
+        assert_color(found, [bit * 0.1, bit * 0.05, 0.0, bit * 0.125]);
+    }
+}
+
+#[test]
+fn fog_reaches_images_by_the_raster_distance() {
+    let mut c = Stage::new(2, 2);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    let color = c.put(&[0.0f32, 1.0, 0.0, 1.0]);
+    c.fogfv(gl::FOG_COLOR, color);
+    c.fogi(gl::FOG_MODE, gl::LINEAR as i32);
+    c.fogf(gl::FOG_START, 0.0);
+    c.fogf(gl::FOG_END, 1.0);
+    c.enable(gl::FOG);
+    c.raster_pos_3f(-1.0, -1.0, -0.25);
+    let pixels = c.put(&[[1.0f32, 0.0, 0.0, 0.5]; 4]);
+    c.draw_pixels(2, 2, gl::RGBA, gl::FLOAT, pixels);
+    // f = 1 - 0.25.
+    assert_color(c.pixel(0, 0), [0.75, 0.25, 0.0, 0.5]);
+    assert_color(c.pixel(1, 1), [0.75, 0.25, 0.0, 0.5]);
+}
+
+#[test]
+fn luminance_of_unsigned_integers_is_scaled_by_their_largest() {
+    let mut c = Stage::new(2, 1);
+    let pixels = c.put(&[u32::MAX / 5, u32::MAX]);
+    c.raster_pos_2f(-1.0, -1.0);
+    c.draw_pixels(2, 1, gl::LUMINANCE, gl::UNSIGNED_INT, pixels);
+    assert_eq!(c.bytes(), [[51, 51, 51, 255], [255; 4]]);
+    // Read back, luminance is the sum of red, green and blue, clamped.
+    let into = c.put(&[0u32; 2]);
+    c.read_pixels(0, 0, 2, 1, gl::LUMINANCE, gl::UNSIGNED_INT, into);
+    let found: Vec<u32> = c.take(into, 2);
+    assert!((f64::from(found[0]) / f64::from(u32::MAX) - 0.6).abs() < 1e-6 && found[1] == u32::MAX, "{found:?}");
+}
+
+#[test]
+fn border_texels_are_sampled_beyond_the_edge() {
+    // 1 x 1 inside, a border of one texel: blue inside, red around.
+    let mut c = Stage::new(6, 6);
+    let red = [255u8, 0, 0, 255];
+    let mut texels = vec![red; 9];
+    texels[4] = [0, 0, 255, 255];
+    let at = c.put(&texels);
+    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 3, 3, 1, gl::RGBA, gl::UNSIGNED_BYTE, at);
+    for (name, value) in [
+        (gl::TEXTURE_MIN_FILTER, gl::NEAREST),
+        (gl::TEXTURE_MAG_FILTER, gl::NEAREST),
+        (gl::TEXTURE_WRAP_S, gl::CLAMP_TO_BORDER),
+        (gl::TEXTURE_WRAP_T, gl::CLAMP_TO_BORDER),
+    ] {
+        c.tex_parameteri(gl::TEXTURE_2D, name, value as i32);
+    }
+    c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
+    c.enable(gl::TEXTURE_2D);
+    // Coordinates from -1 to 2 over the window.
+    c.matrix_mode(gl::TEXTURE);
+    c.translatef(-1.0, -1.0, 0.0);
+    c.scalef(3.0, 3.0, 1.0);
+    c.fill([1.0; 4], 0.0);
+    c.no_error();
+    let found = c.bytes();
+    for (i, pixel) in found.into_iter().enumerate() {
+        let inside = [i % 6, i / 6].iter().all(|k| (2..4).contains(k));
+        assert_eq!(pixel, if inside { [0, 0, 255, 255] } else { red }, "{i}");
+    }
+    // CLAMP with LINEAR: half of the border at coordinate 1.
+    for (name, value) in [
+        (gl::TEXTURE_MIN_FILTER, gl::LINEAR),
+        (gl::TEXTURE_MAG_FILTER, gl::LINEAR),
+        (gl::TEXTURE_WRAP_S, gl::CLAMP),
+        (gl::TEXTURE_WRAP_T, gl::CLAMP_TO_EDGE),
+    ] {
+        c.tex_parameteri(gl::TEXTURE_2D, name, value as i32);
+    }
+    c.fill([1.0; 4], 0.0);
+    assert_color(c.pixel(5, 3), [0.5, 0.0, 0.5, 1.0]);
+}
+
+#[test]
+fn an_incomplete_2d_texture_switches_its_unit_off_even_with_1d_enabled() {
+    let mut c = Stage::new(2, 2);
+    let at = c.put(&[[0u8, 255, 0, 255]]);
+    c.tex_image_1d(gl::TEXTURE_1D, 0, gl::RGBA as i32, 1, 0, gl::RGBA, gl::UNSIGNED_BYTE, at);
+    c.tex_parameteri(gl::TEXTURE_1D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
+    c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
+    c.enable(gl::TEXTURE_1D);
+    c.fill([1.0, 0.0, 0.0, 1.0], 0.0);
+    assert_eq!(c.pixel(0, 0), [0, 255, 0, 255]);
+    // The higher dimension is the one in use; it is incomplete, so that texturing is as if disabled.
+    c.enable(gl::TEXTURE_2D);
+    c.fill([1.0, 0.0, 0.0, 1.0], 0.0);
+    assert_eq!(c.pixel(0, 0), [255, 0, 0, 255]);
+}
+
+/// What feedback of 2D vertices gives for `draw`.
+fn feedback(c: &mut Stage, draw: impl FnOnce(&mut Stage)) -> Vec<f32> {
+    let into = c.put(&[0.0f32; 64]);
+    c.feedback_buffer(64, gl::_2D, into);
+    c.render_mode(gl::FEEDBACK);
+    draw(c);
+    let count = c.render_mode(gl::RENDER);
+    c.take(into, count as usize)
+}
+
+#[test]
+fn feedback_of_lines_tells_where_the_stipple_begins_anew() {
+    let mut c = Stage::new(10, 10);
+    c.pixels();
+    let strip = feedback(&mut c, |c| {
+        c.begin(gl::LINE_STRIP);
+        for [x, y] in [[1.0, 1.0], [5.0, 1.0], [5.0, 6.0]] {
+            c.vertex_2f(x, y);
+        }
+        c.end();
+    });
+    let (reset, line) = (gl::LINE_RESET_TOKEN as f32, gl::LINE_TOKEN as f32);
+    assert_eq!(strip, [reset, 1.0, 1.0, 5.0, 1.0, line, 5.0, 1.0, 5.0, 6.0]);
+    let apart = feedback(&mut c, |c| {
+        c.begin(gl::LINES);
+        for [x, y] in [[1.0, 1.0], [5.0, 1.0], [5.0, 6.0], [2.0, 2.0]] {
+            c.vertex_2f(x, y);
+        }
+        c.end();
+    });
+    assert_eq!(apart, [reset, 1.0, 1.0, 5.0, 1.0, reset, 5.0, 6.0, 2.0, 2.0]);
+}
+
+#[test]
+fn feedback_of_a_quad_is_one_polygon() {
+    let mut c = Stage::new(10, 10);
+    c.pixels();
+    let found = feedback(&mut c, |c| {
+        c.pass_through(7.0);
+        c.begin(gl::QUADS);
+        for [x, y] in [[1.0, 1.0], [5.0, 1.0], [5.0, 6.0], [1.0, 6.0]] {
+            c.vertex_2f(x, y);
+        }
+        c.end();
+    });
+    let head = [gl::PASS_THROUGH_TOKEN as f32, 7.0, gl::POLYGON_TOKEN as f32, 4.0];
+    assert_eq!(found[..4], head);
+    assert_eq!(found[4..], [1.0, 1.0, 5.0, 1.0, 5.0, 6.0, 1.0, 6.0]);
+}
+
+#[test]
+fn evaluation_leaves_the_current_values_alone() {
+    let mut c = Stage::new(8, 8);
+    let points = c.put(&[-1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let colors = c.put(&[0.0f32, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]);
+    c.map_1f(gl::MAP1_VERTEX_3, 0.0, 1.0, 3, 2, points);
+    c.map_1f(gl::MAP1_COLOR_4, 0.0, 1.0, 4, 2, colors);
+    c.enable(gl::MAP1_VERTEX_3);
+    c.enable(gl::MAP1_COLOR_4);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.color_3f(1.0, 0.0, 0.0);
+    c.begin(gl::LINES);
+    c.eval_coord_1f(0.0);
+    c.eval_coord_1f(1.0);
+    c.end();
+    assert_eq!(c.pixel(4, 4), [0, 255, 0, 255]);
+    assert_eq!(c.get(gl::CURRENT_COLOR), [1.0, 0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn accumulation_holds_more_than_one() {
+    let mut c = Stage::new(2, 2);
+    c.clear_color(0.8, 0.4, 0.2, 1.0);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::ACCUM_BUFFER_BIT);
+    // The range of the buffer is at least -1..1; sums of weights up to 1 are exact, and RETURN clamps.
+    c.accum(gl::LOAD, 0.5);
+    c.accum(gl::ACCUM, 0.5);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.accum(gl::RETURN, 1.0);
+    assert_color(c.pixel(0, 0), [0.8, 0.4, 0.2, 1.0]);
+    c.accum(gl::RETURN, 2.0);
+    assert_color(c.pixel(0, 0), [1.0, 0.8, 0.4, 1.0]);
+    c.clear_color(0.8, 0.4, 0.2, 1.0);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.accum(gl::LOAD, 1.0);
+    c.accum(gl::MULT, 0.5);
+    c.accum(gl::ADD, 0.1);
+    c.accum(gl::RETURN, 1.0);
+    assert_color(c.pixel(1, 1), [0.5, 0.3, 0.2, 0.6]);
+}

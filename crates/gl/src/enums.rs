@@ -1,4 +1,6 @@
-//! Tokens of OpenGL 1.5 and the advertised extensions: names and values from the Khronos registry (`gl.xml`, Apache-2.0).
+//! Tokens of OpenGL 1.5 and the advertised extensions, by value (a table)
+//!
+//! Names and values are those of the Khronos registry (`gl.xml`, Apache-2.0).
 #![allow(missing_docs)]
 
 pub const FALSE: u32 = 0x0000;

@@ -53,7 +53,7 @@ pub(crate) struct Assembled {
     pub others: bool,
 }
 
-/// A place for [`Assembled`] in a batch: no part of its value.
+/// A place for `Assembled` in a batch: no part of its value.
 #[derive(Default)]
 pub struct AssembledCell(OnceLock<Arc<Assembled>>);
 
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn pieces_keep_their_vertices_together() {
-        let p = piece(&[[7, 8, 9], [9, 8, 10]], |v| v, &vec![[0.0; 4]; 11]);
+        let p = piece(&[[7, 8, 9], [9, 8, 10]], |v| v, &[[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
         assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
         let p = piece(&[[7, 80_000, 9]], |v| v, &vec![[0.0; 4]; 80_001]);

@@ -83,6 +83,7 @@ impl VertexSnapshot {
         let clip_from_model = state.matrices.projection.top() * modelview;
         let (normal_rows, normalize) = normal_map(state, &modelview);
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
+        let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
         let model_plane = |p: &[f64; 4]| (modelview.transpose() * Vec4::from_array(p.map(|v| v as f32))).to_array();
         Self {
             current: state.current,
@@ -92,7 +93,7 @@ impl VertexSnapshot {
             normalize,
             lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, lights)),
             units: units.iter().map(|&u| unit(state, u)).collect(),
-            fog: fog.then(|| if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given }),
+            fog: fog.then_some(source),
             clip_planes: planes.map(|(p, _)| model_plane(p)).collect(),
             color_sum: state.color_sum,
         }

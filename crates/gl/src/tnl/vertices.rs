@@ -87,11 +87,14 @@ fn saturate4<S: Simd>(c: F4<S>) -> F4<S> {
     [s(c[0]), s(c[1]), s(c[2]), s(c[3])]
 }
 
+/// The specular colour, where it is kept apart.
+type Secondary<S> = Option<V3<F<S>>>;
+
 /// A vertex as the rasteriser or feedback wants it.
 pub(crate) struct Shaded<S: Simd> {
     pub color: F4<S>,
-    pub secondary: Option<V3<F<S>>>,
-    pub back: Option<(F4<S>, Option<V3<F<S>>>)>,
+    pub secondary: Secondary<S>,
+    pub back: Option<(F4<S>, Secondary<S>)>,
     pub fog: F<S>,
 }
 

@@ -11,7 +11,7 @@ use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace};
+use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace, StencilOp};
 use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
@@ -58,7 +58,7 @@ pub(crate) fn stored_depth<S: Simd>(simd: S, depth: F32x8<S>, scale: f32) -> F32
 
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mixing {
+pub(crate) enum Mixing {
     Replace,
     Add,
     AddScaled,
@@ -69,8 +69,10 @@ enum Mixing {
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
-    mixing: Mixing,
+    pub(crate) mixing: Mixing,
     protected: u32,
+    /// Nothing needs the row-by-row operations, see [`super::block`].
+    pub(crate) common: bool,
     all_protected: bool,
     coverage: u32,
 }
@@ -83,8 +85,22 @@ impl FragmentOps {
             _ => all,
         };
         let protected = protected_bits(state.masked);
-        Self { mixing: mixing(state), protected, all_protected: state.masked == [true; 4], coverage }
+        let mixing = mixing(state);
+        let common = state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back))
+            && state.logic_op.is_none()
+            && state.query.is_none()
+            && state.polygon_stipple.is_none()
+            && state.sample_coverage.is_none()
+            && !(state.alpha_to_coverage || state.alpha_to_one)
+            && (protected == 0 || state.masked == [true; 4])
+            && mixing != Mixing::General;
+        Self { mixing, protected, common, all_protected: state.masked == [true; 4], coverage }
     }
+}
+
+/// Whether a stencil test changes nothing.
+fn keeps(face: &StencilFace) -> bool {
+    face.write_mask == 0 || [face.fail, face.depth_fail, face.pass] == [StencilOp::Keep; 3]
 }
 
 fn mixing(state: &FragmentState) -> Mixing {
@@ -249,7 +265,7 @@ impl TilePlanes<'_> {
         let mut passed = reached;
         if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
             let plain = test.func == Compare::Always;
-            if !(plain && !test.write) {
+            if !plain || test.write {
                 let values = &mut tile.stored(samples)[at..at + LANES];
                 let stored = F32x8::from_slice(simd, values);
                 passed = reached & depth_test(simd, test, depth, stored);
@@ -388,4 +404,4 @@ pub(crate) fn columns(first: i32, x0: i32, x1: i32) -> u32 {
     if high <= low { 0 } else { ((1u32 << high) - 1) & !((1u32 << low) - 1) }
 }
 
-const _: () = assert!(TILE % LANES == 0, "rows of a tile are cut into whole rows of eight");
+const _: () = assert!(TILE.is_multiple_of(LANES), "rows of a tile are cut into whole rows of eight");

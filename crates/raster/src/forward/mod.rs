@@ -5,6 +5,7 @@
 //! and cleared lazily. Row 0 of a plane is OpenGL's window row 0: the lowest.
 
 mod assemble;
+mod block;
 mod environment;
 mod fragment;
 mod fragment_ops;

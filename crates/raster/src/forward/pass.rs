@@ -175,6 +175,7 @@ pub struct Runner {
 const JOB: usize = 4096;
 
 /// What a tile walks, in order.
+#[expect(clippy::large_enum_variant, reason = "a pass has a few, and nearly all are jobs")]
 pub(crate) enum Item<'a> {
     Clear(&'a Clear),
     Image(&'a ImageFragments, &'a FragmentState, FragmentOps),
@@ -326,7 +327,7 @@ impl Runner {
         let mut colors = color_tiles(&mut color);
         let scale = depth.as_ref().map_or(1.0, |d| d.scale);
         let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()));
-        let mut stencils = plane_tiles(stencil.as_mut().map(|s| &mut **s));
+        let mut stencils = plane_tiles(stencil.as_deref_mut());
         let runs: Vec<TileRun<'_>> = (0..count)
             .map(|index| {
                 let (x, y) = (index as u32 % tiles_x, index as u32 / tiles_x);

@@ -15,23 +15,43 @@ use super::pass::{DrawContext, Item, Pass, pattern};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::tile::TileRun;
-use crate::{SUBPIXEL, Setup, TILE};
-use std::sync::Arc;
-use vitral_math::lanes::{LANES, Level, dispatch};
+use crate::{BLOCK, SUBPIXEL, Setup, TILE};
+use std::sync::{Arc, OnceLock};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
+
+/// State of a draw, and the pixels that it may touch.
+type ClippedState = (Arc<FragmentState>, [i32; 4]);
 
 /// A job's triangles and what bounds them.
 #[derive(Debug)]
 struct PendingJob {
     primitives: Primitives,
     /// State and allowed pixels of each draw.
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    /// For each entry of the tile lists, in blocks of eight entries: the rows of [`candidate`].
-    candidates: Vec<f32>,
-    /// Where each tile's blocks begin.
-    starts: Vec<u32>,
+    draws: Vec<ClippedState>,
     /// The largest of a tile's.
     tile_bounds: Vec<f32>,
+    /// What searching a tile needs, made when it is first searched.
+    grids: Vec<OnceLock<Box<Grid>>>,
 }
+
+/// A tile's triangles by blocks of 8x8 texels.
+#[derive(Debug)]
+struct Grid {
+    /// One list for the whole tile.
+    whole: bool,
+    /// Blocks of eight entries, the rows of [`candidate`].
+    candidates: Vec<f32>,
+    /// The entries that the candidates are.
+    entries: Vec<u32>,
+    /// Where each block's candidates begin, in eights.
+    starts: [u32; BLOCKS * BLOCKS + 1],
+}
+
+/// Blocks along a tile's side.
+const BLOCKS: usize = TILE / BLOCK;
+/// Tiles with no more entries than this have one list for all blocks.
+const FEW: usize = 32;
 
 /// See the module.
 #[derive(Debug)]
@@ -83,7 +103,8 @@ pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
         return depth;
     }
     let scaled = depth * scale;
-    if scaled < 8_388_608.0 { (scaled + 0.5).floor() } else { scaled.floor() }
+    // From 2^23 on every number is whole, and adding a half would round again.
+    if scaled < 8_388_608.0 { (scaled + 0.5) as u32 as f32 } else { scaled as u32 as f32 }
 }
 
 impl PendingDepth {
@@ -93,10 +114,9 @@ impl PendingDepth {
         scale: f32,
         tiles_x: u32,
         tiles: usize,
-        jobs: Vec<(Primitives, Vec<(Arc<FragmentState>, [i32; 4])>)>,
+        jobs: Vec<(Primitives, Vec<ClippedState>)>,
     ) -> Self {
-        let jobs: Vec<PendingJob> =
-            jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles_x as usize, tiles)).collect();
+        let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
         let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
         for job in &jobs {
             for (all, its) in tile_bounds.iter_mut().zip(&job.tile_bounds) {
@@ -114,23 +134,41 @@ impl PendingDepth {
 
     /// The depth of a texel in `0..=1` as it would be read, from the farther of `known` and the clear value on: triangles that cannot beat
     /// `known` are not looked at. Pass `None` for the exact depth.
-    pub(crate) fn texel(&self, x: i32, y: i32, known: Option<f32>) -> f32 {
+    #[inline(always)]
+    pub(crate) fn texel<S: Simd>(&self, simd: S, x: i32, y: i32, known: Option<f32>) -> f32 {
         let tile = ((y / TILE as i32) * self.tiles_x + x / TILE as i32) as usize;
         let floor = known.map_or(f32::NEG_INFINITY, |k| k * self.sign);
-        let mut best = self.clear / self.scale * self.sign;
+        let best = self.clear / self.scale * self.sign;
         if self.tile_bounds.get(tile).is_none_or(|bound| *bound <= best.max(floor)) {
             return best * self.sign;
         }
+        self.search(simd, x, y, tile, floor, best) * self.sign
+    }
+
+    /// The best of a tile's triangles at a texel, if better than `floor` and `best`; times the sign.
+    #[inline(never)]
+    fn search<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, best: f32) -> f32 {
+        simd.vectorize(
+            #[inline(always)]
+            || self.search_inlined(simd, x, y, tile, floor, best),
+        )
+    }
+
+    #[inline(always)]
+    fn search_inlined<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
         // Places within the tile, as the candidates' planes take them.
         let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
         for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
-            let first = job.primitives.batch.tile_range(tile).start;
-            let blocks = job.starts[tile] as usize..job.starts[tile + 1] as usize;
-            for (number, block) in job.candidates[blocks].chunks_exact(ROWS * LANES).enumerate() {
-                let mut bits = above(block, u, v, best.max(floor));
+            let grid = job.grid(tile, self.sign, self.scale, self.tiles_x as usize);
+            let block = if grid.whole { 0 } else { (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK };
+            let eights = grid.starts[block] as usize..grid.starts[block + 1] as usize;
+            let candidates = &grid.candidates[eights.start * ROWS * LANES..eights.end * ROWS * LANES];
+            let entries = &grid.entries[eights.start * LANES..eights.end * LANES];
+            for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
+                let mut bits = above(simd, block, u, v, best.max(floor));
                 while bits != 0 {
-                    let at = first + number * LANES + bits.trailing_zeros() as usize;
+                    let at = entries[number * LANES + bits.trailing_zeros() as usize] as usize;
                     bits &= bits - 1;
                     let setup = job.primitives.batch.item(at);
                     let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
@@ -140,7 +178,7 @@ impl PendingDepth {
                 }
             }
         }
-        best * self.sign
+        best
     }
 
     /// Which depth stays: 1 the larger, -1 the smaller.
@@ -149,11 +187,11 @@ impl PendingDepth {
     }
 
     /// Draws everything into the plane.
-    pub(crate) fn resolve(self: Box<Self>, plane: &mut Plane<f32>, scale: f32) {
+    pub(crate) fn resolve(self, plane: &mut Plane<f32>, scale: f32) {
         let viewport = plane.viewport();
         let tiles_x = viewport.tiles_x();
         let layout = super::shade::Layout::default();
-        let states: Vec<Vec<(Arc<FragmentState>, [i32; 4])>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
+        let states: Vec<Vec<ClippedState>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
         let items: Vec<Item<'_>> = self
             .jobs
             .into_iter()
@@ -175,6 +213,53 @@ impl PendingDepth {
 }
 
 impl PendingJob {
+    /// The finer lists of a tile.
+    fn grid(&self, tile: usize, sign: f32, scale: f32, tiles_x: usize) -> &Grid {
+        self.grids[tile].get_or_init(|| {
+            let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
+            let batch = &self.primitives.batch;
+            let mut lists: [Vec<u32>; BLOCKS * BLOCKS] = std::array::from_fn(|_| Vec::new());
+            let range = batch.tile_range(tile);
+            let whole = range.len() <= FEW;
+            for at in range {
+                let setup = batch.item(at);
+                if whole {
+                    lists[0].push(at as u32);
+                    continue;
+                }
+                // Texels whose centres may lie within the box.
+                let span = |v: [i32; 3], origin: i32| {
+                    let low = (v[0].min(v[1]).min(v[2]) / SUBPIXEL - 1 - origin).clamp(0, TILE as i32 - 1);
+                    let high = (v[0].max(v[1]).max(v[2]) / SUBPIXEL + 1 - origin).clamp(0, TILE as i32 - 1);
+                    low as usize / BLOCK..high as usize / BLOCK + 1
+                };
+                for y in span(setup.y, origin[1]) {
+                    for x in span(setup.x, origin[0]) {
+                        lists[y * BLOCKS + x].push(at as u32);
+                    }
+                }
+            }
+            let mut grid =
+                Grid { whole, candidates: Vec::new(), entries: Vec::new(), starts: [0; BLOCKS * BLOCKS + 1] };
+            for (block, list) in lists.iter().enumerate() {
+                for eight in list.chunks(LANES) {
+                    let rows = grid.candidates.len();
+                    grid.candidates.resize(rows + ROWS * LANES, f32::NEG_INFINITY);
+                    for (lane, &at) in eight.iter().enumerate() {
+                        let row = candidate(batch.item(at as usize), origin, sign, scale);
+                        for k in 0..ROWS {
+                            grid.candidates[rows + k * LANES + lane] = row[k];
+                        }
+                    }
+                    grid.entries.extend(eight);
+                    grid.entries.resize(grid.entries.len().next_multiple_of(LANES), 0);
+                }
+                grid.starts[block + 1] = (grid.entries.len() / LANES) as u32;
+            }
+            Box::new(grid)
+        })
+    }
+
     fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
         let draw = self.primitives.facets[setup.facet as usize].draw;
         let [x0, y0, x1, y1] = self.draws[draw as usize].1;
@@ -182,36 +267,18 @@ impl PendingJob {
     }
 }
 
-fn job(
-    primitives: Primitives,
-    draws: Vec<(Arc<FragmentState>, [i32; 4])>,
-    sign: f32,
-    scale: f32,
-    tiles_x: usize,
-    tiles: usize,
-) -> PendingJob {
+fn job(primitives: Primitives, draws: Vec<ClippedState>, sign: f32, scale: f32, tiles: usize) -> PendingJob {
     let batch = &primitives.batch;
-    let (mut candidates, mut starts) = (Vec::new(), vec![0u32]);
-    let mut tile_bounds = Vec::with_capacity(tiles);
-    for tile in 0..tiles {
-        let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
-        let mut most = f32::NEG_INFINITY;
+    let bound = |s: &Setup| if sign > 0.0 { s.z_max } else { -s.z_min };
+    let tile_bounds = (0..tiles).map(|tile| {
         let range = batch.tile_range(tile);
-        for eight in range.clone().step_by(LANES) {
-            let block = candidates.len();
-            candidates.resize(block + ROWS * LANES, f32::NEG_INFINITY);
-            for (lane, at) in (eight..range.end.min(eight + LANES)).enumerate() {
-                let row = candidate(batch.item(at), origin, sign, scale);
-                most = most.max(row[3]);
-                for k in 0..ROWS {
-                    candidates[block + k * LANES + lane] = row[k];
-                }
-            }
-        }
-        starts.push(candidates.len() as u32);
-        tile_bounds.push(most);
-    }
-    PendingJob { primitives, draws, candidates, starts, tile_bounds }
+        let most = range.clone().map(|at| bound(batch.item(at))).fold(f32::NEG_INFINITY, f32::max);
+        // As read: stored and divided again. Both keep the order.
+        if range.is_empty() { most } else { stored(most.abs(), scale) / scale * sign }
+    });
+    let tile_bounds = tile_bounds.collect();
+    let grids = (0..tiles).map(|_| OnceLock::new()).collect();
+    PendingJob { primitives, draws, tile_bounds, grids }
 }
 
 /// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the
@@ -224,7 +291,8 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
     let at = |k: usize| ((origin[k] * SUBPIXEL + SUBPIXEL / 2 - setup.origin[k]) as f32) / SUBPIXEL as f32;
     let (x, y) = (at(0) * dx, at(1) * dy);
     let size = setup.z.abs() + x.abs() + y.abs() + (dx.abs() + dy.abs()) * TILE as f32;
-    let margin = size * 1e-6 + 1.0 / scale.min(16_777_216.0).max(1.0e6);
+    // Half a step for rounding when stored, and what five roundings may be off.
+    let margin = size * 1.8e-7 + if scale == 1.0 { 0.0 } else { 0.5 / scale };
     let corner = setup.z * sign + x + y + margin;
     if corner.is_finite() && dx.is_finite() && dy.is_finite() {
         [corner, dx, dy, bound]
@@ -235,11 +303,12 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
 
 /// Which of a block's eight candidates may be above `floor` at a place of the tile.
 #[inline(always)]
-fn above(block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
-    let mut bits = 0;
-    for lane in 0..LANES {
-        let plane = block[lane] + block[LANES + lane] * u + block[2 * LANES + lane] * v;
-        bits |= u32::from((plane > floor) & (block[3 * LANES + lane] > floor)) << lane;
-    }
-    bits
+fn above<S: Simd>(simd: S, block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
+    let row = lanes::inlined(
+        #[inline(always)]
+        |k: usize| F32x8::from_slice(simd, &block[k * LANES..(k + 1) * LANES]),
+    );
+    let plane = row(0) + row(1) * u + row(2) * v;
+    let floor = <F32x8<S> as SimdBase<S>>::splat(simd, floor);
+    (plane.simd_gt(floor) & row(3).simd_gt(floor)).to_bitmask() as u32
 }

@@ -1,18 +1,21 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures, fog.
 
 use super::assemble::{Facet, FacetKind, Shape};
+use super::block::Words;
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
+use super::fragment_ops::compare::{alpha_test, holds};
+use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, lod, needs_lod};
 use super::sample::sample;
 use super::state::{FragmentState, Unit};
-use super::wide::{Rgba, clamp, max, min, saturate_rgba, splat, splat_rgba};
-use crate::{SUBPIXEL, Setup};
+use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
+use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Simd};
+use vitral_math::lanes::{F32x8, LANES, Simd};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -88,6 +91,8 @@ impl Interpolation {
     }
 }
 
+const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
+
 /// Perspective-correct barycentric coordinates at eight points.
 struct Weights<S: Simd> {
     b1: F32x8<S>,
@@ -112,7 +117,11 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(crate) fn new(facet: Facet, draw: &'a DrawContext<'a>, records: &'a [f32], shapes: &[Shape]) -> Self {
         let layout = draw.layout;
-        let shape = if facet.kind == FacetKind::Polygon { None } else { shapes.get(facet.shape as usize).copied() };
+        let shape = if facet.kind == FacetKind::Polygon && !layout.smooth[2] {
+            None
+        } else {
+            shapes.get(facet.shape as usize).copied()
+        };
         let interpolation = Interpolation::default();
         Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation, ready: false }
     }
@@ -122,9 +131,12 @@ impl<'a> Shader<'a> {
     pub(crate) fn prepare(&mut self, setup: &Setup) {
         if !self.ready {
             self.ready = true;
-            self.interpolation = Interpolation::new(setup, &self.facet, self.records);
-            if self.facet.kind == FacetKind::Polygon && self.layout.smooth[2] {
-                self.interpolation.prepare_edges(setup);
+            if let Some(Shape::Polygon { x, y, .. }) = self.shape {
+                let own = Setup { x, y, ..*setup };
+                self.interpolation = Interpolation::new(&own, &self.facet, self.records);
+                self.interpolation.prepare_edges(&own);
+            } else {
+                self.interpolation = Interpolation::new(setup, &self.facet, self.records);
             }
         }
     }
@@ -213,6 +225,75 @@ impl<'a> Shader<'a> {
             color = fog(simd, f, color, self.value(simd, &weights, at));
         }
         self.covered(simd, x, y, color)
+    }
+
+    /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
+    pub(crate) fn block<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), any: u64) -> (Words, u64) {
+        if let Some(color) = self.constant() {
+            let passed = self.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
+            return (Words::One(word), if passed { any } else { 0 });
+        }
+        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
+        if any == u64::MAX {
+            let x = CENTERS.map(|c| c + left as f32);
+            for row in 0..BLOCK {
+                let out = &mut words[BLOCK * row..BLOCK * (row + 1)];
+                let y = [(bottom + row) as f32 + 0.5; LANES];
+                passed |= u64::from(self.eight(simd, &x, &y, 0xff, out)) << (8 * row);
+            }
+            return (Words::Each(words), passed);
+        }
+        // Small facets cover few pixels of a row: eight of any rows go together.
+        let mut rest = any;
+        while rest != 0 {
+            let (mut places, mut x, mut y, mut count) = ([0; LANES], [0.0; LANES], [0.0; LANES], 0);
+            while rest != 0 && count < LANES {
+                places[count] = rest.trailing_zeros();
+                rest &= rest - 1;
+                count += 1;
+            }
+            for lane in 0..LANES {
+                let place = places[lane.min(count - 1)] as usize;
+                x[lane] = (left + place % BLOCK) as f32 + 0.5;
+                y[lane] = (bottom + place / BLOCK) as f32 + 0.5;
+            }
+            let mut out = [0; LANES];
+            let pass = self.eight(simd, &x, &y, (1 << count) - 1, &mut out);
+            for lane in 0..count {
+                words[places[lane] as usize] = out[lane];
+                passed |= u64::from(pass >> lane & 1) << places[lane];
+            }
+        }
+        (Words::Each(words), passed)
+    }
+
+    /// The packed colours of eight pixels, and which of `active` pass the alpha test.
+    #[inline(never)]
+    fn eight<S: Simd>(&self, simd: S, x: &[f32; LANES], y: &[f32; LANES], active: u32, out: &mut [u32]) -> u32 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (x, y) = (F32x8::from_slice(simd, x), F32x8::from_slice(simd, y));
+                let (color, mut passed) = self.row(simd, x, y, active);
+                if let Some(test) = self.state.alpha_test {
+                    passed &= bits_of(alpha_test(simd, test, color[3]));
+                }
+                pack(&saturate_rgba(color)).store_slice(out);
+                passed & active
+            },
+        )
+    }
+
+    /// The colour of all pixels, where it is the same for all.
+    fn constant(&self) -> Option<[f32; 4]> {
+        let plain = self.state.units.is_empty() && self.state.fog.is_none() && !self.state.color_sum;
+        if !(plain && self.state.flat) {
+            return None;
+        }
+        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
+        let r = &self.records[self.facet.provoking as usize + at..][..4];
+        Some([r[0], r[1], r[2], r[3]].map(|c| c.clamp(0.0, 1.0)))
     }
 
     /// All units' textures and environments.
@@ -321,14 +402,13 @@ impl<'a> Shader<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let (mut pass, one) = (0xff, splat(simd, 1.0));
+                let mut pass = 0xff;
                 match self.shape {
-                    None => {
-                        let mut coverage = one;
-                        for [a, b, c] in self.interpolation.edges {
-                            coverage = min(coverage, clamp(x * a + y * b + (c + 0.5), 0.0, 1.0));
-                        }
+                    None => {}
+                    Some(Shape::Polygon { boundary, .. }) => {
+                        let coverage = polygon_coverage(simd, x, y, &self.interpolation.edges, boundary);
                         color[3] *= coverage;
+                        pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
                     Some(Shape::Line { from, to, width, stipple }) => {
                         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -382,6 +462,35 @@ fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: f32) -> F32
         let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
         let half = max(-(at * at) + radius * radius, splat(simd, 0.0)).sqrt();
         sum += clamp(min(y + 0.5, half) - max(y - 0.5, -half), 0.0, 1.0);
+    }
+    sum * (1.0 / CHORDS as f32)
+}
+
+/// The part of the pixel round `(x, y)` inside those of the edges that are the polygon's: the mean of its chords' parts.
+#[inline(always)]
+fn polygon_coverage<S: Simd>(
+    simd: S,
+    x: F32x8<S>,
+    y: F32x8<S>,
+    edges: &[[f32; 3]; 3],
+    boundary: [bool; 3],
+) -> F32x8<S> {
+    const CHORDS: u32 = 16;
+    let mut sum = splat(simd, 0.0);
+    for i in 0..CHORDS {
+        let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
+        let (mut low, mut high) = (y - 0.5, y + 0.5);
+        for ([a, b, c], _) in edges.iter().zip(boundary).filter(|(_, boundary)| *boundary) {
+            // Inside is b y >= -(a x + c). Nearly upright edges cut the chord far away, or all of it.
+            let steep = if b.abs() < 1e-6 { 1e-6f32.copysign(*b) } else { *b };
+            let cut = (at * *a + *c) * (-1.0 / steep);
+            if steep > 0.0 {
+                low = max(low, cut);
+            } else {
+                high = min(high, cut);
+            }
+        }
+        sum += clamp(high - low, 0.0, 1.0);
     }
     sum * (1.0 / CHORDS as f32)
 }

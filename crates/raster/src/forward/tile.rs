@@ -1,6 +1,7 @@
 //! One tile walks a pass: clears, images, facets.
 
 use super::assemble::{FacetKind, Primitives};
+use super::block::{self, DepthRule};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::FragmentOps;
@@ -9,7 +10,7 @@ use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
 use super::shade::Shader;
-use super::state::FragmentState;
+use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
 use crate::kernel::traverse::{Block, BlockSink, traverse};
 use crate::sink::row_depth;
@@ -269,6 +270,11 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let packed = !matches!(self.run.planes.color, Some(ColorTile::RgbaF32(_)));
+        if self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
+        {
+            return self.block(simd, setup, block, masks);
+        }
         let [x0, y0, x1, y1] = self.clip;
         let allowed = columns(block.x as i32, x0, x1);
         for row in block.rows.clone() {
@@ -288,6 +294,66 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
 }
 
 impl FragmentSink<'_, '_, '_> {
+    /// The common kinds of fragments, see [`super::block`].
+    #[inline(always)]
+    fn block<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let (state, samples) = (self.draw.state, self.run.planes.samples);
+        let allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
+        let mut bits = [0; SAMPLES];
+        for s in 0..samples {
+            bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
+        }
+        if let Some(test) = &state.stencil {
+            let face = if self.shader.facet.back { &test.back } else { &test.front };
+            block::stencil(simd, block, &mut self.run.planes, face, &mut bits);
+            if bits == [0; SAMPLES] {
+                return;
+            }
+        }
+        let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
+        let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
+        // Before the alpha test depth may be looked at, but not written.
+        let late = state.alpha_test.is_some();
+        if let Some(rule) = rule {
+            let early = DepthRule { write: rule.write && !late, ..rule };
+            self.depths(simd, setup, place, block, early, &mut bits);
+        }
+        let any = bits[0] | bits[1] | bits[2] | bits[3];
+        if any == 0 || !self.draw.shaded {
+            return;
+        }
+        self.shader.prepare(setup);
+        let (words, passed) = self.shader.block(simd, place, any);
+        if late {
+            for b in &mut bits {
+                *b &= passed;
+            }
+            if let Some(rule) = rule.filter(|rule| rule.write) {
+                let write = DepthRule { func: Compare::Always, ..rule };
+                self.depths(simd, setup, place, block, write, &mut bits);
+            }
+        }
+        block::colors(simd, block, &mut self.run.planes, self.draw.ops.mixing, &words, &bits);
+    }
+
+    #[inline(always)]
+    fn depths<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: (usize, usize),
+        block: &Block,
+        rule: DepthRule,
+        bits: &mut [u64; SAMPLES],
+    ) {
+        let count = self.pattern.len();
+        let mut positions = [[0; 2]; SAMPLES];
+        for s in 0..count {
+            positions[s] = self.pattern.position(s);
+        }
+        block::depths(simd, setup, place, block, &positions[..count], &mut self.run.planes, rule, bits);
+    }
+
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
         let (state, samples) = (self.draw.state, self.run.planes.samples);

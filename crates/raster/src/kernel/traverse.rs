@@ -97,9 +97,10 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
         let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
         edges[i] = Edge { a: -dy, b: dx };
         let bias = if is_top_left(dx, dy) { 0 } else { -1 };
+        let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) + bias;
         for s in 0..samples {
             let [sx, sy] = pattern.position(s);
-            let c = i64::from(dx) * i64::from(sy - y[i]) - i64::from(dy) * i64::from(sx - x[i]) + bias;
+            let c = corner + i64::from(dx) * i64::from(sy) - i64::from(dy) * i64::from(sx);
             constants[s][i] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
         }
     }

@@ -32,6 +32,20 @@ pub(crate) fn depth_test<S: Simd>(simd: S, test: DepthTest, incoming: F32x8<S>, 
     compare(simd, test.func, incoming, stored)
 }
 
+/// Whether a comparison holds, for one value.
+pub(crate) fn holds(func: Compare, incoming: f32, stored: f32) -> bool {
+    match func {
+        Compare::Never => false,
+        Compare::Less => incoming < stored,
+        Compare::Equal => incoming == stored,
+        Compare::LessOrEqual => incoming <= stored,
+        Compare::Greater => incoming > stored,
+        Compare::NotEqual => incoming != stored,
+        Compare::GreaterOrEqual => incoming >= stored,
+        Compare::Always => true,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

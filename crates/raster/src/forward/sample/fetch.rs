@@ -277,7 +277,7 @@ fn plane_depths<S: Simd>(
         let mut out = [0.0f32; LANES];
         for lane in 0..LANES {
             if active >> lane & 1 == 1 {
-                out[lane] = pending.texel(x[lane], y[lane], known.as_ref().map(|k| k[lane]));
+                out[lane] = pending.texel(simd, x[lane], y[lane], known.as_ref().map(|k| k[lane]));
             }
         }
         return F32x8::from_slice(simd, &out);

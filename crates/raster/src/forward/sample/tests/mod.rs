@@ -53,7 +53,7 @@ fn look(texture: &Texture, coords: [[f32; 4]; 8], lods: [f32; 8], active: u32) -
         let out: [[f32; 8]; 4] = dispatch!(level, simd => {
             let load = |values: [f32; 8]| F32x8::from_slice(simd, &values);
             let coords = [load(column(0)), load(column(1)), load(column(2)), load(column(3))];
-            let [r, g, b, a] = sample(simd, texture, coords, load(lods), active);
+            let [r, g, b, a] = sample(simd, texture, None, coords, load(lods), active);
             [r.to_array(), g.to_array(), b.to_array(), a.to_array()]
         });
         (name, out)

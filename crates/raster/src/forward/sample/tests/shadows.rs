@@ -77,7 +77,7 @@ fn planes_are_read_tile_by_tile() {
     let mut plane = Plane::new(Viewport { width: 100, height: 70 }, 1, scale);
     plane.set(64, 0, 0, 0.0);
     plane.set(99, 63, 0, 8_388_608.0);
-    let plane = Arc::new(Mutex::new(DepthPlane { plane, scale }));
+    let plane = Arc::new(Mutex::new(DepthPlane::new(plane, scale)));
     let image = level([100, 70, 1], 0, Texels::DepthPlane(plane));
     let t = texture(TextureKind::Two, vec![vec![image.clone()]], Sampler { wrap: [Wrap::ClampToEdge; 3], ..NEAREST });
     let depth = |x: f32, y: f32| at(&t, [(x + 0.5) / 100.0, (y + 0.5) / 70.0, 0.0, 1.0], 0.0)[0];

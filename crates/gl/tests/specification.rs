@@ -256,6 +256,18 @@ fn a_smooth_polygon_covers_its_area() {
         assert!((sum / area - 1.0).abs() < 0.03, "{sum} instead of {area}");
         assert!(c.bytes().iter().any(|p| (40..=215).contains(&p[3])), "no soft border");
     }
+    // The diagonal of a quad is no edge.
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.begin(gl::QUADS);
+    for [x, y] in [[4.25, 4.5], [20.5, 4.5], [20.5, 17.0], [4.25, 17.0]] {
+        c.vertex_2f(x, y);
+    }
+    c.end();
+    let found = [[10, 4], [4, 10], [4, 4], [20, 12], [10, 17]].map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
+    for (found, expected) in found.iter().zip([0.5, 0.75, 0.375, 0.5, 0.0]) {
+        assert!((found - expected).abs() < 0.01, "{found} instead of {expected}");
+    }
+    assert!((5..20).all(|x| (5..17).all(|y| c.bytes()[y * 32 + x][3] == 255)));
 }
 
 #[test]
@@ -439,7 +451,7 @@ fn feedback(c: &mut Stage, draw: impl FnOnce(&mut Stage)) -> Vec<f32> {
 
 #[test]
 fn feedback_of_lines_tells_where_the_stipple_begins_anew() {
-    let mut c = Stage::new(10, 10);
+    let mut c = Stage::new(16, 16);
     c.pixels();
     let strip = feedback(&mut c, |c| {
         c.begin(gl::LINE_STRIP);
@@ -462,7 +474,7 @@ fn feedback_of_lines_tells_where_the_stipple_begins_anew() {
 
 #[test]
 fn feedback_of_a_quad_is_one_polygon() {
-    let mut c = Stage::new(10, 10);
+    let mut c = Stage::new(16, 16);
     c.pixels();
     let found = feedback(&mut c, |c| {
         c.pass_through(7.0);
@@ -480,7 +492,7 @@ fn feedback_of_a_quad_is_one_polygon() {
 #[test]
 fn evaluation_leaves_the_current_values_alone() {
     let mut c = Stage::new(8, 8);
-    let points = c.put(&[-1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let points = c.put(&[-1.0f32, 0.1, 0.0, 1.0, 0.1, 0.0]);
     let colors = c.put(&[0.0f32, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]);
     c.map_1f(gl::MAP1_VERTEX_3, 0.0, 1.0, 3, 2, points);
     c.map_1f(gl::MAP1_COLOR_4, 0.0, 1.0, 4, 2, colors);

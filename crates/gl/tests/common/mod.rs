@@ -147,7 +147,7 @@ impl Stage {
 #[track_caller]
 pub fn assert_color(found: [u8; 4], expected: [f32; 4]) {
     for k in 0..4 {
-        let error = (f32::from(found[k]) - expected[k].clamp(0.0, 1.0) * 255.0).abs();
+        let error = (f32::from(found[k]) - (expected[k].clamp(0.0, 1.0) * 255.0).round()).abs();
         assert!(error <= 1.0, "{found:?} instead of {:?}", expected.map(|v| v * 255.0));
     }
 }

@@ -37,7 +37,7 @@ pub struct Facet {
     pub kind: FacetKind,
     /// A back-facing polygon.
     pub back: bool,
-    /// Index into [`Primitives::shapes`] of a line or point.
+    /// Index into [`Primitives::shapes`] of a line, point or piece of a smooth polygon.
     pub shape: u32,
 }
 
@@ -54,6 +54,15 @@ pub enum Shape {
         width: f32,
         /// Stipple count at the start.
         stipple: f32,
+    },
+    /// A triangle of a smooth polygon, whose setup is wider by a border.
+    Polygon {
+        /// The triangle's own corners, in the setup's order and units.
+        x: [i32; 3],
+        /// See `x`.
+        y: [i32; 3],
+        /// Which of the edges from these corners are the polygon's.
+        boundary: [bool; 3],
     },
     /// A point of a diameter; `fade` multiplies its alpha.
     Point {
@@ -108,6 +117,8 @@ pub struct PrimitiveState {
     pub multisample: bool,
     /// Points are smooth.
     pub point_smooth: bool,
+    /// Polygons are smooth.
+    pub polygon_smooth: bool,
     /// Allowed pixels x0, y0, x1, y1 for polygons and lines: scissor, target and viewport.
     pub clip: [i32; 4],
     /// The draw's number in its job.
@@ -127,7 +138,10 @@ pub struct Primitives {
     pub records: Vec<f32>,
 }
 
-/// No slot yet.
+/// How far over a smooth polygon's edge pixels may be that it covers in part.
+const SOFT_BORDER: f32 = 0.75;
+
+/// No slot yet, no shape.
 const NONE: u32 = u32::MAX;
 
 /// Collects the primitives of one piece of a draw.
@@ -260,7 +274,7 @@ impl<'a> Assembler<'a> {
         let plane = self.plane(positions, area, 2);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
-        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
     }
 
     /// Where a triangle lies to the user's planes.
@@ -411,7 +425,7 @@ impl<'a> Assembler<'a> {
                 && let Some(pixels) = self.pixels(&fan(i))
             {
                 let slots = [slots[0], slots[i], slots[i + 1]];
-                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
             }
         }
     }
@@ -466,10 +480,38 @@ impl<'a> Assembler<'a> {
             }
             _ => {
                 for i in 1..corners.len() - 1 {
-                    self.triangle([corners[0], corners[i], corners[i + 1]], provoking);
+                    let piece = [corners[0], corners[i], corners[i + 1]];
+                    if self.state.polygon_smooth {
+                        self.smooth_triangle(piece, [i == 1, true, i + 2 == corners.len()], provoking, back);
+                    } else {
+                        self.triangle(piece, provoking);
+                    }
                 }
             }
         }
+    }
+
+    /// A piece of a smooth polygon, which also reaches the pixels that it covers but in part. Those that are cut keep hard
+    /// edges.
+    fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
+        let v = corners.map(|v| self.vertices.screen[v as usize]);
+        let flags = v[0].flags | v[1].flags | v[2].flags;
+        if flags & flag::CLIP != 0 || self.user_side(corners) != UserSide::Inside {
+            return self.triangle(corners, provoking);
+        }
+        let own = v.map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
+        let area = Setup::doubled_area(own[0], own[1], own[2]);
+        let Some(wide) = widened(own, boundary, area) else { return };
+        let plane = self.plane(own, area, 2);
+        let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
+        let provoking = self.slot(provoking);
+        let Some(pixels) = self.pixels(&wide) else { return };
+        let shape = self.out.shapes.len() as u32;
+        let (order, boundary) =
+            if area > 0 { ([0, 1, 2], boundary) } else { ([0, 2, 1], [boundary[2], boundary[1], boundary[0]]) };
+        let (x, y) = (order.map(|k| own[k].x), order.map(|k| own[k].y));
+        self.out.shapes.push(Shape::Polygon { x, y, boundary });
+        self.push(wide, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
     }
 
     /// A line; gives the stipple count at its end. The offset is that of `LINE` polygons if `offset` is 1.
@@ -672,6 +714,32 @@ impl<'a> Assembler<'a> {
     pub fn is_own(vertex: u32) -> bool {
         vertex != NONE
     }
+}
+
+/// A triangle of doubled area `area` with its boundary edges moved outwards; `None` if it has no area.
+fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Option<[CornerPosition; 3]> {
+    if area == 0 {
+        return None;
+    }
+    let scale = SUBPIXEL as f32;
+    // Inner normals and distances of the moved edges.
+    let edges: [[f32; 3]; 3] = std::array::from_fn(|i| {
+        let (a, b) = (corners[i], corners[(i + 1) % 3]);
+        let (dx, dy) = ((b.x - a.x) as f32, (b.y - a.y) as f32);
+        let length = (dx * dx + dy * dy).sqrt().copysign(area as f32);
+        let (nx, ny) = (-dy / length, dx / length);
+        let border = if boundary[i] { SOFT_BORDER * scale } else { 0.0 };
+        [nx, ny, nx * a.x as f32 + ny * a.y as f32 - border]
+    });
+    let whole = |v: f32| ((v / scale).clamp(-GUARD_BAND, GUARD_BAND) * scale + 0.5).floor() as i32;
+    let wide: [CornerPosition; 3] = std::array::from_fn(|i| {
+        let ([a, b, c], [d, e, f]) = (edges[(i + 2) % 3], edges[i]);
+        let determinant = a * e - b * d;
+        let (x, y) = ((c * e - b * f) / determinant, (a * f - c * d) / determinant);
+        CornerPosition { x: whole(x), y: whole(y), z: corners[i].z }
+    });
+    let wide_area = Setup::doubled_area(wide[0], wide[1], wide[2]);
+    (wide_area != 0 && (wide_area > 0) == (area > 0)).then_some(wide)
 }
 
 /// The point where the way from the inner to the outer corner leaves.

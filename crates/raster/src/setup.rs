@@ -78,6 +78,12 @@ impl DepthPlane {
             z_max: a.z.max(b.z).max(c.z),
         }
     }
+
+    /// Keeps the facet's depths in `0..=1`, wherever its corners lie.
+    pub(crate) fn clamp(&mut self) {
+        self.z_min = self.z_min.clamp(0.0, 1.0);
+        self.z_max = self.z_max.clamp(0.0, 1.0);
+    }
 }
 
 impl Setup {

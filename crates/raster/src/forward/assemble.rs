@@ -140,6 +140,8 @@ pub struct Assembler<'a> {
     /// Numbers a record has.
     stride: u32,
     vertices: &'a Vertices<'a>,
+    /// Flags that vertices share only where nothing is seen.
+    frustum: u32,
     slots: Vec<u32>,
     /// Vertices to shade, in the order of their slots; derived ones are `NONE`.
     pub used: Vec<u32>,
@@ -188,7 +190,9 @@ impl<'a> Assembler<'a> {
         let first_slot = out.records.len() as u32;
         let slots = vec![NONE; vertices.clip.len()];
         let stride = stride as u32;
-        Self { state, screen, out, stride, vertices, slots, used: Vec::new(), derived: Vec::new(), first_slot }
+        // With depth clamping near and far do not bound the view.
+        let frustum = flag::FRUSTUM & if state.depth_clamp { !(flag::NEAR | flag::FAR) } else { !0 };
+        Self { state, screen, out, stride, vertices, frustum, slots, used: Vec::new(), derived: Vec::new(), first_slot }
     }
 
     /// The slot of a vertex: where its record begins.
@@ -236,7 +240,7 @@ impl<'a> Assembler<'a> {
         let s = self.vertices.screen;
         let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];
         let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
-        if all & flag::FRUSTUM != 0 || any & flag::NOT_FINITE != 0 {
+        if all & self.frustum != 0 || any & flag::NOT_FINITE != 0 {
             return;
         }
         if any & flag::CLIP != 0 || self.state.user_planes > 0 {
@@ -383,9 +387,10 @@ impl<'a> Assembler<'a> {
         let mut plane = self.plane(fan(largest), area_of(largest), 2);
         let offset = plane.z - positions[0].z;
         for p in &positions {
-            plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
-            plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
+            plane.z_min = plane.z_min.min(p.z + offset);
+            plane.z_max = plane.z_max.max(p.z + offset);
         }
+        plane.clamp();
         let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
         let provoking = self.slot(provoking);
         for i in 1..polygon.len() - 1 {
@@ -455,7 +460,7 @@ impl<'a> Assembler<'a> {
     fn line_of(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: f32, back: bool, offset: usize) -> f32 {
         let s = self.vertices.screen;
         let (a, b) = (s[from as usize], s[to as usize]);
-        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & flag::FRUSTUM != 0 {
+        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.frustum != 0 {
             return stipple;
         }
         let mut ends = [
@@ -548,7 +553,10 @@ impl<'a> Assembler<'a> {
         let v = self.vertices.screen[vertex as usize];
         let planes = self.state.user_planes;
         let user = &self.vertices.user[vertex as usize * planes..][..planes];
-        if v.flags & (flag::NOT_FINITE | flag::FRUSTUM | flag::CLIP) != 0 || !user.iter().all(|d| *d >= 0.0) {
+        // Nothing at or behind the eye survives, whatever the depth range.
+        let [.., w] = self.vertices.clip[vertex as usize];
+        let seen = w > 1e-30 && v.flags & (flag::NOT_FINITE | self.frustum) == 0;
+        if !seen || !user.iter().all(|d| *d >= 0.0) {
             return;
         }
         let [x, y, z] = self.state.window.project_exact(self.vertices.clip[vertex as usize]);
@@ -591,11 +599,12 @@ impl<'a> Assembler<'a> {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
             let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
-            let plane = if offset < 3 {
+            let mut plane = if offset < 3 {
                 self.plane(positions, area, offset)
             } else {
                 DepthPlane::new(positions[0], positions[1], positions[2], area)
             };
+            plane.clamp();
             self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
         }
     }

@@ -47,13 +47,14 @@ impl WindowTransform {
         CornerPosition { x: snapped(x), y: snapped(y), z }
     }
 
-    /// Window x and y in pixels, and depth, of a point with `w > 0`.
+    /// Window x and y in pixels, and depth, of a point with `w > 0`. Depth may lie outside of 0..=1 where nothing is clipped
+    /// at near and far: fragments are clamped, not corners.
     pub fn project_exact(&self, clip: [f32; 4]) -> [f32; 3] {
         let w = clip[3];
         [
             clip[0] / w * self.scale[0] + self.center[0],
             clip[1] / w * self.scale[1] + self.center[1],
-            (clip[2] / w * self.z_scale + self.z_center).clamp(0.0, 1.0),
+            clip[2] / w * self.z_scale + self.z_center,
         ]
     }
 }

@@ -491,8 +491,8 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    /// A piece of a smooth polygon, which also reaches the pixels that it covers but in part. Those that are cut keep hard
-    /// edges.
+    /// A piece of a smooth polygon, which also reaches the pixels that it covers but in part. It knows its own edges alone:
+    /// where a diagonal meets a corner, the pixel shows the coverage of one edge. Pieces that are cut keep hard edges.
     fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
         let v = corners.map(|v| self.vertices.screen[v as usize]);
         let flags = v[0].flags | v[1].flags | v[2].flags;

@@ -54,10 +54,10 @@ static void draw(void)
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glBegin(GL_QUADS);
-    glColor4f(.2f, .4f, 1, .8f), glVertex3f(-1.8f, -1.2f, 1);
-    glColor4f(1, 1, .2f, .1f), glVertex3f(1.8f, -1.2f, 1);
-    glColor4f(1, 1, 1, .6f), glVertex3f(1.8f, .2f, 1);
-    glColor4f(.2f, 1, 1, .3f), glVertex3f(-1.8f, .2f, 1);
+    glColor4f(.2f, .4f, 1, .8f), glVertex3f(-1.8f, -1.2f, 1); /* Affine: where the quadrilateral is cut does not matter. */
+    glColor4f(.8f, .4f, .5f, .6f), glVertex3f(1.8f, -1.2f, 1);
+    glColor4f(.8f, 1, .3f, .2f), glVertex3f(1.8f, .2f, 1);
+    glColor4f(.2f, 1, .8f, .4f), glVertex3f(-1.8f, .2f, 1);
     glEnd();
     glFinish();
 }

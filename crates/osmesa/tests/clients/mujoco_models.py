@@ -23,7 +23,7 @@ SHAPES = """
   <light pos=".5 -1 3.5" dir="-.1 .25 -1" cutoff="40" exponent="6"/>
   <light pos="2 2 3" dir="-1 -1 -1" directional="true" diffuse=".4 .4 .35"/>
   <geom type="plane" size="3 3 .1" material="grid"/>
-  <geom name="box" type="box" size=".2 .2 .2" pos="0 0 .2" euler="0 0 30" material="cube"/>
+  <geom name="box" type="box" size=".2 .2 .2" pos="0 0 .25" euler="0 0 30" material="cube"/>
   <geom name="sphere" type="sphere" size=".22" pos=".5 -.3 .22" material="gloss"/>
   <geom name="capsule" type="capsule" size=".1 .25" pos="-.5 .2 .5" euler="60 0 0" rgba=".2 .3 .9 1"/>
   <geom name="cylinder" type="cylinder" size=".12 .25" pos="0 .7 .25" rgba=".9 .8 .2 1"/>

@@ -4,7 +4,7 @@
 
 pub mod fixture;
 pub mod fuzz;
-mod fuzz_gl;
+pub mod fuzz_gl;
 pub mod golden;
 pub mod matrix;
 mod page;

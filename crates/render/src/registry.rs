@@ -1,6 +1,6 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::visible::{VisibleSurface, zbuffer::ZBuffer};
+use crate::visible::{VisibleSurface, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -17,13 +17,29 @@ pub struct VisibilityAlgorithm {
 }
 
 /// All visible-surface algorithms, the default first.
-pub static VISIBILITY: &[VisibilityAlgorithm] = &[VisibilityAlgorithm {
-    name: "z-buffer",
-    description: "every sample keeps its nearest facet",
-    source: "Catmull 1974",
-    precision: "image",
-    algorithm: &ZBuffer,
-}];
+pub static VISIBILITY: &[VisibilityAlgorithm] = &[
+    VisibilityAlgorithm {
+        name: "z-buffer",
+        description: "every sample keeps its nearest facet",
+        source: "Catmull 1974",
+        precision: "image",
+        algorithm: &ZBuffer,
+    },
+    VisibilityAlgorithm {
+        name: "scan-line",
+        description: "line by line, from edge to edge",
+        source: "Watkins 1970",
+        precision: "image",
+        algorithm: &ScanLine,
+    },
+    VisibilityAlgorithm {
+        name: "warnock",
+        description: "windows are cut in four until they are simple",
+        source: "Warnock 1969",
+        precision: "image",
+        algorithm: &Warnock,
+    },
+];
 
 /// A visible-surface algorithm by its name.
 pub fn visibility(name: &str) -> Option<&'static VisibilityAlgorithm> {

@@ -11,6 +11,8 @@ pub struct Stats {
     pub cull: CullCounters,
     /// Triangles on their way to the screen.
     pub geometry: GeometryStats,
+    /// What finding the visible surfaces took.
+    pub visibility: VisibilityCounters,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -72,6 +74,41 @@ impl GeometryStats {
         self.clipped += c.clipped;
         self.set_up += c.set_up;
         self.tile_entries += c.tile_entries;
+    }
+}
+
+/// What finding the visible surfaces took, each algorithm in its own terms; 0 where an algorithm has no such thing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct VisibilityCounters {
+    /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
+    pub depth_comparisons: u64,
+    /// Steps that coherence saved: edges carried to the next line, facets passed over or inherited without a test.
+    pub saved: u64,
+    /// Scan-line: edges in the active edge table, summed over the lines.
+    pub active_edges: u64,
+    /// Scan-line: spans with a polygon in.
+    pub spans: u64,
+    /// Scan-line: spans that had to be decided sample by sample.
+    pub penetrated_spans: u64,
+    /// Area subdivision: windows looked at.
+    pub windows: u64,
+    /// Area subdivision: windows of one pixel, decided sample by sample.
+    pub pixel_windows: u64,
+    /// Area subdivision: polygons tested against a window.
+    pub window_tests: u64,
+}
+
+impl VisibilityCounters {
+    pub(crate) fn add(&mut self, o: &Self) {
+        self.depth_comparisons += o.depth_comparisons;
+        self.saved += o.saved;
+        self.active_edges += o.active_edges;
+        self.spans += o.spans;
+        self.penetrated_spans += o.penetrated_spans;
+        self.windows += o.windows;
+        self.pixel_windows += o.pixel_windows;
+        self.window_tests += o.window_tests;
     }
 }
 

@@ -1,8 +1,11 @@
 //! Which surface is seen at each sample.
 
+mod facets;
+pub mod scanline;
+pub mod warnock;
 pub mod zbuffer;
 
-use crate::stats::GeometryStats;
+use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::{Batch, Layer, Tile, TileGrid};
@@ -20,6 +23,8 @@ pub struct Resolved {
     pub geometry: GeometryStats,
     /// Seconds of the budget's clock spent on that, the rest went into the tiles.
     pub geometry_seconds: f64,
+    /// What finding the visible surfaces took.
+    pub counters: VisibilityCounters,
 }
 
 /// An algorithm that finds the visible surface at each sample.

@@ -375,7 +375,7 @@ mod tests {
         let at = |setup| CornerDepths::new(setup, WINDOW);
         let front = triangle(large, [0.6, 0.9, 0.6], 1);
         let behind = triangle(large, [0.4, 0.8, 0.4], 0);
-        let through = triangle(large, [0.5, 0.5, 0.9], 2);
+        let through = triangle(large, [0.6, 0.6, 0.9], 2);
         assert!(at(&front).hides(&at(&behind)) && !at(&behind).hides(&at(&front)));
         assert!(!at(&front).hides(&at(&through)) && !at(&through).hides(&at(&front)));
         let twin = Setup { facet: 5, ..front };

@@ -14,8 +14,6 @@ ours, mesa = sys.argv[1:3]
 LIMITS = {
     'depth': (.1, 0),
     'segmentation': (.1, 0),
-    'halfcheetah': (1.5, 25),  # Mesa's shadow leaves dark streaks on the floor far off
-    'wireframe': (10, 28),     # lines on lines in the same plane, seen through each other
 }
 
 

@@ -228,6 +228,22 @@ impl<S: Simd> Lanes for F32x8<S> {
         mask.any_true()
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if takes_second(self.token().level()) {
+            self.token().max_f32x8(self, other)
+        } else {
+            Self::select(Lanes::lt(other, self), self, other)
+        }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if takes_second(self.token().level()) {
+            self.token().min_f32x8(self, other)
+        } else {
+            Self::select(Lanes::lt(self, other), self, other)
+        }
+    }
+    #[inline(always)]
     fn exp2_whole(self) -> Self {
         let whole: I32x8<S> = self.to_int();
         ((whole + 127) << 23).bitcast()
@@ -238,6 +254,18 @@ impl<S: Simd> Lanes for F32x8<S> {
         let exponent: Self = ((bits >> 23) - 127).to_float();
         (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
     }
+}
+
+/// Whether the instruction for the larger (smaller) of two numbers gives the second where they do not compare, which is
+/// what [`Lanes::max`] promises. The instructions of x86 do; elsewhere it takes a comparison and a selection.
+#[inline(always)]
+fn takes_second(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if matches!(level, Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_)) {
+        return true;
+    }
+    let _ = level;
+    false
 }
 
 /// A vector of three lanes: eight directions or points, or one.

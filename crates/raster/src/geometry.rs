@@ -166,13 +166,22 @@ pub struct Screen {
     transform: ViewportTransform,
     sample_x: [i32; 2],
     sample_y: [i32; 2],
+    lines: [[i32; 2]; 2],
 }
 
 impl Screen {
     /// The screen for a viewport and sample pattern.
     pub fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
         let [sample_x, sample_y] = pattern.extent();
-        Self { viewport, transform: ViewportTransform::new(viewport), sample_x, sample_y }
+        let lines = [pattern.lines(0), pattern.lines(1)];
+        Self { viewport, transform: ViewportTransform::new(viewport), sample_x, sample_y, lines }
+    }
+
+    /// Whether `low..=high` along an axis holds a line of samples.
+    #[inline(always)]
+    fn crosses_line(&self, low: i32, high: i32, axis: usize) -> bool {
+        let [offset, shift] = self.lines[axis];
+        (high - offset) >> shift > (low - 1 - offset) >> shift
     }
 
     /// The map from ndc to the screen.
@@ -371,6 +380,9 @@ pub fn transform_point(clip_from_model: &Mat4, p: [f32; 3]) -> Vec4 {
 pub(crate) fn covered_pixels([a, b, c]: &[CornerPosition; 3], screen: &Screen) -> Option<[u32; 4]> {
     let (min_x, max_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
     let (min_y, max_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+    if !(screen.crosses_line(min_x, max_x, 0) && screen.crosses_line(min_y, max_y, 1)) {
+        return None;
+    }
     let (x0, x1) = Screen::pixels(min_x, max_x, screen.sample_x, screen.viewport.width);
     let (y0, y1) = Screen::pixels(min_y, max_y, screen.sample_y, screen.viewport.height);
     (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])

@@ -6,10 +6,15 @@
 
 use crate::SUBPIXEL;
 
+/// Most samples a pixel.
+pub(crate) const MOST_SAMPLES: usize = 16;
+
 /// Sample positions within a pixel, in 1/256 pixel from its top left corner, sorted from top to bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SamplePattern {
     positions: Vec<[i32; 2]>,
+    /// The same by axis, padded with the first.
+    axes: [[i32; MOST_SAMPLES]; 2],
     extent: [[i32; 2]; 2],
 }
 
@@ -36,7 +41,10 @@ impl SamplePattern {
             let values = positions.iter().map(|p| p[k]);
             [values.clone().min().unwrap_or(0), values.max().unwrap_or(0)]
         });
-        Self { positions, extent }
+        let axes = [0, 1].map(|k: usize| {
+            std::array::from_fn(|s| positions.get(s).or(positions.first()).map_or(0, |p: &[i32; 2]| p[k]))
+        });
+        Self { positions, axes, extent }
     }
 
     /// How many there are.
@@ -50,6 +58,20 @@ impl SamplePattern {
     #[inline(always)]
     pub fn position(&self, s: usize) -> [i32; 2] {
         self.positions[s]
+    }
+
+    /// Along an axis, samples lie on the lines `offset + k * 2^shift` (1/256 pixel), `[offset, shift]`: the largest such step.
+    pub fn lines(&self, axis: usize) -> [i32; 2] {
+        let first = self.positions[0][axis];
+        let apart = self.positions.iter().fold(SUBPIXEL, |bits, p| bits | (p[axis] - first));
+        let shift = apart.trailing_zeros() as i32;
+        [first & ((1 << shift) - 1), shift]
+    }
+
+    /// All samples' x, then y, in 1/256 pixel; beyond the last sample the first one's.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> &[[i32; MOST_SAMPLES]; 2] {
+        &self.axes
     }
 
     /// Position of sample `s` in pixels, `0..1`.

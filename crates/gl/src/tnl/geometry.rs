@@ -76,7 +76,7 @@ impl Geometry for DrawGeometry {
             if !state.depth_clamp && whole.is_outside(matrix, state.window.near, planes) {
                 return;
             }
-            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles, 0));
+            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles));
         } else {
             let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
             self.emit_vertices(level, &all, &state, screen, out, |assembler| self.emit_primitives(assembler));

@@ -234,14 +234,13 @@ impl<'a> Assembler<'a> {
     }
 
     /// Triangles that are filled; the last corner provokes.
-    pub fn triangles(&mut self, triangles: &[[u32; 3]], first_vertex: u32) {
+    pub fn triangles(&mut self, triangles: &[[u32; 3]]) {
         let plain = self.state.polygon_mode == [2, 2];
-        for t in triangles {
-            let corners = [t[0] - first_vertex, t[1] - first_vertex, t[2] - first_vertex];
+        for corners in triangles {
             if plain {
-                self.triangle(corners, corners[2]);
+                self.triangle(*corners, corners[2]);
             } else {
-                self.polygon(&corners, &[true; 3], corners[2]);
+                self.polygon(corners, &[true; 3], corners[2]);
             }
         }
     }

@@ -1,20 +1,20 @@
 //! The common kinds of fragments, a block of 8x8 pixels at a time: depth test, colours, writing, one after the other.
 //!
-//! Stencil, logic operations, masks, coverage by alpha and the seldom blend functions go row by row through
-//! [`super::fragment`]; what is left is done here in three short loops, each over all samples of a block, with the same
-//! operations and the same results.
+//! Logic operations, masks, coverage by alpha and the seldom blend functions go row by row through [`super::fragment`];
+//! what is left is done here in short loops, each over all samples of a block, with the same operations and the same
+//! results.
 
 use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored_depth};
 use super::fragment_ops::compare::compare;
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
-use super::fragment_ops::stencil::{load_stencil, stencil_test};
+use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Compare, StencilFace};
+use super::state::{Compare, StencilFace, StencilOp};
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;
-use crate::{BLOCK, SUBPIXEL, Setup, TILE, TILE_PIXELS};
+use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U32x8};
 
 /// Colours of a block, packed: one for all pixels, or one each.
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one block")]
@@ -37,14 +37,14 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
 }
 
-/// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. Sample `s` of the
-/// pattern lies at `positions[s]`; with fewer positions than samples, all samples have the first one's depth.
+/// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
+/// place in the pattern all samples have the depth there.
 pub(crate) fn depths<S: Simd>(
     simd: S,
     setup: &Setup,
     (left, bottom): (usize, usize),
     block: &Block,
-    positions: &[[i32; 2]],
+    pattern: &SamplePattern,
     planes: &mut TilePlanes<'_>,
     rule: DepthRule,
     masks: &mut [u64; SAMPLES],
@@ -60,20 +60,21 @@ pub(crate) fn depths<S: Simd>(
                 if masks[s] == 0 {
                     continue;
                 }
-                let [sx, sy] = positions[if positions.len() == samples { s } else { 0 }];
+                let [sx, sy] = pattern.position(if pattern.len() == samples { s } else { 0 });
                 let across = across(simd, setup, left as i32 * SUBPIXEL + sx);
                 let (low, high) = (splat(simd, setup.z_min), splat(simd, setup.z_max));
+                let mut rows = [0.0; BLOCK];
+                upwards(simd, setup, bottom as i32 * SUBPIXEL + sy).store_slice(&mut rows);
                 let mut passed = 0u64;
+                let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
                 for row in block.rows.clone() {
                     let bits = (masks[s] >> (8 * row)) as u32 & 0xff;
                     if bits == 0 {
                         continue;
                     }
-                    let y = (bottom + row) as i32 * SUBPIXEL + sy;
-                    let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
-                    let z = min(max(across + (setup.z + dy * setup.dz_dy), low), high);
+                    let z = min(max(across + rows[row % BLOCK], low), high);
                     let z = stored_depth(simd, z, scale);
-                    let at = (block.y + row) * TILE + block.x;
+                    let at = row % BLOCK * TILE;
                     let stored = &mut plane[at..at + LANES];
                     let old = F32x8::from_slice(simd, stored);
                     let pass = match rule.func {
@@ -95,7 +96,7 @@ pub(crate) fn depths<S: Simd>(
     );
 }
 
-/// Leaves in `masks` the samples that pass a stencil test which changes nothing.
+/// Leaves in `masks` the samples that pass a stencil test; what it writes is [`update_stencil`]'s.
 pub(crate) fn stencil<S: Simd>(
     simd: S,
     block: &Block,
@@ -140,6 +141,65 @@ fn across<S: Simd>(simd: S, setup: &Setup, x: i32) -> F32x8<S> {
     let dx = (x - setup.origin[0]) as f32 / SUBPIXEL as f32;
     let lanes = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
     (lanes + dx) * setup.dz_dx
+}
+
+/// The part of a block's depths that changes with y, for its eight rows.
+#[inline(always)]
+fn upwards<S: Simd>(simd: S, setup: &Setup, y: i32) -> F32x8<S> {
+    let rows = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) * SUBPIXEL;
+    let dy: F32x8<S> = (rows + (y - setup.origin[1])).to_float();
+    dy * (1.0 / SUBPIXEL as f32) * setup.dz_dy + setup.z
+}
+
+/// What a stencil test leaves behind: `covered` samples, those of them that passed it, and those that passed the depth test too.
+pub(crate) fn update_stencil<S: Simd>(
+    simd: S,
+    block: &Block,
+    planes: &mut TilePlanes<'_>,
+    face: &StencilFace,
+    [covered, reached, passed]: [&[u64; SAMPLES]; 3],
+) {
+    let samples = planes.samples;
+    let Some(tile) = &mut planes.stencil else { return };
+    let replaces = face.write_mask == 0xff && face.pass == StencilOp::Replace && covered == passed;
+    if replaces && matches!(tile, PlaneTile::Cleared(value) if *value == face.reference) {
+        return;
+    }
+    let values = tile.stored(samples);
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate() {
+                for row in block.rows.clone() {
+                    let [covered, reached, passed] = [covered, reached, passed].map(|m| (m[s] >> (8 * row)) as u32 & 0xff);
+                    if covered == 0 {
+                        continue;
+                    }
+                    let at = (block.y + row) * TILE + block.x;
+                    let stored = &mut plane[at..at + LANES];
+                    if replaces {
+                        replace_bytes(stored, covered, face.reference);
+                        continue;
+                    }
+                    let masks = [covered, reached, passed].map(|bits| mask_of(simd, bits));
+                    let old = load_stencil(simd, stored);
+                    store_stencil(stencil_update(simd, face, old, masks[0], masks[1], masks[2]), stored);
+                }
+            }
+        },
+    );
+}
+
+/// Sets the bytes of a row whose bits are set.
+#[inline(always)]
+fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
+    const EACH: u64 = 0x0101_0101_0101_0101;
+    if let Some(row) = row.first_chunk_mut::<8>() {
+        // Bit i of byte i, then all bits of the bytes that are not 0.
+        let single = u64::from(bits) * EACH & 0x8040_2010_0804_0201;
+        let mask = (((single | ((single & !(EACH << 7)) + (!(EACH << 7)))) >> 7) & EACH) * 0xff;
+        *row = ((u64::from_le_bytes(*row) & !mask) | (u64::from(value) * EACH & mask)).to_le_bytes();
+    }
 }
 
 /// Writes colours to the samples of `masks`.

@@ -86,7 +86,9 @@ impl FragmentOps {
         };
         let protected = protected_bits(state.masked);
         let mixing = mixing(state);
-        let common = state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back))
+        let writes_stencil = !state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back));
+        // The alpha test comes before a stencil that changes.
+        let common = !(writes_stencil && state.alpha_test.is_some())
             && state.logic_op.is_none()
             && state.query.is_none()
             && state.polygon_stipple.is_none()
@@ -99,7 +101,7 @@ impl FragmentOps {
 }
 
 /// Whether a stencil test changes nothing.
-fn keeps(face: &StencilFace) -> bool {
+pub(crate) fn keeps(face: &StencilFace) -> bool {
     face.write_mask == 0 || [face.fail, face.depth_fail, face.pass] == [StencilOp::Keep; 3]
 }
 

@@ -8,6 +8,7 @@ use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+use super::sample::packed::Packed;
 use super::shade::Layout;
 use super::state::FragmentState;
 use super::texture::Texels;
@@ -192,6 +193,8 @@ pub(crate) struct DrawContext<'a> {
     pub multisample: bool,
     /// Colours matter: some are written, or decide.
     pub shaded: bool,
+    /// Units with the common kind of texture and no sprites.
+    pub plain: Vec<(usize, Packed<'a>)>,
     /// Depth planes that units sample.
     pub planes: [Option<&'a DepthPlane>; UNITS],
 }
@@ -212,7 +215,7 @@ impl<'a> DrawContext<'a> {
     /// A draw of depths alone, one sample a pixel.
     pub(crate) fn depth_alone(state: &'a FragmentState, clip: [i32; 4], layout: &'a Layout) -> Self {
         let ops = FragmentOps::new(state, 1);
-        Self { state, layout, ops, clip, multisample: false, shaded: false, planes: [None; UNITS] }
+        Self { state, layout, ops, clip, multisample: false, shaded: false, plain: Vec::new(), planes: [None; UNITS] }
     }
 }
 
@@ -384,6 +387,10 @@ fn draw_context<'a>(
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
     }
+    let plain = state.units.iter().filter(|unit| {
+        unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0
+    });
+    let plain = plain.filter_map(|unit| Some((unit.index, Packed::new(&unit.texture)?))).collect();
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
@@ -396,6 +403,7 @@ fn draw_context<'a>(
         clip,
         multisample: samples > 1 && state.multisample,
         shaded,
+        plain,
         planes,
     }
 }

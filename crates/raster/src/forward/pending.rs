@@ -18,7 +18,7 @@ use super::tile::TileRun;
 use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
 
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
@@ -132,17 +132,44 @@ impl PendingDepth {
         self.jobs.into_iter().map(|job| job.primitives)
     }
 
-    /// The depth of a texel in `0..=1` as it would be read, from the farther of `known` and the clear value on: triangles that cannot beat
-    /// `known` are not looked at. Pass `None` for the exact depth.
+    /// The depths of eight texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
+    /// triangles that cannot beat `known` are not looked at. Pass `None` for the exact depths. Lanes without their bit in
+    /// `active` yield the clear value.
     #[inline(always)]
-    pub(crate) fn texel<S: Simd>(&self, simd: S, x: i32, y: i32, known: Option<f32>) -> f32 {
-        let tile = ((y / TILE as i32) * self.tiles_x + x / TILE as i32) as usize;
-        let floor = known.map_or(f32::NEG_INFINITY, |k| k * self.sign);
-        let best = self.clear / self.scale * self.sign;
-        if self.tile_bounds.get(tile).is_none_or(|bound| *bound <= best.max(floor)) {
-            return best * self.sign;
+    pub(crate) fn texels<S: Simd>(
+        &self,
+        simd: S,
+        x: I32x8<S>,
+        y: I32x8<S>,
+        active: u32,
+        known: Option<F32x8<S>>,
+    ) -> F32x8<S> {
+        const SHIFT: u32 = TILE.trailing_zeros();
+        let tile = ((y >> SHIFT) * self.tiles_x + (x >> SHIFT)).to_array();
+        let mut bounds = [f32::NEG_INFINITY; LANES];
+        for lane in 0..LANES {
+            if let Some(bound) = self.tile_bounds.get(tile[lane] as u32 as usize) {
+                bounds[lane] = *bound;
+            }
         }
-        self.search(simd, x, y, tile, floor, best) * self.sign
+        let best = self.clear / self.scale * self.sign;
+        let splat = |v| <F32x8<S> as SimdBase<S>>::splat(simd, v);
+        let floors = match known {
+            Some(known) => known * self.sign,
+            None => splat(f32::NEG_INFINITY),
+        };
+        let open = F32x8::from_slice(simd, &bounds).simd_gt(floors) & F32x8::from_slice(simd, &bounds).simd_gt(splat(best));
+        let mut open = open.to_bitmask() as u32 & active;
+        let mut depths = [best; LANES];
+        if open != 0 {
+            let (x, y, floors) = (x.to_array(), y.to_array(), floors.to_array());
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize % LANES;
+                open &= open - 1;
+                depths[lane] = self.search(simd, x[lane], y[lane], tile[lane] as usize, floors[lane], best);
+            }
+        }
+        F32x8::from_slice(simd, &depths) * self.sign
     }
 
     /// The best of a tile's triangles at a texel, if better than `floor` and `best`; times the sign.

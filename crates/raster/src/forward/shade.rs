@@ -9,7 +9,8 @@ use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::plane::DepthPlane;
 use super::sample::anisotropic::sample_anisotropic;
-use super::sample::mip::{derivatives, lod, needs_lod};
+use super::sample::mip::{derivatives, half_log2, lod, needs_lod};
+use super::sample::packed::Packed;
 use super::sample::sample;
 use super::state::{EnvironmentMode, FragmentState, Unit};
 use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
@@ -42,16 +43,75 @@ pub struct Layout {
     pub smooth: [bool; 3],
 }
 
+/// Most numbers in a record: `1 / w`, four colours, fog, eight units' coordinates.
+const MOST: usize = 64;
+
+/// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.
+struct Differences {
+    base: [f32; MOST],
+    d1: [f32; MOST],
+    d2: [f32; MOST],
+    /// Bit `k`: number `k` is not the same at all corners.
+    varies: u64,
+}
+
+impl Default for Differences {
+    fn default() -> Self {
+        Self { base: [0.0; MOST], d1: [0.0; MOST], d2: [0.0; MOST], varies: 0 }
+    }
+}
+
+impl Differences {
+    /// Takes up records of `stride` numbers that begin at `corners`.
+    #[inline(always)]
+    fn prepare<S: Simd>(&mut self, simd: S, records: &[f32], corners: [usize; 3], stride: usize) {
+        self.varies = 0;
+        let mut from = 0;
+        while from < stride.min(MOST) {
+            let a = eight(simd, records, corners[0] + from);
+            let (b, c) = (eight(simd, records, corners[1] + from), eight(simd, records, corners[2] + from));
+            let (d1, d2) = (b - a, c - a);
+            let zero = splat(simd, 0.0);
+            let same = bits_of(d1.simd_eq(zero) & d2.simd_eq(zero));
+            self.varies |= u64::from(!same & 0xff) << from;
+            a.store_slice(&mut self.base[from..from + LANES]);
+            d1.store_slice(&mut self.d1[from..from + LANES]);
+            d2.store_slice(&mut self.d2[from..from + LANES]);
+            from += LANES;
+        }
+    }
+}
+
+/// Eight numbers from `at` on, 0 beyond the end.
+#[inline(always)]
+fn eight<S: Simd>(simd: S, records: &[f32], at: usize) -> F32x8<S> {
+    match records.get(at..at + LANES) {
+        Some(eight) => F32x8::from_slice(simd, eight),
+        None => F32x8::from_slice(simd, &last_of(records, at)),
+    }
+}
+
+#[cold]
+fn last_of(records: &[f32], at: usize) -> [f32; LANES] {
+    std::array::from_fn(|k| records.get(at + k).copied().unwrap_or(0.0))
+}
+
+/// What a facet's shader works with, kept from facet to facet so that it need not be cleared.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    interpolation: Interpolation,
+    differences: Differences,
+}
+
 /// A facet made ready to be interpolated.
 #[derive(Default)]
-pub(crate) struct Interpolation {
+struct Interpolation {
     origin: [f32; 2],
     /// Screen-space barycentric coordinates of corners 1 and 2: change with x, with y.
     l1: [f32; 2],
     l2: [f32; 2],
     inverse_w: [f32; 3],
     flat_w: bool,
-    corners: [usize; 3],
     /// Unit edge normals and offsets of the triangle, for smooth polygons: distance = a x + b y + c.
     edges: [[f32; 3]; 3],
 }
@@ -73,9 +133,20 @@ impl Interpolation {
             l2: [-dy1 * inverse, dx1 * inverse],
             inverse_w,
             flat_w: inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2],
-            corners,
             edges: [[0.0; 3]; 3],
         }
+    }
+
+    /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
+    #[inline(always)]
+    fn weight_steps<S: Simd>(&self, simd: S, weights: &Weights<S>, axis: usize) -> [F32x8<S>; 2] {
+        if self.flat_w {
+            return [splat(simd, self.l1[axis]), splat(simd, self.l2[axis])];
+        }
+        // b = (l / w) / Σ, so db = (d(l / w) - b dΣ) / Σ.
+        let (q1, q2) = (self.l1[axis] * self.inverse_w[1], self.l2[axis] * self.inverse_w[2]);
+        let sum = q1 + q2 - (self.l1[axis] + self.l2[axis]) * self.inverse_w[0];
+        [(splat(simd, q1) - weights.b1 * sum) * weights.w, (splat(simd, q2) - weights.b2 * sum) * weights.w]
     }
 
     fn prepare_edges(&mut self, setup: &Setup) {
@@ -109,41 +180,59 @@ pub(crate) struct Shader<'a> {
     pub facet: Facet,
     pub records: &'a [f32],
     pub shape: Option<Shape>,
-    pub interpolation: Interpolation,
+    scratch: &'a mut Scratch,
+    plain: &'a [(usize, Packed<'a>)],
     ready: bool,
 }
 
 impl<'a> Shader<'a> {
     #[inline(always)]
-    pub(crate) fn new(facet: Facet, draw: &'a DrawContext<'a>, records: &'a [f32], shapes: &[Shape]) -> Self {
+    pub(crate) fn new(
+        facet: Facet,
+        draw: &'a DrawContext<'a>,
+        records: &'a [f32],
+        shapes: &[Shape],
+        scratch: &'a mut Scratch,
+    ) -> Self {
         let layout = draw.layout;
         let shape = if facet.kind == FacetKind::Polygon && !layout.smooth[2] {
             None
         } else {
             shapes.get(facet.shape as usize).copied()
         };
-        let interpolation = Interpolation::default();
-        Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation, ready: false }
+        Self {
+            state: draw.state,
+            layout,
+            planes: &draw.planes,
+            facet,
+            records,
+            shape,
+            scratch,
+            plain: &draw.plain,
+            ready: false,
+        }
     }
 
     /// Makes the facet ready to be interpolated: before the first row that shows.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, setup: &Setup) {
+    pub(crate) fn prepare<S: Simd>(&mut self, simd: S, setup: &Setup) {
         if !self.ready {
             self.ready = true;
+            let corners = self.facet.corners.map(|slot| slot as usize);
+            self.scratch.differences.prepare(simd, self.records, corners, self.layout.stride);
             if let Some(Shape::Polygon { x, y, .. }) = self.shape {
                 let own = Setup { x, y, ..*setup };
-                self.interpolation = Interpolation::new(&own, &self.facet, self.records);
-                self.interpolation.prepare_edges(&own);
+                self.scratch.interpolation = Interpolation::new(&own, &self.facet, self.records);
+                self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.interpolation = Interpolation::new(setup, &self.facet, self.records);
+                self.scratch.interpolation = Interpolation::new(setup, &self.facet, self.records);
             }
         }
     }
 
     #[inline(always)]
     fn weights<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> Weights<S> {
-        let i = &self.interpolation;
+        let i = &self.scratch.interpolation;
         let (dx, dy) = (x - i.origin[0], y - i.origin[1]);
         let l1 = dx * i.l1[0] + dy * i.l1[1];
         let l2 = dx * i.l2[0] + dy * i.l2[1];
@@ -159,13 +248,11 @@ impl<'a> Shader<'a> {
     /// Number `k` of the records, interpolated.
     #[inline(always)]
     fn value<S: Simd>(&self, simd: S, weights: &Weights<S>, k: usize) -> F32x8<S> {
-        let [c0, c1, c2] = self.interpolation.corners;
-        let a = self.records[c0 + k];
-        let (d1, d2) = (self.records[c1 + k] - a, self.records[c2 + k] - a);
-        if d1 == 0.0 && d2 == 0.0 {
-            return splat(simd, a);
+        let (d, k) = (&self.scratch.differences, k % MOST);
+        if d.varies >> k & 1 == 0 {
+            return splat(simd, d.base[k]);
         }
-        weights.b1 * d1 + weights.b2 * d2 + a
+        weights.b1 * d.d1[k] + weights.b2 * d.d2[k] + d.base[k]
     }
 
     /// Numbers `at..at + 4`, interpolated.
@@ -367,6 +454,11 @@ impl<'a> Shader<'a> {
         y: F32x8<S>,
         active: u32,
     ) -> Rgba<S> {
+        if let Some((_, packed)) = self.plain.iter().find(|(index, _)| *index == unit.index)
+            && let Some(at) = self.layout.tex[unit.index % UNITS]
+        {
+            return self.plain(simd, weights, packed, (at, unit.lod_bias), active);
+        }
         let texture = &*unit.texture;
         let mut coords = match self.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
@@ -408,22 +500,57 @@ impl<'a> Shader<'a> {
     fn steps<S: Simd>(&self, simd: S, weights: &Weights<S>, at: Option<usize>) -> [Rgba<S>; 2] {
         let zero = splat_rgba(simd, [0.0; 4]);
         let Some(at) = at else { return [zero; 2] };
-        let i = &self.interpolation;
-        let [c0, c1, c2] = i.corners;
+        let i = &self.scratch.interpolation;
+        let d = &self.scratch.differences;
         let mut steps = [zero; 2];
         for axis in 0..2 {
-            // b = (l / w) / Σ, so db = (d(l / w) - b dΣ) / Σ.
-            let (q1, q2) = (i.l1[axis] * i.inverse_w[1], i.l2[axis] * i.inverse_w[2]);
-            let sum = q1 + q2 - (i.l1[axis] + i.l2[axis]) * i.inverse_w[0];
-            let db1 = (splat(simd, q1) - weights.b1 * sum) * weights.w;
-            let db2 = (splat(simd, q2) - weights.b2 * sum) * weights.w;
+            let [db1, db2] = i.weight_steps(simd, weights, axis);
             for k in 0..4 {
-                let a = self.records[c0 + at + k];
-                let (d1, d2) = (self.records[c1 + at + k] - a, self.records[c2 + at + k] - a);
-                steps[axis][k] = db1 * d1 + db2 * d2;
+                steps[axis][k] = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
             }
         }
         steps
+    }
+
+    /// The common kind of texture: two dimensions, 8 bits a component, no border in reach, no anisotropy.
+    #[inline(always)]
+    fn plain<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        packed: &Packed<'_>,
+        (at, bias): (usize, f32),
+        active: u32,
+    ) -> Rgba<S> {
+        let d = &self.scratch.differences;
+        let [mut s, mut t] = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
+        let (q_at, projected) = ((at + 3) % MOST, d.varies >> ((at + 3) % MOST) & 1 == 1);
+        let q = projected || d.base[q_at] != 1.0;
+        let inverse_q = if q { splat(simd, 1.0) / self.value(simd, weights, q_at) } else { splat(simd, 1.0) };
+        if q {
+            (s, t) = (s * inverse_q, t * inverse_q);
+        }
+        let mut level = splat(simd, bias);
+        if packed.needs_lod() {
+            let size = packed.size();
+            let mut squares = [splat(simd, 0.0); 2];
+            for axis in 0..2 {
+                let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
+                for (k, place) in [s, t].into_iter().enumerate() {
+                    let mut step = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
+                    if projected {
+                        step -= place * (db1 * d.d1[q_at] + db2 * d.d2[q_at]);
+                    }
+                    if q {
+                        step *= inverse_q;
+                    }
+                    let step = step * size[k];
+                    squares[axis] += step * step;
+                }
+            }
+            level += half_log2(squares[0], squares[1]);
+        }
+        packed.at(simd, [s, t], level, active)
     }
 
     /// Stipples and the soft borders of smooth primitives.
@@ -445,7 +572,7 @@ impl<'a> Shader<'a> {
                 match self.shape {
                     None => {}
                     Some(Shape::Polygon { boundary, .. }) => {
-                        let coverage = polygon_coverage(simd, x, y, &self.interpolation.edges, boundary);
+                        let coverage = polygon_coverage(simd, x, y, &self.scratch.interpolation.edges, boundary);
                         color[3] *= coverage;
                         pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }

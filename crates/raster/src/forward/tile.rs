@@ -4,12 +4,11 @@ use super::assemble::{FacetKind, Primitives};
 use super::block::{self, DepthRule};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
-use super::fragment::FragmentOps;
-use super::fragment::{ColorTile, Depths, Row, SAMPLES, TilePlanes, columns, stored_depth};
+use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
 use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::Shader;
+use super::shade::{Scratch, Shader};
 use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
 use crate::kernel::traverse::{Block, BlockSink, traverse};
@@ -89,6 +88,7 @@ impl<'a> TileRun<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                let mut scratch = Scratch::default();
                 for setup in primitives.batch.tile(self.index) {
                     let facet = facet_of(primitives, setup.facet);
                     let draw = &draws[facet.draw as usize];
@@ -98,7 +98,7 @@ impl<'a> TileRun<'a> {
                     }
                     let pattern = if draw.multisample { many } else { one };
                     let (records, shapes) = (&primitives.records, &primitives.shapes);
-                    let shader = Shader::new(facet, draw, records, shapes);
+                    let shader = Shader::new(facet, draw, records, shapes, &mut scratch);
                     let (x, y) = (self.x, self.y);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
                     traverse(simd, setup, (x, y), pattern, &mut sink);
@@ -303,13 +303,16 @@ impl FragmentSink<'_, '_, '_> {
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
         }
+        let (covered, mut writes_stencil) = (bits, None);
         if let Some(test) = &state.stencil {
             let face = if self.shader.facet.back { &test.back } else { &test.front };
             block::stencil(simd, block, &mut self.run.planes, face, &mut bits);
-            if bits == [0; SAMPLES] {
+            writes_stencil = Some(face).filter(|face| !keeps(face));
+            if bits == [0; SAMPLES] && writes_stencil.is_none() {
                 return;
             }
         }
+        let reached = bits;
         let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.
@@ -318,11 +321,14 @@ impl FragmentSink<'_, '_, '_> {
             let early = DepthRule { write: rule.write && !late, ..rule };
             self.depths(simd, setup, place, block, early, &mut bits);
         }
+        if let Some(face) = writes_stencil {
+            block::update_stencil(simd, block, &mut self.run.planes, face, [&covered, &reached, &bits]);
+        }
         let any = bits[0] | bits[1] | bits[2] | bits[3];
         if any == 0 || !self.draw.shaded {
             return;
         }
-        self.shader.prepare(setup);
+        self.shader.prepare(simd, setup);
         let (words, passed) = self.shader.block(simd, place, any);
         if late {
             for b in &mut bits {
@@ -346,12 +352,7 @@ impl FragmentSink<'_, '_, '_> {
         rule: DepthRule,
         bits: &mut [u64; SAMPLES],
     ) {
-        let count = self.pattern.len();
-        let mut positions = [[0; 2]; SAMPLES];
-        for s in 0..count {
-            positions[s] = self.pattern.position(s);
-        }
-        block::depths(simd, setup, place, block, &positions[..count], &mut self.run.planes, rule, bits);
+        block::depths(simd, setup, place, block, self.pattern, &mut self.run.planes, rule, bits);
     }
 
     #[inline(always)]
@@ -394,7 +395,7 @@ impl FragmentSink<'_, '_, '_> {
         if self.draw.shaded {
             let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
             let passed;
-            self.shader.prepare(setup);
+            self.shader.prepare(simd, setup);
             (color, passed) = self.shader.row(simd, x, splat(simd, top as f32 + 0.5), active);
             active &= passed;
             for b in &mut bits {

@@ -49,6 +49,10 @@ struct Edge {
 /// Larger constants decide the sign by themselves: `|a x + b y| < 2^30` inside a tile.
 const FAR_AWAY: i64 = 1 << 30;
 
+/// Triangles that extend over fewer 1/256 pixel than this, a tile's side, have edge functions of 32 bits in a tile that
+/// they touch: the products are below 2^29.
+const SMALL: i32 = TILE as i32 * SUBPIXEL;
+
 /// Hands every block of the tile at pixel `(tile_x, tile_y)` that `setup` covers to `sink`.
 #[inline(always)]
 pub fn traverse<S: Simd, K: BlockSink<S>>(
@@ -91,23 +95,32 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
 
     // Edge functions at the tile's origin, one constant a sample.
     let mut edges = [Edge { a: 0, b: 0 }; 3];
-    let mut constants = [[0i32; 3]; MOST];
+    let mut constants = [[0i32; MOST]; 3];
+    let [xs, ys] = pattern.axes();
+    let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
+    let small = largest(&x) < SMALL && largest(&y) < SMALL;
     for i in 0..3 {
         let j = (i + 1) % 3;
         let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
         edges[i] = Edge { a: -dy, b: dx };
         let bias = if is_top_left(dx, dy) { 0 } else { -1 };
-        let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) + bias;
+        if small {
+            let corner = dy * x[i] - dx * y[i] + bias;
+            for s in 0..MOST {
+                constants[i][s] = (corner + (dx * ys[s] - dy * xs[s])) >> 8;
+            }
+            continue;
+        }
+        let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) + i64::from(bias);
         for s in 0..samples {
-            let [sx, sy] = pattern.position(s);
-            let c = corner + i64::from(dx) * i64::from(sy) - i64::from(dy) * i64::from(sx);
-            constants[s][i] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
+            let c = corner + i64::from(dx) * i64::from(ys[s]) - i64::from(dy) * i64::from(xs[s]);
+            constants[i][s] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
         }
     }
 
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let several = x0 / BLOCK != x1 / BLOCK || y0 / BLOCK != y1 / BLOCK;
+    let extremes = Extremes::new(&edges, &constants, samples);
     let mut masks = [0u64; MOST];
     for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
         let rows = y0.max(by) - by..(y1 + 1).min(by + BLOCK) - by;
@@ -116,18 +129,25 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
             if sink.rejects(setup, &block) {
                 continue;
             }
+            let mut offsets = [0; 3];
+            for i in 0..3 {
+                offsets[i] = edges[i].a * bx as i32 + edges[i].b * by as i32;
+            }
             let mut any = 0;
-            for s in 0..samples {
-                let mut at_block = constants[s];
-                for i in 0..3 {
-                    at_block[i] += edges[i].a * bx as i32 + edges[i].b * by as i32;
+            match extremes.block(&offsets) {
+                Some(0) => continue,
+                Some(full) => {
+                    masks = [full; MOST];
+                    any = full;
                 }
-                let known = if several { corner_test(&edges, at_block) } else { None };
-                masks[s] = match known {
-                    Some(mask) => mask,
-                    None => mask_rows(simd, &edges, &across, at_block, rows.clone()),
-                };
-                any |= masks[s];
+                None => {
+                    for s in 0..samples {
+                        let at_block =
+                            [constants[0][s] + offsets[0], constants[1][s] + offsets[1], constants[2][s] + offsets[2]];
+                        masks[s] = mask_rows(simd, &edges, &across, at_block, rows.clone());
+                        any |= masks[s];
+                    }
+                }
             }
             if any != 0 {
                 sink.cover(simd, setup, &block, &masks[..samples]);
@@ -136,19 +156,42 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     }
 }
 
-/// All or nothing of a block by its corner samples; `None` if it has to be looked at.
-#[inline(always)]
-fn corner_test(edges: &[Edge; 3], at_block: [i32; 3]) -> Option<u64> {
-    let side = BLOCK as i32 - 1;
-    let mut full = true;
-    for i in 0..3 {
-        let (a, b) = (edges[i].a * side, edges[i].b * side);
-        if at_block[i] + a.max(0) + b.max(0) < 0 {
+/// The least and the largest value that an edge function takes on a block's samples, less its value at the block.
+struct Extremes {
+    least: [i32; 3],
+    largest: [i32; 3],
+}
+
+impl Extremes {
+    #[inline(always)]
+    fn new<const MOST: usize>(edges: &[Edge; 3], constants: &[[i32; MOST]; 3], samples: usize) -> Self {
+        let side = BLOCK as i32 - 1;
+        let (mut least, mut largest) = ([0; 3], [0; 3]);
+        for i in 0..3 {
+            let (mut low, mut high) = (constants[i][0], constants[i][0]);
+            for &c in &constants[i][1..samples] {
+                (low, high) = (low.min(c), high.max(c));
+            }
+            let (a, b) = (edges[i].a * side, edges[i].b * side);
+            least[i] = low + a.min(0) + b.min(0);
+            largest[i] = high + a.max(0) + b.max(0);
+        }
+        Self { least, largest }
+    }
+
+    /// All or nothing of a block by its extreme samples; `None` if it has to be looked at.
+    #[inline(always)]
+    fn block(&self, offsets: &[i32; 3]) -> Option<u64> {
+        let (mut outside, mut inside) = (false, true);
+        for i in 0..3 {
+            outside |= offsets[i] + self.largest[i] < 0;
+            inside &= offsets[i] + self.least[i] >= 0;
+        }
+        if outside {
             return Some(0);
         }
-        full &= at_block[i] + a.min(0) + b.min(0) >= 0;
+        inside.then_some(u64::MAX)
     }
-    full.then_some(u64::MAX)
 }
 
 /// The coverage mask of the block's `rows`, eight pixels a step.

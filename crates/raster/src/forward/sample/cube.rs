@@ -8,7 +8,6 @@
 use super::depth::{by_mode, compared};
 use super::fetch::{Image, Words, columns, interior, level_of, level_of_face};
 use super::mip::{mipped, mix_rgba};
-use super::packed::bilinear;
 use super::wrap::{Axis, position};
 use crate::forward::texture::{Level, Texels, Texture, Wrap};
 use crate::forward::wide::{Rgba, abs, bits_of, mask_of, select, select_rgba, splat, splat_rgba};
@@ -160,6 +159,29 @@ fn lookup<S: Simd>(
     }
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
+}
+
+/// Raw colours of an image `width` wide, mixed along the two rows, then between them.
+#[inline(always)]
+fn bilinear<S: Simd>(simd: S, words: Words<'_>, x: &Axis<S>, y: &Axis<S>, width: u32) -> Rgba<S> {
+    let (lower, upper) = (y.near * width as i32, y.far * width as i32);
+    // But where the image wraps round or ends, the two texels of a row are neighbours in memory.
+    let adjacent = (x.near + 1).simd_eq(x.far).all_true();
+    let (a, b, c, d) = if adjacent {
+        let (a, b) = words.pairs(simd, lower + x.near);
+        let (c, d) = words.pairs(simd, upper + x.near);
+        (a, b, c, d)
+    } else {
+        (
+            words.words(simd, lower + x.near),
+            words.words(simd, lower + x.far),
+            words.words(simd, upper + x.near),
+            words.words(simd, upper + x.far),
+        )
+    };
+    let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
+    let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
+    mix_rgba(lower, upper, y.weight)
 }
 
 /// Where an axis reaches beyond the image.

@@ -11,7 +11,6 @@ use crate::forward::plane::DepthPlane;
 use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Texture, TextureKind};
 use crate::forward::wide::{Rgba, mix, saturate, select, splat, splat_rgba};
-use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Simd};
 
 /// As [`super::sample`].
@@ -73,7 +72,7 @@ pub(super) fn compared<S: Simd>(simd: S, texture: &Texture, reference: F32x8<S>,
 
 /// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
 #[inline(always)]
-fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<[f32; 8]> {
+fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
     let sign = depths.pending()?;
     // With a larger depth in the plane the comparison only fails more, so what is not above the reference is settled.
     let settles = match texture.sampler.compare {
@@ -83,7 +82,7 @@ fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -
     };
     settles.then(
         #[inline(always)]
-        || saturate(reference).to_array(),
+        || saturate(reference),
     )
 }
 
@@ -107,7 +106,7 @@ fn lookup<S: Simd, const DIMENSIONS: usize>(
     let mut values = [border; 4];
     for corner in 0..corners {
         let ([x, y, _], outside) = corner_texels(simd, shape, DIMENSIONS, &axes, corner);
-        let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes, &known));
+        let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes, known));
         values[corner] = compared(simd, texture, point[2], depth);
     }
     let mut count = corners;

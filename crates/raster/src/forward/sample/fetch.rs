@@ -52,7 +52,7 @@ fn gather<S: Simd, T: Copy + Default>(texels: &[T], index: I32x8<S>) -> [T; LANE
 /// Texels of 8 bits a component.
 #[derive(Clone, Copy)]
 pub(super) struct Words<'a> {
-    texels: &'a [u32],
+    pub(super) texels: &'a [u32],
     /// What colour bytes mean, if they are sRGB-encoded.
     decode: Option<&'a [f32; 256]>,
 }
@@ -252,7 +252,7 @@ impl<'a> Depths<'a> {
         y: I32x8<S>,
         width: u32,
         active: u32,
-        known: &Option<[f32; LANES]>,
+        known: Option<F32x8<S>>,
     ) -> F32x8<S> {
         match self {
             Self::Stored(texels) => F32x8::from_slice(simd, &gather(texels, y * width as i32 + x)),
@@ -262,7 +262,7 @@ impl<'a> Depths<'a> {
     }
 }
 
-/// Depths of sample 0 of a plane's pixels; other lanes than the active ones are 0.
+/// Depths of sample 0 of a plane's pixels; other lanes than the active ones yield something harmless.
 #[inline(always)]
 fn plane_depths<S: Simd>(
     simd: S,
@@ -270,17 +270,10 @@ fn plane_depths<S: Simd>(
     x: I32x8<S>,
     y: I32x8<S>,
     active: u32,
-    known: &Option<[f32; LANES]>,
+    known: Option<F32x8<S>>,
 ) -> F32x8<S> {
     if let Some(pending) = &depth.pending {
-        let (x, y) = (x.to_array(), y.to_array());
-        let mut out = [0.0f32; LANES];
-        for lane in 0..LANES {
-            if active >> lane & 1 == 1 {
-                out[lane] = pending.texel(simd, x[lane], y[lane], known.as_ref().map(|k| k[lane]));
-            }
-        }
-        return F32x8::from_slice(simd, &out);
+        return pending.texels(simd, x, y, active, known);
     }
     const SHIFT: u32 = TILE.trailing_zeros();
     const INSIDE: i32 = TILE as i32 - 1;

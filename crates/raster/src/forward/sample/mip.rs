@@ -26,6 +26,12 @@ pub(crate) fn lod<S: Simd>(
 ) -> F32x8<S> {
     let across = du_dx * du_dx + dv_dx * dv_dx + dw_dx * dw_dx;
     let up = du_dy * du_dy + dv_dy * dv_dy + dw_dy * dw_dy;
+    half_log2(across, up)
+}
+
+/// The logarithm to base 2 of the longer of two steps, given their squared lengths.
+#[inline(always)]
+pub(crate) fn half_log2<S: Simd>(across: F32x8<S>, up: F32x8<S>) -> F32x8<S> {
     lanes::Lanes::log2(max(across, up)) * 0.5
 }
 
@@ -70,13 +76,13 @@ pub(super) fn dimensions(kind: TextureKind) -> usize {
 }
 
 /// What each lane reads.
-struct Choice<S: Simd> {
+pub(super) struct Choice<S: Simd> {
     /// Level, or the finer of two.
-    level: F32x8<S>,
+    pub(super) level: F32x8<S>,
     /// How much of the next coarser level is mixed in.
-    fraction: F32x8<S>,
+    pub(super) fraction: F32x8<S>,
     /// Which lanes filter linearly within a level.
-    linear: u32,
+    pub(super) linear: u32,
 }
 
 /// How a minification filter treats levels.
@@ -101,7 +107,7 @@ fn split(filter: Filter) -> (bool, Mip) {
 
 /// Levels and filters for levels `0..=last`.
 #[inline(always)]
-fn choose<S: Simd>(simd: S, sampler: &Sampler, last: usize, lod: F32x8<S>) -> Choice<S> {
+pub(super) fn choose<S: Simd>(simd: S, sampler: &Sampler, last: usize, lod: F32x8<S>) -> Choice<S> {
     let zero = splat(simd, 0.0);
     let (magnify_linear, _) = split(sampler.mag);
     let (minify_linear, mip) = split(sampler.min);
@@ -166,6 +172,9 @@ pub(super) fn mipped<S: Simd, const N: usize>(
             for k in 0..N {
                 color[k] = if step == 0 { texel[k] } else { mix(color[k], texel[k], choice.fraction) };
             }
+        }
+        if group == active & 0xff {
+            return color;
         }
         let counts = mask_of(simd, group);
         for k in 0..N {

@@ -17,14 +17,15 @@ mod depth;
 mod fetch;
 mod flat;
 pub(crate) mod mip;
-mod packed;
+pub(crate) mod packed;
 mod wrap;
 
 #[cfg(test)]
 mod tests;
 
 use super::plane::DepthPlane;
-use super::texture::{Texels, Texture, TextureKind, Wrap};
+use super::texture::{Texels, Texture, TextureKind};
+use packed::Packed;
 use super::wide::{Rgba, splat_rgba};
 use vitral_math::lanes::{F32x8, Simd};
 
@@ -48,19 +49,14 @@ pub(crate) fn sample<S: Simd>(
     let Some(first) = texture.faces.first().and_then(|face| face.first()) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
-    let packed = matches!(first.texels, Texels::Rgba8(_) | Texels::Srgb8(_));
     let is_depth = matches!(first.texels, Texels::Depth(_) | Texels::DepthPlane(_));
+    if let Some(packed) = Packed::new(texture) {
+        return packed::sample(simd, &packed, coords, lod, active);
+    }
     match texture.kind {
         TextureKind::Cube => cube::sample(simd, texture, coords, lod, active),
-        TextureKind::Two if packed && first.border == 0 && stays_inside(&texture.sampler.wrap) => {
-            packed::sample(simd, texture, coords, lod, active)
-        }
         _ if is_depth => depth::sample(simd, texture, plane, coords, lod, active),
         _ => flat::sample(simd, texture, coords, lod, active),
     }
 }
 
-/// Whether no lookup can reach a border along s and t.
-fn stays_inside(wrap: &[Wrap; 3]) -> bool {
-    wrap[..2].iter().all(|wrap| !matches!(wrap, Wrap::Clamp | Wrap::ClampToBorder))
-}

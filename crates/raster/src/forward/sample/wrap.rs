@@ -4,7 +4,7 @@
 //! the border.
 
 use crate::forward::texture::Wrap;
-use crate::forward::wide::{clamp, floor, max, min, select, splat};
+use crate::forward::wide::{floor, max, min, select, splat};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, I32x8, Simd};
 
@@ -31,41 +31,68 @@ impl<S: Simd> Axis<S> {
 /// The position in texels: wrapped or clamped, always within half a texel of the image.
 #[inline(always)]
 pub(super) fn position<S: Simd>(simd: S, coordinate: F32x8<S>, size: u32, wrap: Wrap) -> F32x8<S> {
-    let texels = size as f32;
+    position_in(simd, coordinate, splat(simd, size as f32), wrap)
+}
+
+/// As [`position`] where each lane has an image of its own size.
+#[inline(always)]
+pub(super) fn position_in<S: Simd>(simd: S, coordinate: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> F32x8<S> {
     match wrap {
-        Wrap::Repeat => clamp((coordinate - floor(coordinate)) * texels, 0.0, texels),
+        Wrap::Repeat => between((coordinate - floor(coordinate)) * texels, splat(simd, 0.0), texels),
         Wrap::MirroredRepeat => {
             let there_and_back = coordinate - floor(coordinate * 0.5) * 2.0;
             let mirrored = min(there_and_back, splat(simd, 2.0) - there_and_back);
-            clamp(mirrored * texels, 0.5, texels - 0.5)
+            between(mirrored * texels, splat(simd, 0.5), texels - 0.5)
         }
-        _ => limited(coordinate * texels, size, wrap),
+        _ => limited_in(simd, coordinate * texels, texels, wrap),
     }
 }
 
 /// As [`position`] for a coordinate in texels (rectangles), which can only be clamped.
 #[inline(always)]
 pub(super) fn limited<S: Simd>(texels: F32x8<S>, size: u32, wrap: Wrap) -> F32x8<S> {
-    let size = size as f32;
+    let simd = texels.token();
+    limited_in(simd, texels, splat(simd, size as f32), wrap)
+}
+
+#[inline(always)]
+fn limited_in<S: Simd>(simd: S, texels: F32x8<S>, size: F32x8<S>, wrap: Wrap) -> F32x8<S> {
     match wrap {
-        Wrap::Clamp => clamp(texels, 0.0, size),
-        Wrap::ClampToBorder => clamp(texels, -0.5, size + 0.5),
-        _ => clamp(texels, 0.5, size - 0.5),
+        Wrap::Clamp => between(texels, splat(simd, 0.0), size),
+        Wrap::ClampToBorder => between(texels, splat(simd, -0.5), size + 0.5),
+        _ => between(texels, splat(simd, 0.5), size - 0.5),
     }
+}
+
+/// Brought into `low..=high`; NaN gives `low`.
+#[inline(always)]
+fn between<S: Simd>(value: F32x8<S>, low: F32x8<S>, high: F32x8<S>) -> F32x8<S> {
+    min(max(value, low), high)
 }
 
 /// The texel at a position.
 #[inline(always)]
 pub(super) fn nearest<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wrap) -> I32x8<S> {
-    let last = size as f32 - 1.0;
-    let last = if wrap == Wrap::ClampToBorder { last + 1.0 } else { last };
-    min(floor(position), splat(simd, last)).to_int()
+    nearest_in(position, splat(simd, size as f32), wrap)
+}
+
+/// As [`nearest`] where each lane has an image of its own size.
+#[inline(always)]
+pub(super) fn nearest_in<S: Simd>(position: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> I32x8<S> {
+    let last = if wrap == Wrap::ClampToBorder { texels } else { texels - 1.0 };
+    min(floor(position), last).to_int()
 }
 
 /// The texels round a position.
 #[inline(always)]
 pub(super) fn linear<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wrap) -> Axis<S> {
-    let (zero, one, texels) = (splat(simd, 0.0), splat(simd, 1.0), splat(simd, size as f32));
+    linear_in(simd, position, splat(simd, size as f32), wrap)
+}
+
+/// As [`linear`] where each lane has an image of its own size.
+#[inline(always)]
+pub(super) fn linear_in<S: Simd>(simd: S, position: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> Axis<S> {
+    let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
     let from_centre = position - 0.5;
     let near = floor(from_centre);
     let weight = from_centre - near;

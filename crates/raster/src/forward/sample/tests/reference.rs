@@ -1,6 +1,7 @@
 //! A plain scalar sampler, written after the specification's formulas one texel at a time, against the lanes on many
 //! pseudo-random look-ups.
 
+use crate::forward::sample::packed::Packed;
 use super::*;
 
 /// A sequence that looks random.
@@ -215,7 +216,8 @@ fn the_packed_path_agrees_with_the_general_one() {
                         let load = |v: &[f32; 8]| F32x8::from_slice(simd, v);
                         let zero = crate::forward::wide::splat(simd, 0.0);
                         let at = [load(&coords[0]), load(&coords[1]), zero, zero + 1.0];
-                        let a = crate::forward::sample::packed::sample(simd, &texture, at, load(&lods), 0xff);
+                        let packed = Packed::new(&texture).expect("two dimensions, bytes, no border");
+                        let a = crate::forward::sample::packed::sample(simd, &packed, at, load(&lods), 0xff);
                         let b = crate::forward::sample::flat::sample(simd, &texture, at, load(&lods), 0xff);
                         let array = |c: [F32x8<_>; 4]| [0, 1, 2, 3].map(|k: usize| c[k].to_array());
                         (array(a), array(b))

@@ -1,5 +1,6 @@
 //! What a batch draws when polygons are filled: triangles in pieces, found once and kept with the batch.
 
+use super::grid::{self, Grid};
 use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::{Arc, OnceLock};
@@ -51,6 +52,8 @@ pub(crate) struct Assembled {
     pub pieces: Vec<Piece>,
     /// There are points or lines too.
     pub others: bool,
+    /// All triangles are a flat grid.
+    pub grid: Option<Grid>,
 }
 
 /// A place for `Assembled` in a batch: no part of its value.
@@ -89,9 +92,12 @@ impl Assembled {
             others |= primitive.mode < TRIANGLES;
             add_triangles(primitive, &mut triangles);
         }
-        let corner = |i: u32| batch.vertex(i) as u32;
-        let pieces = triangles.chunks(PIECE).map(|t| piece(t, corner, &batch.positions)).collect();
-        Self { pieces, others }
+        for corner in triangles.iter_mut().flatten() {
+            *corner = batch.vertex(*corner) as u32;
+        }
+        let pieces = triangles.chunks(PIECE).map(|t| piece(t, &batch.positions)).collect();
+        let grid = if others { None } else { grid::find(batch, &triangles) };
+        Self { pieces, others, grid }
     }
 }
 
@@ -119,8 +125,8 @@ fn add_triangles(p: &Primitive, out: &mut Vec<[u32; 3]>) {
     }
 }
 
-fn piece(triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32, positions: &[[f32; 4]]) -> Piece {
-    let mut triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(&corner)).collect();
+fn piece(triangles: &[[u32; 3]], positions: &[[f32; 4]]) -> Piece {
+    let mut triangles = triangles.to_vec();
     let bounds = bounds(triangles.iter().flatten().map(|&v| positions[v as usize]));
     let all = || triangles.iter().flatten().copied();
     let (low, high) = (all().min().unwrap_or(0), all().max().map_or(0, |v| v + 1));
@@ -137,7 +143,7 @@ fn piece(triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32, positions: &[[f32;
     Piece { triangles, vertices: PieceVertices::List(list), bounds }
 }
 
-fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
+pub(super) fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
     let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     for p in positions {
         if p[3] != 1.0 || !(p[0] + p[1] + p[2]).is_finite() {
@@ -193,10 +199,10 @@ mod tests {
 
     #[test]
     fn pieces_keep_their_vertices_together() {
-        let p = piece(&[[7, 8, 9], [9, 8, 10]], |v| v, &[[0.0; 4]; 11]);
+        let p = piece(&[[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
         assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
-        let p = piece(&[[7, 80_000, 9]], |v| v, &vec![[0.0; 4]; 80_001]);
+        let p = piece(&[[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
         assert_eq!((p.vertices.len(), p.vertices.get(2)), (3, 80_000));
     }
 }

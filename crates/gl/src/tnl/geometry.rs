@@ -1,6 +1,7 @@
 //! A recorded draw: what the rasteriser asks for its primitives.
 
 use super::assembled::{Assembled, Piece, PieceVertices};
+use super::grid::Grid;
 use super::snapshot::VertexSnapshot;
 use super::vertices::{Eight, shade};
 use crate::enums as gl;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::ScreenVertex;
 use vitral_raster::forward::{
-    Assembler, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project,
+    Assembler, ColorGrid, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project,
 };
 
 /// Point parameters.
@@ -28,6 +29,8 @@ pub(crate) struct PointSizes {
 pub(crate) struct DrawGeometry {
     pub batch: Arc<VertexBatch>,
     pub assembled: Arc<Assembled>,
+    /// The batch is a flat grid, and drawn as one.
+    pub grid: bool,
     pub snapshot: Arc<VertexSnapshot>,
     pub primitive: PrimitiveState,
     pub layout: Layout,
@@ -43,14 +46,25 @@ impl DrawGeometry {
     fn filled_pieces(&self) -> usize {
         if self.filled() { self.assembled.pieces.len() } else { 0 }
     }
+
+    /// The flat grid that is drawn.
+    fn grid(&self) -> Option<&Grid> {
+        self.assembled.grid.as_ref().filter(|_| self.grid)
+    }
 }
 
 impl Geometry for DrawGeometry {
     fn pieces(&self) -> usize {
+        if self.grid().is_some() {
+            return 1;
+        }
         self.filled_pieces() + usize::from(!self.filled() || self.assembled.others)
     }
 
     fn weight(&self, piece: usize) -> usize {
+        if let Some(grid) = self.grid() {
+            return if self.layout.grid.is_some() { grid.vertices.len() / 16 } else { 2 };
+        }
         match self.assembled.pieces.get(piece) {
             Some(p) if self.filled() => p.triangles.len(),
             _ => self.batch.primitives.iter().map(|p| p.count as usize).sum(),
@@ -68,6 +82,9 @@ impl Geometry for DrawGeometry {
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives) {
         let mut state = self.primitive.clone();
         state.draw = draw;
+        if let Some(grid) = self.grid() {
+            return self.emit_grid(level, grid, state, screen, out);
+        }
         if piece < self.filled_pieces() {
             let whole = &self.assembled.pieces[piece];
             let Piece { triangles, vertices, .. } = whole;
@@ -85,6 +102,58 @@ impl Geometry for DrawGeometry {
 }
 
 impl DrawGeometry {
+    /// The rectangle of a flat grid, and the colours of the grid's vertices.
+    fn emit_grid(
+        &self,
+        level: Level,
+        grid: &Grid,
+        mut state: PrimitiveState,
+        screen: &ForwardScreen,
+        out: &mut Primitives,
+    ) {
+        let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
+        let Piece { triangles, vertices, .. } = &grid.rectangle;
+        if !state.depth_clamp && grid.rectangle.is_outside(matrix, state.window.near, planes) {
+            return;
+        }
+        if self.layout.grid.is_some() {
+            state.grid = out.grids.len() as u32;
+        }
+        let records = out.records.len();
+        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles));
+        if let Some(at) = self.layout.grid {
+            self.emit_colors(level, grid, at, records, out);
+        }
+    }
+
+    /// Shades the grid's vertices round the places that the records from `first` on span.
+    fn emit_colors(&self, level: Level, grid: &Grid, at: usize, first: usize, out: &mut Primitives) {
+        let stride = self.layout.stride;
+        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+        for record in out.records[first..].chunks_exact(stride) {
+            for k in 0..2 {
+                (low[k], high[k]) = (low[k].min(record[at + k]), high[k].max(record[at + k]));
+            }
+        }
+        let from = |k: usize| (low[k] as u32).min(grid.cells[k] - 1);
+        let to = |k: usize| (high[k].ceil() as u32).clamp(from(k) + 1, grid.cells[k]);
+        let (origin, end) = ([from(0), from(1)], [to(0), to(1)]);
+        let size = [end[0] - origin[0] + 1, end[1] - origin[1] + 1];
+        out.grids.push(ColorGrid { first: out.grid_colors.len(), origin, size, rising: grid.rising });
+        let mut records = vec![0.0; LANES * stride];
+        for row in origin[1]..=end[1] {
+            let start = (row * (grid.cells[0] + 1) + origin[0]) as usize;
+            for eight in grid.vertices[start..start + size[0] as usize].chunks(LANES) {
+                let vertices = std::array::from_fn(|lane| eight[lane.min(eight.len() - 1)]);
+                let lanes = Eight { vertices, count: eight.len(), batch: &self.batch };
+                dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &lanes, &[1.0; LANES], &mut records));
+                let colors = records.chunks_exact(stride).take(eight.len());
+                let color = self.layout.color;
+                out.grid_colors.extend(colors.map(|r| [r[color], r[color + 1], r[color + 2], r[color + 3]]));
+            }
+        }
+    }
+
     /// Transforms a piece's vertices, assembles, and shades the vertices that primitives use.
     fn emit_vertices(
         &self,
@@ -121,6 +190,13 @@ impl DrawGeometry {
         let records = &mut assembler.records()[range];
         for (eight, records) in used.chunks(LANES).zip(records.chunks_mut(LANES * self.layout.stride)) {
             self.shade_eight(level, vertices, &clip, eight, records);
+            if let (Some(at), Some(grid)) = (self.layout.grid, self.grid()) {
+                let own = eight
+                    .iter()
+                    .zip(records.chunks_exact_mut(self.layout.stride))
+                    .filter(|(v, _)| Assembler::is_own(**v));
+                own.for_each(|(&v, record)| record[at..at + 2].copy_from_slice(&grid.corner(v)));
+            }
         }
         assembler.derive();
     }

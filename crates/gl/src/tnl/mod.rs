@@ -3,6 +3,7 @@
 mod assembled;
 mod derive;
 mod geometry;
+mod grid;
 mod process;
 mod record;
 mod snapshot;

@@ -1,15 +1,18 @@
 //! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks.
 
 use super::geometry::{DrawGeometry, PointSizes};
-use super::snapshot::{LightCache, VertexSnapshot};
+use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
 use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_exec::Workers;
+use vitral_math::Vec4;
 use vitral_math::lanes::Level;
-use vitral_raster::forward::{Command, FragmentState, Layout, Pass, PrimitiveState, Runner, Target, WindowTransform};
+use vitral_raster::forward::{
+    Command, FragmentState, Layout, NO_GRID, Pass, PrimitiveState, Runner, Target, WindowTransform,
+};
 
 /// Gives the threads that run passes; asked each time, since a process may have forked.
 pub type RunnerSource = fn() -> Arc<Runner>;
@@ -103,10 +106,20 @@ impl Context {
         let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
-        let snapshot = VertexSnapshot::new(&self.state, &units, fog, &mut self.recorder.lights);
-        let layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
+        let mut snapshot = VertexSnapshot::new(&self.state, &units, fog, &mut self.recorder.lights);
+        let mut layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let assembled = batch.assembled.get(&batch);
+        // What draws depths alone into a texture is seldom looked at: it stays as it was given.
+        let grid =
+            target.color.is_some() && assembled.grid.is_some() && self.draws_grids(&snapshot, &primitive, fragment);
+        if grid && snapshot.fog == Some(FogSource::Depth) {
+            snapshot.fog = Some(FogSource::Ahead);
+        }
+        if grid && shaded && snapshot.lighting.is_some() {
+            layout.grid = Some(layout.stride);
+            layout.stride += 2;
+        }
         let s = &self.state;
         let multisample = s.multisample && samples;
         let points = PointSizes {
@@ -116,7 +129,21 @@ impl Context {
             fade: multisample.then_some(s.points.fade_threshold),
         };
         let clip = primitive.clip;
-        Some(DrawGeometry { assembled, batch, snapshot: Arc::new(snapshot), primitive, layout, clip, points })
+        Some(DrawGeometry { assembled, batch, grid, snapshot: Arc::new(snapshot), primitive, layout, clip, points })
+    }
+
+    /// Whether everything that varies on a flat grid is linear, but the colours of one side.
+    fn draws_grids(&self, snapshot: &VertexSnapshot, primitive: &PrimitiveState, fragment: &FragmentState) -> bool {
+        let linear = |g: &Generation| matches!(g, Generation::None | Generation::Object(_) | Generation::Eye(_));
+        let lit = snapshot.lighting.as_ref();
+        // What a perspective projection shows lies ahead.
+        let ahead = self.state.matrices.projection.top().row(3) == Vec4::NEG_Z;
+        primitive.polygon_mode == [2, 2]
+            && !primitive.polygon_smooth
+            && !(lit.is_some() && fragment.flat)
+            && lit.is_none_or(|lighting| !lighting.two_side && !lighting.separate_specular)
+            && snapshot.units.iter().flat_map(|unit| &unit.generation).all(linear)
+            && (ahead || snapshot.fog != Some(FogSource::Depth))
     }
 
     /// Where vertex records hold what.
@@ -185,6 +212,7 @@ impl Context {
             point_smooth: s.points.smooth && !multisample && !s.points.sprite,
             clip,
             draw: 0,
+            grid: NO_GRID,
         })
     }
 }

@@ -53,7 +53,10 @@ pub(crate) struct LightingSnapshot {
 /// Where fog coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FogSource {
+    /// The distance from the eye's plane.
     Depth,
+    /// How far it lies ahead of the eye: as `Depth` for what is seen, but linear.
+    Ahead,
     Given,
 }
 

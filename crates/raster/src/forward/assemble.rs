@@ -9,6 +9,7 @@
 
 mod lines;
 
+use super::color_grid::ColorGrid;
 use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
@@ -41,6 +42,8 @@ pub struct Facet {
     pub back: bool,
     /// Index into [`Primitives::shapes`] of a line, point or piece of a smooth polygon.
     pub shape: u32,
+    /// Index into [`Primitives::grids`] of where its colours come from, if not from its corners.
+    pub grid: u32,
 }
 
 /// Local geometry of lines and points, in pixels.
@@ -125,6 +128,8 @@ pub struct PrimitiveState {
     pub clip: [i32; 4],
     /// The draw's number in its job.
     pub draw: u32,
+    /// See [`Facet::grid`]; [`NO_GRID`] for colours of corners.
+    pub grid: u32,
 }
 
 /// What jobs make: primitives of several draws, in order.
@@ -138,7 +143,14 @@ pub struct Primitives {
     pub shapes: Vec<Shape>,
     /// Shaded vertices, by slot.
     pub records: Vec<f32>,
+    /// Grids of colours, and those.
+    pub grids: Vec<ColorGrid>,
+    /// See [`ColorGrid::first`].
+    pub grid_colors: Vec<[f32; 4]>,
 }
+
+/// The facet's colours come from its corners.
+pub const NO_GRID: u32 = u32::MAX;
 
 /// How far over a smooth polygon's edge pixels may be that it covers in part.
 const SOFT_BORDER: f32 = 0.75;
@@ -353,7 +365,15 @@ impl<'a> Assembler<'a> {
         let facet = self.out.facets.len() as u32;
         // The setup turns clockwise triangles over.
         let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
-        self.out.facets.push(Facet { corners, provoking, draw: self.state.draw, kind, back, shape });
+        self.out.facets.push(Facet {
+            corners,
+            provoking,
+            draw: self.state.draw,
+            kind,
+            back,
+            shape,
+            grid: self.state.grid,
+        });
         self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
     }
 

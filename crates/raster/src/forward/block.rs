@@ -171,7 +171,8 @@ pub(crate) fn update_stencil<S: Simd>(
         || {
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate() {
                 for row in block.rows.clone() {
-                    let [covered, reached, passed] = [covered, reached, passed].map(|m| (m[s] >> (8 * row)) as u32 & 0xff);
+                    let [covered, reached, passed] =
+                        [covered, reached, passed].map(|m| (m[s] >> (8 * row)) as u32 & 0xff);
                     if covered == 0 {
                         continue;
                     }

@@ -6,6 +6,7 @@
 
 mod assemble;
 mod block;
+mod color_grid;
 mod environment;
 mod fragment;
 mod fragment_ops;
@@ -20,7 +21,8 @@ mod texture;
 mod tile;
 mod wide;
 
-pub use assemble::{Assembler, Facet, FacetKind, PrimitiveState, Primitives, Shape, Vertices};
+pub use assemble::{Assembler, Facet, FacetKind, NO_GRID, PrimitiveState, Primitives, Shape, Vertices};
+pub use color_grid::ColorGrid;
 pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageFragments, Pass, Runner, Target};
 pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 pub use project::{WindowTransform, project};

@@ -258,6 +258,8 @@ impl Runner {
         out.facets.clear();
         out.shapes.clear();
         out.records.clear();
+        out.grids.clear();
+        out.grid_colors.clear();
         for (draw, (command, pieces)) in plan.pieces.iter().enumerate() {
             if let Command::Draw(geometry, _) = &commands[*command] {
                 for piece in pieces.clone() {
@@ -387,9 +389,10 @@ fn draw_context<'a>(
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
     }
-    let plain = state.units.iter().filter(|unit| {
-        unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0
-    });
+    let plain = state
+        .units
+        .iter()
+        .filter(|unit| unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0);
     let plain = plain.filter_map(|unit| Some((unit.index, Packed::new(&unit.texture)?))).collect();
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);

@@ -158,7 +158,8 @@ impl PendingDepth {
             Some(known) => known * self.sign,
             None => splat(f32::NEG_INFINITY),
         };
-        let open = F32x8::from_slice(simd, &bounds).simd_gt(floors) & F32x8::from_slice(simd, &bounds).simd_gt(splat(best));
+        let open =
+            F32x8::from_slice(simd, &bounds).simd_gt(floors) & F32x8::from_slice(simd, &bounds).simd_gt(splat(best));
         let mut open = open.to_bitmask() as u32 & active;
         let mut depths = [best; LANES];
         if open != 0 {

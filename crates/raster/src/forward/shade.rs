@@ -1,7 +1,8 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures, fog.
 
-use super::assemble::{Facet, FacetKind, Shape};
+use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::Words;
+use super::color_grid::ColorGrid;
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment, format_of, modulate};
 use super::fragment_ops::compare::{alpha_test, holds};
@@ -16,7 +17,7 @@ use super::state::{EnvironmentMode, FragmentState, Unit};
 use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, LANES, Simd};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -33,6 +34,8 @@ pub struct Layout {
     pub back_secondary: Option<usize>,
     /// Fog coordinate.
     pub fog: Option<usize>,
+    /// Place in a grid of colours, in cells.
+    pub grid: Option<usize>,
     /// Texture coordinates s, t, r, q of units.
     pub tex: [Option<usize>; UNITS],
     /// Units whose coordinates point sprites replace.
@@ -103,15 +106,17 @@ pub(crate) struct Scratch {
     differences: Differences,
 }
 
-/// A facet made ready to be interpolated.
+/// A facet made ready to be interpolated. With `l` a corner's screen-space barycentric coordinate, `l1 / w1`, `l2 / w2` and
+/// `Σ l / w` are planes over the pixels: their value at `origin`, their change with x, with y. They are set up in double
+/// precision, since corners may lie far away and near the eye, where `1 / w` is large.
 #[derive(Default)]
 struct Interpolation {
     origin: [f32; 2],
-    /// Screen-space barycentric coordinates of corners 1 and 2: change with x, with y.
-    l1: [f32; 2],
-    l2: [f32; 2],
-    inverse_w: [f32; 3],
-    flat_w: bool,
+    first: [f32; 3],
+    second: [f32; 3],
+    sum: [f32; 3],
+    /// `w` of all corners, if it is the same.
+    flat_w: Option<f32>,
     /// Unit edge normals and offsets of the triangle, for smooth polygons: distance = a x + b y + c.
     edges: [[f32; 3]; 3],
 }
@@ -119,20 +124,27 @@ struct Interpolation {
 impl Interpolation {
     /// For a setup, with corner records by `facet.corners`; places are in pixels of the target.
     #[inline(always)]
-    pub(crate) fn new(setup: &Setup, facet: &Facet, records: &[f32]) -> Self {
-        let corners = [facet.corners[0] as usize, facet.corners[1] as usize, facet.corners[2] as usize];
-        let scale = 1.0 / SUBPIXEL as f32;
-        let (x0, y0) = (setup.x[0] as f32 * scale, setup.y[0] as f32 * scale);
-        let (dx1, dy1) = ((setup.x[1] - setup.x[0]) as f32 * scale, (setup.y[1] - setup.y[0]) as f32 * scale);
-        let (dx2, dy2) = ((setup.x[2] - setup.x[0]) as f32 * scale, (setup.y[2] - setup.y[0]) as f32 * scale);
+    fn new(setup: &Setup, facet: &Facet, records: &[f32], origin: [f32; 2]) -> Self {
+        let scale = 1.0 / f64::from(SUBPIXEL);
+        let x = |k: usize| f64::from(setup.x[k]) * scale - f64::from(origin[0]);
+        let y = |k: usize| f64::from(setup.y[k]) * scale - f64::from(origin[1]);
+        let ((x0, y0), (dx1, dy1), (dx2, dy2)) = ((x(0), y(0)), (x(1) - x(0), y(1) - y(0)), (x(2) - x(0), y(2) - y(0)));
         let inverse = 1.0 / (dx1 * dy2 - dx2 * dy1);
-        let inverse_w = [records[corners[0]], records[corners[1]], records[corners[2]]];
+        let inverse_w = facet.corners.map(|slot| records[slot as usize]);
+        let flat = inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2];
+        // With one w for all corners the weights themselves are planes.
+        let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w.map(f64::from) };
+        let plane = |dx: f64, dy: f64, at: f64, w: f64| [(at - x0 * dx - y0 * dy) * w, dx * w, dy * w];
+        let (a, b) = ((dy2 * inverse, -dx2 * inverse), (-dy1 * inverse, dx1 * inverse));
+        let (first, second) = (plane(a.0, a.1, 0.0, w1), plane(b.0, b.1, 0.0, w2));
+        let rest = plane(-a.0 - b.0, -a.1 - b.1, 1.0, w0);
+        let sum = [0, 1, 2].map(|k: usize| (first[k] + second[k] + rest[k]) as f32);
         Self {
-            origin: [x0, y0],
-            l1: [dy2 * inverse, -dx2 * inverse],
-            l2: [-dy1 * inverse, dx1 * inverse],
-            inverse_w,
-            flat_w: inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2],
+            origin,
+            first: first.map(|v| v as f32),
+            second: second.map(|v| v as f32),
+            sum,
+            flat_w: flat.then_some(1.0 / inverse_w[0]),
             edges: [[0.0; 3]; 3],
         }
     }
@@ -140,12 +152,11 @@ impl Interpolation {
     /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
     #[inline(always)]
     fn weight_steps<S: Simd>(&self, simd: S, weights: &Weights<S>, axis: usize) -> [F32x8<S>; 2] {
-        if self.flat_w {
-            return [splat(simd, self.l1[axis]), splat(simd, self.l2[axis])];
+        let (q1, q2, sum) = (self.first[axis + 1], self.second[axis + 1], self.sum[axis + 1]);
+        if self.flat_w.is_some() {
+            return [splat(simd, q1), splat(simd, q2)];
         }
         // b = (l / w) / Σ, so db = (d(l / w) - b dΣ) / Σ.
-        let (q1, q2) = (self.l1[axis] * self.inverse_w[1], self.l2[axis] * self.inverse_w[2]);
-        let sum = q1 + q2 - (self.l1[axis] + self.l2[axis]) * self.inverse_w[0];
         [(splat(simd, q1) - weights.b1 * sum) * weights.w, (splat(simd, q2) - weights.b2 * sum) * weights.w]
     }
 
@@ -178,7 +189,10 @@ pub(crate) struct Shader<'a> {
     pub layout: &'a Layout,
     pub planes: &'a [Option<&'a DepthPlane>; UNITS],
     pub facet: Facet,
+    primitives: &'a Primitives,
     pub records: &'a [f32],
+    /// The tile's first pixel.
+    tile: [f32; 2],
     pub shape: Option<Shape>,
     scratch: &'a mut Scratch,
     plain: &'a [(usize, Packed<'a>)],
@@ -190,22 +204,24 @@ impl<'a> Shader<'a> {
     pub(crate) fn new(
         facet: Facet,
         draw: &'a DrawContext<'a>,
-        records: &'a [f32],
-        shapes: &[Shape],
+        primitives: &'a Primitives,
+        tile: [f32; 2],
         scratch: &'a mut Scratch,
     ) -> Self {
         let layout = draw.layout;
         let shape = if facet.kind == FacetKind::Polygon && !layout.smooth[2] {
             None
         } else {
-            shapes.get(facet.shape as usize).copied()
+            primitives.shapes.get(facet.shape as usize).copied()
         };
         Self {
             state: draw.state,
             layout,
             planes: &draw.planes,
             facet,
-            records,
+            primitives,
+            records: &primitives.records,
+            tile,
             shape,
             scratch,
             plain: &draw.plain,
@@ -222,10 +238,10 @@ impl<'a> Shader<'a> {
             self.scratch.differences.prepare(simd, self.records, corners, self.layout.stride);
             if let Some(Shape::Polygon { x, y, .. }) = self.shape {
                 let own = Setup { x, y, ..*setup };
-                self.scratch.interpolation = Interpolation::new(&own, &self.facet, self.records);
+                self.scratch.interpolation = Interpolation::new(&own, &self.facet, self.records, self.tile);
                 self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.scratch.interpolation = Interpolation::new(setup, &self.facet, self.records);
+                self.scratch.interpolation = Interpolation::new(setup, &self.facet, self.records, self.tile);
             }
         }
     }
@@ -234,14 +250,15 @@ impl<'a> Shader<'a> {
     fn weights<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> Weights<S> {
         let i = &self.scratch.interpolation;
         let (dx, dy) = (x - i.origin[0], y - i.origin[1]);
-        let l1 = dx * i.l1[0] + dy * i.l1[1];
-        let l2 = dx * i.l2[0] + dy * i.l2[1];
-        if i.flat_w {
-            return Weights { b1: l1, b2: l2, w: splat(simd, 1.0 / i.inverse_w[0]) };
+        let plane = lanes::inlined(
+            #[inline(always)]
+            |p: &[f32; 3]| dx * p[1] + dy * p[2] + p[0],
+        );
+        let (q1, q2) = (plane(&i.first), plane(&i.second));
+        if let Some(w) = i.flat_w {
+            return Weights { b1: q1, b2: q2, w: splat(simd, w) };
         }
-        let l0 = splat(simd, 1.0) - l1 - l2;
-        let (q1, q2) = (l1 * i.inverse_w[1], l2 * i.inverse_w[2]);
-        let w = splat(simd, 1.0) / (l0 * i.inverse_w[0] + q1 + q2);
+        let w = splat(simd, 1.0) / plane(&i.sum);
         Weights { b1: q1 * w, b2: q2 * w, w }
     }
 
@@ -274,8 +291,22 @@ impl<'a> Shader<'a> {
             let r = &self.records[self.facet.provoking as usize + at..][..4];
             return splat_rgba(simd, [r[0], r[1], r[2], r[3]]);
         }
+        if let (Some(at), Some(grid)) = (self.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
+            return self.grid_color(simd, weights, grid, at);
+        }
         // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
         saturate_rgba(self.four(simd, weights, at))
+    }
+
+    #[inline(never)]
+    fn grid_color<S: Simd>(&self, simd: S, weights: &Weights<S>, grid: &ColorGrid, at: usize) -> Rgba<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
+                grid.at(simd, &self.primitives.grid_colors, place)
+            },
+        )
     }
 
     #[inline(always)]

@@ -97,9 +97,8 @@ impl<'a> TileRun<'a> {
                         continue;
                     }
                     let pattern = if draw.multisample { many } else { one };
-                    let (records, shapes) = (&primitives.records, &primitives.shapes);
-                    let shader = Shader::new(facet, draw, records, shapes, &mut scratch);
                     let (x, y) = (self.x, self.y);
+                    let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
                     traverse(simd, setup, (x, y), pattern, &mut sink);
                 }

@@ -25,8 +25,8 @@ mod tests;
 
 use super::plane::DepthPlane;
 use super::texture::{Texels, Texture, TextureKind};
-use packed::Packed;
 use super::wide::{Rgba, splat_rgba};
+use packed::Packed;
 use vitral_math::lanes::{F32x8, Simd};
 
 /// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here, but for
@@ -59,4 +59,3 @@ pub(crate) fn sample<S: Simd>(
         _ => flat::sample(simd, texture, coords, lod, active),
     }
 }
-

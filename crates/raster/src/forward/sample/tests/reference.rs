@@ -1,8 +1,8 @@
 //! A plain scalar sampler, written after the specification's formulas one texel at a time, against the lanes on many
 //! pseudo-random look-ups.
 
-use crate::forward::sample::packed::Packed;
 use super::*;
+use crate::forward::sample::packed::Packed;
 
 /// A sequence that looks random.
 struct Noise(u32);

@@ -1,0 +1,260 @@
+//! Flat grids: programs tessellate large planes so that lighting by vertex shows, and send them again and again.
+//!
+//! All triangles of such a grid lie in one plane, and everything but their lit colours is linear on it. So the rasteriser gets the
+//! rectangle alone, two triangles instead of tens of thousands, and takes colours from the grid of shaded vertices
+//! ([`ColorGrid`](vitral_raster::forward::ColorGrid)): the colour at a point is that of the small triangle it lies in, as
+//! if that had been drawn.
+//!
+//! A batch is a grid if one coordinate of its positions is constant, the other two form evenly spaced rows and columns, each cell is
+//! cut into two triangles along the same diagonal, all normals are equal, and texture coordinates are linear.
+//!
+//! In:   a batch and its triangles. Out: the rectangle and the numbers of its vertices.
+//! Cost: linear, once a batch.
+
+use super::assembled::{Piece, PieceVertices, bounds};
+use crate::vertex::VertexBatch;
+
+/// Fewer cells are drawn as they are.
+const LEAST_CELLS: usize = 16;
+
+/// A batch that is a flat grid.
+#[derive(Debug)]
+pub(crate) struct Grid {
+    /// The rectangle: its vertices are those of the corners `(0, 0)`, `(columns, 0)`, `(columns, rows)`, `(0, rows)`.
+    pub rectangle: Piece,
+    /// Cells along the two axes.
+    pub cells: [u32; 2],
+    /// Vertices of the batch, row by row, `columns + 1` a row.
+    pub vertices: Vec<u32>,
+    /// Cells are cut from `(i, j)` to `(i + 1, j + 1)`, not from `(i + 1, j)` to `(i, j + 1)`.
+    pub rising: bool,
+}
+
+/// The grid that a batch is, if it is one; `triangles` are its triangles as numbers of vertices.
+pub(crate) fn find(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<Grid> {
+    if triangles.len() < 2 * LEAST_CELLS || !is_plain(batch) {
+        return None;
+    }
+    let axes = axes(batch, triangles)?;
+    let (x, y) = (Lines::new(batch, triangles, axes[0])?, Lines::new(batch, triangles, axes[1])?);
+    let (columns, rows) = (x.count - 1, y.count - 1);
+    if columns * rows < LEAST_CELLS || columns * rows * 2 > triangles.len() {
+        return None;
+    }
+    let place = |v: u32| {
+        let p = batch.positions[v as usize];
+        Some([x.number(p[axes[0]])?, y.number(p[axes[1]])?])
+    };
+    let mut vertices = vec![u32::MAX; (columns + 1) * (rows + 1)];
+    let mut cells = vec![0u8; columns * rows];
+    let mut shape: Option<[Option<Turn>; 4]> = None;
+    for triangle in triangles {
+        let places = [place(triangle[0])?, place(triangle[1])?, place(triangle[2])?];
+        if places[0] == places[1] || places[1] == places[2] || places[2] == places[0] {
+            // Without area. Some programs have a border of such.
+            continue;
+        }
+        for k in 0..3 {
+            vertices[places[k][1] * (columns + 1) + places[k][0]] = triangle[k];
+        }
+        let (cell, turn) = turn(places)?;
+        let seen = &mut cells[cell[1] * columns + cell[0]];
+        if *seen & 1 << turn.missing != 0 {
+            return None;
+        }
+        *seen |= 1 << turn.missing;
+        let shape = shape.get_or_insert([None; 4]);
+        if *shape[turn.missing].get_or_insert(turn) != turn {
+            return None;
+        }
+    }
+    // Both triangles of all cells, on both sides of one diagonal.
+    let pair = cells[0];
+    if !matches!(pair, 0b0101 | 0b1010) || cells.iter().any(|c| *c != pair) || vertices.contains(&u32::MAX) {
+        return None;
+    }
+    let at = |i: usize, j: usize| vertices[j * (columns + 1) + i];
+    let corners = vec![at(0, 0), at(columns, 0), at(columns, rows), at(0, rows)];
+    if !is_linear(batch, &corners, &vertices, [columns, rows]) {
+        return None;
+    }
+    let triangles: Vec<[u32; 3]> = shape?.into_iter().flatten().map(|turn| turn.corners).collect();
+    let bounds = bounds(corners.iter().map(|&v| batch.positions[v as usize]));
+    let rectangle = Piece { triangles, vertices: PieceVertices::List(corners), bounds };
+    // A triangle without corner (1, 0) or (0, 1) has the rising diagonal.
+    Some(Grid { rectangle, cells: [columns as u32, rows as u32], vertices, rising: pair == 0b1010 })
+}
+
+/// One of the two triangles of a cell, its corners numbered round the cell as [`Grid::rectangle`]'s are.
+#[derive(Clone, Copy, PartialEq)]
+struct Turn {
+    corners: [u32; 3],
+    /// The corner of the cell that it leaves out.
+    missing: usize,
+}
+
+/// The cell of a triangle, and which of its halves it is.
+fn turn(places: [[usize; 2]; 3]) -> Option<([usize; 2], Turn)> {
+    let low = |k: usize| places[0][k].min(places[1][k]).min(places[2][k]);
+    let cell = [low(0), low(1)];
+    let mut corners = [0; 3];
+    let mut missing = 6;
+    for (corner, place) in corners.iter_mut().zip(places) {
+        *corner = match [place[0] - cell[0], place[1] - cell[1]] {
+            [0, 0] => 0,
+            [1, 0] => 1,
+            [1, 1] => 2,
+            [0, 1] => 3,
+            _ => return None,
+        };
+        missing -= *corner as i32;
+    }
+    let all_differ = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
+    all_differ.then_some((cell, Turn { corners, missing: missing.clamp(0, 3) as usize }))
+}
+
+/// Whether only positions, equal normals and texture coordinates vary.
+fn is_plain(batch: &VertexBatch) -> bool {
+    let same = |normals: &Vec<[f32; 3]>| normals.windows(2).all(|pair| pair[0] == pair[1]);
+    batch.colors.is_none()
+        && batch.secondary.is_none()
+        && batch.fog.is_none()
+        && batch.materials.is_empty()
+        && batch.normals.as_ref().is_none_or(same)
+}
+
+/// The two axes of position that vary; the third is constant, and all are finite with `w = 1`.
+fn axes(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
+    let first = batch.positions[triangles[0][0] as usize];
+    let mut varies = [false; 3];
+    for &v in triangles.iter().flatten() {
+        let p = batch.positions[v as usize];
+        if p[3] != 1.0 || !(p[0] + p[1] + p[2]).is_finite() {
+            return None;
+        }
+        for k in 0..3 {
+            varies[k] |= p[k] != first[k];
+        }
+    }
+    match varies {
+        [true, true, false] => Some([0, 1]),
+        [true, false, true] => Some([0, 2]),
+        [false, true, true] => Some([1, 2]),
+        _ => None,
+    }
+}
+
+/// Evenly spaced values of a coordinate.
+#[derive(Clone, Copy)]
+struct Lines {
+    first: f64,
+    step: f64,
+    count: usize,
+}
+
+impl Lines {
+    /// Those of the vertices along an axis. Values that differ by rounding alone are one line.
+    fn new(batch: &VertexBatch, triangles: &[[u32; 3]], axis: usize) -> Option<Self> {
+        let mut values: Vec<f32> = triangles.iter().flatten().map(|&v| batch.positions[v as usize][axis]).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let (first, last) = (f64::from(*values.first()?), f64::from(*values.last()?));
+        let rounding = (last - first) * 1e-5;
+        let count = 1 + values.windows(2).filter(|pair| f64::from(pair[1]) - f64::from(pair[0]) > rounding).count();
+        (count > 1).then_some(Self { first, step: (last - first) / (count - 1) as f64, count })
+    }
+
+    /// The number of the line that a value lies on.
+    fn number(&self, value: f32) -> Option<usize> {
+        let place = (f64::from(value) - self.first) / self.step;
+        let number = (place + 0.5).floor();
+        ((place - number).abs() < 1e-3).then_some((number as usize).min(self.count - 1))
+    }
+}
+
+/// Whether all texture coordinates are linear on the grid.
+fn is_linear(batch: &VertexBatch, corners: &[u32], vertices: &[u32], [columns, rows]: [usize; 2]) -> bool {
+    batch.tex.iter().flatten().all(|tex| {
+        let [a, b, d] = [corners[0], corners[1], corners[3]].map(|v| tex[v as usize]);
+        (0..4).all(|k| {
+            let size = a[k].abs().max(b[k].abs()).max(d[k].abs());
+            vertices.iter().enumerate().all(|(at, &v)| {
+                let (i, j) = (at % (columns + 1), at / (columns + 1));
+                let (x, y) = (i as f32 / columns as f32, j as f32 / rows as f32);
+                let expected = a[k] + (b[k] - a[k]) * x + (d[k] - a[k]) * y;
+                (tex[v as usize][k] - expected).abs() <= size * 2e-6
+            })
+        })
+    })
+}
+
+impl Grid {
+    /// Where the rectangle's corner `k` lies, in cells.
+    pub(crate) fn corner(&self, k: u32) -> [f32; 2] {
+        let [columns, rows] = self.cells.map(|c| c as f32);
+        [if matches!(k, 1 | 2) { columns } else { 0.0 }, if k >= 2 { rows } else { 0.0 }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::enums::QUADS;
+    use crate::vertex::Primitive;
+
+    /// A grid of quads as programs send them, `v0 v1 v2 v3` counter-clockwise.
+    fn plane(columns: u32, rows: u32) -> VertexBatch {
+        let mut batch = VertexBatch::default();
+        let mut tex = Vec::new();
+        for j in 0..rows {
+            for i in 0..columns {
+                for [di, dj] in [[0, 0], [1, 0], [1, 1], [0, 1]] {
+                    let (x, y) = ((i + di) as f32 * 0.5 - 1.0, (j + dj) as f32 * 0.25);
+                    batch.positions.push([x, y, 3.0, 1.0]);
+                    tex.push([2.0 * x + y, 1.0 - y, 0.0, 1.0]);
+                }
+            }
+        }
+        batch.normals = Some(vec![[0.0, 0.0, 1.0]; batch.positions.len()]);
+        batch.tex[0] = Some(tex);
+        batch.primitives.push(Primitive { mode: QUADS, first: 0, count: 4 * columns * rows });
+        batch
+    }
+
+    fn found(batch: &VertexBatch) -> Option<Grid> {
+        let n = batch.positions.len() as u32;
+        let triangles: Vec<[u32; 3]> =
+            (0..n / 4).flat_map(|q| [[4 * q, 4 * q + 1, 4 * q + 3], [4 * q + 1, 4 * q + 2, 4 * q + 3]]).collect();
+        find(batch, &triangles)
+    }
+
+    #[test]
+    fn a_plane_of_quads_is_a_grid() {
+        let batch = plane(5, 4);
+        let grid = found(&batch).unwrap();
+        assert_eq!((grid.cells, grid.vertices.len(), grid.rising), ([5, 4], 30, false));
+        let mut triangles = grid.rectangle.triangles.clone();
+        triangles.sort_unstable();
+        assert_eq!(triangles, [[0, 1, 3], [1, 2, 3]]);
+        let positions = [0, 1, 2, 3].map(|k| batch.positions[grid.rectangle.vertices.get(k) as usize]);
+        assert_eq!(positions.map(|p| [p[0], p[1]]), [[-1.0, 0.0], [1.5, 0.0], [1.5, 1.0], [-1.0, 1.0]]);
+        assert_eq!([0, 1, 2, 3].map(|k| grid.corner(k)), [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]]);
+    }
+
+    #[test]
+    fn what_is_not_flat_even_or_linear_is_no_grid() {
+        assert!(found(&plane(3, 3)).is_none(), "too few cells");
+        let changes: [fn(&mut VertexBatch); 6] = [
+            |b| b.positions[7][2] += 0.1,
+            |b| b.positions.iter_mut().for_each(|p| p[0] = p[0] * p[0] * p[0]),
+            |b| b.tex[0].as_mut().unwrap()[9][0] += 0.01,
+            |b| b.normals.as_mut().unwrap()[3] = [0.0, 1.0, 0.0],
+            |b| b.colors = Some(vec![[1.0; 4]; b.positions.len()]),
+            |b| b.positions.copy_within(0..4, 4),
+        ];
+        for (i, change) in changes.into_iter().enumerate() {
+            let mut batch = plane(6, 6);
+            change(&mut batch);
+            assert!(found(&batch).is_none(), "change {i}");
+        }
+    }
+}

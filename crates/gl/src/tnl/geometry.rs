@@ -180,7 +180,7 @@ impl DrawGeometry {
         let user = self.user_distances(positions);
         let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
         let in_piece = Vertices { clip: &clip, screen: &window, user: &user, sizes: &sizes };
-        let mut assembler = Assembler::new(state, screen.screen(), out, self.layout.stride, &in_piece);
+        let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, self.layout.stride, &in_piece);
         assemble(&mut assembler);
         let range = assembler.finish();
         if self.layout.stride == 0 {

@@ -128,7 +128,8 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
 /// What geometry must know of the target.
 #[derive(Clone, Debug)]
 pub struct ForwardScreen {
-    pub(crate) screen: Screen,
+    /// With one sample in the centre, with the target's.
+    screens: [Screen; 2],
     /// Size of the target.
     pub viewport: Viewport,
     /// Samples a pixel.
@@ -136,9 +137,9 @@ pub struct ForwardScreen {
 }
 
 impl ForwardScreen {
-    /// The screen, for assemblers.
-    pub fn screen(&self) -> &Screen {
-        &self.screen
+    /// The screen, for assemblers; draws that are not multisampled have one sample in the centre.
+    pub fn screen(&self, multisample: bool) -> &Screen {
+        &self.screens[usize::from(multisample)]
     }
 }
 
@@ -229,7 +230,7 @@ impl Runner {
     pub fn run(&self, pass: &Pass) {
         let (plans, order) = plan(&pass.commands);
         let forward = ForwardScreen {
-            screen: screen(pass.target.viewport, &pass.target.pattern()),
+            screens: [pattern(1), pass.target.pattern()].map(|p| screen(pass.target.viewport, &p)),
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
@@ -267,7 +268,7 @@ impl Runner {
                 }
             }
         }
-        out.batch.finish(&forward.screen);
+        out.batch.finish(forward.screen(false));
         out
     }
 

@@ -47,6 +47,7 @@ pub(crate) fn find(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<Grid> 
     };
     let mut vertices = vec![u32::MAX; (columns + 1) * (rows + 1)];
     let mut cells = vec![0u8; columns * rows];
+    let mut seen_at = Vec::with_capacity(if batch.tex.iter().any(Option::is_some) { 3 * triangles.len() } else { 0 });
     let mut shape: Option<[Option<Turn>; 4]> = None;
     for triangle in triangles {
         let places = [place(triangle[0])?, place(triangle[1])?, place(triangle[2])?];
@@ -56,6 +57,9 @@ pub(crate) fn find(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<Grid> 
         }
         for k in 0..3 {
             vertices[places[k][1] * (columns + 1) + places[k][0]] = triangle[k];
+            if seen_at.capacity() > 0 {
+                seen_at.push((triangle[k], places[k]));
+            }
         }
         let (cell, turn) = turn(places)?;
         let seen = &mut cells[cell[1] * columns + cell[0]];
@@ -75,7 +79,7 @@ pub(crate) fn find(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<Grid> 
     }
     let at = |i: usize, j: usize| vertices[j * (columns + 1) + i];
     let corners = vec![at(0, 0), at(columns, 0), at(columns, rows), at(0, rows)];
-    if !is_linear(batch, &corners, &vertices, [columns, rows]) {
+    if !is_linear(batch, &corners, &seen_at, [columns, rows]) {
         return None;
     }
     let triangles: Vec<[u32; 3]> = shape?.into_iter().flatten().map(|turn| turn.corners).collect();
@@ -171,15 +175,14 @@ impl Lines {
     }
 }
 
-/// Whether all texture coordinates are linear on the grid.
-fn is_linear(batch: &VertexBatch, corners: &[u32], vertices: &[u32], [columns, rows]: [usize; 2]) -> bool {
+/// Whether the texture coordinates of vertices at given places are linear; `corners` are the rectangle's.
+fn is_linear(batch: &VertexBatch, corners: &[u32], places: &[(u32, [usize; 2])], cells: [usize; 2]) -> bool {
     batch.tex.iter().flatten().all(|tex| {
         let [a, b, d] = [corners[0], corners[1], corners[3]].map(|v| tex[v as usize]);
         (0..4).all(|k| {
             let size = a[k].abs().max(b[k].abs()).max(d[k].abs());
-            vertices.iter().enumerate().all(|(at, &v)| {
-                let (i, j) = (at % (columns + 1), at / (columns + 1));
-                let (x, y) = (i as f32 / columns as f32, j as f32 / rows as f32);
+            places.iter().all(|&(v, place)| {
+                let [x, y] = [0, 1].map(|axis: usize| place[axis] as f32 / cells[axis] as f32);
                 let expected = a[k] + (b[k] - a[k]) * x + (d[k] - a[k]) * y;
                 (tex[v as usize][k] - expected).abs() <= size * 2e-6
             })

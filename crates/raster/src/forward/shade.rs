@@ -107,8 +107,9 @@ pub(crate) struct Scratch {
 }
 
 /// A facet made ready to be interpolated. With `l` a corner's screen-space barycentric coordinate, `l1 / w1`, `l2 / w2` and
-/// `Σ l / w` are planes over the pixels: their value at `origin`, their change with x, with y. They are set up in double
-/// precision, since corners may lie far away and near the eye, where `1 / w` is large.
+/// `Σ l / w` are planes over the pixels: their value at `origin`, their change with x, with y. The origin is corner 0, so that
+/// what lies on a grid of pixels stays exact. But where `1 / w` differs much, corners lie far away or near the eye: then
+/// it is the tile's, and the planes' values there are found in double precision.
 #[derive(Default)]
 struct Interpolation {
     origin: [f32; 2],
@@ -124,13 +125,16 @@ struct Interpolation {
 impl Interpolation {
     /// For a setup, with corner records by `facet.corners`; places are in pixels of the target.
     #[inline(always)]
-    fn new(setup: &Setup, facet: &Facet, records: &[f32], origin: [f32; 2]) -> Self {
+    fn new(setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) -> Self {
         let scale = 1.0 / f64::from(SUBPIXEL);
+        let inverse_w = facet.corners.map(|slot| records[slot as usize]);
+        let least = inverse_w[0].min(inverse_w[1]).min(inverse_w[2]);
+        let steep = inverse_w.iter().any(|w| *w > 8.0 * least);
+        let origin = if steep { tile } else { [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32) };
         let x = |k: usize| f64::from(setup.x[k]) * scale - f64::from(origin[0]);
         let y = |k: usize| f64::from(setup.y[k]) * scale - f64::from(origin[1]);
         let ((x0, y0), (dx1, dy1), (dx2, dy2)) = ((x(0), y(0)), (x(1) - x(0), y(1) - y(0)), (x(2) - x(0), y(2) - y(0)));
         let inverse = 1.0 / (dx1 * dy2 - dx2 * dy1);
-        let inverse_w = facet.corners.map(|slot| records[slot as usize]);
         let flat = inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2];
         // With one w for all corners the weights themselves are planes.
         let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w.map(f64::from) };

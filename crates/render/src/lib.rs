@@ -9,6 +9,7 @@ pub mod cull;
 pub mod marks;
 pub mod pipeline;
 pub mod prepare;
+pub mod raytrace;
 pub mod registry;
 mod session;
 mod settings;

@@ -92,6 +92,7 @@ fn render_color(
     session.grid = Some(grid);
     let resolved = resolved?;
     stats.geometry = resolved.geometry;
+    stats.rays = resolved.rays;
 
     // Put the tiles together.
     let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
@@ -123,7 +124,8 @@ fn render_data(
     let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
-    stats.geometry = algorithm.resolve(&view, None, &mut grid, execution, &sink)?.geometry;
+    let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
+    (stats.geometry, stats.rays) = (resolved.geometry, resolved.rays);
     let (tiles, workers) = (&sink.tiles, &execution.workers);
     let (w, h) = (viewport.width, viewport.height);
     let wanted = settings.channels;

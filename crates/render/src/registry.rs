@@ -1,6 +1,6 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::visible::{VisibleSurface, zbuffer::ZBuffer};
+use crate::visible::{VisibleSurface, brute_force::BruteForce, ray_cast::RayCast, zbuffer::ZBuffer};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -17,13 +17,29 @@ pub struct VisibilityAlgorithm {
 }
 
 /// All visible-surface algorithms, the default first.
-pub static VISIBILITY: &[VisibilityAlgorithm] = &[VisibilityAlgorithm {
-    name: "z-buffer",
-    description: "every sample keeps its nearest facet",
-    source: "Catmull 1974",
-    precision: "image",
-    algorithm: &ZBuffer,
-}];
+pub static VISIBILITY: &[VisibilityAlgorithm] = &[
+    VisibilityAlgorithm {
+        name: "z-buffer",
+        description: "every sample keeps its nearest facet",
+        source: "Catmull 1974",
+        precision: "image",
+        algorithm: &ZBuffer,
+    },
+    VisibilityAlgorithm {
+        name: "ray-cast",
+        description: "a ray through every sample, and a tree of boxes to find what it meets",
+        source: "Appel 1968",
+        precision: "image",
+        algorithm: &RayCast,
+    },
+    VisibilityAlgorithm {
+        name: "brute-force",
+        description: "every facet against every sample: slow, the reference of the others",
+        source: "Foley et al. 1990",
+        precision: "image",
+        algorithm: &BruteForce,
+    },
+];
 
 /// A visible-surface algorithm by its name.
 pub fn visibility(name: &str) -> Option<&'static VisibilityAlgorithm> {

@@ -4,9 +4,10 @@
 
 use crate::Error;
 use crate::cull::bounds_tree::BoundsTree;
+use crate::raytrace::bvh::Bvh;
 use crate::shading::FaceTable;
 use std::sync::{Arc, Mutex, OnceLock};
-use vitral_exec::{Budget, Workers};
+use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
 use vitral_scene::edges::Edge;
@@ -40,6 +41,7 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    bvh: Mutex<Option<Arc<Bvh>>>,
 }
 
 /// What is found out about a mesh when it is first needed.
@@ -72,7 +74,15 @@ impl Session {
         }
         let world = World::new(&scene)?;
         let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
-        Ok(Self { scene, world, meshes, grid: None, spare_vertices: Mutex::default(), spare_batches: Mutex::default() })
+        Ok(Self {
+            scene,
+            world,
+            meshes,
+            grid: None,
+            spare_vertices: Mutex::default(),
+            spare_batches: Mutex::default(),
+            bvh: Mutex::default(),
+        })
     }
 
     /// The scene.
@@ -89,6 +99,16 @@ impl Session {
     pub fn solidity(&self, mesh: u32, workers: &Workers) -> Solidity {
         let known = &self.meshes[mesh as usize].solidity;
         *known.get_or_init(|| Solidity::of(&self.scene.meshes[mesh as usize], workers))
+    }
+
+    /// The tree of boxes over all triangles, built when it is first asked for: the views of a turntable share it.
+    pub fn bvh(&self, execution: &Execution) -> Result<Arc<Bvh>, Limit> {
+        let mut known = self.bvh.lock().expect("no thread panics while it builds the tree");
+        if let Some(bvh) = &*known {
+            return Ok(Arc::clone(bvh));
+        }
+        let bvh = Arc::new(Bvh::build(&self.world, &execution.workers, &execution.budget)?);
+        Ok(Arc::clone(known.insert(bvh)))
     }
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {

@@ -11,6 +11,8 @@ pub struct Stats {
     pub cull: CullCounters,
     /// Triangles on their way to the screen.
     pub geometry: GeometryStats,
+    /// Rays and samples that were tested one by one.
+    pub rays: RayCounters,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -72,6 +74,26 @@ impl GeometryStats {
         self.clipped += c.clipped;
         self.set_up += c.set_up;
         self.tile_entries += c.tile_entries;
+    }
+}
+
+/// What algorithms that ask sample by sample did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct RayCounters {
+    /// Samples asked for.
+    pub rays: u64,
+    /// Boxes of the tree that were tested.
+    pub nodes_visited: u64,
+    /// Facets that were tested for covering a sample.
+    pub triangle_tests: u64,
+}
+
+impl RayCounters {
+    pub(crate) fn add(&mut self, o: &Self) {
+        self.rays += o.rays;
+        self.nodes_visited += o.nodes_visited;
+        self.triangle_tests += o.triangle_tests;
     }
 }
 

@@ -1,8 +1,11 @@
 //! Which surface is seen at each sample.
 
+pub mod brute_force;
+pub mod ray_cast;
+mod screen_setups;
 pub mod zbuffer;
 
-use crate::stats::GeometryStats;
+use crate::stats::{GeometryStats, RayCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::{Batch, Layer, Tile, TileGrid};
@@ -18,6 +21,8 @@ pub trait TileSink: Sync {
 pub struct Resolved {
     /// Triangles on their way to the screen.
     pub geometry: GeometryStats,
+    /// Rays and samples that were tested one by one.
+    pub rays: RayCounters,
     /// Seconds of the budget's clock spent on that, the rest went into the tiles.
     pub geometry_seconds: f64,
 }

@@ -44,9 +44,9 @@ struct Piece<'v, 'a> {
 }
 
 /// Pieces that are set up together; a job's batch holds opaque triangles or layers, not both.
-struct Job<'v, 'a> {
+pub(super) struct Job<'v, 'a> {
     pieces: Vec<Piece<'v, 'a>>,
-    layered: bool,
+    pub(super) layered: bool,
 }
 
 impl VisibleSurface for ZBuffer {
@@ -100,7 +100,7 @@ impl VisibleSurface for ZBuffer {
 }
 
 /// Cuts the view's draws into jobs of about equal size, all opaque ones first.
-fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
+pub(super) fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
     let mut jobs = Vec::new();
     for layered in [false, true] {
         let mut job = Job { pieces: Vec::new(), layered };
@@ -137,7 +137,7 @@ fn rounds(jobs: &[Job<'_, '_>]) -> Vec<Range<usize>> {
 }
 
 /// Brings the vertices of all instances in `jobs` to the screen, where that has not been done in an earlier round.
-fn transform_vertices(
+pub(super) fn transform_vertices(
     view: &PreparedView<'_>,
     jobs: &[Job<'_, '_>],
     vertices: &mut [Vec<ScreenVertex>],
@@ -183,7 +183,7 @@ fn retire_vertices(view: &PreparedView<'_>, jobs: &[Job<'_, '_>], vertices: &mut
 }
 
 /// Sets up each job's triangles and sorts them by tile.
-fn set_up(
+pub(super) fn set_up(
     view: &PreparedView<'_>,
     jobs: &[Job<'_, '_>],
     vertices: &[Vec<ScreenVertex>],

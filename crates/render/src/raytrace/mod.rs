@@ -1,0 +1,5 @@
+//! Rays: what they meet, and the tree that finds it.
+
+pub mod beam;
+pub mod bvh;
+pub mod intersect;

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| vitral_testkit::fuzz_gl::gl(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| vitral_testkit::fuzz::gl(bytes));

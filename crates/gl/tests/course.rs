@@ -98,7 +98,8 @@ fn f12_alpha_is_opacity() {
 #[test]
 fn f13_blend_equations() {
     let (s, d) = ([0.8, 0.4, 0.2, 0.6], [0.2f32, 0.6, 0.4, 0.4]);
-    let table: [(u32, fn(f32, f32) -> f32); 5] = [
+    type Equation = fn(f32, f32) -> f32;
+    let table: [(u32, Equation); 5] = [
         (gl::FUNC_ADD, |s, d| 0.6 * s + d),
         (gl::FUNC_SUBTRACT, |s, d| 0.6 * s - d),
         (gl::FUNC_REVERSE_SUBTRACT, |s, d| d - 0.6 * s),

@@ -45,11 +45,10 @@ fn random_calls_are_survived() {
     (0..6).for_each(replay);
 }
 
-/// For more of them: `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test fuzz -- --ignored --nocapture`.
+/// More of them by `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test fuzz -- --nocapture`; two without it.
 #[test]
-#[ignore = "as long as one likes"]
-fn many_random_calls_are_survived() {
-    let range = std::env::var("GL_FUZZ").unwrap_or_else(|_| "6..100".to_owned());
+fn chosen_random_calls_are_survived() {
+    let range = std::env::var("GL_FUZZ").unwrap_or_else(|_| "6..8".to_owned());
     let (first, end) = range.split_once("..").expect("a range");
     let [first, end]: [u64; 2] = [first, end].map(|n| n.parse().expect("a number"));
     let failed: Vec<u64> = (first..end).filter(|&seed| catch_unwind(|| replay(seed)).is_err()).collect();

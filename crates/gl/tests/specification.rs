@@ -95,7 +95,7 @@ fn polygon_offset_is_slope_times_factor_and_units() {
     let mut c = Stage::new(8, 8);
     c.enable(gl::DEPTH_TEST);
     c.depth_func(gl::ALWAYS);
-    let mut depths = |c: &mut Stage, factor: f32, units: f32, slope: f32| {
+    let depths = |c: &mut Stage, factor: f32, units: f32, slope: f32| {
         c.polygon_offset(factor, units);
         c.begin(gl::QUADS);
         for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
@@ -162,7 +162,7 @@ fn mixed_levels(mag: u32, min: u32, lod: f64) -> [u8; 4] {
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, mag as i32);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, min as i32);
     // The rectangle's coordinates run from 0 to 1 over 16 pixels: texels per pixel are 8 s / 16.
-    let s = 2.0 * f64::exp2(lod);
+    let s = 2.0 * vitral_math::func::exp2(lod);
     c.matrix_mode(gl::TEXTURE);
     c.scaled(s, s, 1.0);
     c.clear(gl::COLOR_BUFFER_BIT);
@@ -213,7 +213,7 @@ fn a_smooth_line_has_the_coverage_of_its_rectangle() {
     let mut c = Stage::new(32, 32);
     c.pixels();
     c.enable(gl::LINE_SMOOTH);
-    let mut line = |c: &mut Stage, width: f32, [x0, y0, x1, y1]: [f32; 4]| {
+    let line = |c: &mut Stage, width: f32, [x0, y0, x1, y1]: [f32; 4]| {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.line_width(width);
         c.begin(gl::LINES);
@@ -233,7 +233,7 @@ fn a_smooth_line_has_the_coverage_of_its_rectangle() {
     }
     for (width, [x, y]) in [(1.0, [24.0, 4.0]), (1.0, [20.0, 13.0]), (3.0, [11.0, 27.0]), (5.5, [25.0, 25.0])] {
         line(&mut c, width, [4.0, 4.0, x, y]);
-        let (sum, area) = (alpha_sum(&mut c), width * ((x - 4.0).powi(2) + (y - 4.0).powi(2)).sqrt());
+        let (sum, area) = (alpha_sum(&mut c), width * ((x - 4.0) * (x - 4.0) + (y - 4.0) * (y - 4.0)).sqrt());
         assert!((sum / area - 1.0).abs() < 0.03, "{width} to ({x}, {y}): {sum} instead of {area}");
     }
 }
@@ -256,6 +256,18 @@ fn a_smooth_polygon_covers_its_area() {
         assert!((sum / area - 1.0).abs() < 0.03, "{sum} instead of {area}");
         assert!(c.bytes().iter().any(|p| (40..=215).contains(&p[3])), "no soft border");
     }
+    // The diagonal of a quad is no edge.
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.begin(gl::QUADS);
+    for [x, y] in [[4.25, 4.5], [20.5, 4.5], [20.5, 17.0], [4.25, 17.0]] {
+        c.vertex_2f(x, y);
+    }
+    c.end();
+    let found = [[10, 4], [4, 10], [20, 4], [20, 12], [10, 17]].map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
+    for (found, expected) in found.iter().zip([0.5, 0.75, 0.25, 0.5, 0.0]) {
+        assert!((found - expected).abs() < 0.01, "{found} instead of {expected}");
+    }
+    assert!((5..20).all(|x| (5..17).all(|y| c.bytes()[y * 32 + x][3] == 255)));
 }
 
 #[test]
@@ -439,7 +451,7 @@ fn feedback(c: &mut Stage, draw: impl FnOnce(&mut Stage)) -> Vec<f32> {
 
 #[test]
 fn feedback_of_lines_tells_where_the_stipple_begins_anew() {
-    let mut c = Stage::new(10, 10);
+    let mut c = Stage::new(16, 16);
     c.pixels();
     let strip = feedback(&mut c, |c| {
         c.begin(gl::LINE_STRIP);
@@ -462,7 +474,7 @@ fn feedback_of_lines_tells_where_the_stipple_begins_anew() {
 
 #[test]
 fn feedback_of_a_quad_is_one_polygon() {
-    let mut c = Stage::new(10, 10);
+    let mut c = Stage::new(16, 16);
     c.pixels();
     let found = feedback(&mut c, |c| {
         c.pass_through(7.0);
@@ -480,7 +492,7 @@ fn feedback_of_a_quad_is_one_polygon() {
 #[test]
 fn evaluation_leaves_the_current_values_alone() {
     let mut c = Stage::new(8, 8);
-    let points = c.put(&[-1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let points = c.put(&[-1.0f32, 0.1, 0.0, 1.0, 0.1, 0.0]);
     let colors = c.put(&[0.0f32, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]);
     c.map_1f(gl::MAP1_VERTEX_3, 0.0, 1.0, 3, 2, points);
     c.map_1f(gl::MAP1_COLOR_4, 0.0, 1.0, 4, 2, colors);

@@ -112,6 +112,7 @@ impl Setup {
     }
 
     /// Depth at `(x, y)` in 1/256 pixel.
+    #[inline]
     pub fn depth(&self, x: i32, y: i32) -> f32 {
         let (dx, dy) = ((x - self.origin[0]) as f32 / SUBPIXEL as f32, (y - self.origin[1]) as f32 / SUBPIXEL as f32);
         let z = (self.z + dy * self.dz_dy) + dx * self.dz_dx;
@@ -121,6 +122,7 @@ impl Setup {
     }
 
     /// Whether the sample at `(x, y)` in 1/256 pixel is covered: all edge functions positive, or zero on a top or left edge.
+    #[inline]
     pub fn covers(&self, x: i32, y: i32) -> bool {
         (0..3).all(|i| {
             let j = (i + 1) % 3;

@@ -91,8 +91,7 @@ fn render_color(
     drop(view);
     session.grid = Some(grid);
     let resolved = resolved?;
-    stats.geometry = resolved.geometry;
-    stats.rays = resolved.rays;
+    (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
 
     // Put the tiles together.
     let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
@@ -125,7 +124,7 @@ fn render_data(
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
-    (stats.geometry, stats.rays) = (resolved.geometry, resolved.rays);
+    (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
     let (tiles, workers) = (&sink.tiles, &execution.workers);
     let (w, h) = (viewport.width, viewport.height);
     let wanted = settings.channels;

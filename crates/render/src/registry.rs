@@ -1,6 +1,8 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::visible::{VisibleSurface, brute_force::BruteForce, ray_cast::RayCast, zbuffer::ZBuffer};
+use crate::visible::{
+    VisibleSurface, brute_force::BruteForce, ray_cast::RayCast, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer,
+};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -24,6 +26,20 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Catmull 1974",
         precision: "image",
         algorithm: &ZBuffer,
+    },
+    VisibilityAlgorithm {
+        name: "scan-line",
+        description: "line by line, from edge to edge",
+        source: "Watkins 1970",
+        precision: "image",
+        algorithm: &ScanLine,
+    },
+    VisibilityAlgorithm {
+        name: "warnock",
+        description: "windows are cut in four until they are simple",
+        source: "Warnock 1969",
+        precision: "image",
+        algorithm: &Warnock,
     },
     VisibilityAlgorithm {
         name: "ray-cast",

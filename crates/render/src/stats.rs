@@ -11,8 +11,8 @@ pub struct Stats {
     pub cull: CullCounters,
     /// Triangles on their way to the screen.
     pub geometry: GeometryStats,
-    /// Rays and samples that were tested one by one.
-    pub rays: RayCounters,
+    /// What finding the visible surfaces took.
+    pub visibility: VisibilityCounters,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -77,23 +77,50 @@ impl GeometryStats {
     }
 }
 
-/// What algorithms that ask sample by sample did.
+/// What finding the visible surfaces took, each algorithm in its own terms; 0 where an algorithm has no such thing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct RayCounters {
-    /// Samples asked for.
+pub struct VisibilityCounters {
+    /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
+    pub depth_comparisons: u64,
+    /// Steps that coherence saved: edges carried to the next line, facets passed over or inherited without a test.
+    pub saved: u64,
+    /// Scan-line: edges in the active edge table, summed over the lines.
+    pub active_edges: u64,
+    /// Scan-line: spans with a polygon in.
+    pub spans: u64,
+    /// Scan-line: spans that had to be decided sample by sample.
+    pub penetrated_spans: u64,
+    /// Area subdivision: windows looked at.
+    pub windows: u64,
+    /// Area subdivision: windows of one pixel, decided sample by sample.
+    pub pixel_windows: u64,
+    /// Area subdivision: polygons tested against a window.
+    pub window_tests: u64,
+    /// Ray casting and brute force: rays, one for each sample.
     pub rays: u64,
-    /// Boxes of the tree that were tested.
-    pub nodes_visited: u64,
-    /// Facets that were tested for covering a sample.
+    /// Ray casting: boxes of a tree, or cells of a grid, tested against a ray or a packet of rays.
+    pub box_tests: u64,
+    /// Ray casting and brute force: pairs of a ray and a facet on the screen that were tested.
     pub triangle_tests: u64,
+    /// Ray casting: pairs of a ray and a facet on the screen that bounding volumes left untested.
+    pub tests_saved: u64,
 }
 
-impl RayCounters {
+impl VisibilityCounters {
     pub(crate) fn add(&mut self, o: &Self) {
+        self.depth_comparisons += o.depth_comparisons;
+        self.saved += o.saved;
+        self.active_edges += o.active_edges;
+        self.spans += o.spans;
+        self.penetrated_spans += o.penetrated_spans;
+        self.windows += o.windows;
+        self.pixel_windows += o.pixel_windows;
+        self.window_tests += o.window_tests;
         self.rays += o.rays;
-        self.nodes_visited += o.nodes_visited;
+        self.box_tests += o.box_tests;
         self.triangle_tests += o.triangle_tests;
+        self.tests_saved += o.tests_saved;
     }
 }
 

@@ -5,7 +5,7 @@
 //! the one that is read exist, see [`Beside`], so that the fuzzer reaches what reads them.
 
 use crate::fixture::{files_below, repository};
-use crate::fuzz_gl;
+pub use crate::fuzz_gl::gl;
 use std::path::PathBuf;
 use vitral_exec::Workers;
 use vitral_frame::Plane;
@@ -24,7 +24,7 @@ pub struct Target {
 
 /// Every target.
 pub const TARGETS: [Target; 9] = [
-    Target { name: "gl", run: fuzz_gl::gl },
+    Target { name: "gl", run: gl },
     Target { name: "gltf", run: gltf },
     Target { name: "image", run: image },
     Target { name: "mtl", run: mtl },

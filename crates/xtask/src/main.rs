@@ -1,8 +1,9 @@
-//! Developer commands: `cargo xtask test | check | bless | osmesa | compare`.
+//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | compare`.
 #![forbid(unsafe_code)]
 
 mod bless;
 mod check;
+mod clients;
 mod compare;
 mod osmesa;
 mod prepare;
@@ -18,6 +19,7 @@ cargo xtask test                  install what the tests need, run all of them, 
 cargo xtask check                 the floors and the rules of the house that the compiler does not know
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
+cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask compare [--quick] [--peers-only]
                                   install the peers, run them in turns with vitral, print ratios";
 
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         ["check"] => check::run(),
         ["bless"] => bless::run(None),
         ["bless", filter] => bless::run(Some(filter)),
+        ["clients"] => clients::run_all(),
         ["osmesa"] => osmesa::run_all(),
         ["compare", options @ ..] => compare::run(options),
         _ => Err(format!("usage:\n{USAGE}")),

@@ -52,7 +52,20 @@ pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
         };
         Check { name, result }
     };
-    VARIANTS.into_iter().map(check).collect()
+    let mut checks: Vec<Check> = VARIANTS.into_iter().map(check).collect();
+    checks.push(Check {
+        name: "opengl",
+        result: missing.map_or_else(opengl, |why| CheckResult::Skipped(why.to_owned())),
+    });
+    checks
+}
+
+/// The OpenGL machine builds for WebAssembly; nothing there calls it yet, so that it is only checked.
+fn opengl() -> CheckResult {
+    match run(cargo().args(["check", "--quiet", "--package", "vitral-gl", "--target", WASM_TARGET])) {
+        Ok(()) => CheckResult::Passed,
+        Err(why) => CheckResult::Failed(why),
+    }
 }
 
 /// Builds one variant and runs it; gives the hash that it prints. Each variant has a build folder of its own, since

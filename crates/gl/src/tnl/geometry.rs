@@ -37,7 +37,7 @@ pub(crate) struct DrawGeometry {
 
 impl DrawGeometry {
     fn filled(&self) -> bool {
-        self.primitive.polygon_mode == [2, 2]
+        self.primitive.polygon_mode == [2, 2] && !self.primitive.polygon_smooth
     }
 
     fn filled_pieces(&self) -> usize {

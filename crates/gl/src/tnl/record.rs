@@ -181,6 +181,7 @@ impl Context {
             line_width: s.lines.width.clamp(1.0, state::MAX_POINT_SIZE),
             line_smooth: s.lines.smooth && !multisample,
             multisample,
+            polygon_smooth: s.polygons.smooth && !multisample,
             point_smooth: s.points.smooth && !multisample && !s.points.sprite,
             clip,
             draw: 0,

@@ -9,16 +9,16 @@ use vitral_gl::{ClientMemory, Context, Shared, enums as gl};
 const BASE: usize = 0x10_0000;
 const LEN: usize = 1 << 22;
 /// Where the colour buffer lies.
-pub const BUFFER: usize = BASE + LEN / 2;
+pub(crate) const BUFFER: usize = BASE + LEN / 2;
 /// Where results go.
 const RESULT: usize = BASE + LEN / 4;
 
 /// A context that draws.
-pub struct Stage {
+pub(crate) struct Stage {
     c: Context,
     memory: Arc<Arena>,
     next: usize,
-    pub size: [i32; 2],
+    pub(crate) size: [i32; 2],
 }
 
 impl Deref for Stage {
@@ -36,12 +36,12 @@ impl DerefMut for Stage {
 
 impl Stage {
     /// RGBA bytes, 24 bits of depth, 8 of stencil, accumulation; clip space is the window.
-    pub fn new(width: i32, height: i32) -> Self {
+    pub(crate) fn new(width: i32, height: i32) -> Self {
         Self::with_buffer(width, height, gl::RGBA, gl::UNSIGNED_BYTE)
     }
 
     /// A buffer of this format and type.
-    pub fn with_buffer(width: i32, height: i32, format: u32, kind: u32) -> Self {
+    pub(crate) fn with_buffer(width: i32, height: i32, format: u32, kind: u32) -> Self {
         let memory = Arc::new(Arena::new(BASE, LEN));
         let mut c = Context::new(memory.clone(), Arc::new(Shared::default()));
         c.configure_default_framebuffer(format, 24, 8, 16);
@@ -52,7 +52,7 @@ impl Stage {
     }
 
     /// Values in the client's memory.
-    pub fn put<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> usize {
+    pub(crate) fn put<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> usize {
         let (at, bytes) = (self.next, bytemuck::cast_slice::<T, u8>(values));
         assert!(at + bytes.len() < RESULT && self.memory.write(at, bytes));
         self.next += bytes.len().next_multiple_of(16);
@@ -60,7 +60,7 @@ impl Stage {
     }
 
     /// Values from the client's memory.
-    pub fn take<T: bytemuck::Pod>(&self, address: usize, count: usize) -> Vec<T> {
+    pub(crate) fn take<T: bytemuck::Pod>(&self, address: usize, count: usize) -> Vec<T> {
         let mut values = vec![T::zeroed(); count];
         assert!(self.memory.read(address, bytemuck::cast_slice_mut(&mut values)));
         values
@@ -73,36 +73,36 @@ impl Stage {
         self.take(RESULT, (w * h) as usize * per_pixel)
     }
 
-    pub fn bytes(&mut self) -> Vec<[u8; 4]> {
+    pub(crate) fn bytes(&mut self) -> Vec<[u8; 4]> {
         bytemuck::cast_slice(&self.read::<u8>(gl::RGBA, gl::UNSIGNED_BYTE, 4)).to_vec()
     }
 
-    pub fn floats(&mut self) -> Vec<[f32; 4]> {
+    pub(crate) fn floats(&mut self) -> Vec<[f32; 4]> {
         bytemuck::cast_slice(&self.read::<f32>(gl::RGBA, gl::FLOAT, 4)).to_vec()
     }
 
-    pub fn depths(&mut self) -> Vec<f32> {
+    pub(crate) fn depths(&mut self) -> Vec<f32> {
         self.read(gl::DEPTH_COMPONENT, gl::FLOAT, 1)
     }
 
-    pub fn stencils(&mut self) -> Vec<u8> {
+    pub(crate) fn stencils(&mut self) -> Vec<u8> {
         self.read(gl::STENCIL_INDEX, gl::UNSIGNED_BYTE, 1)
     }
 
-    pub fn pixel(&mut self, x: i32, y: i32) -> [u8; 4] {
+    pub(crate) fn pixel(&mut self, x: i32, y: i32) -> [u8; 4] {
         let at = (y * self.size[0] + x) as usize;
         self.bytes()[at]
     }
 
     /// Results of `glGetFloatv`.
-    pub fn get<const N: usize>(&mut self, name: u32) -> [f32; N] {
+    pub(crate) fn get<const N: usize>(&mut self, name: u32) -> [f32; N] {
         self.c.get_floatv(name, RESULT);
         let values = self.take(RESULT, N);
         std::array::from_fn(|i| values[i])
     }
 
     /// A rectangle in clip space at depth `z`.
-    pub fn rectangle(&mut self, [x0, y0, x1, y1]: [f32; 4], z: f32) {
+    pub(crate) fn rectangle(&mut self, [x0, y0, x1, y1]: [f32; 4], z: f32) {
         self.c.begin(gl::QUADS);
         for [x, y] in [[x0, y0], [x1, y0], [x1, y1], [x0, y1]] {
             self.c.tex_coord_2f((x + 1.0) / 2.0, (y + 1.0) / 2.0);
@@ -112,19 +112,19 @@ impl Stage {
     }
 
     /// The whole window in a colour.
-    pub fn fill(&mut self, [r, g, b, a]: [f32; 4], z: f32) {
+    pub(crate) fn fill(&mut self, [r, g, b, a]: [f32; 4], z: f32) {
         self.c.color_4f(r, g, b, a);
         self.rectangle([-1.0, -1.0, 1.0, 1.0], z);
     }
 
     /// Makes units of clip space into pixels.
-    pub fn pixels(&mut self) {
+    pub(crate) fn pixels(&mut self) {
         let [w, h] = self.size.map(f64::from);
         self.c.ortho(0.0, w, 0.0, h, -1.0, 1.0);
     }
 
     /// A texture of RGBA bytes with these levels, bound to `TEXTURE_2D`, nearest and enabled.
-    pub fn texture(&mut self, levels: &[(i32, Vec<[u8; 4]>)]) {
+    pub(crate) fn texture(&mut self, levels: &[(i32, Vec<[u8; 4]>)]) {
         for (level, (size, texels)) in levels.iter().enumerate() {
             let at = self.put(texels);
             let (level, rgba) = (level as i32, gl::RGBA);
@@ -138,16 +138,16 @@ impl Stage {
     }
 
     #[track_caller]
-    pub fn no_error(&mut self) {
+    pub(crate) fn no_error(&mut self) {
         assert_eq!(self.c.get_error(), gl::NO_ERROR);
     }
 }
 
 /// Whether bytes agree with colours to one step.
 #[track_caller]
-pub fn assert_color(found: [u8; 4], expected: [f32; 4]) {
+pub(crate) fn assert_color(found: [u8; 4], expected: [f32; 4]) {
     for k in 0..4 {
-        let error = (f32::from(found[k]) - expected[k].clamp(0.0, 1.0) * 255.0).abs();
+        let error = (f32::from(found[k]) - (expected[k].clamp(0.0, 1.0) * 255.0).round()).abs();
         assert!(error <= 1.0, "{found:?} instead of {:?}", expected.map(|v| v * 255.0));
     }
 }

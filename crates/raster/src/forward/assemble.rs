@@ -7,6 +7,8 @@
 //! In:   clip-space vertices, projected ones, corners of primitives.
 //! Out:  [`Primitives`]: setups, tile lists, facets, and which vertices to shade.
 
+mod lines;
+
 use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
@@ -37,7 +39,7 @@ pub struct Facet {
     pub kind: FacetKind,
     /// A back-facing polygon.
     pub back: bool,
-    /// Index into [`Primitives::shapes`] of a line or point.
+    /// Index into [`Primitives::shapes`] of a line, point or piece of a smooth polygon.
     pub shape: u32,
 }
 
@@ -54,6 +56,15 @@ pub enum Shape {
         width: f32,
         /// Stipple count at the start.
         stipple: f32,
+    },
+    /// A triangle of a smooth polygon, whose setup is wider by a border.
+    Polygon {
+        /// The triangle's own corners, in the setup's order and units.
+        x: [i32; 3],
+        /// See `x`.
+        y: [i32; 3],
+        /// Which of the edges from these corners are the polygon's.
+        boundary: [bool; 3],
     },
     /// A point of a diameter; `fade` multiplies its alpha.
     Point {
@@ -108,6 +119,8 @@ pub struct PrimitiveState {
     pub multisample: bool,
     /// Points are smooth.
     pub point_smooth: bool,
+    /// Polygons are smooth.
+    pub polygon_smooth: bool,
     /// Allowed pixels x0, y0, x1, y1 for polygons and lines: scissor, target and viewport.
     pub clip: [i32; 4],
     /// The draw's number in its job.
@@ -127,7 +140,10 @@ pub struct Primitives {
     pub records: Vec<f32>,
 }
 
-/// No slot yet.
+/// How far over a smooth polygon's edge pixels may be that it covers in part.
+const SOFT_BORDER: f32 = 0.75;
+
+/// No slot yet, no shape.
 const NONE: u32 = u32::MAX;
 
 /// Collects the primitives of one piece of a draw.
@@ -260,7 +276,7 @@ impl<'a> Assembler<'a> {
         let plane = self.plane(positions, area, 2);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
-        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
     }
 
     /// Where a triangle lies to the user's planes.
@@ -411,7 +427,7 @@ impl<'a> Assembler<'a> {
                 && let Some(pixels) = self.pixels(&fan(i))
             {
                 let slots = [slots[0], slots[i], slots[i + 1]];
-                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, 0);
+                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
             }
         }
     }
@@ -466,181 +482,38 @@ impl<'a> Assembler<'a> {
             }
             _ => {
                 for i in 1..corners.len() - 1 {
-                    self.triangle([corners[0], corners[i], corners[i + 1]], provoking);
+                    let piece = [corners[0], corners[i], corners[i + 1]];
+                    if self.state.polygon_smooth {
+                        self.smooth_triangle(piece, [i == 1, true, i + 2 == corners.len()], provoking, back);
+                    } else {
+                        self.triangle(piece, provoking);
+                    }
                 }
             }
         }
     }
 
-    /// A line; gives the stipple count at its end. The offset is that of `LINE` polygons if `offset` is 1.
-    pub fn line(&mut self, corners: [u32; 2], provoking: u32, stipple: f32) -> f32 {
-        self.line_of(corners, provoking, stipple, false, usize::MAX)
-    }
-
-    fn line_of(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: f32, back: bool, offset: usize) -> f32 {
-        let s = self.vertices.screen;
-        let (a, b) = (s[from as usize], s[to as usize]);
-        if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.outside() != 0 {
-            return stipple;
+    /// A piece of a smooth polygon, which also reaches the pixels that it covers but in part. It knows its own edges alone:
+    /// where a diagonal meets a corner, the pixel shows the coverage of one edge. Pieces that are cut keep hard edges.
+    fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
+        let v = corners.map(|v| self.vertices.screen[v as usize]);
+        let flags = v[0].flags | v[1].flags | v[2].flags;
+        if flags & flag::CLIP != 0 || self.user_side(corners) != UserSide::Inside {
+            return self.triangle(corners, provoking);
         }
-        let mut ends = [
-            Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0] },
-            Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0] },
-        ];
-        if (a.flags | b.flags) & (flag::CLIP | flag::FRUSTUM) != 0 || self.state.user_planes > 0 {
-            let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
-            ends = clipped;
-        }
-        let at = ends.map(|e| self.project(e.clip));
-        let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
+        let own = v.map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
+        let area = Setup::doubled_area(own[0], own[1], own[2]);
+        let Some(wide) = widened(own, boundary, area) else { return };
+        let plane = self.plane(own, area, 2);
+        let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
-        let width = self.state.line_width;
-        let (dx, dy) = (at[1][0] - at[0][0], at[1][1] - at[0][1]);
-        let length = (dx * dx + dy * dy).sqrt();
-        if length == 0.0 {
-            return stipple;
-        }
-        let true_rectangle = self.state.line_smooth || self.state.multisample;
-        let quad = if true_rectangle {
-            // Smooth lines get half a pixel more on all sides for the soft border.
-            let border = if self.state.line_smooth { 0.5 } else { 0.0 };
-            let (ux, uy) = (dx / length, dy / length);
-            let (nx, ny) = (-uy * (width * 0.5 + border), ux * (width * 0.5 + border));
-            let (ex, ey) = (ux * border, uy * border);
-            [
-                [at[0][0] - ex - nx, at[0][1] - ey - ny],
-                [at[1][0] + ex - nx, at[1][1] + ey - ny],
-                [at[1][0] + ex + nx, at[1][1] + ey + ny],
-                [at[0][0] - ex + nx, at[0][1] - ey + ny],
-            ]
-        } else {
-            // Aliased lines are widened along the minor axis, to whole pixels.
-            let half = width.floor().max(1.0) * 0.5;
-            let (nx, ny) = if dx.abs() >= dy.abs() { (0.0, half) } else { (half, 0.0) };
-            [
-                [at[0][0] - nx, at[0][1] - ny],
-                [at[1][0] - nx, at[1][1] - ny],
-                [at[1][0] + nx, at[1][1] + ny],
-                [at[0][0] + nx, at[0][1] + ny],
-            ]
-        };
-        let span = if true_rectangle { length } else { dx.abs().max(dy.abs()) };
+        let Some(pixels) = self.pixels(&wide) else { return };
         let shape = self.out.shapes.len() as u32;
-        let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
-        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, stipple });
-        let depths = [z0, z1, z1, z0];
-        let quad_slots = [slots[0], slots[1], slots[1], slots[0]];
-        self.quad(quad, depths, quad_slots, provoking, FacetKind::Line, back, shape, offset);
-        stipple + span
-    }
-
-    /// Window coordinates of a line's end or a point.
-    fn project(&self, clip: [f32; 4]) -> [f32; 3] {
-        let window = &self.state.window;
-        if self.state.depth_clamp {
-            let [x, y, z] = window.project_beyond(clip);
-            [x, y, z.clamp(-1e20, 1e20)]
-        } else {
-            window.project_exact(clip)
-        }
-    }
-
-    fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
-        let planes = self.state.user_planes;
-        let user = |plane: usize, c: &Corner| {
-            let d = corners.map(|v| self.vertices.user[v as usize * planes + plane]);
-            d[0] * c.weights[0] + d[1] * c.weights[1]
-        };
-        let (near, guard) = (self.state.window.near, self.state.window.guard);
-        let clamp = self.state.depth_clamp;
-        let mut line = ends;
-        for plane in 0..planes + 7 {
-            let distance = |c: &Corner| match plane.checked_sub(planes) {
-                None => user(plane, c),
-                Some(0) => c.clip[3] - 1e-30,
-                Some(1 | 2) if clamp => 1.0,
-                Some(1) => c.clip[2] - near * c.clip[3],
-                Some(2) => c.clip[3] - c.clip[2],
-                Some(k @ (3 | 4)) => guard[k - 3][1].min(1.0) * c.clip[3] - c.clip[k - 3],
-                Some(k) => c.clip[k - 5] - guard[k - 5][0].max(-1.0) * c.clip[3],
-            };
-            let d = [distance(&line[0]), distance(&line[1])];
-            match (d[0] >= 0.0, d[1] >= 0.0) {
-                (false, false) => return None,
-                (true, true) => {}
-                (true, false) => line[1] = between(&line[0], &line[1], d[0], d[1]),
-                (false, true) => line[0] = between(&line[1], &line[0], d[1], d[0]),
-            }
-        }
-        Some(line)
-    }
-
-    /// A point.
-    pub fn point(&mut self, vertex: u32) {
-        self.point_of(vertex, vertex, false, usize::MAX);
-    }
-
-    fn point_of(&mut self, vertex: u32, provoking: u32, back: bool, offset: usize) {
-        let v = self.vertices.screen[vertex as usize];
-        let planes = self.state.user_planes;
-        let user = &self.vertices.user[vertex as usize * planes..][..planes];
-        let clip = self.vertices.clip[vertex as usize];
-        // The band's flag also tells of near and far, which clamping ignores.
-        let outside = self.outside() | if self.state.depth_clamp { 0 } else { flag::CLIP };
-        if v.flags & (flag::NOT_FINITE | outside) != 0 || !(clip[3] > 1e-30) || !user.iter().all(|d| *d >= 0.0) {
-            return;
-        }
-        let [x, y, z] = self.project(clip);
-        let z = z.clamp(0.0, 1.0);
-        let [size, fade] = self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0]);
-        let slot = self.slot(vertex);
-        let provoking = self.slot(provoking);
-        let (center, half) = if self.state.point_smooth || self.state.multisample {
-            ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
-        } else {
-            // An aliased point is a square of whole pixels round the vertex.
-            let size = (size + 0.5).floor().max(1.0);
-            let snapped = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
-            ([snapped(x), snapped(y)], size * 0.5)
-        };
-        let shape = self.out.shapes.len() as u32;
-        self.out.shapes.push(Shape::Point { center, size, fade });
-        let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
-            .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
-        self.quad(quad, [z; 4], [slot; 4], provoking, FacetKind::Point, back, shape, offset);
-    }
-
-    /// Two triangles that share the diagonal, with one depth plane.
-    fn quad(
-        &mut self,
-        quad: [[f32; 2]; 4],
-        depths: [f32; 4],
-        slots: [u32; 4],
-        provoking: u32,
-        kind: FacetKind,
-        back: bool,
-        shape: u32,
-        offset: usize,
-    ) {
-        // The width may carry it over the end of the guard band, which is beyond the target.
-        let whole = |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
-        let corner = |i: usize| CornerPosition { x: whole(quad[i][0]), y: whole(quad[i][1]), z: depths[i] };
-        let [low, high] = self.state.window.depth_range();
-        for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
-            let positions = [corner(i), corner(j), corner(k)];
-            let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
-            let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
-            let mut plane = if offset < 3 {
-                self.plane(positions, area, offset)
-            } else {
-                DepthPlane::new(positions[0], positions[1], positions[2], area)
-            };
-            if self.state.depth_clamp {
-                plane.z_min = plane.z_min.clamp(low, high);
-                plane.z_max = plane.z_max.clamp(low, high);
-            }
-            self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
-        }
+        let (order, boundary) =
+            if area > 0 { ([0, 1, 2], boundary) } else { ([0, 2, 1], [boundary[2], boundary[1], boundary[0]]) };
+        let (x, y) = (order.map(|k| own[k].x), order.map(|k| own[k].y));
+        self.out.shapes.push(Shape::Polygon { x, y, boundary });
+        self.push(wide, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
     }
 
     /// Ends the piece: makes room for the records of all used vertices and gives their range.
@@ -672,6 +545,32 @@ impl<'a> Assembler<'a> {
     pub fn is_own(vertex: u32) -> bool {
         vertex != NONE
     }
+}
+
+/// A triangle of doubled area `area` with its boundary edges moved outwards; `None` if it has no area.
+fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Option<[CornerPosition; 3]> {
+    if area == 0 {
+        return None;
+    }
+    let scale = SUBPIXEL as f32;
+    // Inner normals and distances of the moved edges.
+    let edges: [[f32; 3]; 3] = std::array::from_fn(|i| {
+        let (a, b) = (corners[i], corners[(i + 1) % 3]);
+        let (dx, dy) = ((b.x - a.x) as f32, (b.y - a.y) as f32);
+        let length = (dx * dx + dy * dy).sqrt().copysign(area as f32);
+        let (nx, ny) = (-dy / length, dx / length);
+        let border = if boundary[i] { SOFT_BORDER * scale } else { 0.0 };
+        [nx, ny, nx * a.x as f32 + ny * a.y as f32 - border]
+    });
+    let whole = |v: f32| ((v / scale).clamp(-GUARD_BAND, GUARD_BAND) * scale + 0.5).floor() as i32;
+    let wide: [CornerPosition; 3] = std::array::from_fn(|i| {
+        let ([a, b, c], [d, e, f]) = (edges[(i + 2) % 3], edges[i]);
+        let determinant = a * e - b * d;
+        let (x, y) = ((c * e - b * f) / determinant, (a * f - c * d) / determinant);
+        CornerPosition { x: whole(x), y: whole(y), z: corners[i].z }
+    });
+    let wide_area = Setup::doubled_area(wide[0], wide[1], wide[2]);
+    (wide_area != 0 && (wide_area > 0) == (area > 0)).then_some(wide)
 }
 
 /// The point where the way from the inner to the outer corner leaves.

@@ -17,6 +17,7 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
 
 /// Colours of a block, packed: one for all pixels, or one each.
+#[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one block")]
 pub(crate) enum Words {
     One(u32),
     Each([u32; BLOCK * BLOCK]),

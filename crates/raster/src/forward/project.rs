@@ -1,10 +1,11 @@
 //! Clip space to window space, eight vertices at a time or one.
 
 use crate::geometry::{ScreenVertex, flag};
+use crate::kernel::transform::{bit, load, whole};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{GUARD_BAND, SUBPIXEL};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Mask8, Simd, U32x8, dispatch};
+use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Simd, U32x8, dispatch};
 
 /// The viewport and depth range as a map from normalised device coordinates. Row 0 is the lowest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,21 +149,6 @@ fn project_all<S: Simd>(
             screen[lane] = ScreenVertex { x: sx[lane], y: sy[lane], z: depth[lane], flags: flags[lane] };
         }
     }
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> F32x8<S> {
-    F32x8::from_slice(simd, lanes)
-}
-
-#[inline(always)]
-fn bit<S: Simd>(simd: S, mask: Mask8<S>, bit: u32) -> U32x8<S> {
-    mask.select(U32x8::splat(simd, bit), U32x8::splat(simd, 0))
-}
-
-#[inline(always)]
-fn whole<S: Simd>(mask: Mask8<S>, v: F32x8<S>) -> I32x8<S> {
-    mask.select(v.floor(), F32x8::splat(mask.token(), 0.0)).to_int()
 }
 
 /// From clip space to snapped window coordinates, depth and flags.

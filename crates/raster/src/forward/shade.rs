@@ -117,7 +117,11 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(crate) fn new(facet: Facet, draw: &'a DrawContext<'a>, records: &'a [f32], shapes: &[Shape]) -> Self {
         let layout = draw.layout;
-        let shape = if facet.kind == FacetKind::Polygon { None } else { shapes.get(facet.shape as usize).copied() };
+        let shape = if facet.kind == FacetKind::Polygon && !layout.smooth[2] {
+            None
+        } else {
+            shapes.get(facet.shape as usize).copied()
+        };
         let interpolation = Interpolation::default();
         Self { state: draw.state, layout, planes: &draw.planes, facet, records, shape, interpolation, ready: false }
     }
@@ -127,9 +131,12 @@ impl<'a> Shader<'a> {
     pub(crate) fn prepare(&mut self, setup: &Setup) {
         if !self.ready {
             self.ready = true;
-            self.interpolation = Interpolation::new(setup, &self.facet, self.records);
-            if self.facet.kind == FacetKind::Polygon && self.layout.smooth[2] {
-                self.interpolation.prepare_edges(setup);
+            if let Some(Shape::Polygon { x, y, .. }) = self.shape {
+                let own = Setup { x, y, ..*setup };
+                self.interpolation = Interpolation::new(&own, &self.facet, self.records);
+                self.interpolation.prepare_edges(&own);
+            } else {
+                self.interpolation = Interpolation::new(setup, &self.facet, self.records);
             }
         }
     }
@@ -434,14 +441,13 @@ impl<'a> Shader<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let (mut pass, one) = (0xff, splat(simd, 1.0));
+                let mut pass = 0xff;
                 match self.shape {
-                    None => {
-                        let mut coverage = one;
-                        for [a, b, c] in self.interpolation.edges {
-                            coverage = min(coverage, clamp(x * a + y * b + (c + 0.5), 0.0, 1.0));
-                        }
+                    None => {}
+                    Some(Shape::Polygon { boundary, .. }) => {
+                        let coverage = polygon_coverage(simd, x, y, &self.interpolation.edges, boundary);
                         color[3] *= coverage;
+                        pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
                     Some(Shape::Line { from, to, width, stipple }) => {
                         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -495,6 +501,35 @@ fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: f32) -> F32
         let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
         let half = max(-(at * at) + radius * radius, splat(simd, 0.0)).sqrt();
         sum += clamp(min(y + 0.5, half) - max(y - 0.5, -half), 0.0, 1.0);
+    }
+    sum * (1.0 / CHORDS as f32)
+}
+
+/// The part of the pixel round `(x, y)` inside those of the edges that are the polygon's: the mean of its chords' parts.
+#[inline(always)]
+fn polygon_coverage<S: Simd>(
+    simd: S,
+    x: F32x8<S>,
+    y: F32x8<S>,
+    edges: &[[f32; 3]; 3],
+    boundary: [bool; 3],
+) -> F32x8<S> {
+    const CHORDS: u32 = 16;
+    let mut sum = splat(simd, 0.0);
+    for i in 0..CHORDS {
+        let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
+        let (mut low, mut high) = (y - 0.5, y + 0.5);
+        for ([a, b, c], _) in edges.iter().zip(boundary).filter(|(_, boundary)| *boundary) {
+            // Inside is b y >= -(a x + c). Nearly upright edges cut the chord far away, or all of it.
+            let steep = if b.abs() < 1e-6 { 1e-6f32.copysign(*b) } else { *b };
+            let cut = (at * *a + *c) * (-1.0 / steep);
+            if steep > 0.0 {
+                low = max(low, cut);
+            } else {
+                high = min(high, cut);
+            }
+        }
+        sum += clamp(high - low, 0.0, 1.0);
     }
     sum * (1.0 / CHORDS as f32)
 }

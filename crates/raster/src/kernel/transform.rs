@@ -49,7 +49,7 @@ fn transform_all<S: Simd>(
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> F32x8<S> {
+pub(crate) fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> F32x8<S> {
     F32x8::from_slice(simd, lanes)
 }
 
@@ -61,13 +61,13 @@ fn row<S: Simd>(p: [F32x8<S>; 3], m: &[f32; 16], r: usize) -> F32x8<S> {
 
 /// `bit` where the mask is true, else 0.
 #[inline(always)]
-fn bit<S: Simd>(simd: S, mask: Mask8<S>, bit: u32) -> U32x8<S> {
+pub(crate) fn bit<S: Simd>(simd: S, mask: Mask8<S>, bit: u32) -> U32x8<S> {
     mask.select(U32x8::splat(simd, bit), U32x8::splat(simd, 0))
 }
 
 /// The whole part of `v` where the mask is true, else 0.
 #[inline(always)]
-fn whole<S: Simd>(mask: Mask8<S>, v: F32x8<S>) -> I32x8<S> {
+pub(crate) fn whole<S: Simd>(mask: Mask8<S>, v: F32x8<S>) -> I32x8<S> {
     mask.select(v.floor(), F32x8::splat(mask.token(), 0.0)).to_int()
 }
 

@@ -9,14 +9,15 @@
 //! Source: [Foley et al. 1990], section 15.1. Departs from it: facets that lie beside the picture or face away are
 //!       dropped when they are set up, as the view says.
 
+use super::facets::nearer;
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
-use crate::stats::RayCounters;
+use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::dispatch;
-use vitral_raster::{Batch, Layer, LayerSink, SUBPIXEL, Setup, TILE, TILE_PIXELS, Tile, TileGrid, traverse};
+use vitral_raster::{Batch, Layer, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse};
 
 /// Tests of a facet at a sample that are not refused: about an hour on one thread.
 pub const MOST_TESTS: u64 = 1 << 40;
@@ -45,7 +46,7 @@ impl VisibleSurface for BruteForce {
                 return Err(Limit::Work { needed, limit: MOST_TESTS, stage: "brute force" });
             }
             let look = |tile: &mut Tile, layers: &mut Vec<Layer>| look(view, &facets, tile, layers, execution);
-            resolved.rays = each_tile(view, marks, grid, execution, sink, look)?;
+            resolved.counters = each_tile(view, marks, grid, execution, sink, look)?;
             Ok(resolved)
         })
     }
@@ -58,9 +59,9 @@ pub(super) fn each_tile(
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,
-    look: impl Fn(&mut Tile, &mut Vec<Layer>) -> Result<RayCounters, Limit> + Sync + Send,
-) -> Result<RayCounters, Limit> {
-    let outcome = Mutex::new(Ok(RayCounters::default()));
+    look: impl Fn(&mut Tile, &mut Vec<Layer>) -> Result<VisibilityCounters, Limit> + Sync + Send,
+) -> Result<VisibilityCounters, Limit> {
+    let outcome = Mutex::new(Ok(VisibilityCounters::default()));
     execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
         if outcome.lock().expect("counters").is_err() {
             return;
@@ -106,12 +107,6 @@ pub(super) fn size_in_picture(view: &PreparedView<'_>, tile: &Tile) -> (usize, u
     (inside(view.viewport.height, tile.y), inside(view.viewport.width, tile.x))
 }
 
-/// Whether `(depth, facet)` lies in front of `other`: larger depth, or the lower facet at the same.
-#[inline(always)]
-pub(super) fn in_front((depth, facet): (f32, u32), other: (f32, u32)) -> bool {
-    depth > other.0 || (depth == other.0 && facet < other.1)
-}
-
 /// Fills a tile, sample by sample.
 fn look(
     view: &PreparedView<'_>,
@@ -119,7 +114,7 @@ fn look(
     tile: &mut Tile,
     layers: &mut Vec<Layer>,
     execution: &Execution,
-) -> Result<RayCounters, Limit> {
+) -> Result<VisibilityCounters, Limit> {
     let (opaque, layered) = facets.setups.split_at(facets.opaque);
     let (rows, columns) = size_in_picture(view, tile);
     for row in 0..rows {
@@ -130,24 +125,27 @@ fn look(
                 let x = (tile.x as i32 + column as i32) * SUBPIXEL + sx;
                 let y = (tile.y as i32 + row as i32) * SUBPIXEL + sy;
                 let at = sample * TILE_PIXELS + row * TILE + column;
-                let candidates = |setups: &'_ [Setup]| -> Vec<(f32, u32)> {
-                    setups.iter().filter(|s| s.covers(x, y)).map(|s| (s.depth(x, y), s.facet)).collect()
-                };
 
                 // The nearest of all opaque facets stays, and all others in front of it.
                 let mut nearest = (tile.depth[at], tile.facet[at]);
-                for candidate in candidates(opaque) {
-                    if in_front(candidate, nearest) {
+                for setup in opaque.iter().filter(|s| s.covers(x, y)) {
+                    let candidate = (setup.depth(x, y), setup.facet);
+                    if nearer(candidate, nearest) {
                         nearest = candidate;
                         tile.touched = true;
                     }
                 }
                 (tile.depth[at], tile.facet[at]) = nearest;
-                let seen = candidates(layered).into_iter().filter(|c| in_front(*c, nearest));
-                layers.extend(seen.map(|(depth, facet)| Layer { at: at as u32, depth, facet }));
+                for setup in layered.iter().filter(|s| s.covers(x, y)) {
+                    let (depth, facet) = (setup.depth(x, y), setup.facet);
+                    if nearer((depth, facet), nearest) {
+                        layers.push(Layer { at: at as u32, depth, facet });
+                    }
+                }
             }
         }
     }
     let rays = (rows * columns * view.pattern.len()) as u64;
-    Ok(RayCounters { rays, nodes_visited: 0, triangle_tests: rays * facets.setups.len() as u64 })
+    let triangle_tests = rays * facets.setups.len() as u64;
+    Ok(VisibilityCounters { rays, triangle_tests, ..VisibilityCounters::default() })
 }

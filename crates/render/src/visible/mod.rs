@@ -1,11 +1,14 @@
 //! Which surface is seen at each sample.
 
 pub mod brute_force;
+mod facets;
 pub mod ray_cast;
+pub mod scanline;
 mod screen_setups;
+pub mod warnock;
 pub mod zbuffer;
 
-use crate::stats::{GeometryStats, RayCounters};
+use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::{Batch, Layer, Tile, TileGrid};
@@ -21,10 +24,10 @@ pub trait TileSink: Sync {
 pub struct Resolved {
     /// Triangles on their way to the screen.
     pub geometry: GeometryStats,
-    /// Rays and samples that were tested one by one.
-    pub rays: RayCounters,
     /// Seconds of the budget's clock spent on that, the rest went into the tiles.
     pub geometry_seconds: f64,
+    /// What finding the visible surfaces took.
+    pub counters: VisibilityCounters,
 }
 
 /// An algorithm that finds the visible surface at each sample.

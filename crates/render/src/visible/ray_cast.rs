@@ -14,12 +14,13 @@
 //! Source: [Appel 1968]; the tree after [Rubin & Whitted 1980]. Departs from them: see above; and the facet that the
 //!       ray before met is tried first.
 
-use super::brute_force::{each_tile, in_front, size_in_picture};
+use super::brute_force::{each_tile, size_in_picture};
+use super::facets::nearer;
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::raytrace::beam::Beam;
 use crate::raytrace::bvh::{Bvh, Visitor};
-use crate::stats::RayCounters;
+use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, Vec3, vec3};
@@ -59,7 +60,7 @@ impl VisibleSurface for RayCast {
             let eye = Eye::new(view, &bvh);
             resolved.geometry_seconds = execution.budget.elapsed() - start;
             let look = |tile: &mut Tile, layers: &mut Vec<Layer>| look(view, &found, &eye, tile, layers, execution);
-            resolved.rays = each_tile(view, marks, grid, execution, sink, look)?;
+            resolved.counters = each_tile(view, marks, grid, execution, sink, look)?;
             Ok(resolved)
         })
     }
@@ -262,7 +263,7 @@ impl Search<'_> {
                 continue;
             }
             let candidate = (setup.depth(x, y), setup.facet);
-            if in_front(candidate, self.nearest) {
+            if nearer(candidate, self.nearest) {
                 if layered {
                     self.layers.push(candidate);
                 } else {
@@ -298,8 +299,8 @@ fn look(
     tile: &mut Tile,
     layers: &mut Vec<Layer>,
     execution: &Execution,
-) -> Result<RayCounters, Limit> {
-    let mut counters = RayCounters::default();
+) -> Result<VisibilityCounters, Limit> {
+    let mut counters = VisibilityCounters::default();
     let background = (0.0, NO_FACET);
     let layer_list = Vec::new();
     let mut search =
@@ -319,7 +320,7 @@ fn look(
                 if before != NONE {
                     search.test(before);
                 }
-                counters.nodes_visited += found.bvh.traverse(&eye.beam(x, y), &mut search);
+                counters.box_tests += found.bvh.traverse(&eye.beam(x, y), &mut search);
                 counters.rays += 1;
 
                 // Keep the nearest, and the layers in front of it.
@@ -327,7 +328,7 @@ fn look(
                 (tile.depth[at], tile.facet[at]) = search.nearest;
                 tile.touched |= search.nearest.1 != NO_FACET;
                 let nearest = search.nearest;
-                let seen = search.layers.drain(..).filter(|c| in_front(*c, nearest));
+                let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
                 layers.extend(seen.map(|(depth, facet)| Layer { at: at as u32, depth, facet }));
             }
         }

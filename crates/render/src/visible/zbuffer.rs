@@ -36,7 +36,7 @@ const VERTICES_A_JOB: usize = 4096;
 pub struct ZBuffer;
 
 /// A run of triangles of one draw.
-struct Piece<'v, 'a> {
+pub(super) struct Piece<'v, 'a> {
     draw: &'v Draw<'a>,
     /// Index into the view's instances.
     item: usize,
@@ -130,7 +130,7 @@ pub(super) fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
 }
 
 /// Groups jobs into rounds; there is always at least one, so that tiles are cleared and handed on.
-fn rounds(jobs: &[Job<'_, '_>]) -> Vec<Range<usize>> {
+pub(super) fn rounds(jobs: &[Job<'_, '_>]) -> Vec<Range<usize>> {
     let jobs_a_round = (TRIANGLES_A_ROUND / u64::from(TRIANGLES_A_JOB)) as usize;
     let count = jobs.len().div_ceil(jobs_a_round).max(1);
     (0..count).map(|r| r * jobs_a_round..((r + 1) * jobs_a_round).min(jobs.len())).collect()
@@ -170,7 +170,7 @@ pub(super) fn transform_vertices(
 }
 
 /// Gives the vertices of finished instances back: all but the last of the round, which may go on in the next.
-fn retire_vertices(view: &PreparedView<'_>, jobs: &[Job<'_, '_>], vertices: &mut [Vec<ScreenVertex>]) {
+pub(super) fn retire_vertices(view: &PreparedView<'_>, jobs: &[Job<'_, '_>], vertices: &mut [Vec<ScreenVertex>]) {
     let last = jobs.last().and_then(|j| j.pieces.last()).map(|p| p.item);
     let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
     for (item, v) in vertices.iter_mut().enumerate() {
@@ -201,7 +201,7 @@ pub(super) fn set_up(
 }
 
 /// Walks a tile's triangles.
-fn walk<'b>(
+pub(super) fn walk<'b>(
     level: Level,
     batches: impl Iterator<Item = (bool, &'b Batch)>,
     index: usize,

@@ -101,7 +101,7 @@ fn texture(c: &mut Context, source: &mut Source<'_>) {
     let image = if target == enums::TEXTURE_CUBE_MAP { enums::TEXTURE_CUBE_MAP_POSITIVE_X } else { target };
     let faces = if target == enums::TEXTURE_CUBE_MAP { 6 } else { 1 };
     let (log, format) = (source.byte() % 6, source.of::<u32>(groups::INTERNAL_FORMAT) as i32);
-    let levels = if source.byte() % 2 == 0 { 1 } else { log + 1 };
+    let levels = if source.byte().is_multiple_of(2) { 1 } else { log + 1 };
     c.active_texture(enums::TEXTURE0 + u32::from(source.byte() % 4));
     c.bind_texture(target, u32::from(source.byte() % 4));
     for level in 0..levels {
@@ -133,7 +133,7 @@ fn framebuffer(c: &mut Context, source: &mut Source<'_>) {
         let format = if color { enums::RGBA8 } else { enums::DEPTH24_STENCIL8 };
         let samples = i32::from(source.byte() % 8 / 7 * 4);
         c.renderbuffer_storage_multisample(enums::RENDERBUFFER, samples, format, size, size);
-        if color && source.byte() % 2 == 0 {
+        if color && source.byte().is_multiple_of(2) {
             c.framebuffer_texture_2d(enums::FRAMEBUFFER, attachment, enums::TEXTURE_2D, name, 0);
         } else {
             c.framebuffer_renderbuffer(enums::FRAMEBUFFER, attachment, enums::RENDERBUFFER, name);
@@ -143,7 +143,7 @@ fn framebuffer(c: &mut Context, source: &mut Source<'_>) {
 
 /// Vertices from arrays, perhaps in a buffer.
 fn arrays(c: &mut Context, source: &mut Source<'_>) {
-    if source.byte() % 2 == 0 {
+    if source.byte().is_multiple_of(2) {
         c.bind_buffer(enums::ARRAY_BUFFER, u32::from(source.byte() % 3));
     }
     c.vertex_pointer(2 + i32::from(source.byte() % 3), enums::FLOAT, i32::from(source.byte() % 4) * 4, source.any());

@@ -183,7 +183,7 @@ numbers!(real: f32 f64);
 impl Argument for usize {
     fn any(source: &mut Source<'_>) -> Self {
         match source.byte() {
-            0..=199 => BASE + (source.word() as usize % LEN & !3),
+            0..=199 => BASE + ((source.word() as usize % LEN) & !3),
             200..=219 => usize::from(source.byte()) * 4,
             220..=234 => 0,
             235..=244 => BASE + LEN - usize::from(source.byte()),

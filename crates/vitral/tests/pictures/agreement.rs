@@ -1,12 +1,18 @@
-//! The law of agreement, for the z-buffer: each pixel holds what looking at every facet for every pixel finds
-//! (COURSE.md P3, P4, P17). No tolerance: ids and depths are equal.
+//! The law of agreement. The z-buffer: each pixel holds what looking at every facet for every pixel finds (COURSE.md
+//! P3, P4, P17). Every other algorithm of the registry: each sample holds what the first one finds, and has the same
+//! layers in front (P19, P20). No tolerance: ids and depths are equal.
 
 use crate::common::{all_channels, exact, exact_builtin};
+use crate::traps;
+use std::sync::Mutex;
+use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::DVec3;
-use vitral::raster::{SUBPIXEL, SamplePattern, Setup};
+use vitral::raster::{Layer, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
 use vitral::render::PreparedView;
-use vitral::render::stats::CullCounters;
-use vitral::{Camera, Frame, Projection, Renderer};
+use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
+use vitral::render::stats::{CullCounters, VisibilityCounters};
+use vitral::render::visible::TileSink;
+use vitral::{Camera, Execution, Frame, Projection, Renderer, load_builtin, override_material};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
@@ -110,4 +116,192 @@ fn p4_coplanar_faces_go_to_the_lower_surface() {
     scene.add_mesh(other, vitral::math::DMat4::IDENTITY);
     let mut renderer = exact(scene, WIDTH, HEIGHT);
     agree(&mut renderer, "three coplanar squares");
+}
+
+/// Facet and depth of every sample, the layers in front, and what it took.
+#[derive(PartialEq)]
+struct Found {
+    /// `[x, y, sample]`, facet, depth.
+    samples: Vec<([u32; 3], u32, f32)>,
+    /// Tile, place in the tile, facet, bits of the depth; sorted.
+    layers: Vec<[u32; 4]>,
+    counters: VisibilityCounters,
+}
+
+/// Keeps the layers, and counts how often each tile is handed on.
+struct Keep {
+    tiles: Mutex<Vec<u32>>,
+    layers: Mutex<Vec<[u32; 4]>>,
+}
+
+impl TileSink for Keep {
+    fn tile(&self, index: usize, _: &Tile, layers: &mut Vec<Layer>) {
+        self.tiles.lock().unwrap()[index] += 1;
+        self.layers.lock().unwrap().extend(layers.iter().map(|l| [index as u32, l.at, l.facet, l.depth.to_bits()]));
+    }
+}
+
+/// Runs one algorithm on a renderer's scene and camera.
+fn find(
+    renderer: &Renderer,
+    algorithm: &VisibilityAlgorithm,
+    samples: usize,
+    execution: &Execution,
+) -> Result<Found, Limit> {
+    let viewport = renderer.settings.check().unwrap();
+    let pattern = SamplePattern::new(samples);
+    let (camera, counters) = (renderer.frame_camera(), &mut CullCounters::default());
+    let view =
+        PreparedView::new(renderer.session(), &camera, &renderer.settings, viewport, pattern, execution, counters);
+    let mut grid = TileGrid::new(viewport, samples);
+    let sink = Keep { tiles: Mutex::new(vec![0; grid.tiles.len()]), layers: Mutex::default() };
+    let counters = algorithm.algorithm.resolve(&view, None, &mut grid, execution, &sink)?.counters;
+    assert!(sink.tiles.lock().unwrap().iter().all(|&n| n == 1), "{}: each tile is handed on once", algorithm.name);
+    let mut found = Vec::new();
+    for (y, x) in (0..viewport.height).flat_map(|y| (0..viewport.width).map(move |x| (y, x))) {
+        let (tile, at) = grid.locate(x, y);
+        found.extend((0..samples).map(|s| {
+            let at = s * TILE_PIXELS + at;
+            ([x, y, s as u32], tile.facet[at], tile.depth[at])
+        }));
+    }
+    let mut layers = sink.layers.into_inner().unwrap();
+    layers.sort_unstable();
+    Ok(Found { samples: found, layers, counters })
+}
+
+/// Compares every algorithm with the first, with one and four samples a pixel; lists disagreements with both facets.
+fn all_agree(renderer: &Renderer, what: &str) {
+    for samples in [1, 4] {
+        let run = |algorithm| find(renderer, algorithm, samples, renderer.execution()).unwrap();
+        let first = run(&VISIBILITY[0]);
+        for algorithm in &VISIBILITY[1..] {
+            let other = run(algorithm);
+            let pairs = first.samples.iter().zip(&other.samples);
+            let wrong: Vec<_> = pairs.filter(|(a, b)| a != b).collect();
+            for (([x, y, s], facet, depth), (_, other_facet, other_depth)) in wrong.iter().take(20) {
+                println!(
+                    "{what}: pixel {x},{y} sample {s}: {} sees {facet} at {depth}, {} sees {other_facet} at {other_depth}",
+                    VISIBILITY[0].name, algorithm.name
+                );
+            }
+            let name = algorithm.name;
+            assert!(wrong.is_empty(), "{what}, {name}, {samples} samples: {} samples differ", wrong.len());
+            assert!(first.layers == other.layers, "{what}, {name}, {samples} samples: the layers differ");
+        }
+    }
+}
+
+/// Three perspective and three parallel cameras.
+fn cameras(middle: DVec3, size: f64) -> Vec<(Camera, String)> {
+    let mut cameras = Vec::new();
+    for from in [DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.7, 0.5, 0.8), DVec3::new(-0.9, -0.3, -0.4)] {
+        for projection in [Projection::Perspective { view_angle: 0.9 }, Projection::Parallel { height: size }] {
+            let position = middle + from * size * 1.3;
+            let camera = Camera { position, focal_point: middle, view_up: DVec3::Y, projection, clip: None };
+            cameras.push((camera, format!("{projection:?} from {from}")));
+        }
+    }
+    cameras
+}
+
+#[test]
+fn p19_p20_all_algorithms_agree_on_the_built_in_scenes() {
+    for (name, _) in vitral::scene::builtin::names() {
+        let mut renderer = exact_builtin(name, WIDTH, HEIGHT);
+        let bounds = renderer.world().bounds;
+        for (camera, from) in cameras((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min).length() * 0.7) {
+            renderer.camera = Some(camera);
+            all_agree(&renderer, &format!("{name}, {from}"));
+        }
+    }
+}
+
+#[test]
+fn p19_p20_p21_all_algorithms_agree_on_the_traps() {
+    for (name, scene) in traps::all() {
+        let mut renderer = exact(scene, WIDTH, HEIGHT);
+        for (mut camera, from) in cameras(DVec3::ZERO, 2.2) {
+            if name == "through the eye" {
+                // The eye stands among the faces.
+                (camera.position, camera.clip) = (camera.position * 0.5, Some((0.01, 30.0)));
+            }
+            renderer.camera = Some(camera);
+            all_agree(&renderer, &format!("{name}, {from}"));
+        }
+    }
+}
+
+#[test]
+fn all_algorithms_agree_on_layers_and_odd_numbers_of_samples() {
+    let mut scene = load_builtin("scene1").unwrap();
+    override_material(&mut scene, "teal ball", "opacity", "0.4").unwrap();
+    let mut renderer = exact(scene, 131, 67);
+    renderer.camera = renderer.world().cameras.first().copied();
+    all_agree(&renderer, "scene1 with a transparent ball");
+    let run = |algorithm, samples| find(&renderer, algorithm, samples, renderer.execution()).unwrap();
+    assert!(!run(&VISIBILITY[0], 1).layers.is_empty(), "there are layers");
+    for samples in [3, 16] {
+        let first = run(&VISIBILITY[0], samples);
+        for algorithm in &VISIBILITY[1..] {
+            let other = run(algorithm, samples);
+            assert!(first.samples == other.samples && first.layers == other.layers, "{}, {samples}", algorithm.name);
+        }
+    }
+}
+
+#[test]
+fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
+    let mut renderer = exact_builtin("scene0", 150, 101);
+    (renderer.settings.samples, renderer.settings.lines) = (4, vitral::render::Lines::Edges);
+    let pictures: Vec<_> = VISIBILITY
+        .iter()
+        .map(|algorithm| {
+            algorithm.name.clone_into(&mut renderer.settings.visibility);
+            renderer.render().unwrap().frame
+        })
+        .collect();
+    for (algorithm, picture) in VISIBILITY.iter().zip(&pictures) {
+        assert!(*picture == pictures[0], "{}", algorithm.name);
+        let threads = |n| Execution { workers: Workers::new(n), ..Execution::default() };
+        let [one, three] = [1, 3].map(|n| find(&renderer, algorithm, 4, &threads(n)).unwrap());
+        assert!(one == three, "{}: threads change samples or counters", algorithm.name);
+    }
+}
+
+#[test]
+fn p7_p19_p20_counters_tell_the_work_and_what_coherence_saved() {
+    let renderer = exact_builtin("teapot", WIDTH, HEIGHT);
+    let counters = |name: &str| {
+        let algorithm = vitral::render::registry::visibility(name).unwrap();
+        find(&renderer, algorithm, 1, renderer.execution()).unwrap().counters
+    };
+    let scan = counters("scan-line");
+    assert!(scan.saved > 0 && scan.spans > 0 && scan.active_edges > scan.spans, "{scan:?}");
+    assert!(scan.penetrated_spans < scan.spans / 2, "most spans are decided as a whole: {scan:?}");
+    let warnock = counters("warnock");
+    assert!(warnock.window_tests > warnock.windows && warnock.depth_comparisons > 0, "{warnock:?}");
+}
+
+#[test]
+fn limits_end_every_algorithm() {
+    struct Tick(std::sync::atomic::AtomicU64);
+    impl Clock for Tick {
+        fn seconds(&self) -> f64 {
+            self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) as f64
+        }
+    }
+    let renderer = exact_builtin("teapot", WIDTH, HEIGHT);
+    for algorithm in VISIBILITY {
+        let clock = || std::sync::Arc::new(Tick(0.into()));
+        let late = Budget::new(clock()).with_time_limit(Some(0.5));
+        let result = find(&renderer, algorithm, 1, &Execution { budget: late, ..Execution::default() });
+        assert!(matches!(result.err(), Some(Limit::Time { .. })), "{}", algorithm.name);
+    }
+    for algorithm in &VISIBILITY[1..] {
+        let small = Budget::default().with_memory_limit(Some(1000));
+        let result = find(&renderer, algorithm, 1, &Execution { budget: small.clone(), ..Execution::default() });
+        assert!(matches!(result.err(), Some(Limit::Memory { .. })), "{}", algorithm.name);
+        assert!(small.charge(1000, "all that was charged is given back").is_ok(), "{}", algorithm.name);
+    }
 }

@@ -7,3 +7,4 @@ mod determinism;
 mod interpolation;
 mod lighting;
 mod robust;
+mod traps;

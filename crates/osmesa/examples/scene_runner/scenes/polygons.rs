@@ -17,6 +17,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("clip-planes", Close, clip_planes),
     scene("near-far-clip", Close, near_far_clip),
     scene("depth-clamp", Close, depth_clamp),
+    scene("depth-clamp-beyond", Close, depth_clamp_beyond),
     scene("viewport", Close, viewport),
     scene("depth-range", Close, depth_range),
     scene("perspective-correct", Close, perspective_correct),
@@ -272,6 +273,29 @@ fn depth_clamp(gl: &mut Stage<'_>) {
     gl.glDepthFunc(LEQUAL);
     gl.glEnable(DEPTH_CLAMP);
     rainbow_floor(gl, 0.5);
+}
+
+/// Primitives that lie wholly beyond the far plane, or before the near one.
+fn depth_clamp_beyond(gl: &mut Stage<'_>) {
+    camera(gl);
+    gl.glEnable(DEPTH_TEST);
+    gl.glDepthFunc(LEQUAL);
+    gl.glEnable(DEPTH_CLAMP);
+    gl.glPointSize(5.0);
+    gl.glLineWidth(3.0);
+    for (z, color) in [(-20.0, [0.2, 0.9, 0.4]), (3.5, [0.9, 0.3, 0.6])] {
+        gl.glColor3fv(&color);
+        let size = 0.4 * (4.0 - z);
+        for (primitive, x) in [(TRIANGLES, -1.0), (LINES, 0.1), (POINTS, 0.6)] {
+            gl.glBegin(primitive);
+            for (dx, y) in
+                [(0.0, -0.8), (0.6, -0.1), (0.3, 0.7)].into_iter().take(if primitive == LINES { 2 } else { 3 })
+            {
+                gl.glVertex3f((x + dx) * size, y * size, z);
+            }
+            gl.glEnd();
+        }
+    }
 }
 
 fn viewport(gl: &mut Stage<'_>) {

@@ -1,0 +1,188 @@
+//! All facets of a view at once, for algorithms that look at several facets before they decide.
+//!
+//! The z-buffer takes triangles a few hundred thousand at a time and forgets them; algorithms that sort, subdivide or
+//! sweep need them together. Here all draws of a view are brought to the screen and set up, opaque ones apart from the
+//! layers, with their lists by tile and by row of tiles. The frame of such an algorithm is the same each time, too: fill
+//! some tiles with opaque facets, collect the layers and marks in front, hand the tiles on ([`fill_tiles`]).
+//!
+//! In:   prepared draws (model space). Out: set-up triangles (screen space).
+//! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they are set up.
+
+use super::zbuffer::{jobs, retire_vertices, rounds, set_up, transform_vertices, walk};
+use super::{Resolved, TileSink};
+use crate::stats::VisibilityCounters;
+use crate::{Execution, PreparedView};
+use std::sync::Mutex;
+use vitral_exec::Limit;
+use vitral_raster::{Batch, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid};
+
+/// Bytes of a triangle: its setup, its entry in a tile's list, and what becomes of that when the lists are sorted.
+const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
+
+/// The set-up triangles of a view. A facet that was clipped has several, with one depth plane.
+pub(super) struct Facets<'v, 'a> {
+    view: &'v PreparedView<'a>,
+    execution: &'v Execution,
+    opaque: Vec<Batch>,
+    layered: Vec<Batch>,
+    /// For each row of tiles the opaque triangles that may have samples in it: batch and index in the batch.
+    rows: Vec<Vec<[u32; 2]>>,
+    charged: u64,
+}
+
+impl<'v, 'a> Facets<'v, 'a> {
+    /// Brings the view's triangles to the screen, and counts that in `resolved`.
+    pub(super) fn new(
+        view: &'v PreparedView<'a>,
+        execution: &'v Execution,
+        resolved: &mut Resolved,
+    ) -> Result<Self, Limit> {
+        let start = execution.budget.elapsed();
+        let draws = view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
+        let triangles: u64 = draws.flat_map(|d| &d.ranges).map(|r| u64::from(r.end - r.start)).sum();
+        let charged = triangles * BYTES_A_TRIANGLE;
+        execution.budget.charge(charged, "the view's facets")?;
+        let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows: Vec::new(), charged };
+        let jobs = jobs(view);
+        let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
+        for round in rounds(&jobs) {
+            execution.budget.check("the view's facets")?;
+            let jobs = &jobs[round];
+            transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
+            for (layered, batch) in set_up(view, jobs, &vertices, execution) {
+                resolved.geometry.add(&batch.counters);
+                let list = if layered { &mut facets.layered } else { &mut facets.opaque };
+                list.push(batch);
+            }
+            retire_vertices(view, jobs, &mut vertices);
+        }
+        let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
+        spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
+        drop(spare);
+        facets.sort_by_row();
+        resolved.geometry_seconds = execution.budget.elapsed() - start;
+        Ok(facets)
+    }
+
+    /// Lists the opaque triangles by the rows of tiles that their box touches.
+    fn sort_by_row(&mut self) {
+        let tile_rows = self.view.viewport.tiles_y() as i32;
+        self.rows = vec![Vec::new(); tile_rows as usize];
+        // A sample lies below the top of its pixel and above its bottom: the tile of its y is the tile of its pixel.
+        let row = |y: i32| y.div_euclid(TILE as i32 * SUBPIXEL);
+        for (b, batch) in self.opaque.iter().enumerate() {
+            for (i, setup) in batch.setups().iter().enumerate() {
+                let [y0, y1, y2] = setup.y;
+                let (first, last) = (row(y0.min(y1).min(y2)).max(0), row(y0.max(y1).max(y2)).min(tile_rows - 1));
+                for r in first..=last {
+                    self.rows[r as usize].push([b as u32, i as u32]);
+                }
+            }
+        }
+    }
+
+    /// The opaque triangles that may have samples in a row of tiles.
+    pub(super) fn in_row(&self, row: usize) -> impl ExactSizeIterator<Item = &Setup> {
+        self.rows[row].iter().map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
+    }
+
+    /// The opaque triangles that touch a tile.
+    pub(super) fn in_tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
+        self.opaque.iter().flat_map(move |batch| batch.tile(tile))
+    }
+
+    /// The view.
+    pub(super) fn view(&self) -> &'v PreparedView<'a> {
+        self.view
+    }
+
+    /// Limits and threads.
+    pub(super) fn execution(&self) -> &'v Execution {
+        self.execution
+    }
+
+    /// Collects what lies in front of a tile's finished opaque samples, and hands the tile on.
+    fn finish(&self, index: usize, tile: &mut Tile, marks: Option<&Batch>, sink: &dyn TileSink) {
+        let mut layers = Vec::new();
+        let in_front = self.layered.iter().chain(marks).map(|batch| (true, batch));
+        walk(self.execution.level, in_front, index, tile, &self.view.pattern, &mut layers);
+        sink.tile(index, tile, &mut layers);
+    }
+}
+
+impl Drop for Facets<'_, '_> {
+    fn drop(&mut self) {
+        let batches = self.opaque.drain(..).chain(self.layered.drain(..));
+        if let Ok(mut spare) = self.view.session.spare_batches.lock() {
+            spare.extend(batches);
+        }
+        self.execution.budget.release(self.charged);
+    }
+}
+
+/// Fills tiles with opaque facets: all facets, index of the first tile, the tiles (empty), counters.
+pub(super) type Fill<'f> =
+    dyn Fn(&Facets<'_, '_>, usize, &mut [Tile], &mut VisibilityCounters) -> Result<(), Limit> + Sync + 'f;
+
+/// Calls `fill` for each `chunk` tiles, on all threads, and hands the tiles on.
+pub(super) fn fill_tiles(
+    view: &PreparedView<'_>,
+    marks: Option<&Batch>,
+    grid: &mut TileGrid,
+    execution: &Execution,
+    sink: &dyn TileSink,
+    chunk: usize,
+    fill: &Fill<'_>,
+) -> Result<Resolved, Limit> {
+    let mut resolved = Resolved::default();
+    let facets = Facets::new(view, execution, &mut resolved)?;
+    let outcome = Mutex::new(Ok(VisibilityCounters::default()));
+    execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
+        // After a limit, the rest of the pieces are passed over.
+        if outcome.lock().expect("no thread panics while it counts").is_err() {
+            return;
+        }
+        tiles.iter_mut().for_each(Tile::clear);
+        let (first, mut counters) = (piece * chunk, VisibilityCounters::default());
+        let filled = fill(&facets, first, tiles, &mut counters);
+        if filled.is_ok() {
+            for (i, tile) in tiles.iter_mut().enumerate() {
+                facets.finish(first + i, tile, marks, sink);
+            }
+        }
+        let mut outcome = outcome.lock().expect("no thread panics while it counts");
+        match filled {
+            Ok(()) => {
+                if let Ok(sum) = &mut *outcome {
+                    sum.add(&counters);
+                }
+            }
+            Err(limit) if outcome.is_ok() => *outcome = Err(limit),
+            Err(_) => {}
+        }
+    });
+    resolved.counters = outcome.into_inner().expect("no thread panics while it counts")?;
+    Ok(resolved)
+}
+
+/// Smallest and largest x, then y, of a pattern's samples within the pixel.
+pub(super) fn extent(pattern: &SamplePattern) -> [[i32; 2]; 2] {
+    [0, 1].map(|axis| {
+        let values = (0..pattern.len()).map(|s| pattern.position(s)[axis]);
+        values.fold([i32::MAX, i32::MIN], |[low, high], v| [low.min(v), high.max(v)])
+    })
+}
+
+/// Whether depth `a` of facet `fa` hides depth `b` of facet `fb` at one sample: the law of agreement.
+#[inline]
+pub(super) fn nearer((a, fa): (f32, u32), (b, fb): (f32, u32)) -> bool {
+    a > b || (a == b && fa < fb)
+}
+
+/// Puts a facet into a sample, `at` its index in the tile's planes.
+#[inline]
+pub(super) fn put(tile: &mut Tile, at: usize, (depth, facet): (f32, u32)) {
+    tile.depth[at] = depth;
+    tile.facet[at] = facet;
+    tile.touched = true;
+}

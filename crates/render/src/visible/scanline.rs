@@ -1,0 +1,438 @@
+//! Scan-line: the picture line by line, and on each line only from edge to edge.
+//!
+//! A horizontal line cuts a polygon in a span that begins and ends at edges. The edge table lists all edges by the line
+//! where they begin. Going down, the active edge table holds the edges that the line crosses, sorted from left to
+//! right: edges join where they begin, leave where they end, and in between move by a constant step, so the order hardly
+//! changes. Walking along the active edges, the in-out flag of an edge's polygon in the polygon table turns: between two
+//! edges, the polygons that are in do not change, and one decision serves the whole span. With one polygon in there is
+//! nothing to decide. With several, their depths at the two ends of the span show which are hidden throughout; if more
+//! than one is left (they penetrate each other, or touch), the depths at the samples of the span decide.
+//!
+//! Each row of samples is a line, so a picture with four samples a pixel has four lines a row of pixels. Bands of 64
+//! rows of pixels are swept independently, by as many threads as there are.
+//!
+//! In:   set-up triangles (screen space). Out: the samples of each tile (screen space).
+//! Cost: edges crossed on all lines, plus spans times the polygons that are in, plus covered samples.
+//! Source: [Wylie et al. 1967], [Bouknight 1970], [Watkins 1970]. Departs from them: where an edge crosses a line is
+//! kept as an exact fraction (a whole number and a remainder), so that spans begin and end where the integer edge
+//! functions say; depth is not stepped along the span but taken from the facet's one depth function.
+//! Coherence: of edges (the sorted table is carried from line to line, crossings are stepped), of spans (the winner of the
+//! last span is tried first, and whatever is farther with all of its facet is passed over without a look).
+
+use super::facets::{Facets, fill_tiles, nearer};
+use super::{Resolved, TileSink, VisibleSurface};
+use crate::stats::VisibilityCounters;
+use crate::{Execution, PreparedView};
+use std::ops::Range;
+use vitral_exec::Limit;
+use vitral_raster::{Batch, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct ScanLine;
+
+impl VisibleSurface for ScanLine {
+    fn resolve(
+        &self,
+        view: &PreparedView<'_>,
+        marks: Option<&Batch>,
+        grid: &mut TileGrid,
+        execution: &Execution,
+        sink: &dyn TileSink,
+    ) -> Result<Resolved, Limit> {
+        let tiles_a_row = view.viewport.tiles_x() as usize;
+        fill_tiles(view, marks, grid, execution, sink, tiles_a_row, &|facets, first, tiles, counters| {
+            let row = first / tiles_a_row;
+            let bytes = facets.in_row(row).len() as u64 * BYTES_A_POLYGON;
+            let budget = &facets.execution().budget;
+            budget.charge(bytes, "scan-line")?;
+            let swept = sweep(facets, row, tiles, counters);
+            budget.release(bytes);
+            swept
+        })
+    }
+}
+
+/// A row of samples.
+#[derive(Clone, Copy)]
+struct Line {
+    /// Within the picture, 1/256 pixel.
+    y: i32,
+    /// Row of pixels within the band.
+    row: usize,
+    /// Which sample of the pixels.
+    sample: usize,
+    /// Its place in the pixel, 1/256 pixel.
+    sample_x: i32,
+}
+
+/// An entry of the polygon table.
+struct Polygon<'f> {
+    setup: &'f Setup,
+    /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
+    slot: u32,
+}
+
+/// The in-out flag of polygons that are out.
+const OUT: u32 = u32::MAX;
+
+/// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
+struct Edge {
+    polygon: u32,
+    corner: u8,
+    lines: Range<u16>,
+}
+
+/// An entry of the active edge table. The edge crosses the line at `x + remainder / dy`.
+#[derive(Clone, Copy)]
+struct ActiveEdge {
+    polygon: u32,
+    corner: u8,
+    /// The first line that it does not cross.
+    end: u16,
+    x: i32,
+    remainder: i32,
+    dy: i32,
+    /// What is added to `x` and `remainder` from line to line.
+    step: [i32; 2],
+    /// The first pixel whose sample lies at the crossing or right of it.
+    column: u32,
+}
+
+/// Entries of the tables for one polygon.
+const BYTES_A_POLYGON: u64 = (size_of::<Polygon<'_>>() + 2 * size_of::<Edge>() + size_of::<ActiveEdge>()) as u64;
+
+/// Sweeps one row of tiles.
+fn sweep(
+    facets: &Facets<'_, '_>,
+    row: usize,
+    tiles: &mut [Tile],
+    counters: &mut VisibilityCounters,
+) -> Result<(), Limit> {
+    let view = facets.view();
+    let height = TILE.min(view.viewport.height as usize - row * TILE);
+    let lines = lines(&view.pattern, row * TILE, height);
+    let spacing = spacing(&lines);
+    let mut polygons: Vec<_> = facets.in_row(row).map(|setup| Polygon { setup, slot: OUT }).collect();
+    let edges = edge_table(&polygons, &lines);
+    let mut starting = edges.as_slice();
+    let mut active: Vec<ActiveEdge> = Vec::new();
+    let mut spans = Spans { polygons: &mut polygons, inside: Vec::new(), last: 0, rivals: Vec::new(), tiles, counters };
+    for (number, line) in lines.iter().enumerate() {
+        facets.execution().budget.check("scan-line")?;
+
+        // Let edges leave that end above the line, move the others to it, and let edges join that begin.
+        active.retain(|e| usize::from(e.end) > number);
+        for edge in &mut active {
+            edge.advance(spacing, spans.polygons[edge.polygon as usize].setup, line.y);
+        }
+        let joining = starting.partition_point(|e| usize::from(e.lines.start) <= number);
+        for edge in &starting[..joining] {
+            active.push(ActiveEdge::new(edge, spans.polygons[edge.polygon as usize].setup, line.y, spacing));
+        }
+        starting = &starting[joining..];
+
+        // Sort from left to right.
+        for edge in &mut active {
+            edge.column = edge.column_on(line, view.viewport.width);
+        }
+        sort(&mut active, joining > 0);
+        spans.counters.active_edges += active.len() as u64;
+        spans.counters.saved += (active.len() - joining) as u64;
+        spans.walk(&active, line);
+    }
+    Ok(())
+}
+
+/// The lines of `height` rows of pixels, from top to bottom.
+fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<Line> {
+    let mut lines: Vec<_> = (0..height * pattern.len())
+        .map(|i| {
+            let (row, sample) = (i / pattern.len(), i % pattern.len());
+            let [sample_x, sample_y] = pattern.position(sample);
+            Line { y: (top + row) as i32 * SUBPIXEL + sample_y, row, sample, sample_x }
+        })
+        .collect();
+    lines.sort_by_key(|line| line.y);
+    lines
+}
+
+/// The distance from each line to the next if it is always the same, else 0.
+fn spacing(lines: &[Line]) -> i32 {
+    let distance = |w: &[Line]| w[1].y - w[0].y;
+    let first = lines.windows(2).map(distance).next().unwrap_or(0);
+    if lines.windows(2).all(|w| distance(w) == first) { first } else { 0 }
+}
+
+/// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
+/// along the top of a polygon crosses its other two edges, one along its bottom does not.
+fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> {
+    let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
+    let mut edges = Vec::new();
+    for (p, polygon) in polygons.iter().enumerate() {
+        let places = polygon.setup.y.map(first_at);
+        for corner in 0..3u8 {
+            let (a, b) = (places[usize::from(corner)], places[(usize::from(corner) + 1) % 3]);
+            if a != b {
+                edges.push(Edge { polygon: p as u32, corner, lines: a.min(b)..a.max(b) });
+            }
+        }
+    }
+    edges.sort_by_key(|e| e.lines.start);
+    edges
+}
+
+/// Sorts by column; edges that were there before are nearly in order.
+fn sort(active: &mut [ActiveEdge], joined: bool) {
+    if joined {
+        active.sort_by_key(|e| e.column);
+        return;
+    }
+    for i in 1..active.len() {
+        let edge = active[i];
+        let mut j = i;
+        while j > 0 && active[j - 1].column > edge.column {
+            active[j] = active[j - 1];
+            j -= 1;
+        }
+        active[j] = edge;
+    }
+}
+
+impl ActiveEdge {
+    fn new(edge: &Edge, setup: &Setup, y: i32, spacing: i32) -> Self {
+        let (dx, dy, _) = downwards(setup, edge.corner);
+        let step = i64::from(dx) * i64::from(spacing);
+        let step = [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
+        let (polygon, corner, end) = (edge.polygon, edge.corner, edge.lines.end);
+        let mut edge = Self { polygon, corner, end, x: 0, remainder: 0, dy, step, column: 0 };
+        edge.cross(setup, y);
+        edge
+    }
+
+    /// Finds the crossing with the line at `y` from the edge's corners.
+    fn cross(&mut self, setup: &Setup, y: i32) {
+        let (dx, dy, [x0, y0]) = downwards(setup, self.corner);
+        let along = i64::from(dx) * i64::from(y - y0);
+        self.x = x0 + along.div_euclid(i64::from(dy)) as i32;
+        self.remainder = along.rem_euclid(i64::from(dy)) as i32;
+    }
+
+    /// Moves the crossing one line down, to `y`.
+    fn advance(&mut self, spacing: i32, setup: &Setup, y: i32) {
+        if spacing == 0 {
+            return self.cross(setup, y);
+        }
+        self.x += self.step[0];
+        self.remainder += self.step[1];
+        if self.remainder >= self.dy {
+            self.remainder -= self.dy;
+            self.x += 1;
+        }
+    }
+
+    /// The first pixel whose sample on this line is not left of the crossing, at most `width`. A sample on a left edge
+    /// is in and one on a right edge is out, so the same pixel begins what is right of either.
+    fn column_on(&self, line: &Line, width: u32) -> u32 {
+        let first_x = self.x + i32::from(self.remainder > 0);
+        ((first_x - line.sample_x + SUBPIXEL - 1) >> 8).clamp(0, width as i32) as u32
+    }
+}
+
+/// `dx`, `dy > 0` and the upper end of a triangle's edge that is not horizontal.
+fn downwards(setup: &Setup, corner: u8) -> (i32, i32, [i32; 2]) {
+    let (i, j) = (usize::from(corner), (usize::from(corner) + 1) % 3);
+    let (i, j) = if setup.y[i] < setup.y[j] { (i, j) } else { (j, i) };
+    (setup.x[j] - setup.x[i], setup.y[j] - setup.y[i], [setup.x[i], setup.y[i]])
+}
+
+/// What is needed to fill the spans of a line.
+struct Spans<'s, 'f> {
+    polygons: &'s mut [Polygon<'f>],
+    /// The polygons whose in-out flag is in.
+    inside: Vec<u32>,
+    /// The polygon that won the last span alone.
+    last: u32,
+    /// Workspace: polygons that may be visible somewhere in the span, with their nearest depth in it.
+    rivals: Vec<(f32, u32)>,
+    tiles: &'s mut [Tile],
+    counters: &'s mut VisibilityCounters,
+}
+
+impl Spans<'_, '_> {
+    /// Walks along the active edges and fills the spans between them.
+    fn walk(&mut self, active: &[ActiveEdge], line: &Line) {
+        let mut from = 0;
+        for edge in active {
+            if edge.column > from {
+                if !self.inside.is_empty() {
+                    self.fill(from as usize..edge.column as usize, line);
+                }
+                from = edge.column;
+            }
+            self.turn(edge.polygon);
+        }
+    }
+
+    /// Turns a polygon's in-out flag.
+    fn turn(&mut self, polygon: u32) {
+        let slot = &mut self.polygons[polygon as usize].slot;
+        if *slot == OUT {
+            *slot = self.inside.len() as u32;
+            self.inside.push(polygon);
+            return;
+        }
+        let hole = std::mem::replace(slot, OUT) as usize;
+        self.inside.swap_remove(hole);
+        if let Some(&moved) = self.inside.get(hole) {
+            self.polygons[moved as usize].slot = hole as u32;
+        }
+    }
+
+    /// Fills a span: with the one polygon that is in, or that hides the others, else sample by sample.
+    fn fill(&mut self, pixels: Range<usize>, line: &Line) {
+        self.counters.spans += 1;
+        if let [only] = self.inside[..] {
+            return self.fill_with(only, pixels, line);
+        }
+        self.find_rivals(&pixels, line);
+        if let [(_, winner)] = self.rivals[..] {
+            self.last = winner;
+            return self.fill_with(winner, pixels, line);
+        }
+        self.counters.penetrated_spans += 1;
+        self.counters.depth_comparisons += (pixels.len() * (self.rivals.len() - 1)) as u64;
+        let rivals = std::mem::take(&mut self.rivals);
+        for x in pixels {
+            let sample_x = x as i32 * SUBPIXEL + line.sample_x;
+            let seen = rivals.iter().map(|&(_, p)| {
+                let setup = self.polygons[p as usize].setup;
+                (setup.depth(sample_x, line.y), setup.facet)
+            });
+            let Some(seen) = seen.reduce(|a, b| if nearer(b, a) { b } else { a }) else { continue };
+            super::facets::put(&mut self.tiles[x / TILE], place(x, line), seen);
+        }
+        self.rivals = rivals;
+    }
+
+    /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
+    fn find_rivals(&mut self, pixels: &Range<usize>, line: &Line) {
+        let ends = [pixels.start, pixels.end - 1].map(|x| x as i32 * SUBPIXEL + line.sample_x);
+        let lucky = if self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
+        // Some polygon is nowhere farther than `floor`.
+        let (mut floor, near) = depth_range(self.polygons[lucky as usize].setup, ends, line.y);
+        self.rivals.clear();
+        self.rivals.push((near, lucky));
+        for &p in self.inside.iter().filter(|&&p| p != lucky) {
+            let setup = self.polygons[p as usize].setup;
+            if setup.z_max < floor {
+                self.counters.saved += 1;
+                continue;
+            }
+            self.counters.depth_comparisons += 1;
+            let (far, near) = depth_range(setup, ends, line.y);
+            if near >= floor {
+                self.rivals.push((near, p));
+                floor = floor.max(far);
+            }
+        }
+        self.rivals.retain(|&(near, _)| near >= floor);
+    }
+
+    /// Fills a span with one polygon.
+    fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
+        let setup = self.polygons[polygon as usize].setup;
+        let mut x = pixels.start;
+        while x < pixels.end {
+            let end = pixels.end.min((x / TILE + 1) * TILE);
+            let (tile, at) = (&mut self.tiles[x / TILE], place(x, line));
+            tile.touched = true;
+            tile.facet[at..at + (end - x)].fill(setup.facet);
+            for (depth, x) in tile.depth[at..].iter_mut().zip(x..end) {
+                *depth = setup.depth(x as i32 * SUBPIXEL + line.sample_x, line.y);
+            }
+            x = end;
+        }
+    }
+}
+
+/// Where a sample lies in its tile's planes.
+fn place(x: usize, line: &Line) -> usize {
+    line.sample * TILE_PIXELS + line.row * TILE + x % TILE
+}
+
+/// Farthest and nearest depth along a line: [`Setup::depth`] is monotonic in x, rounding included, so they are at the ends.
+/// Needles so steep that the sums overflow give the facet's whole range.
+fn depth_range(setup: &Setup, ends: [i32; 2], y: i32) -> (f32, f32) {
+    const STEEP: f32 = 1e30;
+    if !(setup.dz_dx.abs() < STEEP && setup.dz_dy.abs() < STEEP) {
+        return (setup.z_min, setup.z_max);
+    }
+    let [a, b] = ends.map(|x| setup.depth(x, y));
+    (a.min(b), a.max(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_raster::CornerPosition;
+
+    fn triangle(corners: [[i32; 2]; 3], z: [f32; 3]) -> Setup {
+        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
+        Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
+    }
+
+    /// Pixels of a line that the active edges say are covered.
+    fn covered(setup: &Setup, pattern: &SamplePattern, width: u32) -> Vec<(i32, Range<u32>)> {
+        let lines = lines(pattern, 0, 16);
+        let spacing = spacing(&lines);
+        let edges = edge_table(&[Polygon { setup, slot: OUT }], &lines);
+        let mut active: Vec<ActiveEdge> = Vec::new();
+        let mut spans = Vec::new();
+        for (number, line) in lines.iter().enumerate() {
+            active.retain(|e| usize::from(e.end) > number);
+            active.iter_mut().for_each(|e| e.advance(spacing, setup, line.y));
+            let joining = edges.iter().filter(|e| usize::from(e.lines.start) == number);
+            active.extend(joining.map(|e| ActiveEdge::new(e, setup, line.y, spacing)));
+            let mut columns: Vec<_> = active.iter().map(|e| e.column_on(line, width)).collect();
+            columns.sort_unstable();
+            assert!(columns.is_empty() || columns.len() == 2, "a line crosses two edges of a triangle, or none");
+            spans.push((line.y, columns.first().copied().unwrap_or(0)..columns.last().copied().unwrap_or(0)));
+        }
+        spans
+    }
+
+    #[test]
+    fn p19_spans_of_edges_are_the_samples_that_the_edge_functions_cover() {
+        let mut random = 7u32;
+        let mut next = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (random >> 8) as i32
+        };
+        for samples in [1, 3, 4] {
+            let pattern = SamplePattern::new(samples);
+            for round in 0..300 {
+                // Every other triangle lies on a coarse grid, where samples meet corners and edges.
+                let grid = if round % 2 == 0 { 32 } else { 1 };
+                let corners = [0; 3].map(|_| [0; 2].map(|_| (next() % 6000 - 900) / grid * grid));
+                let setup = triangle(corners, [0.5; 3]);
+                for (line, (y, span)) in lines(&pattern, 0, 16).iter().zip(covered(&setup, &pattern, 16)) {
+                    for x in 0..16 {
+                        let covers = setup.covers(x as i32 * SUBPIXEL + line.sample_x, y);
+                        assert_eq!(covers, span.contains(&x), "{corners:?}, pixel {x}, y {y}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn p19_depths_at_the_ends_bound_the_span() {
+        let slope = triangle([[0, 0], [4096, 0], [0, 4096]], [0.1, 0.9, 0.3]);
+        let (far, near) = depth_range(&slope, [128, 2000], 640);
+        let depths = (128..=2000).map(|x| slope.depth(x, 640));
+        assert!(depths.into_iter().all(|z| (far..=near).contains(&z)));
+        let needle = Setup { dz_dx: f32::INFINITY, ..slope };
+        assert_eq!(depth_range(&needle, [0, 9], 0), (needle.z_min, needle.z_max));
+    }
+}

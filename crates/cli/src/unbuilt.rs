@@ -5,8 +5,7 @@
 const VERBS: [&str; 4] = ["draw", "lab", "batch", "bench"];
 
 /// Options to come.
-const OPTIONS: [&str; 13] = [
-    "--acceleration",
+const OPTIONS: [&str; 12] = [
     "--coherence",
     "--global",
     "--iterations",

@@ -21,8 +21,8 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading, Transparency,
-    TransparencyOrder,
+    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading,
+    Transparency, TransparencyOrder,
 };
 pub use stats::Stats;
 

@@ -1,12 +1,13 @@
-//! Ray casting and brute force hold the law of agreement: facet, depth and layers of every sample are the z-buffer's.
+//! Ray casting through each structure, and brute force, hold the law of agreement: facet, depth and layers of every
+//! sample are the z-buffer's.
 
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{DMat4, DVec3};
-use vitral_raster::{Layer, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid, Viewport};
-use vitral_render::stats::{CullCounters, RayCounters};
-use vitral_render::visible::{TileSink, VisibleSurface};
-use vitral_render::{Execution, PreparedView, Session, Settings, registry};
+use vitral_raster::{Layer, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_render::stats::{CullCounters, VisibilityCounters};
+use vitral_render::visible::TileSink;
+use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
 use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
 
 const WIDTH: u32 = 90;
@@ -35,56 +36,68 @@ impl TileSink for Collect {
     }
 }
 
-fn settings(samples: usize) -> Settings {
-    Settings { width: WIDTH, height: HEIGHT, samples: samples as u32, ..Settings::default() }
+/// What finds the visible surfaces, and through which structure.
+type Choice = (&'static str, Option<Acceleration>);
+
+const Z_BUFFER: Choice = ("z-buffer", None);
+const BRUTE_FORCE: Choice = ("brute-force", None);
+const RAYS: [Choice; 4] = [
+    ("ray-cast", Some(Acceleration::Bvh)),
+    ("ray-cast", Some(Acceleration::Octree)),
+    ("ray-cast", Some(Acceleration::Grid)),
+    ("ray-cast", Some(Acceleration::None)),
+];
+
+fn settings(samples: usize, (visibility, acceleration): Choice) -> Settings {
+    let visibility = visibility.to_owned();
+    Settings { width: WIDTH, height: HEIGHT, samples: samples as u32, visibility, acceleration, ..Settings::default() }
 }
 
 fn resolve(
     session: &Session,
     camera: &Camera,
     samples: usize,
-    algorithm: &dyn VisibleSurface,
+    choice: Choice,
     execution: &Execution,
-) -> Result<(Vec<Picture>, RayCounters), Limit> {
-    let viewport = Viewport::new(WIDTH, HEIGHT).unwrap();
+) -> Result<(Vec<Picture>, VisibilityCounters), Limit> {
+    let settings = settings(samples, choice);
+    let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
     let counters = &mut CullCounters::default();
-    let view = PreparedView::new(session, camera, &settings(samples), viewport, pattern, execution, counters);
+    let view = PreparedView::new(session, camera, &settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
     let sink = Collect(Mutex::default());
+    let algorithm = registry::visibility(choice.0).unwrap().algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
     let mut tiles = sink.0.into_inner().unwrap();
     tiles.sort_by_key(|t| t.0);
     assert!(tiles.iter().map(|t| t.0).eq(0..grid.tiles.len()), "each tile is handed on once");
-    Ok((tiles.into_iter().map(|t| t.1).collect(), resolved.rays))
+    Ok((tiles.into_iter().map(|t| t.1).collect(), resolved.counters))
 }
 
-fn algorithm(name: &str) -> &'static dyn VisibleSurface {
-    registry::visibility(name).unwrap().algorithm
-}
-
-/// Compares all algorithms of this file with the z-buffer, with one and four samples.
-fn agree(session: &Session, camera: &Camera, what: &str) {
+/// Compares ray casting with the z-buffer.
+fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
     let execution = Execution { workers: Workers::new(2), ..Execution::default() };
-    for samples in [1, 4] {
-        let (expected, _) = resolve(session, camera, samples, algorithm("z-buffer"), &execution).unwrap();
-        let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
-        assert!(seen > 0, "{what}: something is seen");
-        // Brute force is slow: large scenes go without it.
-        let names = if session.world().facet_count < [3000, 1000][samples / 4] { 2 } else { 1 };
-        for name in &["ray-cast", "brute-force"][..names] {
-            let (picture, counters) = resolve(session, camera, samples, algorithm(name), &execution).unwrap();
-            assert_eq!(counters.rays, u64::from(WIDTH * HEIGHT) * samples as u64);
-            assert!(counters.triangle_tests > 0);
-            let pairs = || picture.iter().flatten().zip(expected.iter().flatten());
-            let wrong: Vec<_> = (0..).zip(pairs()).filter(|(_, (a, b))| a != b).collect();
-            assert!(
-                wrong.is_empty(),
-                "{what}, {name}, {samples} samples: {} of {seen} differ: {:?}",
-                wrong.len(),
-                &wrong[..wrong.len().min(4)]
-            );
+    let (expected, _) = resolve(session, camera, samples, Z_BUFFER, &execution).unwrap();
+    let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
+    assert!(seen > 0, "{what}: something is seen");
+    for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
+        // Asking every facet is slow: large scenes go without it.
+        let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::None);
+        if asks_all && session.world().facet_count > 400 {
+            continue;
         }
+        let (picture, counters) = resolve(session, camera, samples, choice, &execution).unwrap();
+        assert_eq!(counters.rays, u64::from(WIDTH * HEIGHT) * samples as u64);
+        assert!(counters.triangle_tests > 0 && asks_all == (counters.box_tests == 0), "{choice:?}: {counters:?}");
+        let pairs = || picture.iter().flatten().zip(expected.iter().flatten());
+        let wrong: Vec<_> = (0..).zip(pairs()).filter(|(_, (a, b))| a != b).collect();
+        assert!(
+            wrong.is_empty(),
+            "{what}, {choice:?}, {samples} samples: {} of {seen} differ: {:?}",
+            wrong.len(),
+            &wrong[..wrong.len().min(4)]
+        );
     }
 }
 
@@ -106,7 +119,8 @@ fn agree_from_three_sides(scene: Scene, what: &str) {
         camera(DVec3::new(0.3, -0.8, 0.5), Projection::Parallel { height: size * 0.7 }),
     ];
     for (number, view) in views.iter().enumerate() {
-        agree(&session, view, &format!("{what}, view {number}"));
+        let samples = [1, 4, 1][number];
+        agree(&session, view, samples, &format!("{what}, view {number}"));
     }
 }
 
@@ -165,9 +179,9 @@ fn p4_p23_built_in_scenes_agree() {
 #[test]
 fn traps_agree() {
     let needles = random_soup(300, [2.0, 0.0005, 0.0005], 3);
-    let dust = random_soup(20_000, [0.02; 3], 5);
+    let dust = random_soup(4000, [0.04; 3], 5);
     let walls = random_soup(40, [2.0; 3], 7);
-    let far_away: Vec<_> = dust[..2000].iter().map(|t| t.map(|p| [p[0] + 3000.0, p[1] - 700.0, p[2]])).collect();
+    let far_away: Vec<_> = dust[..1000].iter().map(|t| t.map(|p| [p[0] + 3000.0, p[1] - 700.0, p[2]])).collect();
     let mut broken = walls.clone();
     broken[3][1][0] = f32::NAN;
     broken[4][2][2] = f32::INFINITY;
@@ -197,7 +211,7 @@ fn facets_through_the_eye_plane_agree() {
     ] {
         let projection = Projection::Perspective { view_angle: 1.4 };
         let camera = Camera { position, focal_point: target, projection, clip: Some((0.05, 20.0)), ..camera };
-        agree(&session, &camera, &format!("the eye at {position}"));
+        agree(&session, &camera, 1, &format!("the eye at {position}"));
     }
 }
 
@@ -216,28 +230,40 @@ fn transparent_facets_are_layers() {
 }
 
 #[test]
-fn the_tree_is_built_once_and_saves_work() {
+fn structures_are_built_once_and_save_work() {
     let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
     let execution = Execution::default();
     let camera = camera_of(&session);
-    let (first, again) = (session.bvh(&execution).unwrap(), session.bvh(&execution).unwrap());
-    assert!(Arc::ptr_eq(&first, &again));
-    let tests = |name| resolve(&session, &camera, 1, algorithm(name), &execution).unwrap().1.triangle_tests;
-    assert!(tests("ray-cast") * 50 < tests("brute-force"));
+    assert!(Arc::ptr_eq(&session.bvh(&execution).unwrap(), &session.bvh(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&session.octree(&execution).unwrap(), &session.octree(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
+    let all = resolve(&session, &camera, 1, RAYS[3], &execution).unwrap().1;
+    for choice in &RAYS[..3] {
+        let counters = resolve(&session, &camera, 1, *choice, &execution).unwrap().1;
+        assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
+        assert!(counters.tests_saved + counters.triangle_tests >= all.rays * 500, "{choice:?}: {counters:?}");
+    }
 }
 
 #[test]
 fn what_is_too_much_is_refused_and_limits_hold() {
     let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
     let camera = camera_of(&session);
-    for name in ["ray-cast", "brute-force"] {
+    for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
         let limited = Budget::default().with_memory_limit(Some(1000));
         let execution = Execution { budget: limited, ..Execution::default() };
-        let error = resolve(&session, &camera, 1, algorithm(name), &execution).unwrap_err();
-        assert!(matches!(error, Limit::Memory { .. }), "{error}");
+        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        assert!(matches!(error, Limit::Memory { .. }), "{choice:?}: {error}");
         let execution = Execution::default();
         execution.budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-        let error = resolve(&session, &camera, 1, algorithm(name), &execution).unwrap_err();
-        assert!(matches!(error, Limit::Cancelled { .. }), "{error}");
+        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        assert!(matches!(error, Limit::Cancelled { .. }), "{choice:?}: {error}");
     }
+}
+
+#[test]
+fn a_structure_without_rays_is_refused() {
+    let settings = settings(1, ("warnock", Some(Acceleration::Grid)));
+    let error = settings.check().unwrap_err().to_string();
+    assert!(error.contains("`warnock` casts no rays: choose ray-cast"), "{error}");
 }

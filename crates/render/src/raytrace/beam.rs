@@ -9,6 +9,7 @@
 //! Cost: six multiplications.
 //! Source: slabs after [Kay & Kajiya 1986]. Departs from it by the width.
 
+use super::Probe;
 use super::intersect::Ray;
 use vitral_math::Vec3;
 
@@ -18,6 +19,14 @@ const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam {
+    /// Where its middle starts.
+    pub origin: Vec3,
+    /// Where its middle goes.
+    pub direction: Vec3,
+    /// Half its width at the start, by axis.
+    pub width: Vec3,
+    /// How that grows with the parameter.
+    pub growth: Vec3,
     axes: [Axis; 3],
 }
 
@@ -43,7 +52,7 @@ impl Beam {
                 inverse_lower_slope: 1.0 / away(direction[k] - growth[k], -1e-20),
             }
         };
-        Self { axes: [axis(0), axis(1), axis(2)] }
+        Self { origin, direction, width, growth, axes: [axis(0), axis(1), axis(2)] }
     }
 
     /// A beam just wide enough that rounding in a space of half-width `extent` cannot make it miss what `ray` meets.
@@ -51,10 +60,11 @@ impl Beam {
         let width = (ray.origin.abs() + extent) * ROUNDING;
         Self::new(ray.origin, ray.direction, width, ray.direction.abs() * ROUNDING + Vec3::splat(1e-30))
     }
+}
 
-    /// A parameter that no place common to the beam and the box goes below; `None` if they are apart.
-    #[inline]
-    pub fn enters(&self, min: [f32; 3], max: [f32; 3]) -> Option<f32> {
+impl Probe for Beam {
+    #[inline(always)]
+    fn enters(&self, min: [f32; 3], max: [f32; 3]) -> Option<f32> {
         let (mut near, mut far) = (0.0f32, f32::INFINITY);
         for (k, axis) in self.axes.iter().enumerate() {
             let at_min = (min[k] - axis.upper_start) * axis.inverse_upper_slope;

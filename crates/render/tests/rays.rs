@@ -10,8 +10,8 @@ use vitral_render::visible::TileSink;
 use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
 use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
 
-const WIDTH: u32 = 90;
-const HEIGHT: u32 = 70;
+const WIDTH: u32 = 68;
+const HEIGHT: u32 = 66;
 
 /// For each sample inside the picture: depth as bits, facet, layers sorted.
 type Picture = Vec<(u32, u32, Vec<(u32, u32)>)>;

@@ -81,7 +81,7 @@ fn p15_p16_random_rays_agree_on_the_built_in_scenes() {
         let all = All::over_builtin(name);
         let extent = all.triangles.extent;
         let mut hits = 0;
-        for _ in 0..1000 {
+        for _ in 0..700 {
             let (a, b) = (point(&mut state) * extent * 1.5, point(&mut state) * extent * 0.8);
             hits += u32::from(all.agree(a, b - a, name));
         }
@@ -100,7 +100,7 @@ fn random_rays_agree_on_needles_dust_and_walls() {
     for (name, corners) in scenes {
         let all = All::over_corners(corners);
         let mut hits = 0;
-        for i in 0..1500 {
+        for i in 0..1000 {
             // Every other ray is aimed at a triangle, from inside the scene or from far away.
             let distance = [0.5, 3.0, 300.0][i % 3];
             let origin = point(&mut state) * distance;

@@ -14,10 +14,10 @@ use vitral::exec::{Budget, Workers};
 use vitral::math::{DVec3, Vec3};
 use vitral::raster::{Layer, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::render::raytrace::intersect::Ray;
-use vitral::render::raytrace::{Counters, Structure, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles};
+use vitral::render::raytrace::{Counters, Structure, bvh::Bvh, grid::Grid, octree::Octree};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
-use vitral::render::{Acceleration, PreparedView, registry};
+use vitral::render::{Acceleration, PreparedView, Transparency, registry};
 use vitral::{LoadOptions, Renderer, default_up, execution, load};
 
 type Failure = Box<dyn std::error::Error>;
@@ -35,7 +35,8 @@ fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
     let settings = &mut renderer.settings;
     (settings.width, settings.height, settings.samples) = (WIDTH, HEIGHT, 1);
     settings.visibility = "ray-cast".to_owned();
-    // The same triangles for everyone: none is left out because it is turned away.
+    // The same triangles for everyone: none is left out because it is turned away, none is passed through.
+    settings.transparency = Transparency::None;
     (settings.cull.frustum, settings.cull.back_face) = (false, false);
     Ok(renderer)
 }

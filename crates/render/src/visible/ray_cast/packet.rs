@@ -68,8 +68,11 @@ impl<S: Simd, T: Structure> Visitor for Opaque<'_, S, T> {
         }
         for setup in self.cast.setups(setups) {
             self.tests += 1;
+            if setup.z_max < farthest(self.tile, self.block) {
+                continue;
+            }
             let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
-            let mut sink = VisibilitySink::new(self.tile, pattern);
+            let mut sink = VisibilitySink::eager(self.tile, pattern);
             traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
         }
     }

@@ -119,8 +119,8 @@ struct Cast<'a, T> {
     execution: &'a Execution,
     structure: &'a T,
     on_screen: ScreenSetups,
-    /// For each triangle of the structure its first setup and the one behind its last, or `NONE`.
-    setups_of: Vec<[u32; 2]>,
+    /// What each triangle of the structure is on the screen.
+    places: Vec<Place>,
     /// For each part how wrong the depth of an opaque facet in it may be, then the same for layers; -∞ if there is
     /// none in it. No list of layers if there are none at all.
     slack: [Vec<f32>; 2],
@@ -133,23 +133,22 @@ struct Cast<'a, T> {
 impl<'a, T: Structure> Cast<'a, T> {
     fn new(view: &'a PreparedView<'a>, execution: &'a Execution, structure: &'a T, on_screen: ScreenSetups) -> Self {
         // Find each facet's setups, and how wrong their depths may be.
-        let mut of_facet = vec![([NONE; 2], f32::NEG_INFINITY); view.session.world.facet_count as usize];
+        let mut of_facet = vec![(Place::NOWHERE, f32::NEG_INFINITY); view.session.world.facet_count as usize];
         let mut start = 0;
         for &(end, clipped) in &on_screen.runs {
             for (i, setup) in on_screen.setups[start..end].iter().enumerate() {
-                let (setups, slack) = &mut of_facet[setup.facet as usize];
-                let at = (start + i) as u32;
-                *setups = [setups[0].min(at), at + 1];
+                let (place, slack) = &mut of_facet[setup.facet as usize];
+                place.add((start + i) as u32, setup);
                 *slack = slack.max(depth_slack(setup, clipped));
             }
             start = end;
         }
         let facets = &structure.triangles().facets;
-        let setups_of: Vec<_> = facets.iter().map(|&f| of_facet[f as usize].0).collect();
+        let places: Vec<_> = facets.iter().map(|&f| of_facet[f as usize].0).collect();
         let opaque = on_screen.opaque as u32;
         let slack_of = |place: usize, layered: bool| {
-            let (setups, slack) = of_facet[facets[place] as usize];
-            if (setups[0] >= opaque) == layered { slack } else { f32::NEG_INFINITY }
+            let (place, slack) = of_facet[facets[place] as usize];
+            if (place.setups[0] >= opaque) == layered { slack } else { f32::NEG_INFINITY }
         };
         let any_layered = on_screen.opaque < on_screen.setups.len();
         let slack = [
@@ -158,7 +157,7 @@ impl<'a, T: Structure> Cast<'a, T> {
         ];
         let largest_slack = slack.iter().flatten().copied().fold(f32::NEG_INFINITY, f32::max);
         let eye = Eye::new(view, structure.triangles());
-        Self { view, execution, structure, on_screen, setups_of, slack, largest_slack, eye, stamps: Mutex::default() }
+        Self { view, execution, structure, on_screen, places, slack, largest_slack, eye, stamps: Mutex::default() }
     }
 
     /// A facet's setups.
@@ -175,11 +174,40 @@ impl<'a, T: Structure> Cast<'a, T> {
 
     fn take_stamps(&self) -> Stamps {
         let spare = self.stamps.lock().expect("no thread panics while it holds stamps").pop();
-        spare.unwrap_or_else(|| Stamps::new(if T::REPEATS { self.setups_of.len() } else { 0 }))
+        spare.unwrap_or_else(|| Stamps::new(if T::REPEATS { self.places.len() } else { 0 }))
     }
 
     fn give_stamps(&self, stamps: Stamps) {
         self.stamps.lock().expect("no thread panics while it holds stamps").push(stamps);
+    }
+}
+
+/// What a triangle is on the screen: little enough to be looked at before its setups are.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The first setup and the one behind the last, or `NONE`.
+    setups: [u32; 2],
+    /// Left and right pixel column, top and bottom row, of the box round them.
+    columns: [i16; 2],
+    rows: [i16; 2],
+    /// The nearest depth.
+    nearest: f32,
+}
+
+impl Place {
+    const NOWHERE: Self =
+        Self { setups: [NONE; 2], columns: [i16::MAX, i16::MIN], rows: [i16::MAX, i16::MIN], nearest: 0.0 };
+
+    /// Adds the setup of this number, which is the first or the one behind those before it.
+    fn add(&mut self, number: u32, setup: &Setup) {
+        self.setups = [self.setups[0].min(number), number + 1];
+        // Setups lie within the guard band, which 16 bits can hold.
+        let pixel = |v: i32| (v >> 8).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
+        for (range, v) in [(&mut self.columns, &setup.x), (&mut self.rows, &setup.y)] {
+            let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
+            *range = [range[0].min(pixel(low)), range[1].max(pixel(high))];
+        }
+        self.nearest = self.nearest.max(setup.z_max);
     }
 }
 

@@ -11,7 +11,7 @@
 //! Cost: one way down for each block and kind.
 //! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
 
-use super::{Cast, NONE, Stamps};
+use super::{Cast, Place, Stamps};
 use crate::raytrace::{Structure, Tree, Visitor};
 use crate::stats::VisibilityCounters;
 use crate::visible::brute_force::size_in_picture;
@@ -49,6 +49,14 @@ fn farthest(tile: &Tile, (x, y): (usize, usize)) -> f32 {
     tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK]
 }
 
+/// Whether a triangle's box on the screen touches the block, in front of depth `far`. What is nowhere does not.
+#[inline(always)]
+fn reaches(place: &Place, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool {
+    let (x, y, side) = (tile.x as i32 + x as i32, tile.y as i32 + y as i32, BLOCK as i32);
+    let touches = |range: [i16; 2], start: i32| i32::from(range[0]) < start + side && i32::from(range[1]) >= start;
+    touches(place.columns, x) & touches(place.rows, y) & (place.nearest >= far)
+}
+
 impl<S: Simd, T: Structure> Visitor for Opaque<'_, S, T> {
     #[inline(always)]
     fn skips(&self, part: usize, near: f32) -> bool {
@@ -62,15 +70,16 @@ impl<S: Simd, T: Structure> Visitor for Opaque<'_, S, T> {
 
     #[inline(always)]
     fn triangle(&mut self, place: usize) {
-        let setups = self.cast.setups_of[place];
-        if setups[0] == NONE || self.cast.is_layered(setups) || (T::REPEATS && !self.stamps.first_time(place)) {
+        let far = farthest(self.tile, self.block);
+        let found = &self.cast.places[place];
+        if !reaches(found, self.tile, self.block, far) || self.cast.is_layered(found.setups) {
             return;
         }
-        for setup in self.cast.setups(setups) {
+        if T::REPEATS && !self.stamps.first_time(place) {
+            return;
+        }
+        for setup in self.cast.setups(found.setups) {
             self.tests += 1;
-            if setup.z_max < farthest(self.tile, self.block) {
-                continue;
-            }
             let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
             let mut sink = VisibilitySink::eager(self.tile, pattern);
             traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
@@ -91,11 +100,15 @@ impl<S: Simd, T: Structure> Visitor for Layers<'_, S, T> {
 
     #[inline(always)]
     fn triangle(&mut self, place: usize) {
-        let setups = self.cast.setups_of[place];
-        if setups[0] == NONE || !self.cast.is_layered(setups) || (T::REPEATS && !self.stamps.first_time(place)) {
+        let far = farthest(self.tile, self.block);
+        let found = &self.cast.places[place];
+        if !reaches(found, self.tile, self.block, far) || !self.cast.is_layered(found.setups) {
             return;
         }
-        for setup in self.cast.setups(setups) {
+        if T::REPEATS && !self.stamps.first_time(place) {
+            return;
+        }
+        for setup in self.cast.setups(found.setups) {
             self.tests += 1;
             let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
             let mut sink = LayerSink::new(self.tile, pattern, self.layers);

@@ -65,7 +65,7 @@ impl<T: Structure> Visitor for Search<'_, T> {
 
     #[inline]
     fn triangle(&mut self, place: usize) {
-        let setups = self.cast.setups_of[place];
+        let setups = self.cast.places[place].setups;
         if setups[0] != NONE && (!T::REPEATS || self.stamps.first_time(place)) {
             self.test(setups);
         }

@@ -3,7 +3,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::sync::LazyLock;
-use vitral::render::{ColorSpace, Interpolation, Transparency, TransparencyOrder, registry};
+use vitral::render::{Acceleration, ColorSpace, Interpolation, Transparency, TransparencyOrder, registry};
 use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
 /// A name, one line that explains it (may be empty), what it stands for.
@@ -12,6 +12,9 @@ pub(crate) type Choice<T> = (&'static str, &'static str, T);
 /// Everything that an illumination model is called.
 static ILLUMINATION: LazyLock<Vec<Choice<Illumination>>> =
     LazyLock::new(|| Illumination::ALL.iter().map(|&m| (m.name(), m.description(), m)).collect());
+
+static ACCELERATION: LazyLock<Vec<Choice<Acceleration>>> =
+    LazyLock::new(|| registry::ACCELERATION.iter().map(|a| (a.name, a.description, a.value)).collect());
 
 static SHADING: LazyLock<Vec<Choice<Shading>>> =
     LazyLock::new(|| Shading::ALL.iter().map(|&(value, name, description)| (name, description, value)).collect());
@@ -60,6 +63,10 @@ fn of<T: Copy + Send + Sync + 'static>(table: &'static [Choice<T>]) -> impl Type
 /// Names of the registered visible-surface algorithms.
 pub(crate) fn visibility() -> PossibleValuesParser {
     registry::VISIBILITY.iter().map(|a| PossibleValue::new(a.name).help(a.description)).collect::<Vec<_>>().into()
+}
+
+pub(crate) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
+    of(&ACCELERATION)
 }
 
 pub(crate) fn illumination() -> impl TypedValueParser<Value = Illumination> {

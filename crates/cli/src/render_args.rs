@@ -5,7 +5,7 @@ use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
-use vitral::render::{ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
+use vitral::render::{Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
 use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
@@ -87,6 +87,9 @@ pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
     #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
     pub(crate) visibility: Option<String>,
+    /// What finds the triangles near a ray, where --visibility casts rays [default: bvh]
+    #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
+    pub(crate) acceleration: Option<Acceleration>,
     /// What is thrown away early: a list of frustum, back-face; or none [default: frustum,back-face]
     #[arg(long, value_name = "LIST", value_parser = values::culling)]
     pub(crate) cull: Option<Culling>,

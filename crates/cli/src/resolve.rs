@@ -118,6 +118,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
     if let Some(name) = &args.visibility {
         settings.visibility.clone_from(name);
     }
+    settings.acceleration = args.acceleration.or(settings.acceleration);
     settings.cull = args.cull.unwrap_or(settings.cull);
     settings.illumination = args.illumination.unwrap_or(settings.illumination);
     settings.shading = args.shading.unwrap_or(settings.shading);

@@ -17,16 +17,25 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
                 |a| json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision}),
             )
             .collect();
+        let acceleration: Vec<_> = registry::ACCELERATION
+            .iter()
+            .map(|a| json!({"name": a.name, "description": a.description, "source": a.source}))
+            .collect();
         let illumination: Vec<_> =
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
         let shading: Vec<_> =
             Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what})).collect();
-        let all = json!({"visibility": visibility, "illumination": illumination, "shading": shading});
+        let all = json!({"visibility": visibility, "acceleration": acceleration, "illumination": illumination,
+            "shading": shading});
         return report::print_json(&all).map(|()| 0);
     }
     let mut text = String::from("Visible surfaces (--visibility)\n");
     for a in registry::VISIBILITY {
         let _ = writeln!(text, "  {:<14} {} ({} precision; {})", a.name, a.description, a.precision, a.source);
+    }
+    text.push_str("\nStructures for rays (--acceleration)\n");
+    for a in registry::ACCELERATION {
+        let _ = writeln!(text, "  {:<14} {} ({})", a.name, a.description, a.source);
     }
     text.push_str("\nIllumination (--illumination)\n");
     for m in Illumination::ALL {

@@ -5,8 +5,7 @@
 const VERBS: [&str; 4] = ["draw", "lab", "batch", "bench"];
 
 /// Options to come.
-const OPTIONS: [&str; 13] = [
-    "--acceleration",
+const OPTIONS: [&str; 12] = [
     "--coherence",
     "--global",
     "--iterations",
@@ -23,7 +22,7 @@ const OPTIONS: [&str; 13] = [
 
 /// Values to come, of options that are there.
 const VALUES: [(&str, &[&str]); 4] = [
-    ("--visibility", &["painter", "bsp", "weiler-atherton", "ray-cast"]),
+    ("--visibility", &["painter", "bsp", "weiler-atherton"]),
     ("--transparency", &["kay"]),
     ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
     ("--channel", &["attached-shadow", "cast-shadow", "steps"]),

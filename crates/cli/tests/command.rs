@@ -84,11 +84,13 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 13] = [
+    let cases: [(&[&str], i32, &str); 15] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--shadows", "map"], 2, "--shadows: this option is not there yet"),
         (&["a.obj", "-o", "x.png", "--visibility", "bsp"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
+        (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=on"], 2, "shadow"),
         (&["missing.obj", "-o", "x.png"], 3, "missing.obj: "),
         (&["bad.obj", "-o", "x.png"], 3, "bad.obj: line 2: "),

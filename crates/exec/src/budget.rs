@@ -44,6 +44,16 @@ pub enum Limit {
         /// What wanted them.
         stage: &'static str,
     },
+    /// More steps would be needed than make sense for the algorithm.
+    #[error("{stage} needs {needed} steps, the limit is {limit}")]
+    Work {
+        /// Steps needed.
+        needed: u64,
+        /// Steps allowed.
+        limit: u64,
+        /// What wanted them.
+        stage: &'static str,
+    },
     /// The user cancelled.
     #[error("cancelled during {stage}")]
     Cancelled {

@@ -23,7 +23,7 @@ mod tile;
 
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
 pub use kernel::transform::transform;
-pub use kernel::traverse::{Block, BlockSink, traverse};
+pub use kernel::traverse::{Block, BlockSink, traverse, traverse_block};
 pub use samples::SamplePattern;
 pub use setup::{CornerPosition, Setup, snap};
 pub use sink::{Layer, LayerSink, VisibilitySink};

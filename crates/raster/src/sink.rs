@@ -23,12 +23,20 @@ pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x
 pub struct VisibilitySink<'a> {
     tile: &'a mut Tile,
     pattern: &'a SamplePattern,
+    /// Samples of a block that are written before its `block_far` is computed anew.
+    patience: u32,
 }
 
 impl<'a> VisibilitySink<'a> {
     /// Draws into `tile`.
     pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
-        Self { tile, pattern }
+        Self { tile, pattern, patience: (BLOCK * BLOCK * pattern.len()) as u32 }
+    }
+
+    /// Draws into `tile`, for someone who wants to know how far a block is as soon as it is full: facets that come from
+    /// front to back fill it once.
+    pub fn eager(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
+        Self { tile, pattern, patience: 1 }
     }
 
     /// Brings `block_far` up to date once a block has been written over.
@@ -38,7 +46,7 @@ impl<'a> VisibilitySink<'a> {
         let samples = self.pattern.len();
         self.tile.touched |= written > 0;
         self.tile.block_writes[index] += written;
-        if self.tile.block_writes[index] < (BLOCK * BLOCK * samples) as u32 {
+        if self.tile.block_writes[index] < self.patience {
             return;
         }
         self.tile.block_writes[index] = 0;

@@ -9,6 +9,7 @@ pub mod cull;
 pub mod marks;
 pub mod pipeline;
 pub mod prepare;
+pub mod raytrace;
 pub mod registry;
 mod session;
 mod settings;
@@ -20,8 +21,8 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading, Transparency,
-    TransparencyOrder,
+    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading,
+    Transparency, TransparencyOrder,
 };
 pub use stats::Stats;
 

@@ -6,7 +6,7 @@
 
 use crate::cull::{backface, frustum};
 use crate::stats::CullCounters;
-use crate::{Execution, Session, Settings, Transparency};
+use crate::{Acceleration, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
 use vitral_math::{DMat4, DVec3};
@@ -40,6 +40,8 @@ pub struct PreparedView<'a> {
     pub pattern: SamplePattern,
     /// The map to the screen.
     pub screen: Screen,
+    /// What finds the triangles near a ray, for algorithms that follow rays.
+    pub acceleration: Acceleration,
     /// What may be visible, in scene order.
     pub instances: Vec<PreparedInstance<'a>>,
 }
@@ -84,7 +86,8 @@ impl<'a> PreparedView<'a> {
             instances.push(PreparedInstance { instance: visible.instance, opaque, layered });
         }
         let screen = Screen::new(viewport, &pattern);
-        Self { session, view, camera: *camera, viewport, pattern, screen, instances }
+        let acceleration = settings.acceleration.unwrap_or_default();
+        Self { session, view, camera: *camera, viewport, pattern, screen, acceleration, instances }
     }
 
     /// The viewer in world space, and whether projectors meet there.

@@ -1,6 +1,9 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::visible::{VisibleSurface, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer};
+use crate::Acceleration;
+use crate::visible::{
+    VisibleSurface, brute_force::BruteForce, ray_cast::RayCast, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer,
+};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -12,6 +15,8 @@ pub struct VisibilityAlgorithm {
     pub source: &'static str,
     /// `image` or `list-priority` precision.
     pub precision: &'static str,
+    /// Whether it follows rays, so that [`ACCELERATION`] is a choice.
+    pub casts_rays: bool,
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
 }
@@ -23,6 +28,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         description: "every sample keeps its nearest facet",
         source: "Catmull 1974",
         precision: "image",
+        casts_rays: false,
         algorithm: &ZBuffer,
     },
     VisibilityAlgorithm {
@@ -30,6 +36,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         description: "line by line, from edge to edge",
         source: "Watkins 1970",
         precision: "image",
+        casts_rays: false,
         algorithm: &ScanLine,
     },
     VisibilityAlgorithm {
@@ -37,7 +44,24 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         description: "windows are cut in four until they are simple",
         source: "Warnock 1969",
         precision: "image",
+        casts_rays: false,
         algorithm: &Warnock,
+    },
+    VisibilityAlgorithm {
+        name: "ray-cast",
+        description: "a ray through every sample, and a structure that finds what it meets (--acceleration)",
+        source: "Appel 1968",
+        precision: "image",
+        casts_rays: true,
+        algorithm: &RayCast,
+    },
+    VisibilityAlgorithm {
+        name: "brute-force",
+        description: "every facet against every sample: slow, the reference of the others",
+        source: "Foley et al. 1990",
+        precision: "image",
+        casts_rays: false,
+        algorithm: &BruteForce,
     },
 ];
 
@@ -45,3 +69,44 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
 pub fn visibility(name: &str) -> Option<&'static VisibilityAlgorithm> {
     VISIBILITY.iter().find(|a| a.name == name)
 }
+
+/// A structure that finds the triangles near a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct AccelerationStructure {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub description: &'static str,
+    /// Key into the bibliography.
+    pub source: &'static str,
+    /// As a setting.
+    pub value: Acceleration,
+}
+
+/// All structures for rays, the default first.
+pub static ACCELERATION: &[AccelerationStructure] = &[
+    AccelerationStructure {
+        name: "bvh",
+        description: "a tree of boxes round triangles, cut by the surface area heuristic",
+        source: "MacDonald & Booth 1990",
+        value: Acceleration::Bvh,
+    },
+    AccelerationStructure {
+        name: "octree",
+        description: "a cube cut in eight where there is much, and its parts again",
+        source: "Glassner 1984",
+        value: Acceleration::Octree,
+    },
+    AccelerationStructure {
+        name: "grid",
+        description: "equal cells, which a ray passes one by one",
+        source: "Amanatides & Woo 1987",
+        value: Acceleration::Grid,
+    },
+    AccelerationStructure {
+        name: "none",
+        description: "every ray asks every triangle",
+        source: "Appel 1968",
+        value: Acceleration::None,
+    },
+];

@@ -4,9 +4,13 @@
 
 use crate::Error;
 use crate::cull::bounds_tree::BoundsTree;
+use crate::raytrace::bvh::Bvh;
+use crate::raytrace::grid::Grid;
+use crate::raytrace::octree::Octree;
+use crate::raytrace::triangles::Triangles;
 use crate::shading::FaceTable;
 use std::sync::{Arc, Mutex, OnceLock};
-use vitral_exec::{Budget, Workers};
+use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
 use vitral_scene::edges::Edge;
@@ -40,6 +44,22 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    triangles: Kept<Triangles>,
+    bvh: Kept<Bvh>,
+    octree: Kept<Octree>,
+    uniform_grid: Kept<Grid>,
+}
+
+/// What is made when it is first asked for, and then kept.
+type Kept<T> = Mutex<Option<Arc<T>>>;
+
+/// What is kept, or else what `make` makes.
+fn keep<T>(kept: &Kept<T>, make: impl FnOnce() -> Result<T, Limit>) -> Result<Arc<T>, Limit> {
+    let mut kept = kept.lock().expect("no thread panics while it makes what is kept");
+    if let Some(known) = &*kept {
+        return Ok(Arc::clone(known));
+    }
+    Ok(Arc::clone(kept.insert(Arc::new(make()?))))
 }
 
 /// What is found out about a mesh when it is first needed.
@@ -72,7 +92,18 @@ impl Session {
         }
         let world = World::new(&scene)?;
         let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
-        Ok(Self { scene, world, meshes, grid: None, spare_vertices: Mutex::default(), spare_batches: Mutex::default() })
+        Ok(Self {
+            scene,
+            world,
+            meshes,
+            grid: None,
+            spare_vertices: Mutex::default(),
+            spare_batches: Mutex::default(),
+            triangles: Mutex::default(),
+            bvh: Mutex::default(),
+            octree: Mutex::default(),
+            uniform_grid: Mutex::default(),
+        })
     }
 
     /// The scene.
@@ -89,6 +120,33 @@ impl Session {
     pub fn solidity(&self, mesh: u32, workers: &Workers) -> Solidity {
         let known = &self.meshes[mesh as usize].solidity;
         *known.get_or_init(|| Solidity::of(&self.scene.meshes[mesh as usize], workers))
+    }
+
+    /// The list of all triangles, made when it is first asked for, as are the structures over it: the views of a
+    /// turntable share them.
+    pub fn triangles(&self, execution: &Execution) -> Result<Arc<Triangles>, Limit> {
+        keep(&self.triangles, || Ok(Triangles::of_world(&self.world, &execution.workers)))
+    }
+
+    /// The tree of boxes over all triangles.
+    pub fn bvh(&self, execution: &Execution) -> Result<Arc<Bvh>, Limit> {
+        keep(&self.bvh, || {
+            // The tree has its own list, in its own order: the common one need not stay for it.
+            let list = Triangles::of_world(&self.world, &execution.workers);
+            Bvh::build(&list, &execution.workers, &execution.budget)
+        })
+    }
+
+    /// The octree over all triangles.
+    pub fn octree(&self, execution: &Execution) -> Result<Arc<Octree>, Limit> {
+        let triangles = self.triangles(execution)?;
+        keep(&self.octree, || Octree::build(&triangles, &execution.workers, &execution.budget))
+    }
+
+    /// The uniform grid over all triangles.
+    pub fn uniform_grid(&self, execution: &Execution) -> Result<Arc<Grid>, Limit> {
+        let triangles = self.triangles(execution)?;
+        keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))
     }
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {

@@ -17,6 +17,8 @@ pub struct Settings {
     pub samples: u32,
     /// Name of a visible-surface algorithm in the [`registry`].
     pub visibility: String,
+    /// What finds the triangles near a ray; only for algorithms that cast rays. `None`: [`Acceleration::Bvh`] for them.
+    pub acceleration: Option<Acceleration>,
     /// What is thrown away early.
     pub cull: Culling,
     /// How light is reflected.
@@ -48,6 +50,7 @@ impl Default for Settings {
             height: 768,
             samples: 4,
             visibility: "z-buffer".to_owned(),
+            acceleration: None,
             cull: Culling::default(),
             illumination: Illumination::default(),
             shading: Shading::default(),
@@ -77,6 +80,21 @@ impl Default for Culling {
     fn default() -> Self {
         Self { frustum: true, back_face: true }
     }
+}
+
+/// What finds the triangles near a ray. It does not change the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Acceleration {
+    /// A tree of boxes round triangles, by the surface area heuristic.
+    #[default]
+    Bvh,
+    /// A cube cut in eight, again and again.
+    Octree,
+    /// Equal cells, which a ray passes one by one.
+    Grid,
+    /// Every triangle is asked.
+    None,
 }
 
 /// Where illumination is computed.
@@ -238,6 +256,14 @@ pub enum SettingsError {
         /// What there is.
         choices: String,
     },
+    /// A structure for rays, but no rays.
+    #[error("an acceleration structure was chosen, but `{visibility}` casts no rays: choose {choices}")]
+    Acceleration {
+        /// The visibility algorithm.
+        visibility: String,
+        /// Those that cast rays.
+        choices: String,
+    },
 }
 
 impl Settings {
@@ -246,9 +272,15 @@ impl Settings {
         if !(1..=16).contains(&self.samples) {
             return Err(SettingsError::Samples(self.samples));
         }
-        if registry::visibility(&self.visibility).is_none() {
+        let visibility = self.visibility.clone();
+        let Some(algorithm) = registry::visibility(&visibility) else {
             let choices: Vec<_> = registry::VISIBILITY.iter().map(|a| a.name).collect();
-            return Err(SettingsError::Visibility { name: self.visibility.clone(), choices: choices.join(", ") });
+            return Err(SettingsError::Visibility { name: visibility, choices: choices.join(", ") });
+        };
+        if self.acceleration.is_some() && !algorithm.casts_rays {
+            let casting = registry::VISIBILITY.iter().filter(|a| a.casts_rays);
+            let choices: Vec<_> = casting.map(|a| a.name).collect();
+            return Err(SettingsError::Acceleration { visibility, choices: choices.join(", ") });
         }
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })

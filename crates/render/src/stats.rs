@@ -97,6 +97,14 @@ pub struct VisibilityCounters {
     pub pixel_windows: u64,
     /// Area subdivision: polygons tested against a window.
     pub window_tests: u64,
+    /// Ray casting and brute force: rays, one for each sample.
+    pub rays: u64,
+    /// Ray casting: boxes of a tree, or cells of a grid, tested against a ray or a packet of rays.
+    pub box_tests: u64,
+    /// Ray casting and brute force: pairs of a ray and a facet on the screen that were tested.
+    pub triangle_tests: u64,
+    /// Ray casting: pairs of a ray and a facet on the screen that bounding volumes left untested.
+    pub tests_saved: u64,
 }
 
 impl VisibilityCounters {
@@ -109,6 +117,10 @@ impl VisibilityCounters {
         self.windows += o.windows;
         self.pixel_windows += o.pixel_windows;
         self.window_tests += o.window_tests;
+        self.rays += o.rays;
+        self.box_tests += o.box_tests;
+        self.triangle_tests += o.triangle_tests;
+        self.tests_saved += o.tests_saved;
     }
 }
 

@@ -53,19 +53,47 @@ const FAR_AWAY: i64 = 1 << 30;
 /// they touch: the products are below 2^29.
 const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
+/// Pixels of a tile, columns and rows.
+type Window = [Range<usize>; 2];
+
 /// Hands every block of the tile at pixel `(tile_x, tile_y)` that `setup` covers to `sink`.
 #[inline(always)]
 pub fn traverse<S: Simd, K: BlockSink<S>>(
     simd: S,
     setup: &Setup,
-    (tile_x, tile_y): (u32, u32),
+    tile: (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    traverse_window(simd, setup, tile, &[0..TILE, 0..TILE], pattern, sink);
+}
+
+/// [`traverse`] for the one block whose top left pixel within the tile is `(x, y)`.
+#[inline(always)]
+pub fn traverse_block<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    (x, y): (usize, usize),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    traverse_window(simd, setup, tile, &[x..x + BLOCK, y..y + BLOCK], pattern, sink);
+}
+
+#[inline(always)]
+fn traverse_window<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    window: &Window,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
     match pattern.len() {
-        1 => traverse_samples::<S, K, 1>(simd, setup, (tile_x, tile_y), pattern, sink),
-        4 => traverse_samples::<S, K, 4>(simd, setup, (tile_x, tile_y), pattern, sink),
-        _ => traverse_samples::<S, K, 16>(simd, setup, (tile_x, tile_y), pattern, sink),
+        1 => traverse_samples::<S, K, 1>(simd, setup, tile, window, pattern, sink),
+        4 => traverse_samples::<S, K, 4>(simd, setup, tile, window, pattern, sink),
+        _ => traverse_samples::<S, K, 16>(simd, setup, tile, window, pattern, sink),
     }
 }
 
@@ -75,6 +103,7 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     simd: S,
     setup: &Setup,
     (tile_x, tile_y): (u32, u32),
+    [columns, rows]: &Window,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
@@ -84,14 +113,15 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     let y = setup.y.map(|y| y - origin_y);
     let [extent_x, extent_y] = pattern.extent();
 
-    // The pixels of the tile that the triangle's box may cover.
-    let first = |v: [i32; 3], e: [i32; 2]| ((v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8).max(0) as usize;
-    let last = |v: [i32; 3], e: [i32; 2]| ((v[0].max(v[1]).max(v[2]) - e[0]) >> 8).min(TILE as i32 - 1);
-    let (x0, x1, y0, y1) = (first(x, extent_x), last(x, extent_x), first(y, extent_y), last(y, extent_y));
-    if x1 < x0 as i32 || y1 < y0 as i32 {
+    // The pixels of the window that the triangle's box may cover.
+    let first = |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
+    let last = |v: [i32; 3], e: [i32; 2]| (v[0].max(v[1]).max(v[2]) - e[0]) >> 8;
+    let (x0, x1) = (first(x, extent_x).max(columns.start as i32), last(x, extent_x).min(columns.end as i32 - 1));
+    let (y0, y1) = (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
+    if x1 < x0 || y1 < y0 {
         return;
     }
-    let (x1, y1) = (x1 as usize, y1 as usize);
+    let (x0, x1, y0, y1) = (x0 as usize, x1 as usize, y0 as usize, y1 as usize);
 
     // Edge functions at the tile's origin, one constant a sample.
     let mut edges = [Edge { a: 0, b: 0 }; 3];

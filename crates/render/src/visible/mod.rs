@@ -1,7 +1,10 @@
 //! Which surface is seen at each sample.
 
+pub mod brute_force;
 mod facets;
+pub mod ray_cast;
 pub mod scanline;
+mod screen_setups;
 pub mod warnock;
 pub mod zbuffer;
 

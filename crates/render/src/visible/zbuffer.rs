@@ -46,7 +46,7 @@ pub(super) struct Piece<'v, 'a> {
 /// Pieces that are set up together; a job's batch holds opaque triangles or layers, not both.
 pub(super) struct Job<'v, 'a> {
     pieces: Vec<Piece<'v, 'a>>,
-    layered: bool,
+    pub(super) layered: bool,
 }
 
 impl VisibleSurface for ZBuffer {

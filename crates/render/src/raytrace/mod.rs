@@ -1,0 +1,110 @@
+//! Rays: what they meet, and the structures that find it.
+//!
+//! A structure knows where triangles are, so that a ray need not ask each of them: a tree of boxes round neighbours
+//! ([`bvh`]), a cube cut in eight again and again ([`octree`]), a grid of equal cells ([`grid`]), or nothing but the
+//! list ([`triangles`]). Whoever follows a ray is a [`Visitor`]: the structure shows it the triangles near the ray, part
+//! by part, about the nearest first; the visitor says which parts it can do without. All structures give the same hits.
+
+pub mod beam;
+pub mod bvh;
+pub mod grid;
+pub mod intersect;
+pub mod octree;
+pub mod pyramid;
+pub mod triangles;
+
+use beam::Beam;
+use intersect::Ray;
+use triangles::Triangles;
+
+/// Something that boxes are tested against: a ray, a beam, rays through a block of pixels.
+pub trait Probe {
+    /// A parameter that no place common to probe and box goes below; `None` if they are apart.
+    fn enters(&self, min: [f32; 3], max: [f32; 3]) -> Option<f32>;
+}
+
+/// Decides what a traversal does.
+pub trait Visitor {
+    /// Whether nothing of `part` is wanted, if it is entered no sooner than at `near`.
+    fn skips(&self, part: usize, near: f32) -> bool;
+    /// Whether nothing of any part is wanted that is entered no sooner than at `near`.
+    fn done(&self, near: f32) -> bool;
+    /// A triangle near the ray, by its place in [`Structure::triangles`].
+    fn triangle(&mut self, place: usize);
+}
+
+/// Finds the triangles near a ray.
+pub trait Structure: Sync {
+    /// Whether a traversal may show a triangle several times.
+    const REPEATS: bool;
+
+    /// The triangles, in the structure's order.
+    fn triangles(&self) -> &Triangles;
+
+    /// For each part the largest value of the triangles in it; -∞ for an empty one.
+    fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32>;
+
+    /// Shows `visitor` the triangles of all parts that the beam meets and it does not skip. Returns the number of boxes
+    /// or cells looked at.
+    fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64;
+
+    /// The first triangle that the ray (less [`Triangles::center`]) meets: facet and parameter; the lower facet of two
+    /// at the same place. Adds what it took to `counters`.
+    fn closest_hit(&self, ray: &Ray, counters: &mut Counters) -> Option<(u32, f32)> {
+        let triangles = self.triangles();
+        let length = ray.direction.abs().max_element();
+        let reach = ray.origin.abs().max_element() + triangles.extent;
+        let slack = reach / length * (1.0 / (1 << 19) as f32);
+        let mut closest = Closest { triangles, ray, slack, best: None, tests: 0 };
+        counters.boxes += self.traverse(&Beam::around(ray, triangles.extent), &mut closest);
+        counters.triangles += closest.tests;
+        closest.best
+    }
+}
+
+/// A structure of boxes within boxes, which any probe can go down.
+pub trait Tree: Structure {
+    /// [`Structure::traverse`] with any probe.
+    fn descend(&self, probe: &impl Probe, visitor: &mut impl Visitor) -> u64;
+}
+
+/// What following rays took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Boxes or cells that were tested.
+    pub boxes: u64,
+    /// Triangles that were tested.
+    pub triangles: u64,
+}
+
+/// Keeps the closest hit.
+struct Closest<'a> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    /// Rounding of a hit's parameter.
+    slack: f32,
+    best: Option<(u32, f32)>,
+    tests: u64,
+}
+
+impl Visitor for Closest<'_> {
+    #[inline(always)]
+    fn skips(&self, _: usize, near: f32) -> bool {
+        self.done(near)
+    }
+
+    #[inline(always)]
+    fn done(&self, near: f32) -> bool {
+        self.best.is_some_and(|(_, t)| near > t + self.slack)
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, place: usize) {
+        self.tests += 1;
+        let Some(t) = self.ray.hit(&self.triangles.corners[place]) else { return };
+        let facet = self.triangles.facets[place];
+        if self.best.is_none_or(|(f, best)| t < best || (t == best && facet < f)) {
+            self.best = Some((facet, t));
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The triangles of a scene in one list: what all structures are built over, and the structure that is none.
+//!
+//! There is one flat list, not one for each mesh with instances on top: no matrix stands between ray and triangle, at
+//! the price of memory where a mesh is used often. Coordinates are relative to the middle of the scene, so that 32 bits
+//! are enough wherever in the world it lies.
+//!
+//! As a structure the list shows every triangle to every ray: the `O(n p)` that other structures are measured against.
+//!
+//! In:   the world. Out: [`Triangles`], world space less [`Triangles::center`].
+//! Cost: linear; 40 bytes a triangle.
+//! Source: [Appel 1968].
+
+use super::beam::Beam;
+use super::{Structure, Visitor};
+use vitral_exec::Workers;
+use vitral_math::{DVec3, Vec3, vec3};
+use vitral_scene::World;
+
+/// See the module.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Triangles {
+    /// What coordinates are relative to, world space.
+    pub center: DVec3,
+    /// No coordinate is larger.
+    pub extent: f32,
+    /// Corners, finite.
+    pub corners: Vec<[Vec3; 3]>,
+    /// For each triangle its facet.
+    pub facets: Vec<u32>,
+}
+
+/// Smallest and largest coordinates of corners.
+pub(super) fn bounds_of(corners: &[Vec3; 3]) -> [Vec3; 2] {
+    let [a, b, c] = *corners;
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+impl Triangles {
+    /// Bytes needed while a list of this many is made.
+    pub fn bytes(triangles: u64) -> u64 {
+        triangles * 80
+    }
+
+    /// All triangles of the world. Those with a corner that is not finite are left out, as everywhere.
+    pub fn of_world(world: &World, workers: &Workers) -> Self {
+        let center = Some(world.bounds.center()).filter(|c| c.is_finite()).unwrap_or(DVec3::ZERO);
+        let per_instance = workers.map(world.instances.len(), |i| placed(world, i, center));
+        let count: usize = per_instance.iter().map(Vec::len).sum();
+        let (mut corners, mut facets) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (facet, triangle) in per_instance.into_iter().flatten() {
+            corners.push(triangle);
+            facets.push(facet);
+        }
+        let largest = corners.iter().flatten().fold(Vec3::ZERO, |m, p| m.max(p.abs()));
+        Self { center, extent: largest.max_element(), corners, facets }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.facets.len()
+    }
+
+    /// The box round all; empty (least above most) where there are none.
+    pub(super) fn bounds(&self) -> [Vec3; 2] {
+        let all = self.corners.iter().flatten();
+        all.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[min, max], &p| [min.min(p), max.max(p)])
+    }
+
+    /// The same triangles in another order.
+    pub(super) fn reordered(&self, order: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
+        let corners = order.clone().map(|i| self.corners[i as usize]).collect();
+        Self { corners, facets: order.map(|i| self.facets[i as usize]).collect(), ..*self }
+    }
+}
+
+impl Structure for Triangles {
+    const REPEATS: bool = false;
+
+    fn triangles(&self) -> &Triangles {
+        self
+    }
+
+    fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
+        vec![(0..self.count()).map(value).fold(f32::NEG_INFINITY, f32::max)]
+    }
+
+    fn traverse(&self, _: &Beam, visitor: &mut impl Visitor) -> u64 {
+        (0..self.count()).for_each(|place| visitor.triangle(place));
+        0
+    }
+}
+
+/// An instance's finite triangles, relative to `center`.
+fn placed(world: &World, index: usize, center: DVec3) -> Vec<(u32, [Vec3; 3])> {
+    let instance = &world.instances[index];
+    let place = |p: &[f32; 3]| {
+        let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+        let p = instance.world_from_model.transform_point3(p) - center;
+        vec3(p.x as f32, p.y as f32, p.z as f32)
+    };
+    let positions: Vec<Vec3> = instance.mesh.positions.iter().map(place).collect();
+    let triangles = (instance.first_facet..).zip(&instance.mesh.triangles);
+    let triangles = triangles.map(|(facet, t)| (facet, t.map(|i| positions[i as usize])));
+    triangles.filter(|(_, t)| t.iter().all(|p| p.is_finite())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raytrace::Counters;
+    use crate::raytrace::intersect::Ray;
+    use vitral_scene::{Scene, builtin};
+
+    #[test]
+    fn every_triangle_is_asked_and_the_nearest_wins() {
+        let mut mesh = builtin::solids::tetrahedron(1.0);
+        mesh.positions[0][1] = f32::NAN;
+        let world = World::new(&Scene::from_mesh(mesh)).unwrap();
+        let list = Triangles::of_world(&world, &Workers::single());
+        assert_eq!(list.count(), 1, "three of the four have the broken corner");
+        let middle = list.corners[0].iter().copied().sum::<Vec3>() / 3.0;
+        let mut counters = Counters::default();
+        let hit = list.closest_hit(&Ray::new(middle * 3.0, -middle), &mut counters);
+        assert!(hit.is_some_and(|(facet, t)| facet == list.facets[0] && (t - 2.0).abs() < 1e-5), "{hit:?}");
+        assert_eq!(counters, Counters { boxes: 0, triangles: 1 });
+    }
+}

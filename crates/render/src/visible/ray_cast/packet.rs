@@ -1,0 +1,173 @@
+//! The rays of 8x8 pixels at a time, for structures that are trees.
+//!
+//! Rays through neighbouring pixels go down the same branches. So they go together: a box is tested once for all of
+//! them, against the pyramid that holds them; a facet that is found is tested for all their samples, eight at a time.
+//! A branch is passed over once every sample of the block holds something nearer. The answers are those of the rays one
+//! by one, since what covers a sample and how near it is are asked as for a single ray.
+//!
+//! Opaque facets come first. Only then are the layers collected that lie in front of them.
+//!
+//! In:   a view's facets and the tree over them. Out: the samples of a tile.
+//! Cost: one way down for each block and kind.
+//! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
+
+use super::{Cast, Place, Stamps};
+use crate::raytrace::{Structure, Tree, Visitor};
+use crate::stats::VisibilityCounters;
+use crate::visible::brute_force::size_in_picture;
+use crate::visible::facets::extent;
+use vitral_exec::Limit;
+use vitral_math::lanes::{Simd, dispatch};
+use vitral_raster::{BLOCK, Layer, LayerSink, SUBPIXEL, TILE, Tile, VisibilitySink, traverse_block};
+
+/// The opaque facets of a block.
+struct Opaque<'a, S, T> {
+    simd: S,
+    cast: &'a Cast<'a, T>,
+    tile: &'a mut Tile,
+    /// Top left pixel within the tile.
+    block: (usize, usize),
+    stamps: &'a mut Stamps,
+    /// Setups tested.
+    tests: u64,
+}
+
+/// The facets of a block that are layers, in front of its finished opaque samples.
+struct Layers<'a, S, T> {
+    simd: S,
+    cast: &'a Cast<'a, T>,
+    tile: &'a Tile,
+    block: (usize, usize),
+    layers: &'a mut Vec<Layer>,
+    stamps: &'a mut Stamps,
+    tests: u64,
+}
+
+/// The depth of the block's farthest sample.
+#[inline(always)]
+fn farthest(tile: &Tile, (x, y): (usize, usize)) -> f32 {
+    tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK]
+}
+
+/// Whether a triangle's box on the screen touches the block, in front of depth `far`. What is nowhere does not.
+#[inline(always)]
+fn reaches(place: &Place, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool {
+    let (x, y, side) = (tile.x as i32 + x as i32, tile.y as i32 + y as i32, BLOCK as i32);
+    let touches = |range: [i16; 2], start: i32| i32::from(range[0]) < start + side && i32::from(range[1]) >= start;
+    touches(place.columns, x) & touches(place.rows, y) & (place.nearest >= far)
+}
+
+impl<S: Simd, T: Structure> Visitor for Opaque<'_, S, T> {
+    #[inline(always)]
+    fn skips(&self, part: usize, near: f32) -> bool {
+        self.cast.eye.depth_behind(near) + self.cast.slack[0][part] < farthest(self.tile, self.block)
+    }
+
+    #[inline(always)]
+    fn done(&self, near: f32) -> bool {
+        self.cast.eye.depth_behind(near) + self.cast.largest_slack < farthest(self.tile, self.block)
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, place: usize) {
+        let far = farthest(self.tile, self.block);
+        let found = &self.cast.places[place];
+        if !reaches(found, self.tile, self.block, far) || self.cast.is_layered(found.setups) {
+            return;
+        }
+        if T::REPEATS && !self.stamps.first_time(place) {
+            return;
+        }
+        for setup in self.cast.setups(found.setups) {
+            self.tests += 1;
+            let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
+            let mut sink = VisibilitySink::eager(self.tile, pattern);
+            traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
+        }
+    }
+}
+
+impl<S: Simd, T: Structure> Visitor for Layers<'_, S, T> {
+    #[inline(always)]
+    fn skips(&self, part: usize, near: f32) -> bool {
+        self.cast.eye.depth_behind(near) + self.cast.slack[1][part] < farthest(self.tile, self.block)
+    }
+
+    #[inline(always)]
+    fn done(&self, near: f32) -> bool {
+        self.cast.eye.depth_behind(near) + self.cast.largest_slack < farthest(self.tile, self.block)
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, place: usize) {
+        let far = farthest(self.tile, self.block);
+        let found = &self.cast.places[place];
+        if !reaches(found, self.tile, self.block, far) || !self.cast.is_layered(found.setups) {
+            return;
+        }
+        if T::REPEATS && !self.stamps.first_time(place) {
+            return;
+        }
+        for setup in self.cast.setups(found.setups) {
+            self.tests += 1;
+            let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
+            let mut sink = LayerSink::new(self.tile, pattern, self.layers);
+            traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
+        }
+    }
+}
+
+/// Fills a tile, block by block.
+pub(super) fn look<T: Tree>(
+    cast: &Cast<'_, T>,
+    tile: &mut Tile,
+    layers: &mut Vec<Layer>,
+) -> Result<VisibilityCounters, Limit> {
+    let mut counters = VisibilityCounters::default();
+    let mut stamps = cast.take_stamps();
+    let (rows, columns) = size_in_picture(cast.view, tile);
+    for y in (0..rows).step_by(BLOCK) {
+        cast.execution.budget.check("ray casting")?;
+        for x in (0..columns).step_by(BLOCK) {
+            let pixels = (rows - y).min(BLOCK) * (columns - x).min(BLOCK);
+            let rays = (pixels * cast.view.pattern.len()) as u64;
+            let [boxes, tests] = dispatch!(cast.execution.level, simd =>
+                look_at_block(simd, cast, tile, (x, y), layers, &mut stamps));
+            counters.rays += rays;
+            counters.box_tests += boxes;
+            counters.triangle_tests += tests * rays;
+        }
+    }
+    cast.give_stamps(stamps);
+    Ok(counters)
+}
+
+/// Fills a block: how many boxes and how many setups were tested.
+#[inline(always)]
+fn look_at_block<S: Simd, T: Tree>(
+    simd: S,
+    cast: &Cast<'_, T>,
+    tile: &mut Tile,
+    block: (usize, usize),
+    layers: &mut Vec<Layer>,
+    stamps: &mut Stamps,
+) -> [u64; 2] {
+    // The pyramid round the block's samples.
+    let samples = extent(&cast.view.pattern);
+    let corner = [tile.x as i32 + block.0 as i32, tile.y as i32 + block.1 as i32];
+    let low = [0, 1].map(|k| corner[k] * SUBPIXEL + samples[k][0]);
+    let high = [0, 1].map(|k| (corner[k] + BLOCK as i32 - 1) * SUBPIXEL + samples[k][1]);
+    let pyramid = cast.eye.pyramid(simd, low, high);
+
+    stamps.next();
+    let mut opaque = Opaque { simd, cast, tile, block, stamps, tests: 0 };
+    let mut boxes = cast.structure.descend(&pyramid, &mut opaque);
+    let mut tests = opaque.tests;
+    if !cast.slack[1].is_empty() {
+        stamps.next();
+        let mut visitor = Layers { simd, cast, tile, block, layers, stamps, tests: 0 };
+        boxes += cast.structure.descend(&pyramid, &mut visitor);
+        tests += visitor.tests;
+    }
+    [boxes, tests]
+}

@@ -1,0 +1,119 @@
+//! One ray at a time, for structures that are walked rather than gone down: the grid, and the mere list.
+//!
+//! Each sample has its beam. The facet that the ray before met is tried first: most often it is met again, and then
+//! whatever lies behind it need not be looked at.
+//!
+//! In:   a view's facets and the structure over them. Out: the samples of a tile.
+//! Cost: one walk a sample.
+//! Source: [Appel 1968].
+
+use super::{Cast, NONE, Stamps};
+use crate::raytrace::{Structure, Visitor};
+use crate::stats::VisibilityCounters;
+use crate::visible::brute_force::size_in_picture;
+use crate::visible::facets::nearer;
+use vitral_exec::Limit;
+use vitral_raster::{Layer, NO_FACET, SUBPIXEL, TILE, TILE_PIXELS, Tile};
+
+/// What the ray through one sample has met.
+struct Search<'a, T> {
+    cast: &'a Cast<'a, T>,
+    sample: [i32; 2],
+    /// Depth and facet of the nearest opaque facet, and the setups of it.
+    nearest: (f32, u32),
+    setups: [u32; 2],
+    /// Transparent facets, some of them hidden.
+    layers: Vec<(f32, u32)>,
+    stamps: Stamps,
+    tests: u64,
+}
+
+impl<T: Structure> Search<'_, T> {
+    /// Asks the law of agreement about the facet of these setups.
+    #[inline]
+    fn test(&mut self, setups: [u32; 2]) {
+        let [x, y] = self.sample;
+        for setup in self.cast.setups(setups) {
+            self.tests += 1;
+            if setup.z_max < self.nearest.0 || !setup.covers(x, y) {
+                continue;
+            }
+            let candidate = (setup.depth(x, y), setup.facet);
+            if nearer(candidate, self.nearest) {
+                if self.cast.is_layered(setups) {
+                    self.layers.push(candidate);
+                } else {
+                    (self.nearest, self.setups) = (candidate, setups);
+                }
+            }
+        }
+    }
+}
+
+impl<T: Structure> Visitor for Search<'_, T> {
+    #[inline]
+    fn skips(&self, part: usize, near: f32) -> bool {
+        let [opaque, layered] = &self.cast.slack;
+        let slack = if layered.is_empty() { opaque[part] } else { opaque[part].max(layered[part]) };
+        self.cast.eye.depth_behind(self.cast.eye.start() + near) + slack < self.nearest.0
+    }
+
+    #[inline]
+    fn done(&self, near: f32) -> bool {
+        self.cast.eye.depth_behind(self.cast.eye.start() + near) + self.cast.largest_slack < self.nearest.0
+    }
+
+    #[inline]
+    fn triangle(&mut self, place: usize) {
+        let setups = self.cast.places[place].setups;
+        if setups[0] != NONE && (!T::REPEATS || self.stamps.first_time(place)) {
+            self.test(setups);
+        }
+    }
+}
+
+/// Fills a tile, a ray for each sample.
+pub(super) fn look<T: Structure>(
+    cast: &Cast<'_, T>,
+    tile: &mut Tile,
+    layers: &mut Vec<Layer>,
+) -> Result<VisibilityCounters, Limit> {
+    let mut counters = VisibilityCounters::default();
+    let (background, none) = ((0.0, NO_FACET), [NONE; 2]);
+    let (stamps, layer_list) = (cast.take_stamps(), Vec::new());
+    let mut search =
+        Search { cast, sample: [0; 2], nearest: background, setups: none, layers: layer_list, stamps, tests: 0 };
+    let pattern = &cast.view.pattern;
+    let (rows, columns) = size_in_picture(cast.view, tile);
+    for row in 0..rows {
+        cast.execution.budget.check("ray casting")?;
+        for column in 0..columns {
+            for sample in 0..pattern.len() {
+                let [sx, sy] = pattern.position(sample);
+                let x = (tile.x as i32 + column as i32) * SUBPIXEL + sx;
+                let y = (tile.y as i32 + row as i32) * SUBPIXEL + sy;
+                (search.sample, search.nearest) = ([x, y], background);
+                search.stamps.next();
+
+                // Try what the ray before met, then follow the beam.
+                let before = std::mem::replace(&mut search.setups, none);
+                if before != none {
+                    search.test(before);
+                }
+                counters.box_tests += cast.structure.traverse(&cast.eye.beam(x, y), &mut search);
+                counters.rays += 1;
+
+                // Keep the nearest, and the layers in front of it.
+                let at = sample * TILE_PIXELS + row * TILE + column;
+                (tile.depth[at], tile.facet[at]) = search.nearest;
+                tile.touched |= search.nearest.1 != NO_FACET;
+                let nearest = search.nearest;
+                let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
+                layers.extend(seen.map(|(depth, facet)| Layer { at: at as u32, depth, facet }));
+            }
+        }
+    }
+    counters.triangle_tests = search.tests;
+    cast.give_stamps(search.stamps);
+    Ok(counters)
+}

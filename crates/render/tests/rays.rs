@@ -1,0 +1,269 @@
+//! Ray casting through each structure, and brute force, hold the law of agreement: facet, depth and layers of every
+//! sample are the z-buffer's.
+
+use std::sync::{Arc, Mutex};
+use vitral_exec::{Budget, Limit, Workers};
+use vitral_math::{DMat4, DVec3};
+use vitral_raster::{Layer, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_render::stats::{CullCounters, VisibilityCounters};
+use vitral_render::visible::TileSink;
+use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
+use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
+
+const WIDTH: u32 = 68;
+const HEIGHT: u32 = 66;
+
+/// For each sample inside the picture: depth as bits, facet, layers sorted.
+type Picture = Vec<(u32, u32, Vec<(u32, u32)>)>;
+
+struct Collect(Mutex<Vec<(usize, Picture)>>);
+
+impl TileSink for Collect {
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>) {
+        let mut picture: Picture =
+            tile.depth.iter().zip(&tile.facet).map(|(d, f)| (d.to_bits(), *f, Vec::new())).collect();
+        for layer in layers.iter() {
+            picture[layer.at as usize].2.push((layer.depth.to_bits(), layer.facet));
+        }
+        for (at, sample) in picture.iter_mut().enumerate() {
+            let (x, y) = (at % TILE_PIXELS % TILE, at % TILE_PIXELS / TILE);
+            if tile.x + x as u32 >= WIDTH || tile.y + y as u32 >= HEIGHT {
+                *sample = (0, 0, Vec::new());
+            }
+            sample.2.sort_unstable();
+        }
+        self.0.lock().unwrap().push((index, picture));
+    }
+}
+
+/// What finds the visible surfaces, and through which structure.
+type Choice = (&'static str, Option<Acceleration>);
+
+const Z_BUFFER: Choice = ("z-buffer", None);
+const BRUTE_FORCE: Choice = ("brute-force", None);
+const RAYS: [Choice; 4] = [
+    ("ray-cast", Some(Acceleration::Bvh)),
+    ("ray-cast", Some(Acceleration::Octree)),
+    ("ray-cast", Some(Acceleration::Grid)),
+    ("ray-cast", Some(Acceleration::None)),
+];
+
+fn settings(samples: usize, (visibility, acceleration): Choice) -> Settings {
+    let visibility = visibility.to_owned();
+    Settings { width: WIDTH, height: HEIGHT, samples: samples as u32, visibility, acceleration, ..Settings::default() }
+}
+
+fn resolve(
+    session: &Session,
+    camera: &Camera,
+    samples: usize,
+    choice: Choice,
+    execution: &Execution,
+) -> Result<(Vec<Picture>, VisibilityCounters), Limit> {
+    let settings = settings(samples, choice);
+    let viewport = settings.check().unwrap();
+    let pattern = SamplePattern::new(samples);
+    let counters = &mut CullCounters::default();
+    let view = PreparedView::new(session, camera, &settings, viewport, pattern, execution, counters);
+    let mut grid = TileGrid::new(viewport, samples);
+    let sink = Collect(Mutex::default());
+    let algorithm = registry::visibility(choice.0).unwrap().algorithm;
+    let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
+    let mut tiles = sink.0.into_inner().unwrap();
+    tiles.sort_by_key(|t| t.0);
+    assert!(tiles.iter().map(|t| t.0).eq(0..grid.tiles.len()), "each tile is handed on once");
+    Ok((tiles.into_iter().map(|t| t.1).collect(), resolved.counters))
+}
+
+/// Compares ray casting with the z-buffer.
+fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
+    let execution = Execution { workers: Workers::new(2), ..Execution::default() };
+    let (expected, _) = resolve(session, camera, samples, Z_BUFFER, &execution).unwrap();
+    let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
+    assert!(seen > 0, "{what}: something is seen");
+    for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
+        // Asking every facet is slow: large scenes go without it.
+        let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::None);
+        if asks_all && session.world().facet_count > 400 {
+            continue;
+        }
+        let (picture, counters) = resolve(session, camera, samples, choice, &execution).unwrap();
+        assert_eq!(counters.rays, u64::from(WIDTH * HEIGHT) * samples as u64);
+        assert!(counters.triangle_tests > 0 && asks_all == (counters.box_tests == 0), "{choice:?}: {counters:?}");
+        let pairs = || picture.iter().flatten().zip(expected.iter().flatten());
+        let wrong: Vec<_> = (0..).zip(pairs()).filter(|(_, (a, b))| a != b).collect();
+        assert!(
+            wrong.is_empty(),
+            "{what}, {choice:?}, {samples} samples: {} of {seen} differ: {:?}",
+            wrong.len(),
+            &wrong[..wrong.len().min(4)]
+        );
+    }
+}
+
+/// Three views: the default one, a wide one from near by, and a parallel one from below.
+fn agree_from_three_sides(scene: Scene, what: &str) {
+    let session = Session::new(Arc::new(scene)).unwrap();
+    let bounds = session.world().bounds;
+    let (center, size) = (bounds.center(), bounds.diagonal());
+    let camera = |offset: DVec3, projection| Camera {
+        position: center + offset * size,
+        focal_point: center,
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    };
+    let views = [
+        camera(DVec3::new(0.6, 0.5, 0.9), Projection::Perspective { view_angle: 0.8 }),
+        camera(DVec3::new(0.11, 0.07, 0.13), Projection::Perspective { view_angle: 1.9 }),
+        camera(DVec3::new(0.3, -0.8, 0.5), Projection::Parallel { height: size * 0.7 }),
+    ];
+    for (number, view) in views.iter().enumerate() {
+        let samples = [1, 4, 1][number];
+        agree(&session, view, samples, &format!("{what}, view {number}"));
+    }
+}
+
+/// A perspective view of the whole scene.
+fn camera_of(session: &Session) -> Camera {
+    let bounds = session.world().bounds;
+    Camera {
+        position: bounds.center() + DVec3::new(0.6, 0.5, 0.9) * bounds.diagonal(),
+        focal_point: bounds.center(),
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 0.8 },
+        clip: None,
+    }
+}
+
+/// A mesh of triangles with corners of their own.
+fn soup(triangles: &[[[f32; 3]; 3]]) -> Mesh {
+    let mut mesh = builtin::solids::tetrahedron(1.0);
+    mesh.positions = triangles.iter().flatten().copied().collect();
+    mesh.triangles = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    mesh.faces = Faces::Triangles;
+    (mesh.normals, mesh.uvs, mesh.colors) = (None, Vec::new(), None);
+    mesh.parts.truncate(1);
+    mesh.parts[0].triangles = 0..triangles.len() as u32;
+    mesh
+}
+
+/// Numbers in `-1..1` that look random.
+fn random(state: &mut u64) -> f32 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 40) as f32 / (1 << 23) as f32 - 1.0
+}
+
+/// `count` triangles about places in a cube, `size` large.
+fn random_soup(count: usize, size: [f32; 3], seed: u64) -> Vec<[[f32; 3]; 3]> {
+    let mut state = seed;
+    let mut point = |scale: [f32; 3]| scale.map(|s| random(&mut state) * s);
+    (0..count)
+        .map(|_| {
+            let place = point([1.0; 3]);
+            [(); 3].map(|()| {
+                let offset = point(size);
+                [0, 1, 2].map(|k| place[k] + offset[k])
+            })
+        })
+        .collect()
+}
+
+#[test]
+fn p4_p23_built_in_scenes_agree() {
+    for (name, _) in builtin::names() {
+        agree_from_three_sides(builtin::scene(name).unwrap(), name);
+    }
+}
+
+#[test]
+fn traps_agree() {
+    let needles = random_soup(300, [2.0, 0.0005, 0.0005], 3);
+    let dust = random_soup(4000, [0.04; 3], 5);
+    let walls = random_soup(40, [2.0; 3], 7);
+    let far_away: Vec<_> = dust[..1000].iter().map(|t| t.map(|p| [p[0] + 3000.0, p[1] - 700.0, p[2]])).collect();
+    let mut broken = walls.clone();
+    broken[3][1][0] = f32::NAN;
+    broken[4][2][2] = f32::INFINITY;
+    broken[5] = [[0.1; 3]; 3];
+    let all = [("needles", needles), ("dust", dust), ("walls", walls), ("far away", far_away), ("broken", broken)];
+    for (what, triangles) in all {
+        agree_from_three_sides(Scene::from_mesh(soup(&triangles)), what);
+    }
+}
+
+#[test]
+fn p4_coplanar_faces_agree() {
+    let square = builtin::solids::plane(2.0, 2.0, 3, 3);
+    let mut scene = Scene::from_mesh(square.clone());
+    scene.add_mesh(square.clone(), DMat4::from_rotation_y(0.7));
+    scene.add_mesh(square, DMat4::from_scale(DVec3::new(-1.0, 1.0, 0.6)));
+    agree_from_three_sides(scene, "coplanar");
+}
+
+#[test]
+fn facets_through_the_eye_plane_agree() {
+    let session = Session::new(Arc::new(builtin::scene("scene0").unwrap())).unwrap();
+    let camera = camera_of(&session);
+    for (position, target) in [
+        (DVec3::new(0.0, 0.6, 0.0), DVec3::new(1.0, 0.5, 1.0)),
+        (DVec3::new(-1.0, 0.2, 0.3), DVec3::new(0.7, 0.8, 1.2)),
+    ] {
+        let projection = Projection::Perspective { view_angle: 1.4 };
+        let camera = Camera { position, focal_point: target, projection, clip: Some((0.05, 20.0)), ..camera };
+        agree(&session, &camera, 1, &format!("the eye at {position}"));
+    }
+}
+
+#[test]
+fn transparent_facets_are_layers() {
+    let mut scene = Scene::default();
+    let material = scene.add_material(vitral_light::Material {
+        alpha_mode: vitral_light::AlphaMode::Blend,
+        ..vitral_light::Material::default()
+    });
+    let mut glass = soup(&random_soup(60, [1.0; 3], 11));
+    glass.parts[0].material = Some(material);
+    scene.add_mesh(glass, DMat4::IDENTITY);
+    scene.add_mesh(soup(&random_soup(20, [1.0; 3], 13)), DMat4::IDENTITY);
+    agree_from_three_sides(scene, "glass");
+}
+
+#[test]
+fn structures_are_built_once_and_save_work() {
+    let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
+    let execution = Execution::default();
+    let camera = camera_of(&session);
+    assert!(Arc::ptr_eq(&session.bvh(&execution).unwrap(), &session.bvh(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&session.octree(&execution).unwrap(), &session.octree(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
+    let all = resolve(&session, &camera, 1, RAYS[3], &execution).unwrap().1;
+    for choice in &RAYS[..3] {
+        let counters = resolve(&session, &camera, 1, *choice, &execution).unwrap().1;
+        assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
+        assert!(counters.tests_saved + counters.triangle_tests >= all.rays * 500, "{choice:?}: {counters:?}");
+    }
+}
+
+#[test]
+fn what_is_too_much_is_refused_and_limits_hold() {
+    let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
+    let camera = camera_of(&session);
+    for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
+        let limited = Budget::default().with_memory_limit(Some(1000));
+        let execution = Execution { budget: limited, ..Execution::default() };
+        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        assert!(matches!(error, Limit::Memory { .. }), "{choice:?}: {error}");
+        let execution = Execution::default();
+        execution.budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        assert!(matches!(error, Limit::Cancelled { .. }), "{choice:?}: {error}");
+    }
+}
+
+#[test]
+fn a_structure_without_rays_is_refused() {
+    let settings = settings(1, ("warnock", Some(Acceleration::Grid)));
+    let error = settings.check().unwrap_err().to_string();
+    assert!(error.contains("`warnock` casts no rays: choose ray-cast"), "{error}");
+}

@@ -23,7 +23,7 @@ const OPTIONS: [&str; 13] = [
 
 /// Values to come, of options that are there.
 const VALUES: [(&str, &[&str]); 4] = [
-    ("--visibility", &["painter", "bsp", "weiler-atherton", "ray-cast"]),
+    ("--visibility", &["ray-cast"]),
     ("--transparency", &["kay"]),
     ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
     ("--channel", &["attached-shadow", "cast-shadow", "steps"]),

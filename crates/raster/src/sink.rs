@@ -1,7 +1,7 @@
-//! What covered samples mean: the nearest facet, or all facets in front of it.
+//! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
 use crate::kernel::traverse::{Block, BlockSink};
-use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use crate::{BLOCK, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 
@@ -85,6 +85,78 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
             }
         }
         self.note_writes(simd, block, written);
+    }
+}
+
+/// What a drawing in order of priority came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PriorityCounts {
+    /// Samples drawn over by something later in the list.
+    pub overdrawn: u64,
+    /// Samples where the depth function contradicted the list.
+    pub overruled: u64,
+    /// Among these, the ones with at least [`NEAR_TIE`] between the two depths.
+    pub overruled_far: u64,
+}
+
+/// Depths closer than this, 2^-20 of the range, count as a near tie.
+pub const NEAR_TIE: f32 = 1.0 / (1 << 20) as f32;
+
+/// Facets in a list from back to front: each covers what is there. The depth function has the last word: where it
+/// contradicts the list, the nearer facet stays, and that is counted.
+#[derive(Debug)]
+pub struct PrioritySink<'a> {
+    tile: &'a mut Tile,
+    pattern: &'a SamplePattern,
+    /// What happened so far.
+    pub counts: PriorityCounts,
+}
+
+impl<'a> PrioritySink<'a> {
+    /// Draws into `tile`.
+    pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
+        Self { tile, pattern, counts: PriorityCounts::default() }
+    }
+}
+
+impl<S: Simd> BlockSink<S> for PrioritySink<'_> {
+    #[inline(always)]
+    fn rejects(&self, _: &Setup, _: &Block) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let new_facet = U32x8::splat(simd, setup.facet);
+        let nothing = U32x8::splat(simd, NO_FACET);
+        for (s, &mask) in masks.iter().enumerate() {
+            let [sx, sy] = self.pattern.position(s);
+            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
+            for row in block.rows.clone() {
+                let covered = (mask >> (8 * row)) & 0xff;
+                if covered == 0 {
+                    continue;
+                }
+                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
+                let z = row_depth(simd, setup, x, y);
+                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+                let depths = &mut self.tile.depth[at..at + BLOCK];
+                let facets = &mut self.tile.facet[at..at + BLOCK];
+                let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
+                let covered = Mask8::from_bitmask(simd, covered);
+                let nearer = z.simd_gt(old_z) | (z.simd_eq(old_z) & new_facet.simd_lt(old_facet));
+                let wins = nearer & covered;
+                wins.select(z, old_z).store_slice(depths);
+                wins.select(new_facet, old_facet).store_slice(facets);
+                let filled = covered & !old_facet.simd_eq(nothing);
+                let loses = covered & !nearer;
+                let far = loses & (old_z - z).simd_ge(F32x8::splat(simd, NEAR_TIE));
+                self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
+                self.counts.overruled += u64::from(loses.to_bitmask().count_ones());
+                self.counts.overruled_far += u64::from(far.to_bitmask().count_ones());
+            }
+        }
+        self.tile.touched = true;
     }
 }
 

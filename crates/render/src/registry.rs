@@ -1,6 +1,9 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::visible::{VisibleSurface, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer};
+use crate::visible::{
+    VisibleSurface, bsp::Bsp, painter::Painter, scanline::ScanLine, warnock::Warnock,
+    weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
+};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -10,7 +13,7 @@ pub struct VisibilityAlgorithm {
     pub description: &'static str,
     /// Key into the bibliography.
     pub source: &'static str,
-    /// `image` or `list-priority` precision.
+    /// `image`, `list-priority` or `object` precision.
     pub precision: &'static str,
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
@@ -38,6 +41,27 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Warnock 1969",
         precision: "image",
         algorithm: &Warnock,
+    },
+    VisibilityAlgorithm {
+        name: "painter",
+        description: "polygons sorted by depth are painted over each other",
+        source: "Newell, Newell & Sancha 1972",
+        precision: "list-priority",
+        algorithm: &Painter,
+    },
+    VisibilityAlgorithm {
+        name: "bsp",
+        description: "a tree of planes gives the order from back to front",
+        source: "Fuchs, Kedem & Naylor 1980",
+        precision: "list-priority",
+        algorithm: &Bsp,
+    },
+    VisibilityAlgorithm {
+        name: "weiler-atherton",
+        description: "polygons are clipped against each other until only visible ones are left",
+        source: "Weiler & Atherton 1977",
+        precision: "object",
+        algorithm: &WeilerAtherton,
     },
 ];
 

@@ -5,6 +5,7 @@
 use crate::Error;
 use crate::cull::bounds_tree::BoundsTree;
 use crate::shading::FaceTable;
+use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Workers};
 use vitral_math::lanes::Level;
@@ -40,6 +41,7 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
 }
 
 /// What is found out about a mesh when it is first needed.
@@ -72,7 +74,15 @@ impl Session {
         }
         let world = World::new(&scene)?;
         let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
-        Ok(Self { scene, world, meshes, grid: None, spare_vertices: Mutex::default(), spare_batches: Mutex::default() })
+        Ok(Self {
+            scene,
+            world,
+            meshes,
+            grid: None,
+            spare_vertices: Mutex::default(),
+            spare_batches: Mutex::default(),
+            bsp: Mutex::default(),
+        })
     }
 
     /// The scene.

@@ -1,9 +1,15 @@
 //! Which surface is seen at each sample.
 
+pub mod bsp;
 mod facets;
+pub mod painter;
+mod pieces;
 pub mod scanline;
 pub mod warnock;
+pub mod weiler_atherton;
 pub mod zbuffer;
+
+pub(crate) use bsp::Tree as BspTree;
 
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};

@@ -1,8 +1,8 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
 use crate::visible::{
-    VisibleSurface, bsp::Bsp, painter::Painter, scanline::ScanLine, warnock::Warnock,
-    weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
+    VisibleSurface, bsp::Bsp, painter::Painter, scanline::ScanLine, warnock::Warnock, weiler_atherton::WeilerAtherton,
+    zbuffer::ZBuffer,
 };
 
 /// An algorithm that finds the visible surface at each sample.

@@ -407,8 +407,7 @@ mod tests {
 
     #[test]
     fn p21_penetrating_polygons_are_split_once() {
-        let (painted, counters) =
-            order(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
+        let (painted, counters) = order(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
         assert_eq!((painted.len(), counters.splits), (3, 1));
     }
 

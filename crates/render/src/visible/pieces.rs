@@ -129,9 +129,9 @@ impl Raster {
         let mut ends = [[0u16; 2]; 2];
         for (axis, size) in [self.viewport.width, self.viewport.height].into_iter().enumerate() {
             let [low, high] = self.samples[axis].map(f64::from);
-            let (min, max) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), p| {
-                (min.min(p[axis]), max.max(p[axis]))
-            });
+            let (min, max) = outline
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), p| (min.min(p[axis]), max.max(p[axis])));
             // Outlines are good to far less than this.
             const SLACK: f64 = 0.01;
             let pixel = f64::from(SUBPIXEL);
@@ -320,7 +320,8 @@ mod tests {
     #[test]
     fn the_halves_of_a_cut_share_the_samples_out() {
         let pattern = SamplePattern::new(4);
-        let lines = [[1.0, 0.0, -1000.0], [0.3, -0.7, 128.0], [1.0, 1.0, -1024.0], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        let lines =
+            [[1.0, 0.0, -1000.0], [0.3, -0.7, 128.0], [1.0, 1.0, -1024.0], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]];
         for [a, b, c] in lines {
             let cut = Cut { a, b, c, positive: true };
             let (mut one, mut other) = ([u64::MAX; 4], [u64::MAX; 4]);

@@ -181,7 +181,13 @@ impl<'f> AreaSorting<'f> {
     }
 
     /// What of a region inside `front` is not hidden by it.
-    fn unhidden(&self, region: Region, back: u32, front: &Polygon<'_>, counters: &mut VisibilityCounters) -> Option<Region> {
+    fn unhidden(
+        &self,
+        region: Region,
+        back: u32,
+        front: &Polygon<'_>,
+        counters: &mut VisibilityCounters,
+    ) -> Option<Region> {
         let back = &self.polygons[back as usize];
         let margin = match relation(front, back, &region) {
             Relation::Hidden => return None,
@@ -366,10 +372,8 @@ mod tests {
     #[test]
     fn p24_the_preliminary_order_may_err() {
         // The large one comes nearer, but elsewhere: where they overlap, the small one is in front.
-        let (seen, counters) = visible(&[
-            triangle(LARGE, [0.1, 0.9, 0.1], 0),
-            triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1),
-        ]);
+        let (seen, counters) =
+            visible(&[triangle(LARGE, [0.1, 0.9, 0.1], 0), triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1)]);
         let of = |facet: u32| seen.iter().filter(|s| s.0 == facet).map(|s| s.1).sum::<f64>();
         assert!((of(1) - 50.0).abs() < 1e-6 && (of(0) - 1750.0).abs() < 1e-6, "{seen:?}");
         assert!(counters.recursions > 0);
@@ -377,8 +381,7 @@ mod tests {
 
     #[test]
     fn p24_penetrating_polygons_are_cut_where_they_meet() {
-        let (seen, counters) =
-            visible(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
+        let (seen, counters) = visible(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
         let of = |facet: u32| seen.iter().filter(|s| s.0 == facet).map(|s| s.1).sum::<f64>();
         // They meet at x = 30: a triangle of 450 square pixels remains right of it.
         assert!((of(0) - 450.0).abs() < 0.1 && (of(1) - 1350.0).abs() < 0.1, "{seen:?}");

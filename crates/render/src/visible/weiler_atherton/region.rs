@@ -417,7 +417,11 @@ mod tests {
         assert_eq!(areas(&[[0, 0], [10, 0], [10, 10]]), [50.0, 50.0]);
         assert_eq!(areas(&[[0, 0], [5, 0], [5, 10], [0, 10]]), [50.0, 50.0]);
         // Touching along an edge, in a part of an edge, in a corner.
-        for touching in [[[10, 0], [20, 0], [20, 10], [10, 10]], [[10, 3], [20, 3], [20, 5], [10, 5]], [[10, 10], [20, 10], [20, 20], [10, 20]]] {
+        for touching in [
+            [[10, 0], [20, 0], [20, 10], [10, 10]],
+            [[10, 3], [20, 3], [20, 5], [10, 5]],
+            [[10, 10], [20, 10], [20, 20], [10, 20]],
+        ] {
             assert_eq!(areas(&touching), [0.0, 100.0]);
         }
         // From outside to a corner; corners on two edges.
@@ -486,7 +490,11 @@ mod tests {
     fn p24_samples_of_a_triangle_are_those_that_its_edge_functions_cover() {
         use vitral_raster::{CornerPosition, Setup};
         let pattern = SamplePattern::new(1);
-        for corners in [[[0, 0], [2048, 0], [0, 2048]], [[128, 128], [1408, 640], [640, 1408]], [[77, 9], [3000, 1111], [500, 4000]]] {
+        for corners in [
+            [[0, 0], [2048, 0], [0, 2048]],
+            [[128, 128], [1408, 640], [640, 1408]],
+            [[77, 9], [3000, 1111], [500, 4000]],
+        ] {
             let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
             let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
             let mut rows = [0; TILE];

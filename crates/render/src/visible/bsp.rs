@@ -86,7 +86,7 @@ fn picture(
 
     // Find the order of the fragments from back to front, those of facets that have no place in the tree first.
     let mut order = Vec::with_capacity(tree.fragment_count() as usize);
-    tree.from_back_to_front(to_viewer, |fragment| {
+    tree.back_to_front(to_viewer, |fragment| {
         if places.first[tree.facet(fragment) as usize] != ABSENT {
             order.push(fragment);
         }

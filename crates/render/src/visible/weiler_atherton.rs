@@ -119,7 +119,7 @@ impl<'f> AreaSorting<'f> {
     fn run(&mut self, counters: &mut VisibilityCounters, mut show: impl FnMut(&Setup, &Region)) -> Result<(), Limit> {
         let mut steps = 0u32;
         while let Some(mut list) = self.lists.pop() {
-            if steps % 64 == 0 {
+            if steps.is_multiple_of(64) {
                 self.account(&list)?;
             }
             steps += 1;
@@ -295,7 +295,7 @@ fn line_of_gap(front: &Polygon<'_>, back: &Polygon<'_>, margin: f64) -> Option<L
     // Half a unit in a and in b makes the window's side, 2^14, at most.
     let slack = f64::from(1 << 15);
     let fits = scale.is_finite() && c.abs() < 1e12;
-    fits.then(|| Line { a: a as i64, b: b as i64, c: (c - slack) as i64 })
+    fits.then_some(Line { a: a as i64, b: b as i64, c: (c - slack) as i64 })
 }
 
 /// Whether two facets have the same depth wherever they are both seen.

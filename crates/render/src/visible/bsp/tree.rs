@@ -209,7 +209,7 @@ impl Tree {
     }
 
     /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
-    pub(crate) fn from_back_to_front(&self, viewer: DVec4, mut f: impl FnMut(u32)) {
+    pub(crate) fn back_to_front(&self, viewer: DVec4, mut f: impl FnMut(u32)) {
         self.loose.clone().for_each(&mut f);
         // A stack of our own: trees may be deep. Nodes wait until all behind them is done.
         let (mut waiting, mut node) = (Vec::new(), if self.nodes.is_empty() { NONE } else { 0 });
@@ -379,7 +379,7 @@ impl<'t> Builder<'t> {
     /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
     fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
         let node = self.tree.nodes.len() as u32;
-        if node % 256 == 0 {
+        if node.is_multiple_of(256) {
             self.account()?;
         }
         if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
@@ -412,7 +412,8 @@ impl<'t> Builder<'t> {
     fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
         self.tree.splits += 1;
         let [mut front, mut back] = std::mem::take(&mut self.split);
-        (front.clear(), back.clear());
+        front.clear();
+        back.clear();
         let points = self.points_of(part);
         for (i, &to) in points.iter().enumerate() {
             let from = points[(i + points.len() - 1) % points.len()];
@@ -516,7 +517,7 @@ mod tests {
 
     fn order(tree: &Tree, viewer: DVec4) -> Vec<u32> {
         let mut order = Vec::new();
-        tree.from_back_to_front(viewer, |f| order.push(tree.facet(f)));
+        tree.back_to_front(viewer, |f| order.push(tree.facet(f)));
         order
     }
 

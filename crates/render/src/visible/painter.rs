@@ -115,6 +115,15 @@ struct Marked {
     at: u32,
 }
 
+/// What is looked at first of a polygon that another is compared with: the first cell it is in, its farthest depth, and
+/// what has become of it. Small, since many are looked at.
+#[derive(Clone, Copy)]
+struct Brief {
+    cell: [u16; 2],
+    far: f32,
+    state: State,
+}
+
 /// Pixels along a cell of the grid at least.
 const SMALLEST_CELL: u32 = 8;
 /// About how many polygons a cell should hold.
@@ -129,7 +138,7 @@ struct Sorting<'f, 'c> {
     execution: &'f Execution,
     counters: &'c mut VisibilityCounters,
     polygons: Vec<Polygon>,
-    states: Vec<State>,
+    briefs: Vec<Brief>,
     corners: Vec<[f64; 2]>,
     cuts: Vec<Cut>,
     /// The order by the farthest point.
@@ -137,6 +146,10 @@ struct Sorting<'f, 'c> {
     marked: Vec<Marked>,
     /// Polygons by cell, row by row.
     cells: Vec<Vec<u32>>,
+    /// How many polygons of each cell's list are painted or split.
+    done: Vec<u32>,
+    /// Cells where that is more than half.
+    stale: Vec<u32>,
     columns: u32,
     cell: u32,
     painted: Vec<u32>,
@@ -163,12 +176,14 @@ impl<'f, 'c> Sorting<'f, 'c> {
             execution,
             counters,
             polygons: Vec::with_capacity(setups.len()),
-            states: Vec::with_capacity(setups.len()),
+            briefs: Vec::with_capacity(setups.len()),
             corners: Vec::with_capacity(setups.len() * 3),
             cuts: Vec::new(),
             waiting: BinaryHeap::with_capacity(setups.len()),
             marked: Vec::new(),
             cells: vec![Vec::new(); (columns * rows) as usize],
+            done: vec![0; (columns * rows) as usize],
+            stale: Vec::new(),
             columns,
             cell,
             painted: Vec::new(),
@@ -196,23 +211,51 @@ impl<'f, 'c> Sorting<'f, 'c> {
             }
         }
         self.waiting.push(Place { far: polygon.far, facet: setup.facet, polygon: number });
+        self.briefs.push(Brief { cell: [x0, y0], far: polygon.far, state: State::Waiting });
         self.polygons.push(polygon);
-        self.states.push(State::Waiting);
     }
 
     /// Finds the order.
     fn sort(&mut self) -> Result<(), Limit> {
         while let Some(place) = self.waiting.pop() {
-            if self.states[place.polygon as usize] == State::Waiting {
+            if self.briefs[place.polygon as usize].state == State::Waiting {
                 self.mark(place.polygon);
                 self.paint_marked()?;
+                self.tidy();
             }
         }
         Ok(())
     }
 
+    /// Notes that a polygon is painted or split.
+    fn finish(&mut self, polygon: u32, state: State) {
+        self.briefs[polygon as usize].state = state;
+        let [x0, y0, x1, y1] = self.polygons[polygon as usize].cells;
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                let cell = y as usize * self.columns as usize + x as usize;
+                self.done[cell] += 1;
+                if self.done[cell] as usize * 2 > self.cells[cell].len() {
+                    self.stale.push(cell as u32);
+                }
+            }
+        }
+    }
+
+    /// Takes what is done out of the cells' lists. While polygons are marked, their places in the lists must not move.
+    fn tidy(&mut self) {
+        for cell in self.stale.drain(..) {
+            let done = &mut self.done[cell as usize];
+            if *done > 0 {
+                *done = 0;
+                let pending = |p: &u32| matches!(self.briefs[*p as usize].state, State::Waiting | State::Marked);
+                self.cells[cell as usize].retain(pending);
+            }
+        }
+    }
+
     fn mark(&mut self, polygon: u32) {
-        self.states[polygon as usize] = State::Marked;
+        self.briefs[polygon as usize].state = State::Marked;
         let [x0, y0, ..] = self.polygons[polygon as usize].cells;
         self.marked.push(Marked { polygon, cell: [x0, y0], at: 0 });
     }
@@ -226,12 +269,12 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 self.account()?;
             }
             let Some((other, verdict)) = self.obstacle()? else {
-                self.states[top.polygon as usize] = State::Painted;
+                self.finish(top.polygon, State::Painted);
                 self.painted.push(top.polygon);
                 self.marked.pop();
                 continue;
             };
-            let solved = match (verdict, self.states[other as usize]) {
+            let solved = match (verdict, self.briefs[other as usize].state) {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
                     self.counters.reordered += 1;
@@ -256,11 +299,12 @@ impl<'f, 'c> Sorting<'f, 'c> {
         loop {
             let list = &self.cells[top.cell[1] as usize * self.columns as usize + top.cell[0] as usize];
             while let Some(&other) = list.get(top.at as usize) {
-                let q = &self.polygons[other as usize];
+                let brief = &self.briefs[other as usize];
                 // Two polygons are compared in the first cell that both are in.
-                let here = [0, 1].map(|k| p.cells[k].max(q.cells[k])) == top.cell;
-                let pending = matches!(self.states[other as usize], State::Waiting | State::Marked);
-                if here && pending && other != top.polygon {
+                let here = [0, 1].map(|k| p.cells[k].max(brief.cell[k])) == top.cell;
+                let pending = matches!(brief.state, State::Waiting | State::Marked);
+                if here && pending && other != top.polygon && !p.is_behind(brief.far, self.counters) {
+                    let q = &self.polygons[other as usize];
                     let verdict = compare(p, q, self.setups, &self.corners, self.counters);
                     if verdict != Verdict::Before {
                         return Ok(Some((other, verdict)));
@@ -315,9 +359,9 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let polygon = self.polygons[number].clone();
         let Some(halves) = polygon.split(&self.corners, &line) else { return false };
         self.counters.splits += 1;
-        self.states[number] = State::Split;
+        self.finish(number as u32, State::Split);
         for left in self.marked.drain(place..) {
-            let state = &mut self.states[left.polygon as usize];
+            let state = &mut self.briefs[left.polygon as usize].state;
             if *state == State::Marked {
                 *state = State::Waiting;
                 let waiting = &self.polygons[left.polygon as usize];

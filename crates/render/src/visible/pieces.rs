@@ -50,6 +50,15 @@ impl Cut {
         Self { positive: !self.positive, ..self }
     }
 
+    /// Whether a polygon lies on the kept side with room to spare, so that no sample in it can be beyond.
+    fn holds(&self, polygon: &[[f64; 2]]) -> bool {
+        polygon.iter().all(|&[x, y]| {
+            let v = self.value([x, y]);
+            let room = (self.c.abs() + (self.b * y).abs() + (self.a * x).abs()) * 1e-9;
+            if self.positive { v > room } else { v < -room }
+        })
+    }
+
     /// How far inside a point is, made a little larger than rounding could make it smaller.
     fn inside(&self, [x, y]: [f64; 2]) -> f64 {
         let v = self.value([x, y]);
@@ -153,12 +162,28 @@ impl Pieces {
         let [outline, scratch] = &mut self.outline;
         outline.clear();
         outline.extend(corners(setup));
+        let first = self.cuts.len();
         for cut in cuts {
-            clip_outline(outline, scratch, cut);
+            if !cut.holds(outline) {
+                clip_outline(outline, scratch, cut);
+                self.cuts.push(*cut);
+            }
         }
-        let Some(pixels) = raster.pixels(outline) else { return };
-        let first = self.cuts.len() as u32;
-        self.cuts.extend_from_slice(cuts);
+        let Some(pixels) = raster.pixels(outline) else {
+            self.cuts.truncate(first);
+            return;
+        };
+
+        // Forget the cuts that later ones made superfluous.
+        let mut kept = first;
+        for i in first..self.cuts.len() {
+            if !self.cuts[i].holds(outline) {
+                self.cuts[kept] = self.cuts[i];
+                kept += 1;
+            }
+        }
+        self.cuts.truncate(kept);
+        let first = first as u32;
         let piece = self.pieces.len() as u32;
         self.pieces.push(Piece { setup: index, pixels, cuts: first..self.cuts.len() as u32 });
         let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);

@@ -65,6 +65,14 @@ impl Polygon {
         Self { setup: index, far: clamp(far), near: clamp(near), extent, corners, cuts, cells }
     }
 
+    /// Whether all of it is farther than the other's farthest point.
+    pub(super) fn is_behind(&self, far: f32, counters: &mut VisibilityCounters) -> bool {
+        let behind = self.near < far;
+        counters.list_tests += u64::from(behind);
+        counters.by_depth_extent += u64::from(behind);
+        behind
+    }
+
     fn points<'c>(&self, corners: &'c [[f64; 2]]) -> &'c [[f64; 2]] {
         &corners[self.corners.start as usize..self.corners.end as usize]
     }
@@ -160,11 +168,10 @@ pub(super) fn compare(
     corners: &[[f64; 2]],
     counters: &mut VisibilityCounters,
 ) -> Verdict {
-    counters.list_tests += 1;
-    if p.near < q.far {
-        counters.by_depth_extent += 1;
+    if p.is_behind(q.far, counters) {
         return Verdict::Before;
     }
+    counters.list_tests += 1;
     if p.extent[2] <= q.extent[0] || q.extent[2] <= p.extent[0] {
         counters.by_x_extent += 1;
         return Verdict::Before;

@@ -149,7 +149,7 @@ impl<S: Simd> BlockSink<S> for PrioritySink<'_> {
                 wins.select(z, old_z).store_slice(depths);
                 wins.select(new_facet, old_facet).store_slice(facets);
                 let filled = covered & !old_facet.simd_eq(nothing);
-                let loses = covered & !nearer;
+                let loses = covered & !nearer & !old_facet.simd_eq(new_facet);
                 let far = loses & (old_z - z).simd_ge(F32x8::splat(simd, NEAR_TIE));
                 self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
                 self.counts.overruled += u64::from(loses.to_bitmask().count_ones());

@@ -81,18 +81,18 @@ fn picture(
 ) -> Result<crate::stats::VisibilityCounters, Limit> {
     let view = facets.view();
     let setups = facets.opaque();
-    let places = Places::new(&setups, view.session.world.facet_count);
-    let to_viewer = eye(view);
+    let facet_count = view.session.world.facet_count;
+    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4;
+    execution.budget.charge(bytes, "BSP fragments on the screen")?;
 
     // Find the order of the fragments from back to front, those of facets that have no place in the tree first.
-    let mut order = Vec::with_capacity(tree.fragment_count() as usize);
-    tree.back_to_front(to_viewer, |fragment| {
-        if places.first[tree.facet(fragment) as usize] != ABSENT {
-            order.push(fragment);
-        }
-    });
-    let bytes = (order.len() * 60 + places.first.len() * 4) as u64;
-    execution.budget.charge(bytes, "BSP fragments on the screen")?;
+    let to_viewer = eye(view);
+    let walk = || {
+        let mut order = Vec::with_capacity(tree.fragment_count() as usize);
+        tree.back_to_front(to_viewer, |fragment| order.push(fragment));
+        order
+    };
+    let (order, places) = execution.workers.join(walk, || Places::new(&setups, facet_count));
 
     // Bring the fragments to the screen, in runs.
     let lines = Lines::new(view);

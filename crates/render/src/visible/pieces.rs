@@ -50,6 +50,13 @@ impl Cut {
         Self { positive: !self.positive, ..self }
     }
 
+    /// Whether a box, given by its smallest and largest corner, lies on the kept side with room to spare.
+    fn holds_box(&self, [[x0, y0], [x1, y1]]: [[f64; 2]; 2]) -> bool {
+        let x = if (self.a > 0.0) == self.positive { x0 } else { x1 };
+        let y = if (self.b > 0.0) == self.positive { y0 } else { y1 };
+        self.holds(&[[x, y]])
+    }
+
     /// Whether a polygon lies on the kept side with room to spare, so that no sample in it can be beyond.
     fn holds(&self, polygon: &[[f64; 2]]) -> bool {
         polygon.iter().all(|&[x, y]| {
@@ -94,6 +101,13 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
     std::mem::swap(polygon, scratch);
 }
 
+/// Smallest and largest corner of the box round a polygon.
+fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    polygon.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
+}
+
 /// A part of a set-up triangle.
 #[derive(Clone, Debug)]
 struct Piece {
@@ -135,12 +149,11 @@ impl Raster {
 
     /// First and last column and row of pixels that may have samples in an outline.
     pub(super) fn pixels(&self, outline: &[[f64; 2]]) -> Option<[u16; 4]> {
+        let around = bounds(outline);
         let mut ends = [[0u16; 2]; 2];
         for (axis, size) in [self.viewport.width, self.viewport.height].into_iter().enumerate() {
             let [low, high] = self.samples[axis].map(f64::from);
-            let (min, max) = outline
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), p| (min.min(p[axis]), max.max(p[axis])));
+            let (min, max) = (around[0][axis], around[1][axis]);
             // Outlines are good to far less than this.
             const SLACK: f64 = 0.01;
             let pixel = f64::from(SUBPIXEL);
@@ -163,9 +176,11 @@ impl Pieces {
         outline.clear();
         outline.extend(corners(setup));
         let first = self.cuts.len();
+        let mut around = bounds(outline);
         for cut in cuts {
-            if !cut.holds(outline) {
+            if !cut.holds_box(around) && !cut.holds(outline) {
                 clip_outline(outline, scratch, cut);
+                around = bounds(outline);
                 self.cuts.push(*cut);
             }
         }
@@ -175,8 +190,8 @@ impl Pieces {
         };
 
         // Forget the cuts that later ones made superfluous.
-        let mut kept = first;
-        for i in first..self.cuts.len() {
+        let mut kept = if self.cuts.len() > first + 1 { first } else { self.cuts.len() };
+        for i in kept..self.cuts.len() {
             if !self.cuts[i].holds(outline) {
                 self.cuts[kept] = self.cuts[i];
                 kept += 1;

@@ -11,6 +11,9 @@
 //! certain. The plane of a needle, whose normal is uncertain, is replaced by one along its longest edge. The polygon
 //! that gave the plane is always in it. So each node consumes a polygon or halves the set, and the build ends.
 //!
+//! A fragment keeps the planes that cut it and that it is near to. Those that stay clear of it are implied by the others
+//! but for rounding; should that move a sample across one, two fragments hold the sample, never none.
+//!
 //! In:   the world's facets, world space. Out: nodes, and fragments: facets with the planes that cut them.
 //! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for the worst scenes.
 //! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
@@ -34,6 +37,8 @@ const WORST_HALF: usize = 6;
 /// Pieces of work that the set is divided into before threads share them.
 const JOBS: usize = 64;
 /// The half-thickness of planes, relative to the numbers that enter the distance.
+/// A cut is forgotten if all of a fragment is farther from it than this part of the fragment's size.
+const CLEAR: f64 = 0.125;
 const THICKNESS: f64 = 1.0 / (1 << 21) as f64;
 /// No node; no cut.
 const NONE: u32 = u32::MAX;
@@ -118,22 +123,31 @@ struct Node {
 #[derive(Clone, Copy, Debug)]
 struct Fragment {
     facet: u32,
-    /// The last of the planes that cut it, or none.
+    /// The planes that cut it off from its surroundings, in the tree's list.
+    first_cut: u32,
     cuts: u32,
 }
 
-/// One of the planes that cut a fragment, and the one before.
+/// The plane of a node, and on which side of it a fragment lies.
 #[derive(Clone, Copy, Debug)]
-struct CutLink {
+struct Cut {
     node: u32,
     positive: bool,
+}
+
+/// One of the planes that cut a part, and the one before.
+#[derive(Clone, Copy, Debug)]
+struct CutLink {
+    cut: Cut,
     before: u32,
 }
 
 /// A fragment that is still on its way down.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    fragment: Fragment,
+    facet: u32,
+    /// The last of the planes that cut it, or none.
+    cuts: u32,
     /// Its corners, in the job's list.
     first: u32,
     count: u32,
@@ -151,7 +165,7 @@ struct Task {
 pub(crate) struct Tree {
     nodes: Vec<Node>,
     fragments: Vec<Fragment>,
-    cuts: Vec<CutLink>,
+    cuts: Vec<Cut>,
     /// Facets without finite corners; on the screen they are nothing, or clipped beyond recognition.
     loose: Range<u32>,
     splits: u64,
@@ -200,12 +214,9 @@ impl Tree {
 
     /// The planes that cut a fragment, world space, and whether it lies on the positive side of each.
     pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (DVec4, bool)> + '_ {
-        let mut next = self.fragments[fragment as usize].cuts;
-        std::iter::from_fn(move || {
-            let cut = self.cuts.get(next as usize)?;
-            next = cut.before;
-            Some((self.nodes[cut.node as usize].plane, cut.positive))
-        })
+        let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
+        let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
+        cuts.iter().map(|cut| (self.nodes[cut.node as usize].plane, cut.positive))
     }
 
     /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
@@ -249,6 +260,9 @@ struct Builder<'t> {
     triangles: &'t [[DVec3; 3]],
     budget: &'t Budget,
     tree: Tree,
+    links: Vec<CutLink>,
+    /// The builder of the tree that this is a branch of.
+    outer: Option<&'t Builder<'t>>,
     points: Vec<DVec3>,
     /// Bytes charged so far.
     charged: u64,
@@ -259,19 +273,19 @@ struct Builder<'t> {
 impl<'t> Builder<'t> {
     fn new(triangles: &'t [[DVec3; 3]], budget: &'t Budget) -> Self {
         let (tree, split) = (Tree::default(), Default::default());
-        Self { triangles, budget, tree, points: Vec::new(), charged: 0, split }
+        Self { triangles, budget, tree, links: Vec::new(), outer: None, points: Vec::new(), charged: 0, split }
     }
 
     /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
     fn of_all(&mut self, triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Tree, Limit> {
         let mut parts = Vec::new();
         for (facet, corners) in triangles.iter().enumerate() {
-            let fragment = Fragment { facet: facet as u32, cuts: NONE };
+            let facet = facet as u32;
             if corners.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e60) {
-                parts.push(Part { fragment, first: self.points.len() as u32, count: 3 });
+                parts.push(Part { facet, cuts: NONE, first: self.points.len() as u32, count: 3 });
                 self.points.extend(corners);
             } else {
-                self.tree.fragments.push(fragment);
+                self.tree.fragments.push(Fragment { facet, first_cut: 0, cuts: 0 });
             }
         }
         self.tree.loose = 0..self.tree.fragments.len() as u32;
@@ -285,10 +299,10 @@ impl<'t> Builder<'t> {
                 None => jobs.push(task),
             }
         }
-        let points = &self.points;
+        let outer = &*self;
         let branches = execution.workers.map(jobs.len(), |i| {
-            let mut builder = Builder::new(triangles, &execution.budget);
-            let done = builder.branch(&jobs[i].parts, points);
+            let mut builder = Builder { outer: Some(outer), ..Builder::new(triangles, &execution.budget) };
+            let done = builder.branch(&jobs[i].parts, &outer.points);
             execution.budget.release(builder.charged);
             done.map(|()| builder.tree)
         });
@@ -304,8 +318,8 @@ impl<'t> Builder<'t> {
         let own = |part: &Part| {
             let first = self.points.len() as u32;
             self.points.extend(&points[part.first as usize..][..part.count as usize]);
-            let cuts = if part.fragment.cuts == NONE { NONE } else { part.fragment.cuts | OUTER };
-            Part { first, fragment: Fragment { cuts, ..part.fragment }, ..*part }
+            let cuts = if part.cuts == NONE { NONE } else { part.cuts | OUTER };
+            Part { first, cuts, ..*part }
         };
         let mut tasks = vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
         while let Some(task) = tasks.pop() {
@@ -330,7 +344,7 @@ impl<'t> Builder<'t> {
     }
 
     fn plane_of(&self, part: &Part) -> Plane {
-        Plane::of(self.triangles[part.fragment.facet as usize])
+        Plane::of(self.triangles[part.facet as usize])
     }
 
     /// The best plane across an axis, if one halves the set.
@@ -390,7 +404,7 @@ impl<'t> Builder<'t> {
         for (i, part) in task.parts.into_iter().enumerate() {
             let side = if splitter == Some(i) { Side::In } else { side_of(&plane, self.points_of(&part)) };
             match side {
-                Side::In => self.tree.fragments.push(part.fragment),
+                Side::In => self.place(&part),
                 Side::Front => front.push(part),
                 Side::Back => back.push(part),
                 Side::Across => {
@@ -406,6 +420,29 @@ impl<'t> Builder<'t> {
         tasks.push(Task { parts: front, parent: node, front: true });
         tasks.push(Task { parts: back, parent: node, front: false });
         Ok(())
+    }
+
+    /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
+    /// those that it is near to.
+    fn place(&mut self, part: &Part) {
+        let points = &self.points[part.first as usize..][..part.count as usize];
+        let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
+        let clear = (high - low).max_element() * CLEAR;
+        let (first_cut, mut link) = (self.tree.cuts.len() as u32, part.cuts);
+        while link != NONE {
+            let outer = link & OUTER;
+            let builder = if outer == 0 { None } else { self.outer };
+            let (links, nodes) = builder.map_or((&self.links, &self.tree.nodes), |b| (&b.links, &b.tree.nodes));
+            let CutLink { cut, before } = links[(link & !OUTER) as usize];
+            // The part's own node is about to be made, so all nodes that cut it are there.
+            let plane = nodes[cut.node as usize].plane;
+            if points.iter().any(|p| plane.dot(p.extend(1.0)).abs() <= clear) {
+                self.tree.cuts.push(Cut { node: cut.node | outer, ..cut });
+            }
+            link = if before == NONE { NONE } else { before | outer };
+        }
+        let cuts = self.tree.cuts.len() as u32 - first_cut;
+        self.tree.fragments.push(Fragment { facet: part.facet, first_cut, cuts });
     }
 
     /// Cuts a part in the halves in front of and behind a plane.
@@ -431,11 +468,11 @@ impl<'t> Builder<'t> {
             }
         }
         let halves = [(&front, true), (&back, false)].map(|(corners, positive)| {
-            let cuts = self.tree.cuts.len() as u32;
-            self.tree.cuts.push(CutLink { node, positive, before: part.fragment.cuts });
+            let cuts = self.links.len() as u32;
+            self.links.push(CutLink { cut: Cut { node, positive }, before: part.cuts });
             let first = self.points.len() as u32;
             self.points.extend(corners);
-            Part { fragment: Fragment { cuts, ..part.fragment }, first, count: corners.len() as u32 }
+            Part { facet: part.facet, cuts, first, count: corners.len() as u32 }
         });
         self.split = [front, back];
         halves
@@ -445,7 +482,8 @@ impl<'t> Builder<'t> {
     fn account(&mut self) -> Result<(), Limit> {
         self.budget.check("building the BSP tree")?;
         let parts = self.points.len() / 3 * size_of::<Part>();
-        let now = self.tree.bytes() + (size_of_val(self.points.as_slice()) + parts) as u64;
+        let work = size_of_val(self.points.as_slice()) + size_of_val(self.links.as_slice()) + parts;
+        let now = self.tree.bytes() + work as u64;
         // A branch of that many corners is of no use to anybody, limit or not.
         let most = 1 << 26;
         if self.points.len() > most {
@@ -485,23 +523,16 @@ impl Tree {
             *(if job.front { &mut parent.front } else { &mut parent.back }) = nodes;
         }
         let moved = |index: u32, by: u32| if index == NONE { NONE } else { index + by };
-        let link = |index: u32| match index {
-            NONE => NONE,
-            outer if outer & OUTER != 0 => outer & !OUTER,
-            inner => inner + cuts,
-        };
+        let node = |index: u32| if index & OUTER == 0 { index + nodes } else { index & !OUTER };
         self.nodes.extend(branch.nodes.into_iter().map(|n| Node {
             front: moved(n.front, nodes),
             back: moved(n.back, nodes),
             fragments: n.fragments.start + fragments..n.fragments.end + fragments,
             ..n
         }));
-        self.fragments.extend(branch.fragments.into_iter().map(|f| Fragment { cuts: link(f.cuts), ..f }));
-        self.cuts.extend(branch.cuts.into_iter().map(|c| CutLink {
-            node: c.node + nodes,
-            before: link(c.before),
-            ..c
-        }));
+        let placed = |f: Fragment| Fragment { first_cut: f.first_cut + cuts, ..f };
+        self.fragments.extend(branch.fragments.into_iter().map(placed));
+        self.cuts.extend(branch.cuts.into_iter().map(|c| Cut { node: node(c.node), ..c }));
         self.splits += branch.splits;
     }
 }
@@ -572,7 +603,7 @@ mod tests {
         let budget = Budget::default();
         let mut builder = Builder::new(&triangles, &budget);
         builder.points.extend(triangles[0]);
-        let part = Part { fragment: Fragment { facet: 0, cuts: NONE }, first: 0, count: 3 };
+        let part = Part { facet: 0, cuts: NONE, first: 0, count: 3 };
         let mut parts = vec![part];
         for plane in
             [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])]

@@ -9,7 +9,8 @@
 //! In:   the world's facets (world space). Out: the samples of each tile (screen space).
 //! Cost: building, see `bsp/tree.rs`; a picture costs the nodes plus covered samples, hidden ones included.
 //! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel projection asks for the
-//! side of the direction to the viewer; a fragment is not a new polygon but its facet and the planes that cut it, which
+//! side of the direction to the viewer; the list is taken from its end, from front to back, so that what is full need not
+//! be looked at again; a fragment is not a new polygon but its facet and the planes that cut it, which
 //! become lines on the screen (see `pieces.rs`).
 //! Coherence: of frames. The tree stays in the session, so a second picture from anywhere does not build one.
 
@@ -85,11 +86,12 @@ fn picture(
     let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4;
     execution.budget.charge(bytes, "BSP fragments on the screen")?;
 
-    // Find the order of the fragments from back to front, those of facets that have no place in the tree first.
+    // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
     let to_viewer = eye(view);
     let walk = || {
         let mut order = Vec::with_capacity(tree.fragment_count() as usize);
         tree.back_to_front(to_viewer, |fragment| order.push(fragment));
+        order.reverse();
         order
     };
     let (order, places) = execution.workers.join(walk, || Places::new(&setups, facet_count));
@@ -114,7 +116,7 @@ fn picture(
     // Draw them, tile by tile.
     let filled = fill_with(facets, marks, grid, sink, 1, &|facets, index, tiles, counters| {
         execution.budget.check("drawing BSP fragments")?;
-        draw(facets, &setups, &runs, index, &mut tiles[0], counters);
+        draw::<true>(facets, &setups, &runs, index, &mut tiles[0], counters);
         Ok(())
     });
     execution.budget.release(bytes);
@@ -145,7 +147,7 @@ impl Places {
 
     fn of<'s>(&self, facet: u32, setups: &'s [&Setup]) -> impl Iterator<Item = u32> + use<'s> {
         let first = self.first[facet as usize];
-        (first..).take_while(move |&at| setups.get(at as usize).is_some_and(|s| s.facet == facet))
+        (first..setups.len() as u32).take_while(move |&at| setups[at as usize].facet == facet)
     }
 }
 

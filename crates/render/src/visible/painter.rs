@@ -62,7 +62,7 @@ impl VisibleSurface for Painter {
         let runs = [list];
         let filled = fill_with(&facets, marks, grid, sink, 1, &|facets, index, tiles, counters| {
             execution.budget.check("painting")?;
-            draw(facets, &setups, &runs, index, &mut tiles[0], counters);
+            draw::<false>(facets, &setups, &runs, index, &mut tiles[0], counters);
             Ok(())
         });
         execution.budget.release(bytes);

@@ -1,11 +1,12 @@
-//! Lists of polygons, drawn from back to front: what painter's algorithm and BSP trees come to in the end.
+//! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
 //!
 //! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
 //! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
 //! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
 //! with rounding; it only bounds the pixels where samples are looked for, a little too far out.
 //!
-//! The list decides what is seen: what comes later covers what came before. Samples at which the common depth function
+//! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
+//! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
 //! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
 //! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
 //!
@@ -85,11 +86,12 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
     if !(cut.a + cut.b + cut.c).is_finite() {
         return;
     }
+    let Some(&(mut from)) = polygon.last() else { return };
+    let mut d_from = cut.inside(from);
     let outside = |d: f64| d < 0.0;
     scratch.clear();
-    for (i, &to) in polygon.iter().enumerate() {
-        let from = polygon[(i + polygon.len() - 1) % polygon.len()];
-        let (d_from, d_to) = (cut.inside(from), cut.inside(to));
+    for &to in polygon.iter() {
+        let d_to = cut.inside(to);
         if outside(d_from) != outside(d_to) {
             let t = d_from / (d_from - d_to);
             scratch.push([from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t]);
@@ -97,6 +99,7 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
         if !outside(d_to) {
             scratch.push(to);
         }
+        (from, d_from) = (to, d_to);
     }
     std::mem::swap(polygon, scratch);
 }
@@ -190,8 +193,8 @@ impl Pieces {
         };
 
         // Forget the cuts that later ones made superfluous.
-        let mut kept = if self.cuts.len() > first + 1 { first } else { self.cuts.len() };
-        for i in kept..self.cuts.len() {
+        let mut kept = first;
+        for i in first..self.cuts.len() {
             if !self.cuts[i].holds(outline) {
                 self.cuts[kept] = self.cuts[i];
                 kept += 1;
@@ -240,8 +243,8 @@ impl Pieces {
     }
 }
 
-/// Draws a tile's part of a list given in runs.
-pub(super) fn draw(
+/// Draws a tile's part of a list given in runs, from front to back or from back to front.
+pub(super) fn draw<const FRONT_FIRST: bool>(
     facets: &Facets<'_, '_>,
     setups: &[&Setup],
     runs: &[Pieces],
@@ -251,14 +254,14 @@ pub(super) fn draw(
 ) {
     let pattern = &facets.view().pattern;
     let mut counts = PriorityCounts::default();
-    dispatch!(facets.execution().level, simd => draw_runs(simd, setups, runs, index, tile, pattern, &mut counts));
+    dispatch!(facets.execution().level, simd => draw_runs::<_, FRONT_FIRST>(simd, setups, runs, index, tile, pattern, &mut counts));
     counters.overdrawn += counts.overdrawn;
     counters.overruled += counts.overruled;
     counters.overruled_far += counts.overruled_far;
 }
 
 #[inline(always)]
-fn draw_runs<S: Simd>(
+fn draw_runs<S: Simd, const FRONT_FIRST: bool>(
     simd: S,
     setups: &[&Setup],
     runs: &[Pieces],
@@ -268,7 +271,8 @@ fn draw_runs<S: Simd>(
     counts: &mut PriorityCounts,
 ) {
     let place = (tile.x, tile.y);
-    let mut sink = PieceSink { inner: PrioritySink::new(tile, pattern), place, pattern, pixels: [0; 4], cuts: &[] };
+    let mut sink =
+        PieceSink::<FRONT_FIRST> { inner: PrioritySink::new(tile, pattern), place, pattern, pixels: [0; 4], cuts: &[] };
     for run in runs {
         for &item in &run.items[run.starts[index] as usize..run.starts[index + 1] as usize] {
             let piece = &run.pieces[item as usize];
@@ -281,8 +285,8 @@ fn draw_runs<S: Simd>(
 }
 
 /// Narrows a triangle's coverage to one of its pieces.
-struct PieceSink<'a> {
-    inner: PrioritySink<'a>,
+struct PieceSink<'a, const FRONT_FIRST: bool> {
+    inner: PrioritySink<'a, FRONT_FIRST>,
     /// The tile's first pixel.
     place: (u32, u32),
     pattern: &'a SamplePattern,
@@ -290,12 +294,13 @@ struct PieceSink<'a> {
     cuts: &'a [Cut],
 }
 
-impl<S: Simd> BlockSink<S> for PieceSink<'_> {
+impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PieceSink<'_, FRONT_FIRST> {
     #[inline(always)]
-    fn rejects(&self, _: &Setup, block: &Block) -> bool {
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
         let (x, y) = (self.place.0 as i32 + block.x as i32, self.place.1 as i32 + block.y as i32);
         let ([x0, y0, x1, y1], last) = (self.pixels, BLOCK as i32 - 1);
-        x > x1 || y > y1 || x + last < x0 || y + last < y0
+        let beside = x > x1 || y > y1 || x + last < x0 || y + last < y0;
+        beside || BlockSink::<S>::rejects(&self.inner, setup, block)
     }
 
     #[inline(always)]

@@ -314,7 +314,7 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
     for (name, scene) in scenes {
         let mut renderer = exact(scene, WIDTH, HEIGHT);
         let bounds = renderer.world().bounds;
-        let (mut overdrawn, mut overruled_far, mut trees) = (0, 0, Vec::new());
+        let (mut seen, mut overruled_far, mut trees) = (0, 0, Vec::new());
         for camera in eyes(100, (bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min).length()) {
             renderer.camera = Some(camera);
             let run = |algorithm| find(&renderer, algorithm, 1, renderer.execution()).unwrap();
@@ -323,7 +323,7 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
             let c = found.counters;
             // From below, the stones' undersides lie in the floor, as coplanar as snapped corners leave them.
             if name != "scene1" || camera.position.y > 0.0 {
-                overdrawn += c.overdrawn;
+                seen += found.samples.iter().filter(|s| s.1 != Frame::BACKGROUND).count() as u64;
                 overruled_far += c.overruled_far;
             }
             trees.push((c.tree_nodes, c.fragments, c.splits));
@@ -331,8 +331,8 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
         }
         assert!(trees.windows(2).all(|t| t[0] == t[1]), "{name}");
         // The list alone is right: where it is overruled, corners were snapped to 1/256 pixel.
-        println!("{name}: {overdrawn} samples drawn over, {overruled_far} overruled by more than a near tie");
-        assert!(overruled_far * 200 <= overdrawn, "{name}: {overruled_far} of {overdrawn}");
+        println!("{name}: {seen} samples seen, {overruled_far} overruled by more than a near tie");
+        assert!(overruled_far * 500 <= seen, "{name}: {overruled_far} of {seen}");
     }
 }
 

@@ -21,8 +21,7 @@ const OPTIONS: [&str; 12] = [
 ];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 4] = [
-    ("--visibility", &["painter", "bsp", "weiler-atherton"]),
+const VALUES: [(&str, &[&str]); 3] = [
     ("--transparency", &["kay"]),
     ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
     ("--channel", &["attached-shadow", "cast-shadow", "steps"]),

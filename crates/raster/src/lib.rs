@@ -26,7 +26,7 @@ pub use kernel::transform::transform;
 pub use kernel::traverse::{Block, BlockSink, traverse, traverse_block};
 pub use samples::SamplePattern;
 pub use setup::{CornerPosition, Setup, snap};
-pub use sink::{Layer, LayerSink, VisibilitySink};
+pub use sink::{Layer, LayerSink, NEAR_TIE, PriorityCounts, PrioritySink, VisibilitySink};
 pub use tile::{Tile, TileGrid, Viewport};
 
 /// Pixels along a tile's side.

@@ -1,7 +1,7 @@
-//! What covered samples mean: the nearest facet, or all facets in front of it.
+//! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
 use crate::kernel::traverse::{Block, BlockSink};
-use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use crate::{BLOCK, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 
@@ -38,27 +38,26 @@ impl<'a> VisibilitySink<'a> {
     pub fn eager(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
         Self { tile, pattern, patience: 1 }
     }
+}
 
-    /// Brings `block_far` up to date once a block has been written over.
-    #[inline(always)]
-    fn note_writes<S: Simd>(&mut self, simd: S, block: &Block, written: u32) {
-        let index = block.index();
-        let samples = self.pattern.len();
-        self.tile.touched |= written > 0;
-        self.tile.block_writes[index] += written;
-        if self.tile.block_writes[index] < self.patience {
-            return;
-        }
-        self.tile.block_writes[index] = 0;
-        let mut far = F32x8::splat(simd, f32::INFINITY);
-        for s in 0..samples {
-            for row in 0..BLOCK {
-                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
-                far = lanes::Lanes::min(far, F32x8::from_slice(simd, &self.tile.depth[at..at + BLOCK]));
-            }
-        }
-        self.tile.block_far[index] = far.to_array().into_iter().fold(f32::INFINITY, f32::min);
+/// Brings `block_far` up to date once `patience` samples of a block, of `samples` samples a pixel, have been written.
+#[inline(always)]
+fn note_writes<S: Simd>(simd: S, tile: &mut Tile, samples: usize, block: &Block, (written, patience): (u32, u32)) {
+    let index = block.index();
+    tile.touched |= written > 0;
+    tile.block_writes[index] += written;
+    if tile.block_writes[index] < patience {
+        return;
     }
+    tile.block_writes[index] = 0;
+    let mut far = F32x8::splat(simd, f32::INFINITY);
+    for s in 0..samples {
+        for row in 0..BLOCK {
+            let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+            far = lanes::Lanes::min(far, F32x8::from_slice(simd, &tile.depth[at..at + BLOCK]));
+        }
+    }
+    tile.block_far[index] = far.to_array().into_iter().fold(f32::INFINITY, f32::min);
 }
 
 impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
@@ -92,7 +91,90 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
                 written += wins.to_bitmask().count_ones();
             }
         }
-        self.note_writes(simd, block, written);
+        note_writes(simd, self.tile, self.pattern.len(), block, (written, self.patience));
+    }
+}
+
+/// What a drawing in order of priority came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PriorityCounts {
+    /// Samples drawn over by something later in the list.
+    pub overdrawn: u64,
+    /// Samples where the depth function contradicted the list.
+    pub overruled: u64,
+    /// Among these, the ones with at least [`NEAR_TIE`] between the two depths.
+    pub overruled_far: u64,
+}
+
+/// Depths closer than this, 2^-20 of the range, count as a near tie.
+pub const NEAR_TIE: f32 = 1.0 / (1 << 20) as f32;
+
+/// Facets in a list from back to front, each covers what is there; or from front to back, each fills what is left, and
+/// blocks that are full are not looked at. The depth function has the last word: where it contradicts the list, the
+/// nearer facet is kept, and that is counted.
+#[derive(Debug)]
+pub struct PrioritySink<'a, const FRONT_FIRST: bool> {
+    tile: &'a mut Tile,
+    pattern: &'a SamplePattern,
+    /// What happened so far.
+    pub counts: PriorityCounts,
+}
+
+impl<'a, const FRONT_FIRST: bool> PrioritySink<'a, FRONT_FIRST> {
+    /// Draws into `tile`.
+    pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
+        Self { tile, pattern, counts: PriorityCounts::default() }
+    }
+}
+
+impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_FIRST> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        FRONT_FIRST && setup.z_max < self.tile.block_far[block.index()]
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let new_facet = U32x8::splat(simd, setup.facet);
+        let nothing = U32x8::splat(simd, NO_FACET);
+        let mut written = 0;
+        for (s, &mask) in masks.iter().enumerate() {
+            let [sx, sy] = self.pattern.position(s);
+            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
+            for row in block.rows.clone() {
+                let covered = (mask >> (8 * row)) & 0xff;
+                if covered == 0 {
+                    continue;
+                }
+                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
+                let z = row_depth(simd, setup, x, y);
+                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+                let depths = &mut self.tile.depth[at..at + BLOCK];
+                let facets = &mut self.tile.facet[at..at + BLOCK];
+                let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
+                let covered = Mask8::from_bitmask(simd, covered);
+                let nearer = z.simd_gt(old_z) | (z.simd_eq(old_z) & new_facet.simd_lt(old_facet));
+                let wins = nearer & covered;
+                wins.select(z, old_z).store_slice(depths);
+                wins.select(new_facet, old_facet).store_slice(facets);
+                written += wins.to_bitmask().count_ones();
+                let filled = covered & !old_facet.simd_eq(nothing);
+                let (overruled, gap) = if FRONT_FIRST {
+                    (filled & wins, z - old_z)
+                } else {
+                    (covered & !nearer & !old_facet.simd_eq(new_facet), old_z - z)
+                };
+                let far = overruled & gap.simd_ge(F32x8::splat(simd, NEAR_TIE));
+                self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
+                self.counts.overruled += u64::from(overruled.to_bitmask().count_ones());
+                self.counts.overruled_far += u64::from(far.to_bitmask().count_ones());
+            }
+        }
+        if FRONT_FIRST {
+            let patience = (BLOCK * BLOCK * self.pattern.len()) as u32;
+            note_writes(simd, self.tile, self.pattern.len(), block, (written, patience));
+        }
+        self.tile.touched = true;
     }
 }
 

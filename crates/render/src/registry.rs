@@ -2,7 +2,8 @@
 
 use crate::Acceleration;
 use crate::visible::{
-    VisibleSurface, brute_force::BruteForce, ray_cast::RayCast, scanline::ScanLine, warnock::Warnock, zbuffer::ZBuffer,
+    VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
+    warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
 
 /// An algorithm that finds the visible surface at each sample.
@@ -13,7 +14,7 @@ pub struct VisibilityAlgorithm {
     pub description: &'static str,
     /// Key into the bibliography.
     pub source: &'static str,
-    /// `image` or `list-priority` precision.
+    /// `image`, `list-priority` or `object` precision.
     pub precision: &'static str,
     /// Whether it follows rays, so that [`ACCELERATION`] is a choice.
     pub casts_rays: bool,
@@ -62,6 +63,30 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "image",
         casts_rays: false,
         algorithm: &BruteForce,
+    },
+    VisibilityAlgorithm {
+        name: "painter",
+        description: "polygons sorted by depth are painted over each other",
+        source: "Newell, Newell & Sancha 1972",
+        precision: "list-priority",
+        casts_rays: false,
+        algorithm: &Painter,
+    },
+    VisibilityAlgorithm {
+        name: "bsp",
+        description: "a tree of planes gives the order from back to front",
+        source: "Fuchs, Kedem & Naylor 1980",
+        precision: "list-priority",
+        casts_rays: false,
+        algorithm: &Bsp,
+    },
+    VisibilityAlgorithm {
+        name: "weiler-atherton",
+        description: "polygons are clipped against each other until only visible ones are left",
+        source: "Weiler & Atherton 1977",
+        precision: "object",
+        casts_rays: false,
+        algorithm: &WeilerAtherton,
     },
 ];
 

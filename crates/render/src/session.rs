@@ -9,6 +9,7 @@ use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::FaceTable;
+use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::lanes::Level;
@@ -44,6 +45,7 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
     triangles: Kept<Triangles>,
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
@@ -99,6 +101,7 @@ impl Session {
             grid: None,
             spare_vertices: Mutex::default(),
             spare_batches: Mutex::default(),
+            bsp: Mutex::default(),
             triangles: Mutex::default(),
             bvh: Mutex::default(),
             octree: Mutex::default(),

@@ -105,6 +105,46 @@ pub struct VisibilityCounters {
     pub triangle_tests: u64,
     /// Ray casting: pairs of a ray and a facet on the screen that bounding volumes left untested.
     pub tests_saved: u64,
+    /// BSP: nodes of the tree.
+    pub tree_nodes: u64,
+    /// BSP: polygons and parts of polygons in the tree.
+    pub fragments: u64,
+    /// List priority: polygons and parts of polygons in the list that is drawn.
+    pub pieces: u64,
+    /// Object precision: polygons cut in two.
+    pub splits: u64,
+    /// Painter: pairs of polygons compared.
+    pub list_tests: u64,
+    /// Painter: pairs decided by their extents in depth.
+    pub by_depth_extent: u64,
+    /// Painter: pairs decided by the first test, extents in x.
+    pub by_x_extent: u64,
+    /// Painter: pairs decided by the second test, extents in y.
+    pub by_y_extent: u64,
+    /// Painter: pairs decided by the third test, the farther polygon lies behind the nearer one's plane.
+    pub by_plane_of_nearer: u64,
+    /// Painter: pairs decided by the fourth test, the nearer polygon lies in front of the farther one's plane.
+    pub by_plane_of_farther: u64,
+    /// Painter: pairs decided by the fifth test, the projections do not overlap.
+    pub by_projection: u64,
+    /// Painter: pairs decided by their depths in the overlap of the projections.
+    pub by_overlap: u64,
+    /// Painter: polygons moved to an earlier place in the list.
+    pub reordered: u64,
+    /// Painter: cycles that were cut.
+    pub cycles: u64,
+    /// Weiler–Atherton: polygons clipped against another.
+    pub clipped_polygons: u64,
+    /// Weiler–Atherton: lists looked at again because the preliminary order erred.
+    pub recursions: u64,
+    /// Weiler–Atherton: visible polygons, tile by tile.
+    pub visible_polygons: u64,
+    /// List priority: samples drawn over by something later in the list.
+    pub overdrawn: u64,
+    /// List priority: samples where the depth function contradicted the list.
+    pub overruled: u64,
+    /// List priority: those of them with at least 2^-20 of the depth range between the two surfaces.
+    pub overruled_far: u64,
 }
 
 impl VisibilityCounters {
@@ -121,6 +161,26 @@ impl VisibilityCounters {
         self.box_tests += o.box_tests;
         self.triangle_tests += o.triangle_tests;
         self.tests_saved += o.tests_saved;
+        self.tree_nodes += o.tree_nodes;
+        self.fragments += o.fragments;
+        self.pieces += o.pieces;
+        self.splits += o.splits;
+        self.list_tests += o.list_tests;
+        self.by_depth_extent += o.by_depth_extent;
+        self.by_x_extent += o.by_x_extent;
+        self.by_y_extent += o.by_y_extent;
+        self.by_plane_of_nearer += o.by_plane_of_nearer;
+        self.by_plane_of_farther += o.by_plane_of_farther;
+        self.by_projection += o.by_projection;
+        self.by_overlap += o.by_overlap;
+        self.reordered += o.reordered;
+        self.cycles += o.cycles;
+        self.clipped_polygons += o.clipped_polygons;
+        self.recursions += o.recursions;
+        self.visible_polygons += o.visible_polygons;
+        self.overdrawn += o.overdrawn;
+        self.overruled += o.overruled;
+        self.overruled_far += o.overruled_far;
     }
 }
 

@@ -91,6 +91,11 @@ impl<'v, 'a> Facets<'v, 'a> {
         self.opaque.iter().flat_map(move |batch| batch.tile(tile))
     }
 
+    /// All opaque triangles; those of a clipped facet follow one another.
+    pub(super) fn opaque(&self) -> Vec<&Setup> {
+        self.opaque.iter().flat_map(Batch::setups).collect()
+    }
+
     /// The view.
     pub(super) fn view(&self) -> &'v PreparedView<'a> {
         self.view
@@ -136,15 +141,28 @@ pub(super) fn fill_tiles(
 ) -> Result<Resolved, Limit> {
     let mut resolved = Resolved::default();
     let facets = Facets::new(view, execution, &mut resolved)?;
+    resolved.counters = fill_with(&facets, marks, grid, sink, chunk, fill)?;
+    Ok(resolved)
+}
+
+/// [`fill_tiles`], of facets that are on the screen already.
+pub(super) fn fill_with(
+    facets: &Facets<'_, '_>,
+    marks: Option<&Batch>,
+    grid: &mut TileGrid,
+    sink: &dyn TileSink,
+    chunk: usize,
+    fill: &Fill<'_>,
+) -> Result<VisibilityCounters, Limit> {
     let outcome = Mutex::new(Ok(VisibilityCounters::default()));
-    execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
+    facets.execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
         // After a limit, the rest of the pieces are passed over.
         if outcome.lock().expect("no thread panics while it counts").is_err() {
             return;
         }
         tiles.iter_mut().for_each(Tile::clear);
         let (first, mut counters) = (piece * chunk, VisibilityCounters::default());
-        let filled = fill(&facets, first, tiles, &mut counters);
+        let filled = fill(facets, first, tiles, &mut counters);
         if filled.is_ok() {
             for (i, tile) in tiles.iter_mut().enumerate() {
                 facets.finish(first + i, tile, marks, sink);
@@ -161,8 +179,7 @@ pub(super) fn fill_tiles(
             Err(_) => {}
         }
     });
-    resolved.counters = outcome.into_inner().expect("no thread panics while it counts")?;
-    Ok(resolved)
+    outcome.into_inner().expect("no thread panics while it counts")
 }
 
 /// Smallest and largest x, then y, of a pattern's samples within the pixel.

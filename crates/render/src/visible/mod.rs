@@ -1,12 +1,18 @@
 //! Which surface is seen at each sample.
 
 pub mod brute_force;
+pub mod bsp;
 mod facets;
+pub mod painter;
+mod pieces;
 pub mod ray_cast;
 pub mod scanline;
 mod screen_setups;
 pub mod warnock;
+pub mod weiler_atherton;
 pub mod zbuffer;
+
+pub(crate) use bsp::Tree as BspTree;
 
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};

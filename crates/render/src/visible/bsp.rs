@@ -1,0 +1,215 @@
+//! Binary space partition: the scene is cut up once, and then there is an order from back to front for every eye.
+//!
+//! A plane cuts space in two. Seen from an eye on one side, nothing beyond the plane can hide anything on the eye's side.
+//! So: first draw what lies beyond, then what lies in the plane, then what lies on the eye's side; and within each half
+//! do the same with a plane of its own. The planes are those of polygons (and, while there are many polygons, planes
+//! across an axis), each half's polygons are cut where they cross the plane, and the whole is a tree that depends on the
+//! scene alone. To draw a picture is to walk the tree, asking at each node on which side the eye is.
+//!
+//! In:   the world's facets (world space). Out: the samples of each tile (screen space).
+//! Cost: building, see `bsp/tree.rs`; a picture costs the nodes plus covered samples, hidden ones included.
+//! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel projection asks for the
+//! side of the direction to the viewer; the list is taken from its end, from front to back, so that what is full need not
+//! be looked at again; a fragment is not a new polygon but its facet and the planes that cut it, which
+//! become lines on the screen (see `pieces.rs`).
+//! Coherence: of frames. The tree stays in the session, so a second picture from anywhere does not build one.
+
+mod tree;
+
+use super::facets::{Facets, fill_with};
+use super::pieces::{Cut, Pieces, Raster, draw};
+use super::{Resolved, TileSink, VisibleSurface};
+use crate::{Execution, PreparedView};
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_math::{DMat4, DVec4};
+use vitral_raster::{Batch, SUBPIXEL, Setup, TileGrid};
+
+pub(crate) use tree::Tree;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Bsp;
+
+/// Fragments in one run of the list.
+const FRAGMENTS_A_RUN: usize = 8192;
+/// The facet is not on the screen.
+const ABSENT: u32 = u32::MAX;
+
+impl VisibleSurface for Bsp {
+    fn resolve(
+        &self,
+        view: &PreparedView<'_>,
+        marks: Option<&Batch>,
+        grid: &mut TileGrid,
+        execution: &Execution,
+        sink: &dyn TileSink,
+    ) -> Result<Resolved, Limit> {
+        let mut resolved = Resolved::default();
+        let facets = Facets::new(view, execution, &mut resolved)?;
+        let (tree, reused) = tree_of(view, execution)?;
+        execution.budget.charge(tree.bytes(), "the BSP tree")?;
+        let pictured = picture(&tree, &facets, marks, grid, execution, sink);
+        execution.budget.release(tree.bytes());
+        resolved.counters = pictured?;
+        resolved.counters.tree_nodes = tree.node_count();
+        resolved.counters.fragments = tree.fragment_count();
+        resolved.counters.splits = tree.splits();
+        resolved.counters.saved = if reused { tree.node_count() } else { 0 };
+        Ok(resolved)
+    }
+}
+
+/// The session's tree, and whether it was there already.
+fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>, bool), Limit> {
+    let mut known = view.session.bsp.lock().expect("no thread panics while it builds a tree");
+    if let Some(tree) = &*known {
+        return Ok((Arc::clone(tree), true));
+    }
+    let tree = Arc::new(Tree::of_world(&view.session.world, execution)?);
+    *known = Some(Arc::clone(&tree));
+    Ok((tree, false))
+}
+
+/// Walks the tree and draws what comes.
+fn picture(
+    tree: &Tree,
+    facets: &Facets<'_, '_>,
+    marks: Option<&Batch>,
+    grid: &mut TileGrid,
+    execution: &Execution,
+    sink: &dyn TileSink,
+) -> Result<crate::stats::VisibilityCounters, Limit> {
+    let view = facets.view();
+    let setups = facets.opaque();
+    let facet_count = view.session.world.facet_count;
+    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4;
+    execution.budget.charge(bytes, "BSP fragments on the screen")?;
+
+    // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
+    let to_viewer = eye(view);
+    let walk = || {
+        let mut order = Vec::with_capacity(tree.fragment_count() as usize);
+        tree.back_to_front(to_viewer, |fragment| order.push(fragment));
+        order.reverse();
+        order
+    };
+    let (order, places) = execution.workers.join(walk, || Places::new(&setups, facet_count));
+
+    // Bring the fragments to the screen, in runs.
+    let lines = Lines::new(view);
+    let raster = Raster::new(view.viewport, &view.pattern);
+    let runs = execution.workers.map(order.len().div_ceil(FRAGMENTS_A_RUN), |run| {
+        let (mut pieces, mut cuts) = (Pieces::default(), Vec::new());
+        for &fragment in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN) {
+            for at in places.of(tree.facet(fragment), &setups) {
+                let setup = setups[at as usize];
+                cuts.clear();
+                cuts.extend(tree.cuts(fragment).map(|(plane, positive)| lines.cut(plane, positive, setup)));
+                pieces.add(at, setup, &cuts, &raster);
+            }
+        }
+        pieces.finish(view.viewport);
+        pieces
+    });
+
+    // Draw them, tile by tile.
+    let filled = fill_with(facets, marks, grid, sink, 1, &|facets, index, tiles, counters| {
+        execution.budget.check("drawing BSP fragments")?;
+        draw::<true>(facets, &setups, &runs, index, &mut tiles[0], counters);
+        Ok(())
+    });
+    execution.budget.release(bytes);
+    let mut counters = filled?;
+    counters.pieces = runs.iter().map(|r| r.len() as u64).sum();
+    Ok(counters)
+}
+
+/// The viewer as a homogeneous point, world space: an eye, or the direction towards it.
+fn eye(view: &PreparedView<'_>) -> DVec4 {
+    let world_from_view = view.view.view_from_world.inverse();
+    if view.view.perspective { world_from_view.w_axis } else { world_from_view.z_axis }
+}
+
+/// Where each facet's triangles are among the view's. Those of a clipped facet follow one another.
+struct Places {
+    first: Vec<u32>,
+}
+
+impl Places {
+    fn new(setups: &[&Setup], facet_count: u32) -> Self {
+        let mut first = vec![ABSENT; facet_count as usize];
+        for (i, setup) in setups.iter().enumerate().rev() {
+            first[setup.facet as usize] = i as u32;
+        }
+        Self { first }
+    }
+
+    fn of<'s>(&self, facet: u32, setups: &'s [&Setup]) -> impl Iterator<Item = u32> + use<'s> {
+        let first = self.first[facet as usize];
+        (first..setups.len() as u32).take_while(move |&at| setups[at as usize].facet == facet)
+    }
+}
+
+/// Turns planes of the world into lines on the screen.
+struct Lines {
+    /// World planes to planes in ndc.
+    ndc_from_world: DMat4,
+    /// Screen coordinate = ndc coordinate * scale + center, in 1/256 pixel.
+    scale: [f64; 2],
+    center: [f64; 2],
+}
+
+impl Lines {
+    fn new(view: &PreparedView<'_>) -> Self {
+        let half = [view.viewport.width, view.viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
+        let ndc_from_world = view.view.clip_from_world().inverse().transpose();
+        Self { ndc_from_world, scale: [half[0], -half[1]], center: half }
+    }
+
+    /// Where a facet meets a plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
+    fn cut(&self, plane: DVec4, positive: bool, setup: &Setup) -> Cut {
+        let p = self.ndc_from_world * plane;
+        let (gx, gy) = (p.x / self.scale[0], p.y / self.scale[1]);
+        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
+        let at_zero =
+            f64::from(setup.z) - slope[0] * f64::from(setup.origin[0]) - slope[1] * f64::from(setup.origin[1]);
+        Cut {
+            a: gx + p.z * slope[0],
+            b: gy + p.z * slope[1],
+            c: p.w - gx * self.center[0] - gy * self.center[1] + p.z * at_zero,
+            positive,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_becomes_the_line_where_it_meets_the_facet() {
+        // Parallel projection of the cube [-1, 1]^3 along z: ndc depth (z + 1) / 2, picture of 4 by 2 pixels.
+        let clip_from_world = DMat4::from_cols(
+            DVec4::new(1.0, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, 1.0, 0.0, 0.0),
+            DVec4::new(0.0, 0.0, 0.5, 0.0),
+            DVec4::new(0.0, 0.0, 0.5, 1.0),
+        );
+        let lines = Lines {
+            ndc_from_world: clip_from_world.inverse().transpose(),
+            scale: [512.0, -256.0],
+            center: [512.0, 256.0],
+        };
+        // The facet has depth 0 on the left and 1 on the right: z = x.
+        let corner = |x, y, z| vitral_raster::CornerPosition { x, y, z };
+        let [a, b, c] = [corner(0, 0, 0.0), corner(1024, 0, 1.0), corner(0, 512, 0.0)];
+        let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
+        // z = 1/2 is there where x = 1/2, at 768.
+        let cut = lines.cut(DVec4::new(0.0, 0.0, 1.0, -0.5), true, &setup);
+        assert!(cut.keeps([769.0, 100.0]) && !cut.keeps([767.0, 400.0]), "{cut:?}");
+        // y = 0 is the middle row, y upwards.
+        let cut = lines.cut(DVec4::new(0.0, 1.0, 0.0, 0.0), true, &setup);
+        assert!(cut.keeps([5.0, 255.0]) && !cut.keeps([900.0, 257.0]), "{cut:?}");
+    }
+}

@@ -1,0 +1,623 @@
+//! Building a BSP tree, and walking it.
+//!
+//! A set of polygons is cut by a plane into those in front, those behind and those in the plane; polygons that cross it
+//! are split. Sets of many polygons are first halved by a plane across an axis, through a corner in the middle: it
+//! crosses few polygons of a surface, and the tree gets shallow. Small sets take the plane of one of their polygons:
+//! several are tried on a sample of the set, and the one that splits least and halves best is taken.
+//!
+//! Planes are thick. A corner that is off the plane by no more than positions are rounded lies in it, so faces that
+//! were meant to be coplanar do not split one another, and the rounding of split corners never turns a side over.
+//! Thickness is some 2^-21 of the numbers that enter the distance, rounding of `f64` some 2^-50: a side that is told is
+//! certain. The plane of a needle, whose normal is uncertain, is replaced by one along its longest edge. The polygon
+//! that gave the plane is always in it. So each node consumes a polygon or halves the set, and the build ends.
+//!
+//! A fragment keeps the planes that cut it and that it is near to. Those that stay clear of it are implied by the others
+//! but for rounding; should that move a sample across one, two fragments hold the sample, never none.
+//!
+//! In:   the world's facets, world space. Out: nodes, and fragments: facets with the planes that cut them.
+//! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for the worst scenes.
+//! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
+
+use crate::Execution;
+use std::ops::Range;
+use vitral_exec::{Budget, Limit};
+use vitral_math::{DVec3, DVec4};
+use vitral_scene::World;
+
+/// Sets of fewer polygons are cut by planes of their polygons.
+const SMALL: usize = 24;
+/// How many splitters are tried.
+const CANDIDATES: usize = 8;
+/// On how many polygons they are tried.
+const TRIED_ON: usize = 64;
+/// What a split costs, in polygons of imbalance.
+const SPLIT_COST: usize = 6;
+/// An axis plane has to halve the set at least this well, in eighths.
+const WORST_HALF: usize = 6;
+/// Pieces of work that the set is divided into before threads share them.
+const JOBS: usize = 64;
+/// The half-thickness of planes, relative to the numbers that enter the distance.
+/// A cut is forgotten if all of a fragment is farther from it than this part of the fragment's size.
+const CLEAR: f64 = 0.125;
+const THICKNESS: f64 = 1.0 / (1 << 21) as f64;
+/// No node; no cut.
+const NONE: u32 = u32::MAX;
+/// Marks a cut of the part of the tree that was built before the jobs.
+const OUTER: u32 = 1 << 31;
+
+/// Points at distance `normal . p + offset`, in the plane up to its thickness.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    equation: DVec4,
+    thickness: f64,
+}
+
+impl Plane {
+    /// The plane of a triangle; of one that is thinner than its corners are certain, some plane through it.
+    fn of([a, b, c]: [DVec3; 3]) -> Self {
+        let edges = [b - a, c - b, a - c];
+        let longest =
+            edges.into_iter().fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
+        let cross = edges[0].cross(-edges[2]);
+        let wide = cross.length() > 1e-9 * longest.length_squared();
+        let across = if wide { cross } else { longest.any_orthogonal_vector() };
+        let normal = across.try_normalize().unwrap_or(DVec3::Z);
+        let size = [a, b, c].into_iter().map(|p| (normal * p).abs().element_sum()).fold(0.0, f64::max);
+        Self { equation: normal.extend(-normal.dot(a)), thickness: size * THICKNESS }
+    }
+
+    /// The plane through `at` across an axis. It is exact.
+    fn across(axis: usize, at: f64) -> Self {
+        let mut equation = DVec4::ZERO;
+        equation[axis] = 1.0;
+        equation.w = -at;
+        Self { equation, thickness: 0.0 }
+    }
+
+    /// Distance in front of the plane; 0 in it.
+    #[inline]
+    fn side(&self, p: DVec3) -> f64 {
+        let e = self.equation;
+        let distance = e.x * p.x + e.y * p.y + e.z * p.z + e.w;
+        if distance.abs() <= self.thickness { 0.0 } else { distance }
+    }
+}
+
+/// Where a polygon lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Front,
+    Back,
+    In,
+    Across,
+}
+
+/// Where a polygon lies by the distances of its corners.
+#[inline]
+fn side_of(plane: &Plane, points: &[DVec3]) -> Side {
+    let (mut front, mut back) = (false, false);
+    for &p in points {
+        let d = plane.side(p);
+        front |= d > 0.0;
+        back |= d < 0.0;
+    }
+    match (front, back) {
+        (true, true) => Side::Across,
+        (true, false) => Side::Front,
+        (false, true) => Side::Back,
+        (false, false) => Side::In,
+    }
+}
+
+/// A node of the tree.
+#[derive(Clone, Debug)]
+struct Node {
+    plane: DVec4,
+    front: u32,
+    back: u32,
+    /// The fragments in the plane, the highest facet first.
+    fragments: Range<u32>,
+}
+
+/// A facet, or a part of one.
+#[derive(Clone, Copy, Debug)]
+struct Fragment {
+    facet: u32,
+    /// The planes that cut it off from its surroundings, in the tree's list.
+    first_cut: u32,
+    cuts: u32,
+}
+
+/// The plane of a node, and on which side of it a fragment lies.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    node: u32,
+    positive: bool,
+}
+
+/// One of the planes that cut a part, and the one before.
+#[derive(Clone, Copy, Debug)]
+struct CutLink {
+    cut: Cut,
+    before: u32,
+}
+
+/// A fragment that is still on its way down.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    facet: u32,
+    /// The last of the planes that cut it, or none.
+    cuts: u32,
+    /// Its corners, in the job's list.
+    first: u32,
+    count: u32,
+}
+
+/// A set of parts, and the child of which node it becomes.
+struct Task {
+    parts: Vec<Part>,
+    parent: u32,
+    front: bool,
+}
+
+/// The tree, or a part of it under construction.
+#[derive(Debug, Default)]
+pub(crate) struct Tree {
+    nodes: Vec<Node>,
+    fragments: Vec<Fragment>,
+    cuts: Vec<Cut>,
+    /// Facets without finite corners; on the screen they are nothing, or clipped beyond recognition.
+    loose: Range<u32>,
+    splits: u64,
+}
+
+impl Tree {
+    /// Builds the tree of all facets of a world.
+    pub(crate) fn of_world(world: &World, execution: &Execution) -> Result<Self, Limit> {
+        let triangles = triangles(world, execution)?;
+        let tree = Self::new(&triangles, execution);
+        execution.budget.release(size_of_val(triangles.as_slice()) as u64);
+        tree
+    }
+
+    /// Builds the tree of triangles; the facets are their indices.
+    fn new(triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Self, Limit> {
+        let budget = &execution.budget;
+        let mut top = Builder::new(triangles, budget);
+        let result = top.of_all(triangles, execution);
+        budget.release(top.charged);
+        result
+    }
+
+    pub(crate) fn node_count(&self) -> u64 {
+        self.nodes.len() as u64
+    }
+
+    pub(crate) fn fragment_count(&self) -> u64 {
+        self.fragments.len() as u64
+    }
+
+    pub(crate) fn splits(&self) -> u64 {
+        self.splits
+    }
+
+    /// Bytes it takes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let bytes = size_of_val(self.nodes.as_slice()) + size_of_val(self.fragments.as_slice());
+        (bytes + size_of_val(self.cuts.as_slice())) as u64
+    }
+
+    /// The facet that a fragment is part of.
+    pub(crate) fn facet(&self, fragment: u32) -> u32 {
+        self.fragments[fragment as usize].facet
+    }
+
+    /// The planes that cut a fragment, world space, and whether it lies on the positive side of each.
+    pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (DVec4, bool)> + '_ {
+        let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
+        let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
+        cuts.iter().map(|cut| (self.nodes[cut.node as usize].plane, cut.positive))
+    }
+
+    /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
+    pub(crate) fn back_to_front(&self, viewer: DVec4, mut f: impl FnMut(u32)) {
+        self.loose.clone().for_each(&mut f);
+        // A stack of our own: trees may be deep. Nodes wait until all behind them is done.
+        let (mut waiting, mut node) = (Vec::new(), if self.nodes.is_empty() { NONE } else { 0 });
+        loop {
+            while node != NONE {
+                let n = &self.nodes[node as usize];
+                let in_front = n.plane.dot(viewer) >= 0.0;
+                let (far, near) = if in_front { (n.back, n.front) } else { (n.front, n.back) };
+                waiting.push((node, near));
+                node = far;
+            }
+            let Some((done, near)) = waiting.pop() else { return };
+            self.nodes[done as usize].fragments.clone().for_each(&mut f);
+            node = near;
+        }
+    }
+}
+
+/// All facets' corners, world space. Charged to the budget.
+fn triangles(world: &World, execution: &Execution) -> Result<Vec<[DVec3; 3]>, Limit> {
+    let bytes = u64::from(world.facet_count) * size_of::<[DVec3; 3]>() as u64;
+    execution.budget.charge(bytes, "the BSP tree")?;
+    let mut triangles = Vec::with_capacity(world.facet_count as usize);
+    for instance in &world.instances {
+        let world_from_model = &instance.world_from_model;
+        let place = |i: u32| {
+            let [x, y, z] = instance.mesh.positions[i as usize].map(f64::from);
+            world_from_model.transform_point3(DVec3::new(x, y, z))
+        };
+        triangles.extend(instance.mesh.triangles.iter().map(|t| t.map(place)));
+    }
+    Ok(triangles)
+}
+
+/// Builds a tree, or what hangs below a set of parts.
+struct Builder<'t> {
+    triangles: &'t [[DVec3; 3]],
+    budget: &'t Budget,
+    tree: Tree,
+    links: Vec<CutLink>,
+    /// The builder of the tree that this is a branch of.
+    outer: Option<&'t Builder<'t>>,
+    points: Vec<DVec3>,
+    /// Bytes charged so far.
+    charged: u64,
+    /// Workspace: corners of a polygon that is split.
+    split: [Vec<DVec3>; 2],
+}
+
+impl<'t> Builder<'t> {
+    fn new(triangles: &'t [[DVec3; 3]], budget: &'t Budget) -> Self {
+        let (tree, split) = (Tree::default(), Default::default());
+        Self { triangles, budget, tree, links: Vec::new(), outer: None, points: Vec::new(), charged: 0, split }
+    }
+
+    /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
+    fn of_all(&mut self, triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Tree, Limit> {
+        let mut parts = Vec::new();
+        for (facet, corners) in triangles.iter().enumerate() {
+            let facet = facet as u32;
+            if corners.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e60) {
+                parts.push(Part { facet, cuts: NONE, first: self.points.len() as u32, count: 3 });
+                self.points.extend(corners);
+            } else {
+                self.tree.fragments.push(Fragment { facet, first_cut: 0, cuts: 0 });
+            }
+        }
+        self.tree.loose = 0..self.tree.fragments.len() as u32;
+        let job_size = (parts.len() / JOBS).max(256);
+        let mut tasks = vec![Task { parts, parent: NONE, front: true }];
+        let mut jobs = Vec::new();
+        while let Some(task) = tasks.pop() {
+            let plane = if task.parts.len() > job_size { self.axis_plane(&task.parts) } else { None };
+            match plane {
+                Some(plane) => self.cut(task, plane, None, &mut tasks)?,
+                None => jobs.push(task),
+            }
+        }
+        let outer = &*self;
+        let branches = execution.workers.map(jobs.len(), |i| {
+            let mut builder = Builder { outer: Some(outer), ..Builder::new(triangles, &execution.budget) };
+            let done = builder.branch(&jobs[i].parts, &outer.points);
+            execution.budget.release(builder.charged);
+            done.map(|()| builder.tree)
+        });
+        let mut tree = std::mem::take(&mut self.tree);
+        for (job, branch) in jobs.iter().zip(branches) {
+            tree.attach(job, branch?);
+        }
+        Ok(tree)
+    }
+
+    /// Builds what hangs below a job's set.
+    fn branch(&mut self, parts: &[Part], points: &[DVec3]) -> Result<(), Limit> {
+        let own = |part: &Part| {
+            let first = self.points.len() as u32;
+            self.points.extend(&points[part.first as usize..][..part.count as usize]);
+            let cuts = if part.cuts == NONE { NONE } else { part.cuts | OUTER };
+            Part { first, cuts, ..*part }
+        };
+        let mut tasks = vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
+        while let Some(task) = tasks.pop() {
+            if task.parts.is_empty() {
+                continue;
+            }
+            let axis = if task.parts.len() >= SMALL { self.axis_plane(&task.parts) } else { None };
+            match axis {
+                Some(plane) => self.cut(task, plane, None, &mut tasks)?,
+                None => {
+                    let splitter = self.splitter(&task.parts);
+                    let plane = self.plane_of(&task.parts[splitter]);
+                    self.cut(task, plane, Some(splitter), &mut tasks)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn points_of(&self, part: &Part) -> &[DVec3] {
+        &self.points[part.first as usize..][..part.count as usize]
+    }
+
+    fn plane_of(&self, part: &Part) -> Plane {
+        Plane::of(self.triangles[part.facet as usize])
+    }
+
+    /// The best plane across an axis, if one halves the set.
+    fn axis_plane(&self, parts: &[Part]) -> Option<Plane> {
+        let step = parts.len().div_ceil(TRIED_ON * 4);
+        let mut best: Option<(usize, Plane)> = None;
+        for axis in 0..3 {
+            // Corners that are there, so that grids are not cut between their lines.
+            let mut values: Vec<f64> =
+                parts.iter().step_by(step).map(|p| self.points[p.first as usize][axis]).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            let plane = Plane::across(axis, values[values.len() / 2]);
+            let score = self.score(parts, &plane, step);
+            let (front, back, across) = (score.front, score.back, score.across);
+            let whole = front + back + across + score.within;
+            let halves = (front.max(back) + across) * 8 <= whole * WORST_HALF;
+            if halves && best.as_ref().is_none_or(|(cost, _)| score.cost() < *cost) {
+                best = Some((score.cost(), plane));
+            }
+        }
+        best.map(|(_, plane)| plane)
+    }
+
+    /// The part whose plane cuts the set best, of some.
+    fn splitter(&self, parts: &[Part]) -> usize {
+        let step = parts.len().div_ceil(CANDIDATES);
+        let stride = parts.len().div_ceil(TRIED_ON);
+        let cost = |&i: &usize| self.score(parts, &self.plane_of(&parts[i]), stride).cost();
+        (0..parts.len()).step_by(step).min_by_key(cost).unwrap_or(0)
+    }
+
+    /// What a plane would do to every `step`th part.
+    fn score(&self, parts: &[Part], plane: &Plane, step: usize) -> Score {
+        let mut score = Score::default();
+        for part in parts.iter().step_by(step) {
+            match side_of(plane, self.points_of(part)) {
+                Side::Front => score.front += 1,
+                Side::Back => score.back += 1,
+                Side::In => score.within += 1,
+                Side::Across => score.across += 1,
+            }
+        }
+        score
+    }
+
+    /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
+    fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
+        let node = self.tree.nodes.len() as u32;
+        if node.is_multiple_of(256) {
+            self.account()?;
+        }
+        if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
+            *(if task.front { &mut parent.front } else { &mut parent.back }) = node;
+        }
+        let (mut front, mut back) = (Vec::new(), Vec::new());
+        let start = self.tree.fragments.len();
+        for (i, part) in task.parts.into_iter().enumerate() {
+            let side = if splitter == Some(i) { Side::In } else { side_of(&plane, self.points_of(&part)) };
+            match side {
+                Side::In => self.place(&part),
+                Side::Front => front.push(part),
+                Side::Back => back.push(part),
+                Side::Across => {
+                    let halves = self.split(&part, &plane, node);
+                    front.push(halves[0]);
+                    back.push(halves[1]);
+                }
+            }
+        }
+        self.tree.fragments[start..].sort_by_key(|f| std::cmp::Reverse(f.facet));
+        let fragments = start as u32..self.tree.fragments.len() as u32;
+        self.tree.nodes.push(Node { plane: plane.equation, front: NONE, back: NONE, fragments });
+        tasks.push(Task { parts: front, parent: node, front: true });
+        tasks.push(Task { parts: back, parent: node, front: false });
+        Ok(())
+    }
+
+    /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
+    /// those that it is near to.
+    fn place(&mut self, part: &Part) {
+        let points = &self.points[part.first as usize..][..part.count as usize];
+        let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
+        let clear = (high - low).max_element() * CLEAR;
+        let (first_cut, mut link) = (self.tree.cuts.len() as u32, part.cuts);
+        while link != NONE {
+            let outer = link & OUTER;
+            let builder = if outer == 0 { None } else { self.outer };
+            let (links, nodes) = builder.map_or((&self.links, &self.tree.nodes), |b| (&b.links, &b.tree.nodes));
+            let CutLink { cut, before } = links[(link & !OUTER) as usize];
+            // The part's own node is about to be made, so all nodes that cut it are there.
+            let plane = nodes[cut.node as usize].plane;
+            if points.iter().any(|p| plane.dot(p.extend(1.0)).abs() <= clear) {
+                self.tree.cuts.push(Cut { node: cut.node | outer, ..cut });
+            }
+            link = if before == NONE { NONE } else { before | outer };
+        }
+        let cuts = self.tree.cuts.len() as u32 - first_cut;
+        self.tree.fragments.push(Fragment { facet: part.facet, first_cut, cuts });
+    }
+
+    /// Cuts a part in the halves in front of and behind a plane.
+    fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
+        self.tree.splits += 1;
+        let [mut front, mut back] = std::mem::take(&mut self.split);
+        front.clear();
+        back.clear();
+        let points = self.points_of(part);
+        for (i, &to) in points.iter().enumerate() {
+            let from = points[(i + points.len() - 1) % points.len()];
+            let (d_from, d_to) = (plane.side(from), plane.side(to));
+            if d_from * d_to < 0.0 {
+                let crossing = from + (to - from) * (d_from / (d_from - d_to));
+                front.push(crossing);
+                back.push(crossing);
+            }
+            if d_to >= 0.0 {
+                front.push(to);
+            }
+            if d_to <= 0.0 {
+                back.push(to);
+            }
+        }
+        let halves = [(&front, true), (&back, false)].map(|(corners, positive)| {
+            let cuts = self.links.len() as u32;
+            self.links.push(CutLink { cut: Cut { node, positive }, before: part.cuts });
+            let first = self.points.len() as u32;
+            self.points.extend(corners);
+            Part { facet: part.facet, cuts, first, count: corners.len() as u32 }
+        });
+        self.split = [front, back];
+        halves
+    }
+
+    /// Charges what has grown since the last time, and looks at the clock.
+    fn account(&mut self) -> Result<(), Limit> {
+        self.budget.check("building the BSP tree")?;
+        let parts = self.points.len() / 3 * size_of::<Part>();
+        let work = size_of_val(self.points.as_slice()) + size_of_val(self.links.as_slice()) + parts;
+        let now = self.tree.bytes() + work as u64;
+        // A branch of that many corners is of no use to anybody, limit or not.
+        let most = 1 << 26;
+        if self.points.len() > most {
+            return Err(Limit::Memory { needed: now, limit: now, stage: "the BSP tree" });
+        }
+        let more = now.saturating_sub(self.charged);
+        self.budget.charge(more, "the BSP tree")?;
+        self.charged += more;
+        Ok(())
+    }
+}
+
+/// What a plane does to a set.
+#[derive(Clone, Copy, Debug, Default)]
+struct Score {
+    front: usize,
+    back: usize,
+    within: usize,
+    across: usize,
+}
+
+impl Score {
+    fn cost(&self) -> usize {
+        self.across * SPLIT_COST + self.front.abs_diff(self.back)
+    }
+}
+
+impl Tree {
+    /// Hangs a branch where its job was cut off.
+    fn attach(&mut self, job: &Task, branch: Self) {
+        if branch.nodes.is_empty() {
+            return;
+        }
+        let [nodes, fragments, cuts] =
+            [self.nodes.len(), self.fragments.len(), self.cuts.len()].map(|length| length as u32);
+        if let Some(parent) = self.nodes.get_mut(job.parent as usize) {
+            *(if job.front { &mut parent.front } else { &mut parent.back }) = nodes;
+        }
+        let moved = |index: u32, by: u32| if index == NONE { NONE } else { index + by };
+        let node = |index: u32| if index & OUTER == 0 { index + nodes } else { index & !OUTER };
+        self.nodes.extend(branch.nodes.into_iter().map(|n| Node {
+            front: moved(n.front, nodes),
+            back: moved(n.back, nodes),
+            fragments: n.fragments.start + fragments..n.fragments.end + fragments,
+            ..n
+        }));
+        let placed = |f: Fragment| Fragment { first_cut: f.first_cut + cuts, ..f };
+        self.fragments.extend(branch.fragments.into_iter().map(placed));
+        self.cuts.extend(branch.cuts.into_iter().map(|c| Cut { node: node(c.node), ..c }));
+        self.splits += branch.splits;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tree(triangles: &[[[f64; 3]; 3]]) -> Tree {
+        let triangles: Vec<_> = triangles.iter().map(|t| t.map(DVec3::from_array)).collect();
+        Tree::new(&triangles, &Execution::default()).unwrap()
+    }
+
+    fn order(tree: &Tree, viewer: DVec4) -> Vec<u32> {
+        let mut order = Vec::new();
+        tree.back_to_front(viewer, |f| order.push(tree.facet(f)));
+        order
+    }
+
+    const FLAT: [[f64; 3]; 3] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+
+    #[test]
+    fn p22_three_floors_from_above_and_below() {
+        let floor = |z: f64| FLAT.map(|[x, y, _]| [x, y, z]);
+        let tree = tree(&[floor(1.0), floor(3.0), floor(2.0), floor(2.0)]);
+        let at = |z: f64| DVec4::new(0.3, 0.1, z, 1.0);
+        // The two in one plane: the lower facet last, from either side.
+        assert_eq!(order(&tree, at(9.0)), [0, 3, 2, 1]);
+        assert_eq!(order(&tree, at(-9.0)), [1, 3, 2, 0]);
+        assert_eq!(order(&tree, DVec4::new(0.0, 0.0, 1.0, 0.0)), [0, 3, 2, 1]);
+        assert_eq!((tree.splits(), tree.node_count()), (0, 3));
+    }
+
+    #[test]
+    fn p22_a_polygon_through_another_is_split() {
+        let wall = [[0.0, -1.0, -1.0], [0.0, 1.0, -1.0], [0.0, 0.0, 2.0]];
+        let tree = tree(&[FLAT, wall]);
+        assert_eq!((tree.splits(), tree.fragment_count()), (1, 3));
+        let seen = order(&tree, DVec4::new(0.1, 0.0, 5.0, 1.0));
+        assert_eq!(seen.len(), 3);
+        let cut: Vec<_> = (0..3).flat_map(|f| tree.cuts(f).map(|(_, positive)| positive)).collect();
+        assert_eq!(cut.len(), 2);
+        assert_ne!(cut[0], cut[1], "one half lies on each side");
+    }
+
+    #[test]
+    fn a_needle_has_a_plane_and_odd_numbers_are_loose() {
+        let needle = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.5, 0.5, 0.5]];
+        let point = [[2.0, 2.0, 2.0]; 3];
+        let odd = [[f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let tree = tree(&[needle, point, odd, FLAT]);
+        let mut seen = order(&tree, DVec4::new(3.0, 2.0, 5.0, 1.0));
+        assert_eq!(seen[0], 2);
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen, [0, 1, 2, 3]);
+    }
+
+    /// Area of all fragments of a facet, from the corners that the builder keeps.
+    fn area(points: &[DVec3]) -> f64 {
+        let fan = (1..points.len() - 1).map(|i| (points[i] - points[0]).cross(points[i + 1] - points[0]));
+        fan.fold(DVec3::ZERO, |sum, c| sum + c).length() * 0.5
+    }
+
+    #[test]
+    fn p22_the_halves_add_up() {
+        let triangles = [FLAT.map(DVec3::from_array)];
+        let budget = Budget::default();
+        let mut builder = Builder::new(&triangles, &budget);
+        builder.points.extend(triangles[0]);
+        let part = Part { facet: 0, cuts: NONE, first: 0, count: 3 };
+        let mut parts = vec![part];
+        for plane in
+            [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])]
+        {
+            let mut next = Vec::new();
+            for part in parts {
+                match side_of(&plane, builder.points_of(&part)) {
+                    Side::Across => next.extend(builder.split(&part, &plane, 0)),
+                    _ => next.push(part),
+                }
+            }
+            parts = next;
+        }
+        let sum: f64 = parts.iter().map(|p| area(builder.points_of(p))).sum();
+        assert!(parts.len() > 4 && (sum - 2.0).abs() < 1e-12, "{} parts, area {sum}", parts.len());
+    }
+}

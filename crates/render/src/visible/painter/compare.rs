@@ -1,0 +1,330 @@
+//! Which of two polygons has to be painted first: the five tests, and what is left when they fail.
+//!
+//! In:   two convex polygons on the screen with their depth planes. Out: a [`Verdict`].
+//! Cost: a few comparisons for most pairs; corners times edges for the last tests.
+//! Source: [Newell, Newell & Sancha 1972]. Departs from it: depths closer than 2^-22 count as equal, and polygons that are
+//! equally far over their whole overlap are ordered by their facets.
+
+use super::super::pieces::Cut;
+use crate::stats::VisibilityCounters;
+use std::ops::Range;
+use vitral_raster::{SUBPIXEL, Setup};
+
+/// Depths this close are equal.
+const EQUAL: f64 = 1.0 / (1 << 22) as f64;
+/// How far off a line a polygon has to reach, in 1/256 pixel, to lie clearly on that side.
+const CLEARLY: f64 = 1e-3;
+
+/// Whether P may be painted before Q.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// P does not cover Q.
+    Before,
+    /// Q has to be painted first.
+    After,
+    /// Each covers a part of the other.
+    Across,
+}
+
+/// A facet's triangle, or a part of one.
+#[derive(Clone, Debug)]
+pub(super) struct Polygon {
+    /// Index of the triangle.
+    pub(super) setup: u32,
+    /// Farthest and nearest depth.
+    pub(super) far: f32,
+    near: f32,
+    /// Smallest x and y, largest x and y.
+    extent: [f64; 4],
+    corners: Range<u32>,
+    /// The lines it was cut along.
+    pub(super) cuts: Range<u32>,
+    /// The cells of the grid it is in: first column and row, last column and row.
+    pub(super) cells: [u16; 4],
+}
+
+impl Polygon {
+    pub(super) fn new(
+        setup: &Setup,
+        index: u32,
+        points: &[[f64; 2]],
+        corners: Range<u32>,
+        cuts: Range<u32>,
+        cells: [u16; 4],
+    ) -> Self {
+        let mut extent = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        let (mut far, mut near) = (f64::INFINITY, f64::NEG_INFINITY);
+        let plane = Depth::of(setup);
+        for &p in points {
+            extent = [extent[0].min(p[0]), extent[1].min(p[1]), extent[2].max(p[0]), extent[3].max(p[1])];
+            let depth = plane.at(p);
+            (far, near) = (far.min(depth), near.max(depth));
+        }
+        // The depths of samples are clamped.
+        let clamp = |depth: f64| (depth as f32).max(setup.z_min).min(setup.z_max);
+        Self { setup: index, far: clamp(far), near: clamp(near), extent, corners, cuts, cells }
+    }
+
+    /// Whether all of it is farther than the other's farthest point.
+    pub(super) fn is_behind(&self, far: f32, counters: &mut VisibilityCounters) -> bool {
+        let behind = self.near < far;
+        counters.list_tests += u64::from(behind);
+        counters.by_depth_extent += u64::from(behind);
+        behind
+    }
+
+    fn points<'c>(&self, corners: &'c [[f64; 2]]) -> &'c [[f64; 2]] {
+        &corners[self.corners.start as usize..self.corners.end as usize]
+    }
+
+    /// The lines along its edges.
+    pub(super) fn edges(&self, corners: &[[f64; 2]]) -> Vec<Cut> {
+        let points = self.points(corners);
+        (0..points.len()).filter_map(|i| edge(points[i], points[(i + 1) % points.len()])).collect()
+    }
+
+    /// The parts on the kept side of a line and beyond it, if both reach clearly off the line.
+    pub(super) fn split(&self, corners: &[[f64; 2]], line: &Cut) -> Option<[Vec<[f64; 2]>; 2]> {
+        let points = self.points(corners);
+        let value = |p: [f64; 2]| if line.positive { line.value(p) } else { -line.value(p) };
+        let (low, high) = range(points.iter().map(|&p| value(p)));
+        let clearly = low < -CLEARLY && high > CLEARLY;
+        if !clearly {
+            return None;
+        }
+        let mut halves = [Vec::new(), Vec::new()];
+        for (i, &to) in points.iter().enumerate() {
+            let from = points[(i + points.len() - 1) % points.len()];
+            let (d_from, d_to) = (value(from), value(to));
+            if d_from * d_to < 0.0 {
+                let t = d_from / (d_from - d_to);
+                let crossing = [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t];
+                halves.iter_mut().for_each(|h| h.push(crossing));
+            }
+            if d_to >= 0.0 {
+                halves[0].push(to);
+            }
+            if d_to <= 0.0 {
+                halves[1].push(to);
+            }
+        }
+        halves.iter().all(|h| h.len() >= 3).then_some(halves)
+    }
+}
+
+/// A facet's depth as a linear function of the place on the screen, not clamped.
+#[derive(Clone, Copy)]
+struct Depth {
+    slope: [f64; 2],
+    at_zero: f64,
+}
+
+impl Depth {
+    fn of(setup: &Setup) -> Self {
+        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
+        let origin = setup.origin.map(f64::from);
+        Self { slope, at_zero: f64::from(setup.z) - slope[0] * origin[0] - slope[1] * origin[1] }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        let slope = [self.slope[0] - other.slope[0], self.slope[1] - other.slope[1]];
+        Self { slope, at_zero: self.at_zero - other.at_zero }
+    }
+
+    fn at(self, [x, y]: [f64; 2]) -> f64 {
+        self.at_zero + self.slope[0] * x + self.slope[1] * y
+    }
+}
+
+/// Smallest and largest of some values.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+}
+
+/// A line in units of distance.
+fn unit(a: f64, b: f64, c: f64) -> Option<Cut> {
+    let length = (a * a + b * b).sqrt();
+    let line = Cut { a: a / length, b: b / length, c: c / length, positive: true };
+    (length > 0.0 && line.a.is_finite() && line.b.is_finite() && line.c.is_finite()).then_some(line)
+}
+
+/// The line through two points, positive on the inner side of a polygon's edge.
+fn edge(from: [f64; 2], to: [f64; 2]) -> Option<Cut> {
+    let [dx, dy] = [0, 1].map(|k| to[k] - from[k]);
+    unit(-dy, dx, dy * from[0] - dx * from[1])
+}
+
+/// The line where two facets are equally far.
+pub(super) fn crossing(p: &Setup, q: &Setup) -> Option<Cut> {
+    let gap = Depth::of(q).minus(Depth::of(p));
+    unit(gap.slope[0], gap.slope[1], gap.at_zero)
+}
+
+/// Compares two polygons by the five tests.
+pub(super) fn compare(
+    p: &Polygon,
+    q: &Polygon,
+    setups: &[&Setup],
+    corners: &[[f64; 2]],
+    counters: &mut VisibilityCounters,
+) -> Verdict {
+    if p.is_behind(q.far, counters) {
+        return Verdict::Before;
+    }
+    counters.list_tests += 1;
+    if p.extent[2] <= q.extent[0] || q.extent[2] <= p.extent[0] {
+        counters.by_x_extent += 1;
+        return Verdict::Before;
+    }
+    if p.extent[3] <= q.extent[1] || q.extent[3] <= p.extent[1] {
+        counters.by_y_extent += 1;
+        return Verdict::Before;
+    }
+    let [ps, qs] = [p, q].map(|i| setups[i.setup as usize]);
+    let (p_points, q_points) = (p.points(corners), q.points(corners));
+    // How much nearer Q is than P. With all corners of P, that tells where P lies from the plane of Q.
+    let gap = Depth::of(qs).minus(Depth::of(ps));
+    let at_p = range(p_points.iter().map(|&c| gap.at(c)));
+    let at_q = range(q_points.iter().map(|&c| gap.at(c)));
+    let [by_p, by_q] = [at_p, at_q].map(|gaps| order(gaps, ps.facet, qs.facet));
+    if by_p == Verdict::Before {
+        counters.by_plane_of_nearer += 1;
+        return Verdict::Before;
+    }
+    if by_q == Verdict::Before {
+        counters.by_plane_of_farther += 1;
+        return Verdict::Before;
+    }
+    if disjoint(p_points, q_points) || disjoint(q_points, p_points) {
+        counters.by_projection += 1;
+        return Verdict::Before;
+    }
+    if by_p == Verdict::After || by_q == Verdict::After {
+        return Verdict::After;
+    }
+    // The planes meet, but perhaps not where the polygons overlap.
+    counters.by_overlap += 1;
+    let overlap = overlap(p_points, q_points);
+    if overlap.len() < 3 {
+        return Verdict::Before;
+    }
+    order(range(overlap.into_iter().map(|c| gap.at(c))), ps.facet, qs.facet)
+}
+
+/// The verdict for a range of gaps; polygons without a gap go by their facets, the lower one last.
+fn order((low, high): (f64, f64), p: u32, q: u32) -> Verdict {
+    match (low >= -EQUAL, high <= EQUAL) {
+        (true, true) if p < q => Verdict::After,
+        (true, _) => Verdict::Before,
+        (false, true) => Verdict::After,
+        (false, false) => Verdict::Across,
+    }
+}
+
+/// Whether an edge of a convex polygon has all of another on its outer side.
+fn disjoint(p: &[[f64; 2]], q: &[[f64; 2]]) -> bool {
+    (0..p.len()).any(|i| {
+        let (from, to) = (p[i], p[(i + 1) % p.len()]);
+        let [dx, dy] = [0, 1].map(|k| to[k] - from[k]);
+        let slack = (dx.abs() + dy.abs()) * 1e-7;
+        q.iter().all(|c| dx * (c[1] - from[1]) - dy * (c[0] - from[0]) <= slack)
+    })
+}
+
+/// The part of a convex polygon that another covers.
+fn overlap(p: &[[f64; 2]], q: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (mut polygon, mut next) = (p.to_vec(), Vec::new());
+    for i in 0..q.len() {
+        let Some(line) = edge(q[i], q[(i + 1) % q.len()]) else { continue };
+        for (k, &to) in polygon.iter().enumerate() {
+            let from = polygon[(k + polygon.len() - 1) % polygon.len()];
+            let (d_from, d_to) = (line.value(from), line.value(to));
+            if d_from * d_to < 0.0 {
+                let t = d_from / (d_from - d_to);
+                next.push([from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t]);
+            }
+            if d_to >= 0.0 {
+                next.push(to);
+            }
+        }
+        std::mem::swap(&mut polygon, &mut next);
+        next.clear();
+    }
+    polygon
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_raster::CornerPosition;
+
+    fn setup(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
+        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
+        Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet)
+    }
+
+    fn verdict(p: Setup, q: Setup) -> (Verdict, VisibilityCounters) {
+        let [a, b] = [p, q].map(|s| super::super::corners(&s));
+        let points = [a, b].concat();
+        let polygons = [Polygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), Polygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
+        let mut counters = VisibilityCounters::default();
+        (compare(&polygons[0], &polygons[1], &[&p, &q], &points, &mut counters), counters)
+    }
+
+    const HERE: [[i32; 2]; 3] = [[0, 0], [1000, 0], [0, 1000]];
+
+    #[test]
+    fn p21_each_of_the_five_tests_decides() {
+        let p = setup(HERE, [0.2, 0.8, 0.2], 0);
+        let moved = |by: [i32; 2]| HERE.map(|[x, y]| [x + by[0], y + by[1]]);
+        let decided = |q: Setup| {
+            let (verdict, c) = verdict(p, q);
+            assert_eq!(verdict, Verdict::Before);
+            [
+                c.by_depth_extent,
+                c.by_x_extent,
+                c.by_y_extent,
+                c.by_plane_of_nearer,
+                c.by_plane_of_farther,
+                c.by_projection,
+            ]
+        };
+        assert_eq!(decided(setup(HERE, [0.9; 3], 1)), [1, 0, 0, 0, 0, 0]);
+        assert_eq!(decided(setup(moved([1000, 0]), [0.1; 3], 1)), [0, 1, 0, 0, 0, 0]);
+        assert_eq!(decided(setup(moved([0, 1000]), [0.1; 3], 1)), [0, 0, 1, 0, 0, 0]);
+        // A parallel plane in front; a small polygon in front of the sloping one, whose own plane cuts that.
+        assert_eq!(decided(setup(HERE, [0.3, 0.9, 0.3], 1)), [0, 0, 0, 1, 0, 0]);
+        assert_eq!(decided(setup([[0, 0], [100, 0], [0, 100]], [0.3; 3], 1)), [0, 0, 0, 0, 1, 0]);
+        // The other half of the square.
+        assert_eq!(decided(setup([[1000, 1000], [1000, 0], [0, 1000]], [0.1, 0.5, 0.1], 1)), [0, 0, 0, 0, 0, 1]);
+    }
+
+    #[test]
+    fn p21_what_is_left_when_the_tests_fail() {
+        let p = setup(HERE, [0.2, 0.8, 0.2], 0);
+        assert_eq!(verdict(p, setup(HERE, [0.1, 0.7, 0.1], 1)).0, Verdict::After);
+        assert_eq!(verdict(p, setup(HERE, [0.8, 0.2, 0.8], 1)).0, Verdict::Across);
+        // Coplanar: the lower facet comes last.
+        assert_eq!(verdict(p, Setup { facet: 1, ..p }).0, Verdict::After);
+        assert_eq!(verdict(Setup { facet: 1, ..p }, p).0, Verdict::Before);
+        // The planes meet at x = 290, the polygons overlap left of x = 208.
+        let q = setup([[0, 300], [0, -100], [900, -1000]], [0.1, 0.1, 0.95], 1);
+        let (left, counters) = verdict(p, q);
+        assert_eq!((left, counters.by_overlap), (Verdict::After, 1));
+    }
+
+    #[test]
+    fn p21_the_halves_of_a_polygon_add_up() {
+        let p = setup(HERE, [0.2, 0.8, 0.2], 0);
+        let points = super::super::corners(&p);
+        let polygon = Polygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
+        let area = |points: &[[f64; 2]]| -> f64 {
+            let n = points.len();
+            (0..n).map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]).sum::<f64>()
+        };
+        let line = unit(1.0, 2.0, -700.0).unwrap();
+        let [one, other] = polygon.split(&points, &line).unwrap();
+        assert!((area(&one) + area(&other) - area(&points)).abs() < 1e-6 && area(&one) > 1.0 && area(&other) > 1.0);
+        assert!(polygon.split(&points, &unit(1.0, 0.0, 0.0).unwrap()).is_none(), "an edge does not split it");
+    }
+}

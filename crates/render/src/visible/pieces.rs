@@ -1,0 +1,399 @@
+//! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
+//!
+//! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
+//! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
+//! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
+//! with rounding; it only bounds the pixels where samples are looked for, a little too far out.
+//!
+//! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
+//! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
+//! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
+//! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
+//!
+//! In:   set-up triangles and lines (screen space). Out: the samples of each tile (screen space).
+//! Cost: linear in the pieces, the tiles that each touches, and covered samples, hidden ones included.
+//! Source: [Newell, Newell & Sancha 1972] for the list; the lines are those of [Fuchs, Kedem & Naylor 1980].
+
+use super::facets::{Facets, extent};
+use crate::stats::VisibilityCounters;
+use std::ops::Range;
+use vitral_math::lanes::{Simd, dispatch};
+use vitral_raster::{
+    BLOCK, Block, BlockSink, PriorityCounts, PrioritySink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, Viewport,
+    traverse,
+};
+
+/// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut {
+    pub(super) a: f64,
+    pub(super) b: f64,
+    pub(super) c: f64,
+    /// Keeps where the value is not negative, else where it is (or is not a number).
+    pub(super) positive: bool,
+}
+
+impl Cut {
+    /// The value at a point. Monotonic in x and in y, rounding included.
+    #[inline]
+    pub(super) fn value(&self, [x, y]: [f64; 2]) -> f64 {
+        (self.c + self.b * y) + self.a * x
+    }
+
+    /// Whether a sample lies on the kept side.
+    #[inline]
+    pub(super) fn keeps(&self, p: [f64; 2]) -> bool {
+        (self.value(p) >= 0.0) == self.positive
+    }
+
+    /// The same line, the other side.
+    pub(super) fn opposite(self) -> Self {
+        Self { positive: !self.positive, ..self }
+    }
+
+    /// Whether a box, given by its smallest and largest corner, lies on the kept side with room to spare.
+    fn holds_box(&self, [[x0, y0], [x1, y1]]: [[f64; 2]; 2]) -> bool {
+        let x = if (self.a > 0.0) == self.positive { x0 } else { x1 };
+        let y = if (self.b > 0.0) == self.positive { y0 } else { y1 };
+        self.holds(&[[x, y]])
+    }
+
+    /// Whether a polygon lies on the kept side with room to spare, so that no sample in it can be beyond.
+    fn holds(&self, polygon: &[[f64; 2]]) -> bool {
+        polygon.iter().all(|&[x, y]| {
+            let v = self.value([x, y]);
+            let room = (self.c.abs() + (self.b * y).abs() + (self.a * x).abs()) * 1e-9;
+            if self.positive { v > room } else { v < -room }
+        })
+    }
+
+    /// How far inside a point is, made a little larger than rounding could make it smaller.
+    fn inside(&self, [x, y]: [f64; 2]) -> f64 {
+        let v = self.value([x, y]);
+        let slack = (self.c.abs() + (self.b * y).abs() + (self.a * x).abs()) * 1e-14;
+        if self.positive { v + slack } else { slack - v }
+    }
+}
+
+/// The corners of a triangle on the screen.
+pub(super) fn corners(setup: &Setup) -> [[f64; 2]; 3] {
+    [0, 1, 2].map(|i| [f64::from(setup.x[i]), f64::from(setup.y[i])])
+}
+
+/// Cuts a convex polygon along a line, erring outwards.
+pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 2]>, cut: &Cut) {
+    // A line without numbers cuts nothing off.
+    if !(cut.a + cut.b + cut.c).is_finite() {
+        return;
+    }
+    let Some(&(mut from)) = polygon.last() else { return };
+    let mut d_from = cut.inside(from);
+    let outside = |d: f64| d < 0.0;
+    scratch.clear();
+    for &to in polygon.iter() {
+        let d_to = cut.inside(to);
+        if outside(d_from) != outside(d_to) {
+            let t = d_from / (d_from - d_to);
+            scratch.push([from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t]);
+        }
+        if !outside(d_to) {
+            scratch.push(to);
+        }
+        (from, d_from) = (to, d_to);
+    }
+    std::mem::swap(polygon, scratch);
+}
+
+/// Smallest and largest corner of the box round a polygon.
+fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    polygon.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
+}
+
+/// A part of a set-up triangle.
+#[derive(Clone, Debug)]
+struct Piece {
+    /// Index among the view's triangles.
+    setup: u32,
+    /// First and last pixel column and row that may have samples of it.
+    pixels: [u16; 4],
+    cuts: Range<u32>,
+}
+
+/// A run of the list, sorted into tiles.
+#[derive(Debug, Default)]
+pub(super) struct Pieces {
+    pieces: Vec<Piece>,
+    cuts: Vec<Cut>,
+    /// Tile and piece, in the order of the list.
+    entries: Vec<[u32; 2]>,
+    starts: Vec<u32>,
+    items: Vec<u32>,
+    /// Workspace.
+    outline: [Vec<[f64; 2]>; 2],
+}
+
+/// What bounds the pixels of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raster {
+    viewport: Viewport,
+    samples: [[i32; 2]; 2],
+}
+
+impl Raster {
+    pub(super) fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
+        Self { viewport, samples: extent(pattern) }
+    }
+
+    pub(super) fn viewport(&self) -> Viewport {
+        self.viewport
+    }
+
+    /// First and last column and row of pixels that may have samples in an outline.
+    pub(super) fn pixels(&self, outline: &[[f64; 2]]) -> Option<[u16; 4]> {
+        let around = bounds(outline);
+        let mut ends = [[0u16; 2]; 2];
+        for (axis, size) in [self.viewport.width, self.viewport.height].into_iter().enumerate() {
+            let [low, high] = self.samples[axis].map(f64::from);
+            let (min, max) = (around[0][axis], around[1][axis]);
+            // Outlines are good to far less than this.
+            const SLACK: f64 = 0.01;
+            let pixel = f64::from(SUBPIXEL);
+            let first = ((min - SLACK - high) / pixel).ceil().max(0.0);
+            let last = ((max + SLACK - low) / pixel).floor().min(f64::from(size) - 1.0);
+            if first > last {
+                return None;
+            }
+            ends[axis] = [first as u16, last as u16];
+        }
+        let [[x0, x1], [y0, y1]] = ends;
+        Some([x0, y0, x1, y1])
+    }
+}
+
+impl Pieces {
+    /// Adds the next piece of the list, if it can have samples.
+    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster) {
+        let [outline, scratch] = &mut self.outline;
+        outline.clear();
+        outline.extend(corners(setup));
+        let first = self.cuts.len();
+        let mut around = bounds(outline);
+        for cut in cuts {
+            if !cut.holds_box(around) && !cut.holds(outline) {
+                clip_outline(outline, scratch, cut);
+                around = bounds(outline);
+                self.cuts.push(*cut);
+            }
+        }
+        let Some(pixels) = raster.pixels(outline) else {
+            self.cuts.truncate(first);
+            return;
+        };
+
+        // Forget the cuts that later ones made superfluous.
+        let mut kept = first;
+        for i in first..self.cuts.len() {
+            if !self.cuts[i].holds(outline) {
+                self.cuts[kept] = self.cuts[i];
+                kept += 1;
+            }
+        }
+        self.cuts.truncate(kept);
+        let first = first as u32;
+        let piece = self.pieces.len() as u32;
+        self.pieces.push(Piece { setup: index, pixels, cuts: first..self.cuts.len() as u32 });
+        let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);
+        let tiles_x = raster.viewport.tiles_x();
+        for ty in ty0..=ty1 {
+            self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
+        }
+    }
+
+    /// Sorts the pieces into tiles, keeping their order. Call it once, at the end.
+    pub(super) fn finish(&mut self, viewport: Viewport) {
+        let tiles = (viewport.tiles_x() * viewport.tiles_y()) as usize;
+        self.starts.resize(tiles + 2, 0);
+        // Starts is shifted by one, so that filling it leaves the final offsets.
+        for [tile, _] in &self.entries {
+            self.starts[*tile as usize + 2] += 1;
+        }
+        for t in 2..self.starts.len() {
+            self.starts[t] += self.starts[t - 1];
+        }
+        self.items.resize(self.entries.len(), 0);
+        for &[tile, piece] in &self.entries {
+            let place = &mut self.starts[tile as usize + 1];
+            self.items[*place as usize] = piece;
+            *place += 1;
+        }
+        self.entries = Vec::new();
+    }
+
+    /// How many pieces there are.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Bytes it takes.
+    pub(super) fn bytes(&self) -> u64 {
+        let cuts = self.cuts.len() * size_of::<Cut>() + (self.starts.len() + self.items.len()) * 4;
+        (self.pieces.len() * size_of::<Piece>() + cuts) as u64
+    }
+}
+
+/// Draws a tile's part of a list given in runs, from front to back or from back to front.
+pub(super) fn draw<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    setups: &[&Setup],
+    runs: &[Pieces],
+    index: usize,
+    tile: &mut Tile,
+    counters: &mut VisibilityCounters,
+) {
+    let pattern = &facets.view().pattern;
+    let mut counts = PriorityCounts::default();
+    dispatch!(facets.execution().level, simd => draw_runs::<_, FRONT_FIRST>(simd, setups, runs, index, tile, pattern, &mut counts));
+    counters.overdrawn += counts.overdrawn;
+    counters.overruled += counts.overruled;
+    counters.overruled_far += counts.overruled_far;
+}
+
+#[inline(always)]
+fn draw_runs<S: Simd, const FRONT_FIRST: bool>(
+    simd: S,
+    setups: &[&Setup],
+    runs: &[Pieces],
+    index: usize,
+    tile: &mut Tile,
+    pattern: &SamplePattern,
+    counts: &mut PriorityCounts,
+) {
+    let place = (tile.x, tile.y);
+    let mut sink =
+        PieceSink::<FRONT_FIRST> { inner: PrioritySink::new(tile, pattern), place, pattern, pixels: [0; 4], cuts: &[] };
+    for run in runs {
+        for &item in &run.items[run.starts[index] as usize..run.starts[index + 1] as usize] {
+            let piece = &run.pieces[item as usize];
+            sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
+            sink.pixels = piece.pixels.map(i32::from);
+            traverse(simd, setups[piece.setup as usize], place, pattern, &mut sink);
+        }
+    }
+    *counts = sink.inner.counts;
+}
+
+/// Narrows a triangle's coverage to one of its pieces.
+struct PieceSink<'a, const FRONT_FIRST: bool> {
+    inner: PrioritySink<'a, FRONT_FIRST>,
+    /// The tile's first pixel.
+    place: (u32, u32),
+    pattern: &'a SamplePattern,
+    pixels: [i32; 4],
+    cuts: &'a [Cut],
+}
+
+impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PieceSink<'_, FRONT_FIRST> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        let (x, y) = (self.place.0 as i32 + block.x as i32, self.place.1 as i32 + block.y as i32);
+        let ([x0, y0, x1, y1], last) = (self.pixels, BLOCK as i32 - 1);
+        let beside = x > x1 || y > y1 || x + last < x0 || y + last < y0;
+        beside || BlockSink::<S>::rejects(&self.inner, setup, block)
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        if self.cuts.is_empty() {
+            return self.inner.cover(simd, setup, block, masks);
+        }
+        let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
+        let mut kept = [0; 16];
+        let kept = &mut kept[..masks.len()];
+        kept.copy_from_slice(masks);
+        if cut_masks(self.cuts, self.pattern, origin, kept) {
+            self.inner.cover(simd, setup, block, kept);
+        }
+    }
+}
+
+/// Takes from the coverage of a block, at pixel `origin`, what lies beyond the cuts; false if nothing is left.
+fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &mut [u64]) -> bool {
+    let mut any = false;
+    for (s, mask) in masks.iter_mut().enumerate() {
+        let offset = pattern.position(s);
+        let at = |column: usize, row: usize| {
+            let place = |k: usize, pixel: usize| ((origin[k] + pixel) as i32 * SUBPIXEL + offset[k]) as f64;
+            [place(0, column), place(1, row)]
+        };
+        for cut in cuts {
+            if *mask == 0 {
+                break;
+            }
+            // The value is monotonic: the corners of the block decide for all, where they agree.
+            let last = BLOCK - 1;
+            let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
+            if keeps == [false; 4] {
+                *mask = 0;
+            } else if keeps != [true; 4] {
+                let mut left = *mask;
+                while left != 0 {
+                    let bit = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
+                        *mask &= !(1 << bit);
+                    }
+                }
+            }
+        }
+        any |= *mask != 0;
+    }
+    any
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_raster::CornerPosition;
+
+    fn triangle() -> Setup {
+        let [a, b, c] = [[0, 0], [2560, 0], [0, 2560]].map(|[x, y]| CornerPosition { x, y, z: 0.5 });
+        Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
+    }
+
+    #[test]
+    fn the_halves_of_a_cut_share_the_samples_out() {
+        let pattern = SamplePattern::new(4);
+        let lines =
+            [[1.0, 0.0, -1000.0], [0.3, -0.7, 128.0], [1.0, 1.0, -1024.0], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        for [a, b, c] in lines {
+            let cut = Cut { a, b, c, positive: true };
+            let (mut one, mut other) = ([u64::MAX; 4], [u64::MAX; 4]);
+            cut_masks(&[cut], &pattern, [0, 0], &mut one);
+            cut_masks(&[cut.opposite()], &pattern, [0, 0], &mut other);
+            for s in 0..4 {
+                assert_eq!((one[s] ^ other[s], one[s] & other[s]), (u64::MAX, 0), "{a} {b} {c}");
+                let [x, y] = pattern.position(s);
+                let bit = 3 + 8 * 2;
+                let keeps = cut.keeps([f64::from(x + 3 * 256), f64::from(y + 2 * 256)]);
+                assert_eq!(one[s] >> bit & 1 == 1, keeps);
+            }
+        }
+    }
+
+    #[test]
+    fn an_outline_holds_the_samples_of_its_piece() {
+        let raster = Raster::new(Viewport::new(10, 10).unwrap(), &SamplePattern::new(1));
+        let mut pieces = Pieces::default();
+        let cut = Cut { a: 1.0, b: 0.0, c: -1280.0, positive: false };
+        for cuts in [&[][..], &[cut], &[cut.opposite()], &[cut, cut.opposite()]] {
+            pieces.add(0, &triangle(), cuts, &raster);
+        }
+        let bounds: Vec<_> = pieces.pieces.iter().map(|p| p.pixels).collect();
+        // The last is the line itself: no pixel centre lies on it.
+        assert_eq!(bounds, [[0, 0, 9, 9], [0, 0, 4, 9], [5, 0, 9, 4]]);
+        pieces.finish(raster.viewport);
+        assert_eq!((pieces.items.as_slice(), pieces.starts.as_slice()), (&[0, 1, 2][..], &[0, 3, 3][..]));
+    }
+}

@@ -137,6 +137,10 @@ impl Context {
             if image.format.component_type() != FLOAT || !matches!(kind, FLOAT | HALF_FLOAT_ARB) {
                 clamp_colors(&mut colors);
             }
+            if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
+                // Not their sum as in `ReadPixels`: a texture's luminance is its red.
+                colors.iter_mut().for_each(|c| *c = [c[0], 0.0, 0.0, c[3]]);
+            }
             encode::colors(&colors, format, &mut bytes);
         } else {
             let mut depths = image.depths();

@@ -18,11 +18,13 @@ pub struct ArrayPointer {
     pub pointer: usize,
     /// Buffer object bound when the pointer was given; 0 is none.
     pub buffer: u32,
+    /// The number of static elements, of EXT_vertex_array.
+    pub count: i32,
 }
 
 impl ArrayPointer {
     const fn new(size: i32) -> Self {
-        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: 0 }
+        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: 0, count: 0 }
     }
 }
 

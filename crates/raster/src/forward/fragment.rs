@@ -11,7 +11,7 @@ use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace, StencilOp};
+use super::state::{Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, StencilFace, StencilOp};
 use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
@@ -374,7 +374,9 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     soa[k][lane] = values[lane][k];
                 }
             }
-            let mut new = *color;
+            let clamped = state.clamping != Clamping::None;
+            let color = if clamped { saturate_rgba(*color) } else { *color };
+            let mut new = color;
             if let (Some(b), None) = (&state.blend, state.logic_op) {
                 let stored = [
                     F32x8::from_slice(simd, &soa[0]),
@@ -382,7 +384,7 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     F32x8::from_slice(simd, &soa[2]),
                     F32x8::from_slice(simd, &soa[3]),
                 ];
-                new = blend(simd, b, *color, stored, false);
+                new = blend(simd, b, color, stored, state.clamping == Clamping::Results);
             }
             let new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
             for lane in 0..LANES {

@@ -124,6 +124,14 @@ fn a_framebuffer_of_depths_needs_no_colours() {
     c.no_error();
     c.read_pixels(0, 0, 1, 1, gl::RGBA, gl::UNSIGNED_BYTE, BUFFER);
     assert_eq!(c.get_error(), gl::INVALID_OPERATION);
+    // A buffer that was named has to be there.
+    c.draw_buffer(gl::COLOR_ATTACHMENT0 + 1);
+    assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER);
+    c.draw_buffer(gl::NONE);
+    c.read_buffer(gl::COLOR_ATTACHMENT0 + 1);
+    assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_INCOMPLETE_READ_BUFFER);
+    c.read_buffer(gl::NONE);
+    assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_COMPLETE);
 }
 
 #[test]

@@ -106,10 +106,16 @@ impl FramebufferObject {
         if out.status != FRAMEBUFFER_COMPLETE {
             return out;
         }
-        // Where nothing is attached nothing is drawn to or read from. ARB_framebuffer_object called such framebuffers
-        // incomplete (DRAW_BUFFER, READ_BUFFER); OpenGL 4.1 dropped the rule, Mesa does not have it, programs rely on that.
+        // ARB_framebuffer_object has drawing and reading of attachments that are not there make a framebuffer incomplete.
+        // OpenGL 4.1 dropped the rule, Mesa does not have it, and programs rely on that: here it is for buffers that were
+        // named, not for the first, which is the initial value.
+        let missing = |buffer: u32| {
+            buffer != COLOR_ATTACHMENT0 && color_point(buffer).is_some_and(|p| self.attachments[p].is_none())
+        };
         out.status = match found.first().map(|f| f.1.samples) {
             None => FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT,
+            _ if missing(self.draw_buffer) => FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER,
+            _ if missing(self.read_buffer) => FRAMEBUFFER_INCOMPLETE_READ_BUFFER,
             Some(samples) if found.iter().any(|f| f.1.samples != samples) => FRAMEBUFFER_INCOMPLETE_MULTISAMPLE,
             Some(samples) => {
                 // The area that all images have.

@@ -89,10 +89,13 @@ impl Context {
     pub fn draw_pixels(&mut self, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
         let pair = PixelFormat::new(format, type_);
         let image = match pair {
-            Ok(pair) => drawable([width, height]).and_then(|size| self.read_image(pair, size, false, pixels)),
-            Err(_) => None,
+            Ok(pair) => drawable([width, height]).map_or(Ok(None), |size| self.read_image(pair, size, false, pixels)),
+            Err(_) => Ok(None),
         };
-        let image = image.map(Arc::new);
+        let image = match image {
+            Ok(image) => image.map(Arc::new),
+            Err((error, why)) => return self.record_error(error, "glDrawPixels", why),
+        };
         self.listable(move |c| c.exec_draw_pixels([width, height], pair, image.as_deref()));
     }
 

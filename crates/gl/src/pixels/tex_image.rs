@@ -143,11 +143,14 @@ impl Context {
         }
         let image = match (&pair, &checked) {
             (Ok(pair), Ok(checked)) if formats_agree(*pair, &checked.format).is_ok() => {
-                plausible(size).and_then(|s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
+                plausible(size).map_or(Ok(None), |s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
             }
-            _ => None,
+            _ => Ok(None),
         };
-        let image = image.map(Arc::new);
+        let image = match image {
+            Ok(image) => image.map(Arc::new),
+            Err((error, why)) => return self.record_error(error, arguments.call, why),
+        };
         self.listable(move |c| c.exec_tex_image(&arguments, pair, image.as_deref()));
     }
 

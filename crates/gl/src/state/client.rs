@@ -47,6 +47,8 @@ pub struct PixelStore {
     pub skip_images: i32,
     /// `ALIGNMENT`: 1, 2, 4 or 8.
     pub alignment: i32,
+    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, unless it is 0.
+    pub buffer: u32,
 }
 
 impl Default for PixelStore {
@@ -60,6 +62,7 @@ impl Default for PixelStore {
             skip_pixels: 0,
             skip_images: 0,
             alignment: 4,
+            buffer: 0,
         }
     }
 }

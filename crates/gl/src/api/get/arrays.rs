@@ -51,6 +51,8 @@ impl Context {
             gl::VERTEX_ARRAY_BINDING => client.vertex_array,
             gl::ARRAY_BUFFER_BINDING => client.array_buffer,
             gl::ELEMENT_ARRAY_BUFFER_BINDING => client.element_buffer,
+            gl::PIXEL_PACK_BUFFER_BINDING => client.pack.buffer,
+            gl::PIXEL_UNPACK_BUFFER_BINDING => client.unpack.buffer,
             gl::VERTEX_ARRAY_BUFFER_BINDING => client.vertex.buffer,
             gl::NORMAL_ARRAY_BUFFER_BINDING => client.normal.buffer,
             gl::COLOR_ARRAY_BUFFER_BINDING => client.color.buffer,

@@ -276,6 +276,29 @@ fn colours_of_fragments_may_be_clamped_on_their_way_to_floats() {
 }
 
 #[test]
+fn framebuffers_of_srgb_colours_encode_them_on_demand() {
+    // EXT_framebuffer_sRGB: 0.5 is stored as 188 of 255; blending works on what is stored, decoded.
+    let mut c = Stage::new(2, 2);
+    assert_eq!(c.get(gl::FRAMEBUFFER_SRGB_CAPABLE_EXT), [0.0]);
+    framebuffer(&mut c);
+    attach(&mut c, gl::COLOR_ATTACHMENT0, gl::SRGB8_ALPHA8_EXT, [2, 2], 1);
+    assert_eq!(c.get(gl::FRAMEBUFFER_SRGB_CAPABLE_EXT), [1.0]);
+    c.fill([0.5; 4], 0.0);
+    assert_color(c.pixel(0, 0), [0.5; 4]);
+    c.enable(gl::FRAMEBUFFER_SRGB);
+    c.fill([0.5; 4], 0.0);
+    assert_color(c.pixel(0, 0), [188.0 / 255.0, 188.0 / 255.0, 188.0 / 255.0, 0.5]);
+    c.clear_color(0.5, 0.0, 1.0, 0.25);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    assert_color(c.pixel(0, 0), [188.0 / 255.0, 0.0, 1.0, 0.25]);
+    c.enable(gl::BLEND);
+    c.blend_func(gl::ONE, gl::ONE);
+    c.fill([0.25; 4], 0.0);
+    // 0.75 and 0.25 encoded.
+    assert_color(c.pixel(0, 0), [225.0 / 255.0, 137.0 / 255.0, 1.0, 0.5]);
+}
+
+#[test]
 fn a_light_at_infinity_has_a_cone() {
     // Equation 2.5: the spot factor is the cosine between the ray and the cone's axis, to the exponent.
     let mut c = Stage::new(2, 2);

@@ -2,7 +2,7 @@
 
 use super::framebuffer::{Attached, DEPTH_POINT, FramebufferObject, STENCIL_POINT};
 use super::image::{Shared, lock};
-use super::internal_format::InternalFormat;
+use super::internal_format::{InternalFormat, Storage};
 use crate::Context;
 use crate::enums::*;
 use crate::state::MAX_COLOR_ATTACHMENTS;
@@ -219,6 +219,12 @@ impl Context {
             Some(FLOAT) => Clamping::None,
             _ => Clamping::Results,
         }
+    }
+
+    /// Whether colours are sRGB-encoded on their way to the draw buffer.
+    pub(crate) fn encodes_srgb(&mut self) -> bool {
+        let enabled = self.state.framebuffer_srgb;
+        enabled && self.resolve().surfaces.color.as_ref().is_some_and(|c| c.format.storage == Storage::Srgb8)
     }
 
     /// The planes that draws go to now.

@@ -194,7 +194,7 @@ impl Context {
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
         let units = self.sampled_units(target);
         let missing = self.missing_components();
-        let clamping = self.clamping();
+        let (clamping, srgb) = (self.clamping(), self.encodes_srgb());
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -226,6 +226,7 @@ impl Context {
             flat: s.lighting.shade_model == gl::FLAT,
             depth_clamp: s.depth_clamp,
             clamping,
+            srgb,
             query: self.queries.active(),
         })
     }

@@ -15,6 +15,7 @@ use super::state::{Blend, BlendEquation, BlendFactor, Clamping, Compare, Fragmen
 use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
+use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
 
@@ -88,6 +89,7 @@ impl FragmentOps {
         let mixing = mixing(state);
         let common = state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back))
             && state.logic_op.is_none()
+            && !state.srgb
             && state.query.is_none()
             && state.polygon_stipple.is_none()
             && state.sample_coverage.is_none()
@@ -341,6 +343,9 @@ fn write_packed<S: Simd>(
             None => packed,
         },
     };
+    if state.srgb {
+        new = srgb_packed(simd, state, color, stored);
+    }
     if let Some(op) = state.logic_op {
         new = logic_op(simd, op, packed, stored);
     }
@@ -360,6 +365,28 @@ fn blend_packed<S: Simd>(simd: S, state: &Blend, color: &Rgba<S>, stored: U32x8<
     simd.vectorize(
         #[inline(always)]
         || pack(&saturate_rgba(blend(simd, state, *color, unpack(stored), true))),
+    )
+}
+
+/// Colours that are stored sRGB-encoded: decoded, blended, encoded.
+#[inline(never)]
+fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored: U32x8<S>) -> U32x8<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut old = unpack(stored);
+            for component in &mut old[..3] {
+                *component = F32x8::from_slice(simd, &component.to_array().map(linear_from_srgb));
+            }
+            let mut new = match &state.blend {
+                Some(b) => blend(simd, b, *color, old, true),
+                None => *color,
+            };
+            for component in &mut new[..3] {
+                *component = F32x8::from_slice(simd, &component.to_array().map(srgb_from_linear));
+            }
+            pack(&saturate_rgba(new))
+        },
     )
 }
 

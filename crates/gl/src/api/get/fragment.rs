@@ -111,7 +111,8 @@ impl Context {
     pub(super) fn get_framebuffer(&mut self, pname: u32) -> Option<Value> {
         Some(match pname {
             gl::INDEX_BITS | gl::AUX_BUFFERS => Value::integer(0),
-            gl::STEREO | gl::INDEX_MODE | gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(false),
+            gl::STEREO | gl::INDEX_MODE => Value::boolean(false),
+            gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(self.draws_srgb()),
             gl::RGBA_MODE => Value::boolean(true),
             gl::DRAW_BUFFER => Value::token(self.draw_buffer_token()),
             gl::READ_BUFFER => Value::token(self.read_buffer_token()),

@@ -278,9 +278,16 @@ pub(crate) unsafe extern "C" fn OSMesaGetProcAddress(name: *const c_char) -> *co
     procedures::address(name.to_bytes())
 }
 
-/// Colours of vertices are clamped always, and colours in buffers of floats never are: there is nothing to choose.
+/// Whether colours of fragments are clamped even on their way to buffers of floats.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn OSMesaColorClamp(_enable: u8) {}
+pub(crate) extern "C" fn OSMesaColorClamp(enable: u8) {
+    guarded("OSMesaColorClamp", (), || {
+        // SAFETY: the current context is alive and this thread's.
+        if let Some(machine) = unsafe { machine(current()) } {
+            machine.context.state.clamp_fragments = enable != 0;
+        }
+    });
+}
 
 /// There are no filters after rendering.
 ///

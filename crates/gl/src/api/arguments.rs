@@ -41,7 +41,7 @@ impl Number for i32 {
 /// What a parameter name takes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
-    /// One number: allowed in the calls without `v`.
+    /// One number.
     Scalar,
     /// So many numbers.
     Vector(usize),
@@ -179,16 +179,17 @@ impl Context {
     }
 }
 
-/// A setter of one number: `glFogf`. `form` is a function from parameter name to [`Form`]; `exec` checks and stores.
+/// A setter of one number: `glFogf`. `form` is a function from parameter name to [`Form`]; `exec` checks and stores. The
+/// specification does not say what it does to a parameter that has several numbers; as in Mesa the others become 0.
 macro_rules! scalar_call {
     ($name:ident, $call:literal, $type:ty, $form:path, $exec:ident $(, $key:ident)*) => {
         #[doc = concat!("`", $call, "`.")]
         pub fn $name(&mut self, $($key: u32,)* pname: u32, param: $type) {
             let values = [$crate::api::arguments::Number::plain(param), 0.0, 0.0, 0.0];
-            let scalar = $form(pname) == Some($crate::api::arguments::Form::Scalar);
+            let known = $form(pname).is_some();
             self.listable(move |c| {
                 if !c.may_set($call) {
-                } else if scalar {
+                } else if known {
                     c.$exec($call, $($key,)* pname, values);
                 } else {
                     c.refuse_enum($call, "pname", pname);

@@ -1,6 +1,5 @@
 //! Blending and logic operations.
 
-use super::arguments::unit;
 use crate::{Context, enums as gl};
 
 /// Of the source; the destination has no `SRC_ALPHA_SATURATE`.
@@ -79,7 +78,7 @@ impl Context {
     pub fn blend_color(&mut self, red: f32, green: f32, blue: f32, alpha: f32) {
         self.listable(move |c| {
             if c.may_set("glBlendColor") {
-                c.state.blend.color = [red, green, blue, alpha].map(unit);
+                c.state.blend.color = [red, green, blue, alpha];
             }
         });
     }

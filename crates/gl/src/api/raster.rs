@@ -173,7 +173,7 @@ mod tests {
             (|c| c.polygon_mode(gl::LEFT, gl::LINE), gl::INVALID_ENUM),
             (|c| c.polygon_mode(gl::FRONT, gl::POINTS), gl::INVALID_ENUM),
             (|c| c.point_parameterf(gl::POINT_SIZE_MAX, -1.0), gl::INVALID_VALUE),
-            (|c| c.point_parameterf(gl::POINT_DISTANCE_ATTENUATION, 1.0), gl::INVALID_ENUM),
+            (|c| c.point_parameterf(gl::POINT_SIZE, 1.0), gl::INVALID_ENUM),
             (|c| c.point_parameteri(gl::POINT_SIZE, 1), gl::INVALID_ENUM),
             (|c| c.hint(gl::FOG, gl::NICEST), gl::INVALID_ENUM),
             (|c| c.hint(gl::FOG_HINT, gl::FOG), gl::INVALID_ENUM),

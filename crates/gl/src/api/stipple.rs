@@ -1,7 +1,7 @@
 //! The polygon stipple, on its way through the pixel store.
 
-use crate::Context;
 use crate::state::PixelStore;
+use crate::{ClientMemory, Context};
 use std::sync::Arc;
 
 /// Where row `row` of a 32x32 bitmap at `address` begins: the address of its first byte that matters, and the bit in it.
@@ -41,11 +41,12 @@ impl Context {
 
     fn read_stipple(&self, address: usize) -> Option<[u32; 32]> {
         let store = &self.client.unpack;
+        let (memory, address) = self.unpack_memory(address).ok()?;
         let mut pattern = [0; 32];
         for (row, bits) in pattern.iter_mut().enumerate() {
             let (start, first) = row_start(store, address, row)?;
             let mut bytes = [0; 5];
-            if address == 0 || !self.memory.read(start, &mut bytes[..row_bytes(first)]) {
+            if address == 0 || !memory.read(start, &mut bytes[..row_bytes(first)]) {
                 return None;
             }
             for x in 0..32 {
@@ -58,19 +59,30 @@ impl Context {
 
     /// `glGetPolygonStipple`.
     pub fn get_polygon_stipple(&mut self, mask: usize) {
-        if self.may_set("glGetPolygonStipple") && self.write_stipple(mask).is_none() {
-            self.refuse_value("glGetPolygonStipple", "the result has no writable memory");
+        const CALL: &str = "glGetPolygonStipple";
+        if !self.may_set(CALL) {
+            return;
+        }
+        let mut there = false;
+        let written = self.pack_into(mask, |memory, address| {
+            there = self.write_stipple(memory, address).is_some();
+            there
+        });
+        match written {
+            Err((error, why)) => self.record_error(error, CALL, why),
+            Ok(()) if !there => self.refuse_value(CALL, "the result has no writable memory"),
+            Ok(()) => {}
         }
     }
 
     /// Bits beside the pattern stay as they are.
-    fn write_stipple(&self, address: usize) -> Option<()> {
+    fn write_stipple(&self, memory: &dyn ClientMemory, address: usize) -> Option<()> {
         let store = &self.client.pack;
         for (row, bits) in self.state.polygons.stipple_pattern.iter().enumerate() {
             let (start, first) = row_start(store, address, row)?;
             let mut bytes = [0; 5];
             let bytes = &mut bytes[..row_bytes(first)];
-            if address == 0 || !self.memory.read(start, bytes) {
+            if address == 0 || !memory.read(start, bytes) {
                 return None;
             }
             for x in 0..32 {
@@ -81,7 +93,7 @@ impl Context {
                     bytes[byte] &= !mask;
                 }
             }
-            if !self.memory.write(start, bytes) {
+            if !memory.write(start, bytes) {
                 return None;
             }
         }

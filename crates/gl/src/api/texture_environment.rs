@@ -213,7 +213,6 @@ mod tests {
         for (target, pname, value, error) in [
             (gl::TEXTURE_2D, gl::TEXTURE_ENV_MODE, gl::ADD, gl::INVALID_ENUM),
             (gl::TEXTURE_ENV, gl::TEXTURE_LOD_BIAS, 0, gl::INVALID_ENUM),
-            (gl::TEXTURE_ENV, gl::TEXTURE_ENV_COLOR, 0, gl::INVALID_ENUM),
             (gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::SUBTRACT, gl::INVALID_ENUM),
             (gl::TEXTURE_ENV, gl::COMBINE_ALPHA, gl::DOT3_RGB, gl::INVALID_ENUM),
             (gl::TEXTURE_ENV, gl::SOURCE0_RGB, gl::TEXTURE8, gl::INVALID_ENUM),

@@ -127,7 +127,7 @@ mod tests {
                 assert_eq!(c.get_error(), if i < count { gl::NO_ERROR } else { gl::INVALID_ENUM });
             }
         }
-        c.tex_genf(gl::S, gl::EYE_PLANE, 1.0);
+        c.tex_genf(gl::S, gl::FOG, 1.0);
         assert_eq!(c.get_error(), gl::INVALID_ENUM);
         c.tex_geni(gl::S + 4, gl::TEXTURE_GEN_MODE, gl::EYE_LINEAR as i32);
         assert_eq!(c.get_error(), gl::INVALID_ENUM);

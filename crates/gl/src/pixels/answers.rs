@@ -1,7 +1,7 @@
 //! What queries and attribute stacks ask about textures and framebuffers.
 
 use super::image::lock;
-use super::internal_format::Bits;
+use super::internal_format::{Bits, Storage};
 use super::texture::{TextureHandle, TextureParameters};
 use crate::Context;
 use crate::state::MAX_TEXTURE_UNITS;
@@ -44,6 +44,12 @@ impl Context {
     /// `RENDERBUFFER_BINDING`.
     pub(crate) fn renderbuffer_name(&self) -> u32 {
         self.framebuffers.renderbuffer
+    }
+
+    /// `FRAMEBUFFER_SRGB_CAPABLE_EXT`: whether the draw buffer holds sRGB-encoded colours.
+    pub(crate) fn draws_srgb(&self) -> bool {
+        let surfaces = self.surfaces_of(self.framebuffers.draw, true);
+        surfaces.color.is_some_and(|c| c.format.storage == Storage::Srgb8)
     }
 
     /// `DRAW_BUFFER` of the bound framebuffer.

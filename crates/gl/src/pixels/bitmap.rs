@@ -24,7 +24,11 @@ impl Context {
     /// `glBitmap`.
     pub fn bitmap(&mut self, width: i32, height: i32, xorig: f32, yorig: f32, xmove: f32, ymove: f32, bitmap: usize) {
         let format = PixelFormat { format: COLOR_INDEX, kind: BITMAP };
-        let image = drawable([width, height]).and_then(|size| self.read_image(format, size, false, bitmap));
+        let image = drawable([width, height]).map_or(Ok(None), |size| self.read_image(format, size, false, bitmap));
+        let image = match image {
+            Ok(image) => image,
+            Err((error, why)) => return self.record_error(error, "glBitmap", why),
+        };
         let bits = image.filter(|i| !i.bytes.is_empty()).map(|i| i.bytes.iter().map(|&b| b != 0).collect());
         let glyph = Glyph { size: [width, height], origin: [xorig, yorig], step: [xmove, ymove], bits };
         let glyph = Arc::new(glyph);

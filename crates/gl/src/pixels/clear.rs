@@ -4,6 +4,7 @@ use super::image::Shared;
 use crate::Context;
 use crate::enums::*;
 use crate::state::MAX_COLOR_ATTACHMENTS;
+use vitral_math::color::srgb_from_linear;
 use vitral_raster::Viewport;
 use vitral_raster::forward::{Clear, ColorPlane, Command};
 
@@ -45,6 +46,7 @@ impl Context {
             return;
         }
         let missing = self.missing_components();
+        let srgb = self.encodes_srgb();
         let written = self.state.color_buffer.mask;
         let masked: [bool; 4] = std::array::from_fn(|i| !written[i] || missing[i]);
         let color = surfaces.color.as_ref().filter(|_| mask & COLOR_BUFFER_BIT != 0 && masked != [true; 4]);
@@ -54,7 +56,11 @@ impl Context {
             let constant = [0.0, 0.0, 0.0, if missing[3] { 1.0 } else { 0.0 }];
             let clear = std::array::from_fn(|i| if missing[i] { constant[i] } else { clear[i] });
             let unmasked = std::array::from_fn(|i| !written[i] && !missing[i]);
-            (s.format.clear_color(clear), unmasked)
+            let mut clear = s.format.clear_color(clear);
+            if srgb {
+                clear[..3].iter_mut().for_each(|c| *c = srgb_from_linear(c.clamp(0.0, 1.0)));
+            }
+            (clear, unmasked)
         });
         let depth = (mask & DEPTH_BUFFER_BIT != 0 && self.state.depth.write && surfaces.depth.is_some())
             .then_some(self.state.depth.clear as f32);

@@ -9,7 +9,7 @@ use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
 use std::sync::Arc;
-use vitral_raster::forward::{Command, Compare, DepthTest, FragmentState, ImageFragments};
+use vitral_raster::forward::{Clamping, Command, Compare, DepthTest, FragmentState, ImageFragments};
 
 /// What a pixel rectangle brings.
 #[derive(Default)]
@@ -45,8 +45,8 @@ impl Context {
         let zoom = self.state.pixel_mode.zoom;
         let raster = self.state.raster_position.window;
         let origin = std::array::from_fn(|i| raster[i] + skip[i] as f32 * zoom[i]);
-        let float = self.draw_surfaces().color.is_some_and(|s| s.format.component_type() == FLOAT);
-        if let Some(colors) = pixels.colors.as_mut().filter(|_| !float) {
+        let clamped = self.clamping() != Clamping::None;
+        if let Some(colors) = pixels.colors.as_mut().filter(|_| clamped) {
             clamp_colors(colors);
         }
         let fragments = self.raster_fragments(origin, zoom, size);
@@ -89,10 +89,13 @@ impl Context {
     pub fn draw_pixels(&mut self, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
         let pair = PixelFormat::new(format, type_);
         let image = match pair {
-            Ok(pair) => drawable([width, height]).and_then(|size| self.read_image(pair, size, false, pixels)),
-            Err(_) => None,
+            Ok(pair) => drawable([width, height]).map_or(Ok(None), |size| self.read_image(pair, size, false, pixels)),
+            Err(_) => Ok(None),
         };
-        let image = image.map(Arc::new);
+        let image = match image {
+            Ok(image) => image.map(Arc::new),
+            Err((error, why)) => return self.record_error(error, "glDrawPixels", why),
+        };
         self.listable(move |c| c.exec_draw_pixels([width, height], pair, image.as_deref()));
     }
 

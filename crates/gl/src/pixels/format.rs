@@ -72,6 +72,13 @@ impl PixelFormat {
                 | LUMINANCE_ALPHA
                 | DEPTH_STENCIL
         );
+        let fits = |p: Packed| match p.fields.len() {
+            3 => format == RGB,
+            _ => matches!(format, RGBA | BGRA | ABGR_EXT),
+        };
+        if packed(kind).is_some_and(|p| !fits(p)) {
+            return Err((INVALID_OPERATION, "a packed type does not fit the format"));
+        }
         if !known {
             return Err((INVALID_ENUM, "format is not a pixel format"));
         }
@@ -89,12 +96,8 @@ impl PixelFormat {
                     Ok(pair)
                 }
             }
-            _ => match packed(kind) {
-                None => Err((INVALID_ENUM, "type is not a pixel type")),
-                Some(p) if p.fields.len() == 3 && format == RGB => Ok(pair),
-                Some(p) if p.fields.len() == 4 && matches!(format, RGBA | BGRA | ABGR_EXT) => Ok(pair),
-                Some(_) => Err((INVALID_OPERATION, "a packed type does not fit the format")),
-            },
+            _ if packed(kind).is_some() => Ok(pair),
+            _ => Err((INVALID_ENUM, "type is not a pixel type")),
         }
     }
 

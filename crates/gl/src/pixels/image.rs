@@ -105,6 +105,16 @@ impl TextureImage {
         self.level.clone().expect("just set")
     }
 
+    /// As [`Self::level`], with depths of its own instead of a depth plane's.
+    pub(crate) fn copied_level(&mut self) -> Arc<Level> {
+        let level = self.level();
+        if !matches!(level.texels, Texels::DepthPlane(_)) {
+            return level;
+        }
+        let depths = self.depths();
+        self.new_level(Texels::Depth(depths))
+    }
+
     fn blank_level(&self) -> Arc<Level> {
         let texels = match (self.viewport(), self.format.has_depth() && self.border == 0 && self.size[2] == 1) {
             (Some(viewport), true) => {

@@ -61,21 +61,21 @@ impl InternalFormat {
             | COMPRESSED_INTENSITY
             | COMPRESSED_RGB
             | COMPRESSED_RGBA => base,
-            COMPRESSED_SRGB_EXT => SRGB_EXT,
-            COMPRESSED_SRGB_ALPHA_EXT => SRGB_ALPHA_EXT,
-            COMPRESSED_SLUMINANCE_EXT => SLUMINANCE_EXT,
-            COMPRESSED_SLUMINANCE_ALPHA_EXT => SLUMINANCE_ALPHA_EXT,
+            COMPRESSED_SRGB_EXT
+            | COMPRESSED_SRGB_ALPHA_EXT
+            | COMPRESSED_SLUMINANCE_EXT
+            | COMPRESSED_SLUMINANCE_ALPHA_EXT => base,
             _ => token,
         };
         Some(Self { token, base, storage })
     }
 
-    /// The format of a renderbuffer: colour- (RGB, RGBA), depth- or stencil-renderable.
+    /// The format of a renderbuffer: colours, depths or stencil values.
     pub(crate) fn of_renderbuffer(token: u32) -> Option<Self> {
         if matches!(token, STENCIL_INDEX | STENCIL_INDEX1 | STENCIL_INDEX4 | STENCIL_INDEX8 | STENCIL_INDEX16) {
             return Some(Self { token, base: STENCIL_INDEX, storage: Storage::Stencil });
         }
-        if matches!(token, 3 | 4) {
+        if matches!(token, 1..=4) {
             return None;
         }
         let format = Self::of_texture(token).filter(|f| f.token == token)?;
@@ -85,7 +85,7 @@ impl InternalFormat {
             Storage::Half => Storage::Float,
             other => other,
         };
-        matches!(format.base, RGB | RGBA | DEPTH_COMPONENT | DEPTH_STENCIL).then_some(Self { storage, ..format })
+        Some(Self { storage, ..format })
     }
 
     /// Whether samples hold a depth.
@@ -268,7 +268,8 @@ mod tests {
         assert_eq!(bits(DEPTH32F_STENCIL8), Bits { depth: 32, stencil: 8, ..Bits::default() });
         assert_eq!(InternalFormat::of_texture(COMPRESSED_RGB).unwrap().token, RGB);
         assert!(InternalFormat::of_texture(COMPRESSED_RGB_S3TC_DXT1_EXT).is_none());
-        assert!(InternalFormat::of_renderbuffer(LUMINANCE8).is_none());
+        assert_eq!(InternalFormat::of_texture(COMPRESSED_SRGB_EXT).unwrap().storage, Storage::Srgb8);
+        assert_eq!(InternalFormat::of_renderbuffer(LUMINANCE8).unwrap().bits().luminance, 8);
         assert!(InternalFormat::of_renderbuffer(COMPRESSED_RGB).is_none());
         assert_eq!(InternalFormat::of_renderbuffer(RGBA16).unwrap().bits().rgba, [8; 4]);
     }

@@ -243,6 +243,11 @@ impl Context {
             self.record_error(INVALID_OPERATION, CALL, "the cube map's base level is not complete");
             return;
         }
+        if texture.base_level().and_then(|level| texture.image(0, level)).is_some_and(|i| i.format.has_stencil()) {
+            drop(texture);
+            self.record_error(INVALID_OPERATION, CALL, "depths and stencil values have no mipmaps");
+            return;
+        }
         generate(&mut texture, 0..faces);
         drop(texture);
         self.shared.storage_changed();

@@ -10,6 +10,7 @@ mod answers;
 mod binding;
 mod bitmap;
 mod blit;
+mod buffer;
 mod clear;
 mod copy_plane;
 mod copy_tex;

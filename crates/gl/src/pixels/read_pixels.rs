@@ -10,6 +10,7 @@ use super::texels::color_from_word;
 use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
+use crate::memory::ClientMemory;
 use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
 
 /// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
@@ -204,7 +205,10 @@ impl Context {
             self.store_default_framebuffer();
         }
         let r = inside(&surfaces, x, y, width, height);
-        if pixels == 0 || r.size.contains(&0) || r.size[0] * r.size[1] > MAX_IMAGE_BYTES / 4 {
+        if (pixels == 0 && self.client.pack.buffer == 0)
+            || r.size.contains(&0)
+            || r.size[0] * r.size[1] > MAX_IMAGE_BYTES / 4
+        {
             return;
         }
         let bytes = encode_rectangle(&surfaces, format, &r, &Transfer::new(&self.state.pixel));
@@ -214,7 +218,12 @@ impl Context {
             size: [r.size[0], r.size[1], 1],
             volume: false,
         };
-        write_region(&*self.memory, &self.client.pack, format, &region, pixels, bytes);
+        let write = |memory: &dyn ClientMemory, address: usize| {
+            write_region(memory, &self.client.pack, format, &region, address, bytes)
+        };
+        if let Err((error, why)) = self.pack_into(pixels, write) {
+            self.record_error(error, CALL, why);
+        }
     }
 }
 

@@ -248,6 +248,6 @@ mod tests {
         };
         assert_eq!(error(5, RGBA8, 1), INVALID_VALUE);
         assert_eq!(error(0, RGBA8, -1), INVALID_VALUE);
-        assert_eq!(error(0, LUMINANCE8, 1), INVALID_ENUM);
+        assert_eq!(error(0, COMPRESSED_RGB, 1), INVALID_ENUM);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::format::PixelFormat;
 use crate::Context;
-use crate::enums::BITMAP;
+use crate::enums::{BITMAP, INVALID_OPERATION};
 use crate::memory::ClientMemory;
 use crate::state::PixelStore;
 
@@ -192,20 +192,29 @@ pub(crate) fn drawable([width, height]: [i32; 2]) -> Option<[usize; 3]> {
 }
 
 impl Context {
-    /// Reads an image with the unpacking state. `None` without an address, or if the memory is not the client's.
+    /// Reads an image with the unpacking state. `None` without an address, or if the memory is not the client's. What a bound
+    /// buffer does not hold is an error.
     pub(crate) fn read_image(
         &self,
         format: PixelFormat,
         size: [usize; 3],
         volume: bool,
         address: usize,
-    ) -> Option<ClientImage> {
-        if address == 0 {
-            return None;
+    ) -> Result<Option<ClientImage>, (u32, &'static str)> {
+        let bound = self.client.unpack.buffer != 0;
+        if address == 0 && !bound {
+            return Ok(None);
         }
+        if bound && !address.is_multiple_of(format.element_bytes()) {
+            return Err((INVALID_OPERATION, "the offset is not one of whole numbers"));
+        }
+        let (memory, address) = self.unpack_memory(address)?;
         let region = Region::whole(size, volume);
-        let bytes = read_region(&*self.memory, &self.client.unpack, format, &region, address)?;
-        Some(ClientImage { format, size, bytes })
+        match read_region(&*memory, &self.client.unpack, format, &region, address) {
+            Some(bytes) => Ok(Some(ClientImage { format, size, bytes })),
+            None if bound => Err((INVALID_OPERATION, "the buffer does not hold so many pixels")),
+            None => Ok(None),
+        }
     }
 }
 

@@ -2,14 +2,14 @@
 
 use super::framebuffer::{Attached, DEPTH_POINT, FramebufferObject, STENCIL_POINT};
 use super::image::{Shared, lock};
-use super::internal_format::InternalFormat;
+use super::internal_format::{InternalFormat, Storage};
 use crate::Context;
 use crate::enums::*;
 use crate::state::MAX_COLOR_ATTACHMENTS;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane, Target};
+use vitral_raster::forward::{Clamping, ColorPlane, DepthPlane, StencilPlane, Target};
 
 /// The image behind an attachment point.
 #[derive(Clone, Debug)]
@@ -106,17 +106,21 @@ impl FramebufferObject {
         if out.status != FRAMEBUFFER_COMPLETE {
             return out;
         }
-        let missing = |buffer: u32| color_point(buffer).is_some_and(|p| self.attachments[p].is_none());
-        let first = found.first().map(|f| (f.1.viewport, f.1.samples));
-        out.status = match first {
+        // ARB_framebuffer_object has drawing and reading of attachments that are not there make a framebuffer incomplete.
+        // OpenGL 4.1 dropped the rule, Mesa does not have it, and programs rely on that: here it is for buffers that were
+        // named, not for the first, which is the initial value.
+        let missing = |buffer: u32| {
+            buffer != COLOR_ATTACHMENT0 && color_point(buffer).is_some_and(|p| self.attachments[p].is_none())
+        };
+        out.status = match found.first().map(|f| f.1.samples) {
             None => FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT,
             _ if missing(self.draw_buffer) => FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER,
             _ if missing(self.read_buffer) => FRAMEBUFFER_INCOMPLETE_READ_BUFFER,
-            Some((_, samples)) if found.iter().any(|f| f.1.samples != samples) => FRAMEBUFFER_INCOMPLETE_MULTISAMPLE,
-            // One pass has one size: images of different sizes are a combination that is not supported.
-            Some((viewport, _)) if found.iter().any(|f| f.1.viewport != viewport) => FRAMEBUFFER_UNSUPPORTED,
-            Some((viewport, samples)) => {
-                out.size = Some(viewport);
+            Some(samples) if found.iter().any(|f| f.1.samples != samples) => FRAMEBUFFER_INCOMPLETE_MULTISAMPLE,
+            Some(samples) => {
+                // The area that all images have.
+                let least = |size: fn(&Viewport) -> u32| found.iter().map(|f| size(&f.1.viewport)).min().unwrap_or(0);
+                out.size = Viewport::new(least(|v| v.width), least(|v| v.height));
                 out.samples = samples;
                 FRAMEBUFFER_COMPLETE
             }
@@ -205,6 +209,22 @@ impl Context {
     /// Which of red, green, blue, alpha the draw buffer does not store: writes to them must be masked.
     pub(crate) fn missing_components(&mut self) -> [bool; 4] {
         self.resolve().surfaces.color.as_ref().map_or([false; 4], |c| c.format.missing())
+    }
+
+    /// Where colours are clamped on their way to the draw buffer.
+    pub(crate) fn clamping(&mut self) -> Clamping {
+        let fragments = self.state.clamp_fragments;
+        match self.resolve().surfaces.color.as_ref().map(|c| c.format.component_type()) {
+            Some(FLOAT) if fragments => Clamping::Fragments,
+            Some(FLOAT) => Clamping::None,
+            _ => Clamping::Results,
+        }
+    }
+
+    /// Whether colours are sRGB-encoded on their way to the draw buffer.
+    pub(crate) fn encodes_srgb(&mut self) -> bool {
+        let enabled = self.state.framebuffer_srgb;
+        enabled && self.resolve().surfaces.color.as_ref().is_some_and(|c| c.format.storage == Storage::Srgb8)
     }
 
     /// The planes that draws go to now.

@@ -68,8 +68,9 @@ impl ImageArguments {
         if target.slot == slot::CUBE && size[0] != size[1] {
             return Err((INVALID_VALUE, "a cube map's face is not square"));
         }
-        if format.has_depth() && matches!(target.slot, slot::THREE | slot::CUBE) {
-            return Err((INVALID_OPERATION, "depth formats are for 1D, 2D and rectangle textures"));
+        // OpenGL 1.5 has no depth cube maps; 3.0 has, and Mesa in every version.
+        if format.has_depth() && target.slot == slot::THREE {
+            return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
         }
         let limit = (target.max_size() >> level) as u32 + 2 * border;
         let texels = size.iter().try_fold(format.texel_bytes(), |n, &s| n.checked_mul(s as usize));
@@ -97,6 +98,7 @@ fn unknown_format_error(token: u32) -> u32 {
 /// Whether pixels of `format` may become texels of `internal`.
 pub(crate) fn formats_agree(format: PixelFormat, internal: &InternalFormat) -> Result<(), Failure> {
     let fits = match format.content() {
+        Content::Stencil if internal.has_depth() => false,
         Content::Stencil => return Err((INVALID_ENUM, "stencil indices are no texels")),
         Content::Color | Content::Index => !internal.has_depth(),
         Content::Depth => internal.base == DEPTH_COMPONENT || internal.base == DEPTH_STENCIL,
@@ -141,11 +143,14 @@ impl Context {
         }
         let image = match (&pair, &checked) {
             (Ok(pair), Ok(checked)) if formats_agree(*pair, &checked.format).is_ok() => {
-                plausible(size).and_then(|s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
+                plausible(size).map_or(Ok(None), |s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
             }
-            _ => None,
+            _ => Ok(None),
         };
-        let image = image.map(Arc::new);
+        let image = match image {
+            Ok(image) => image.map(Arc::new),
+            Err((error, why)) => return self.record_error(error, arguments.call, why),
+        };
         self.listable(move |c| c.exec_tex_image(&arguments, pair, image.as_deref()));
     }
 

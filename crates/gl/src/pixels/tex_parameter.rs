@@ -181,14 +181,16 @@ impl Context {
         (address != 0 && self.memory.read(address, bytemuck::cast_slice_mut(&mut values[..count]))).then_some(values)
     }
 
-    /// `glTexParameterf`.
+    /// `glTexParameterf`. A list keeps it, as Mesa's does, as a call with `v`: a border colour is no error there.
     pub fn tex_parameterf(&mut self, target: u32, pname: u32, param: f32) {
-        self.tex_parameter("glTexParameterf", target, pname, Value::Float(param));
+        let value = if self.lists.recording { Value::Floats([param, 0.0, 0.0, 0.0]) } else { Value::Float(param) };
+        self.tex_parameter("glTexParameterf", target, pname, value);
     }
 
     /// `glTexParameteri`.
     pub fn tex_parameteri(&mut self, target: u32, pname: u32, param: i32) {
-        self.tex_parameter("glTexParameteri", target, pname, Value::Int(param));
+        let value = if self.lists.recording { Value::Ints([param, 0, 0, 0]) } else { Value::Int(param) };
+        self.tex_parameter("glTexParameteri", target, pname, value);
     }
 
     /// `glTexParameterfv`.

@@ -126,7 +126,7 @@ impl Context {
             return Err((INVALID_OPERATION, "the texture does not hold what format asks for"));
         }
         let full = image.full();
-        if pixels == 0 || full.contains(&0) {
+        if (pixels == 0 && self.client.pack.buffer == 0) || full.contains(&0) {
             return Ok(());
         }
         let transfer = Transfer::new(&self.state.pixel);
@@ -136,6 +136,10 @@ impl Context {
             transfer.colors(&mut colors);
             if image.format.component_type() != FLOAT || !matches!(kind, FLOAT | HALF_FLOAT_ARB) {
                 clamp_colors(&mut colors);
+            }
+            if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
+                // Not their sum as in `ReadPixels`: a texture's luminance is its red.
+                colors.iter_mut().for_each(|c| *c = [c[0], 0.0, 0.0, c[3]]);
             }
             encode::colors(&colors, format, &mut bytes);
         } else {
@@ -153,8 +157,9 @@ impl Context {
             }
         }
         let region = Region::whole(full, dimensions == 3);
-        write_region(&*self.memory, &self.client.pack, format, &region, pixels, bytes);
-        Ok(())
+        self.pack_into(pixels, |memory, address| {
+            write_region(memory, &self.client.pack, format, &region, address, bytes)
+        })
     }
 
     /// `glGetCompressedTexImage`: no image is compressed.

@@ -88,10 +88,13 @@ impl Context {
         let pair = PixelFormat::new(format, kind);
         let image = match pair {
             Ok(pair) => plausible(arguments.size)
-                .and_then(|size| self.read_image(pair, size, arguments.dimensions == 3, pixels)),
-            Err(_) => None,
+                .map_or(Ok(None), |size| self.read_image(pair, size, arguments.dimensions == 3, pixels)),
+            Err(_) => Ok(None),
         };
-        let image = image.map(Arc::new);
+        let image = match image {
+            Ok(image) => image.map(Arc::new),
+            Err((error, why)) => return self.record_error(error, arguments.call, why),
+        };
         self.listable(move |c| c.exec_tex_sub_image(&arguments, pair, image.as_deref()));
     }
 

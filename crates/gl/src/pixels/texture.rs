@@ -189,7 +189,10 @@ impl TextureObject {
 
     /// Whether making a snapshot needs what is recorded to run first.
     pub(crate) fn is_stale(&self) -> bool {
-        self.faces.iter().flatten().flatten().any(TextureImage::is_stale)
+        // Cube maps are sampled from copies of their depths.
+        let cube = self.slot == slot::CUBE;
+        let stale = |image: &TextureImage| image.is_stale() || (cube && image.format.has_depth() && image.has_planes());
+        self.faces.iter().flatten().flatten().any(stale)
     }
 
     /// The texture as draws sample it; `None` if it is not complete. Everything recorded must have run if
@@ -209,10 +212,14 @@ impl TextureObject {
     fn build(&mut self, seamless: bool) -> Option<Arc<Texture>> {
         let (base, last) = self.complete_levels()?;
         let format = self.peek(0, base)?.format;
+        let cube = self.slot == slot::CUBE;
         let faces: Vec<Vec<Arc<Level>>> = self
             .faces
             .iter_mut()
-            .map(|levels| levels[base..=last].iter_mut().flatten().map(TextureImage::level).collect())
+            .map(|levels| {
+                let level = if cube { TextureImage::copied_level } else { TextureImage::level };
+                levels[base..=last].iter_mut().flatten().map(level).collect()
+            })
             .collect();
         // Faces without images cannot be: the texture is complete.
         let kind = match self.slot {

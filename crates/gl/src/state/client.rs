@@ -18,11 +18,13 @@ pub struct ArrayPointer {
     pub pointer: usize,
     /// Buffer object bound when the pointer was given; 0 is none.
     pub buffer: u32,
+    /// The number of static elements, of EXT_vertex_array.
+    pub count: i32,
 }
 
 impl ArrayPointer {
     const fn new(size: i32) -> Self {
-        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: 0 }
+        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: 0, count: 0 }
     }
 }
 
@@ -45,6 +47,8 @@ pub struct PixelStore {
     pub skip_images: i32,
     /// `ALIGNMENT`: 1, 2, 4 or 8.
     pub alignment: i32,
+    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, unless it is 0.
+    pub buffer: u32,
 }
 
 impl Default for PixelStore {
@@ -58,6 +62,7 @@ impl Default for PixelStore {
             skip_pixels: 0,
             skip_images: 0,
             alignment: 4,
+            buffer: 0,
         }
     }
 }

@@ -123,7 +123,7 @@ pub struct Blend {
     pub destination: [u32; 2],
     /// Equations.
     pub equation: [u32; 2],
-    /// `BLEND_COLOR`.
+    /// `BLEND_COLOR` as it was given; clamped where it meets colours that are not floating-point, and in queries.
     pub color: [f32; 4],
 }
 

@@ -134,6 +134,8 @@ pub struct State {
     pub list_base: u32,
     /// `FRAMEBUFFER_SRGB`.
     pub framebuffer_srgb: bool,
+    /// `OSMesaColorClamp`: colours of fragments are clamped even on their way to buffers of floats.
+    pub clamp_fragments: bool,
     /// `DEBUG_OUTPUT`, `DEBUG_OUTPUT_SYNCHRONOUS`.
     pub debug_output: (bool, bool),
 }
@@ -187,6 +189,7 @@ impl Default for State {
             ],
             list_base: 0,
             framebuffer_srgb: false,
+            clamp_fragments: false,
             debug_output: (false, false),
         }
     }

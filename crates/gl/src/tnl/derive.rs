@@ -163,12 +163,16 @@ fn environment_mode(e: &state::TextureEnvironment) -> EnvironmentMode {
         gl::COMBINE => {
             let c = &e.combine;
             // The EXT tokens of the dot product know no scale.
-            let unscaled = matches!(c.functions[0], gl::DOT3_RGB_EXT | gl::DOT3_RGBA_EXT);
+            let scale = match c.functions[0] {
+                gl::DOT3_RGB_EXT => [1.0, c.scale[1]],
+                gl::DOT3_RGBA_EXT => [1.0; 2],
+                _ => c.scale,
+            };
             EnvironmentMode::Combine(Combine {
                 functions: c.functions.map(function),
                 rgb: [0, 1, 2].map(|k| (source(c.rgb_sources[k]), operand(c.rgb_operands[k]))),
                 alpha: [0, 1, 2].map(|k| (source(c.alpha_sources[k]), operand(c.alpha_operands[k]))),
-                scale: if unscaled { [1.0; 2] } else { c.scale },
+                scale,
             })
         }
         _ => EnvironmentMode::Modulate,
@@ -190,6 +194,7 @@ impl Context {
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
         let units = self.sampled_units(target);
         let missing = self.missing_components();
+        let (clamping, srgb) = (self.clamping(), self.encodes_srgb());
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -220,6 +225,8 @@ impl Context {
                 .then_some(SampleCoverage { value: s.sample_coverage_value.0, invert: s.sample_coverage_value.1 }),
             flat: s.lighting.shade_model == gl::FLAT,
             depth_clamp: s.depth_clamp,
+            clamping,
+            srgb,
             query: self.queries.active(),
         })
     }

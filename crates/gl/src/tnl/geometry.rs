@@ -254,8 +254,8 @@ impl DrawGeometry {
     fn sizes(&self, positions: &[[f32; 4]]) -> Vec<[f32; 2]> {
         let (m, points) = (&self.snapshot.modelview, &self.points);
         let size_at = |p: &[f32; 4]| {
-            let row = |r: usize| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r];
-            let d = (row(0) * row(0) + row(1) * row(1) + row(2) * row(2)).sqrt();
+            // The distance from the eye, taken along its axis as Mesa does.
+            let d = (p[0] * m[2] + p[1] * m[6] + p[2] * m[10] + p[3] * m[14]).abs();
             let [a, b, c] = points.attenuation;
             let loss = a + b * d + c * d * d;
             let size = if loss > 0.0 { points.size / loss.sqrt() } else { points.limits[1] };

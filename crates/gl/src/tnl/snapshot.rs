@@ -3,7 +3,7 @@
 use crate::enums as gl;
 use crate::state::{Current, MaterialFace, State};
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
-use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4};
+use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4, func};
 
 /// Generation of one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,10 +182,11 @@ impl LightCache {
 }
 
 fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
-    let rgb = |c: [f32; 4]| [c[0], c[1], c[2]];
     let [x, y, z, w] = light.position.map(f64::from);
     let [constant, linear, quadratic] = light.attenuation.map(f64::from);
     let position = DVec3::new(x, y, z) / w;
+    let share = if w == 0.0 { cone_at_infinity(light) } else { 1.0 };
+    let rgb = |c: [f32; 4]| [c[0] * share, c[1] * share, c[2] * share];
     let (kind, attenuation) = if w == 0.0 {
         (LightKind::Directional { direction: -DVec3::new(x, y, z) }, Attenuation::None)
     } else if light.spot_cutoff == 180.0 {
@@ -206,4 +207,35 @@ fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
         ..Light::default()
     };
     PreparedLight::new(&light, &DMat4::IDENTITY)
+}
+
+/// How much of a light at infinity its cone lets through: all of its rays make the same angle with the axis.
+fn cone_at_infinity(light: &crate::state::Light) -> f32 {
+    if light.spot_cutoff == 180.0 {
+        return 1.0;
+    }
+    let [x, y, z, _] = light.position.map(f64::from);
+    let axis = DVec3::from_array(light.spot_direction.map(f64::from));
+    let cos = (-DVec3::new(x, y, z)).normalize_or_zero().dot(axis.normalize_or_zero());
+    if cos < func::cos(f64::from(light.spot_cutoff).to_radians()) {
+        return 0.0;
+    }
+    func::pow(cos.max(0.0), f64::from(light.spot_exponent)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_at_infinity_has_a_cone() {
+        let mut light = crate::state::Lighting::default().lights[0];
+        light.position = [0.0, 0.0, -2.0, 0.0];
+        assert_eq!(cone_at_infinity(&light), 1.0);
+        (light.spot_cutoff, light.spot_exponent) = (89.0, 2.0);
+        light.spot_direction = [3.0f32.sqrt(), 0.0, 1.0];
+        assert!((cone_at_infinity(&light) - 0.25).abs() < 1e-6);
+        light.spot_cutoff = 59.0;
+        assert_eq!(cone_at_infinity(&light), 0.0);
+    }
 }

@@ -199,6 +199,11 @@ impl Buffer {
         }
     }
 
+    /// Replaces the bytes of a data store that is not mapped.
+    pub(crate) fn replace(&mut self, bytes: Arc<Vec<u8>>) {
+        (self.bytes, self.version) = (bytes, new_version());
+    }
+
     fn parameter(&self, pname: u32) -> Result<i32, Refusal> {
         Ok(match pname {
             enums::BUFFER_SIZE => self.size().try_into().unwrap_or(i32::MAX),
@@ -211,7 +216,7 @@ impl Buffer {
 }
 
 impl Context {
-    pub(super) fn buffers(&self) -> MutexGuard<'_, Names<Buffer>> {
+    pub(crate) fn buffers(&self) -> MutexGuard<'_, Names<Buffer>> {
         self.shared.buffers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -219,6 +224,8 @@ impl Context {
         match target {
             enums::ARRAY_BUFFER => Some(&mut self.client.array_buffer),
             enums::ELEMENT_ARRAY_BUFFER => Some(&mut self.client.element_buffer),
+            enums::PIXEL_PACK_BUFFER => Some(&mut self.client.pack.buffer),
+            enums::PIXEL_UNPACK_BUFFER => Some(&mut self.client.unpack.buffer),
             _ => {
                 self.record_error(enums::INVALID_ENUM, call, &format!("target {target:#x} has no buffers"));
                 None

@@ -202,6 +202,8 @@ enum UserSide {
 struct Corner {
     clip: [f32; 4],
     weights: [f32; 3],
+    /// The edge from here to the next corner is the polygon's own, not a cut and not a diagonal.
+    boundary: bool,
 }
 
 impl<'a> Assembler<'a> {
@@ -270,7 +272,7 @@ impl<'a> Assembler<'a> {
             match self.user_side(corners) {
                 UserSide::Outside => return,
                 UserSide::Inside if any & flag::CLIP == 0 => {}
-                _ => return self.clipped(&corners, provoking),
+                _ => return self.clipped(&corners, provoking, None),
             }
         }
         let position = |v: ScreenVertex| CornerPosition { x: v.x, y: v.y, z: v.z };
@@ -378,12 +380,12 @@ impl<'a> Assembler<'a> {
     }
 
     /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
-    fn cut(&self, corners: &[u32; 3]) -> Vec<Corner> {
+    fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let mut weights = [0.0; 3];
                 weights[k] = 1.0;
-                Corner { clip: self.vertices.clip[corners[k] as usize], weights }
+                Corner { clip: self.vertices.clip[corners[k] as usize], weights, boundary: boundary[k] }
             })
             .collect();
         let planes = self.state.user_planes;
@@ -406,9 +408,10 @@ impl<'a> Assembler<'a> {
         polygon
     }
 
+    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are the polygon's.
     #[cold]
-    fn clipped(&mut self, corners: &[u32; 3], provoking: u32) {
-        let polygon = self.cut(corners);
+    fn clipped(&mut self, corners: &[u32; 3], provoking: u32, smooth: Option<[bool; 3]>) {
+        let polygon = self.cut(corners, smooth.unwrap_or_default());
         if polygon.len() < 3 {
             return;
         }
@@ -441,11 +444,15 @@ impl<'a> Assembler<'a> {
         let provoking = self.slot(provoking);
         for i in 1..polygon.len() - 1 {
             let area = area_of(i);
-            if area != 0
-                && (area > 0) == (total > 0)
-                && let Some(pixels) = self.pixels(&fan(i))
-            {
-                let slots = [slots[0], slots[i], slots[i + 1]];
+            if area == 0 || (area > 0) != (total > 0) {
+                continue;
+            }
+            let slots = [slots[0], slots[i], slots[i + 1]];
+            if smooth.is_some() {
+                let last = i + 2 == polygon.len();
+                let edges = [i == 1 && polygon[0].boundary, polygon[i].boundary, last && polygon[i + 1].boundary];
+                self.push_smooth(fan(i), area, &plane, edges, slots, provoking, back);
+            } else if let Some(pixels) = self.pixels(&fan(i)) {
                 self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
             }
         }
@@ -512,27 +519,46 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    /// A piece of a smooth polygon, which also reaches the pixels that it covers but in part. It knows its own edges alone:
-    /// where a diagonal meets a corner, the pixel shows the coverage of one edge. Pieces that are cut keep hard edges.
+    /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the
+    /// coverage of one edge. Edges that clipping makes are hard.
     fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
         let v = corners.map(|v| self.vertices.screen[v as usize]);
         let flags = v[0].flags | v[1].flags | v[2].flags;
-        if flags & flag::CLIP != 0 || self.user_side(corners) != UserSide::Inside {
-            return self.triangle(corners, provoking);
+        match self.user_side(corners) {
+            UserSide::Outside => return,
+            UserSide::Inside if flags & flag::CLIP == 0 => {}
+            _ => return self.clipped(&corners, provoking, Some(boundary)),
         }
         let own = v.map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
         let area = Setup::doubled_area(own[0], own[1], own[2]);
-        let Some(wide) = widened(own, boundary, area) else { return };
+        if area == 0 {
+            return;
+        }
         let plane = self.plane(own, area, 2);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
+        self.push_smooth(own, area, &plane, boundary, slots, provoking, back);
+    }
+
+    /// A triangle that also reaches the pixels which it covers but in part along its boundary edges.
+    fn push_smooth(
+        &mut self,
+        own: [CornerPosition; 3],
+        area: i64,
+        plane: &DepthPlane,
+        boundary: [bool; 3],
+        slots: [u32; 3],
+        provoking: u32,
+        back: bool,
+    ) {
+        let Some(wide) = widened(own, boundary, area) else { return };
         let Some(pixels) = self.pixels(&wide) else { return };
         let shape = self.out.shapes.len() as u32;
         let (order, boundary) =
             if area > 0 { ([0, 1, 2], boundary) } else { ([0, 2, 1], [boundary[2], boundary[1], boundary[0]]) };
         let (x, y) = (order.map(|k| own[k].x), order.map(|k| own[k].y));
         self.out.shapes.push(Shape::Polygon { x, y, boundary });
-        self.push(wide, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
+        self.push(wide, area, plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
     }
 
     /// Ends the piece: makes room for the records of all used vertices and gives their range.
@@ -593,12 +619,13 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
 }
 
 /// The point where the way from the inner to the outer corner leaves.
-fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32) -> Corner {
+fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32, boundary: bool) -> Corner {
     let t = d_inner / (d_inner - d_outer);
     let mix = |a: f32, b: f32| a + (b - a) * t;
     Corner {
         clip: std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k])),
         weights: std::array::from_fn(|k| mix(inner.weights[k], outer.weights[k])),
+        boundary,
     }
 }
 
@@ -617,9 +644,9 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
         }
         // Always from the inner to the outer corner: neighbours that share the edge get the same point.
         if inside(i) && !inside(j) {
-            result.push(between(&polygon[i], &polygon[j], d[i], d[j]));
+            result.push(between(&polygon[i], &polygon[j], d[i], d[j], false));
         } else if inside(j) && !inside(i) {
-            result.push(between(&polygon[j], &polygon[i], d[j], d[i]));
+            result.push(between(&polygon[j], &polygon[i], d[j], d[i], polygon[i].boundary));
         }
     }
     result

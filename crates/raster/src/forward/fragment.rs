@@ -11,10 +11,11 @@ use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Blend, BlendEquation, BlendFactor, Compare, FragmentState, StencilFace, StencilOp};
+use super::state::{Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, StencilFace, StencilOp};
 use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
+use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
 
@@ -90,6 +91,7 @@ impl FragmentOps {
         // The alpha test comes before a stencil that changes.
         let common = !(writes_stencil && state.alpha_test.is_some())
             && state.logic_op.is_none()
+            && !state.srgb
             && state.query.is_none()
             && state.polygon_stipple.is_none()
             && state.sample_coverage.is_none()
@@ -343,6 +345,9 @@ fn write_packed<S: Simd>(
             None => packed,
         },
     };
+    if state.srgb {
+        new = srgb_packed(simd, state, color, stored);
+    }
     if let Some(op) = state.logic_op {
         new = logic_op(simd, op, packed, stored);
     }
@@ -365,6 +370,28 @@ fn blend_packed<S: Simd>(simd: S, state: &Blend, color: &Rgba<S>, stored: U32x8<
     )
 }
 
+/// Colours that are stored sRGB-encoded: decoded, blended, encoded.
+#[inline(never)]
+fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored: U32x8<S>) -> U32x8<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut old = unpack(stored);
+            for component in &mut old[..3] {
+                *component = F32x8::from_slice(simd, &component.to_array().map(linear_from_srgb));
+            }
+            let mut new = match &state.blend {
+                Some(b) => blend(simd, b, *color, old, true),
+                None => *color,
+            };
+            for component in &mut new[..3] {
+                *component = F32x8::from_slice(simd, &component.to_array().map(srgb_from_linear));
+            }
+            pack(&saturate_rgba(new))
+        },
+    )
+}
+
 #[inline(never)]
 fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba<S>, values: &mut [[f32; 4]]) {
     simd.vectorize(
@@ -376,7 +403,9 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     soa[k][lane] = values[lane][k];
                 }
             }
-            let mut new = *color;
+            let clamped = state.clamping != Clamping::None;
+            let color = if clamped { saturate_rgba(*color) } else { *color };
+            let mut new = color;
             if let (Some(b), None) = (&state.blend, state.logic_op) {
                 let stored = [
                     F32x8::from_slice(simd, &soa[0]),
@@ -384,7 +413,7 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     F32x8::from_slice(simd, &soa[2]),
                     F32x8::from_slice(simd, &soa[3]),
                 ];
-                new = blend(simd, b, *color, stored, false);
+                new = blend(simd, b, color, stored, state.clamping == Clamping::Results);
             }
             let new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
             for lane in 0..LANES {

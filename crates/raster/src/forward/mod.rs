@@ -28,7 +28,8 @@ pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 pub use project::{WindowTransform, project};
 pub use shade::Layout;
 pub use state::{
-    Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare, DepthTest,
-    EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Unit,
+    Blend, BlendEquation, BlendFactor, Clamping, Combine, CombineFunction, CombineOperand, CombineSource, Compare,
+    DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp,
+    Unit,
 };
 pub use texture::{BaseFormat, Filter, Level, Sampler, Texels, Texture, TextureKind, Wrap};

@@ -11,7 +11,6 @@ use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::packed::Packed;
 use super::shade::Layout;
 use super::state::FragmentState;
-use super::texture::Texels;
 use super::tile::TileRun;
 use crate::geometry::Screen;
 use crate::{SamplePattern, TILE, Viewport};
@@ -20,10 +19,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
 use vitral_math::lanes::{Level, dispatch};
 
-/// Where fragments go. All planes have the same size and number of samples.
+/// Where fragments go. All planes have the same number of samples.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// Size in pixels.
+    /// Size in pixels: the area that all planes have.
     pub viewport: Viewport,
     /// Samples a pixel: 1 or 4.
     pub samples: usize,
@@ -276,7 +275,7 @@ impl Runner {
     fn leave_pending(&self, pass: &Pass, plans: &[Plan], jobs: &mut [Option<Primitives>]) -> bool {
         let Some(target) = &pass.target.depth else { return false };
         let mut target = lock(target);
-        if !target.sampled {
+        if !target.sampled || target.viewport() != pass.target.viewport {
             return false;
         }
         let Some(kind) = pendable(pass) else { return false };
@@ -330,10 +329,10 @@ impl Runner {
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
         let tiles_x = target.viewport.tiles_x();
         let count = (tiles_x * target.viewport.tiles_y()) as usize;
-        let mut colors = color_tiles(&mut color);
+        let mut colors = color_tiles(&mut color, target.viewport);
         let scale = depth.as_ref().map_or(1.0, |d| d.scale);
-        let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()));
-        let mut stencils = plane_tiles(stencil.as_deref_mut());
+        let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()), target.viewport);
+        let mut stencils = plane_tiles(stencil.as_deref_mut(), target.viewport);
         let runs: Vec<TileRun<'_>> = (0..count)
             .map(|index| {
                 let (x, y) = (index as u32 % tiles_x, index as u32 / tiles_x);
@@ -361,20 +360,24 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Tiles of the colour plane, one after the other; none if there is no plane.
-fn color_tiles<'a>(plane: &'a mut Option<MutexGuard<'_, ColorPlane>>) -> Box<dyn Iterator<Item = ColorTile<'a>> + 'a> {
+/// The target's tiles of the colour plane, one after the other; none if there is no plane.
+fn color_tiles<'a>(
+    plane: &'a mut Option<MutexGuard<'_, ColorPlane>>,
+    target: Viewport,
+) -> Box<dyn Iterator<Item = ColorTile<'a>> + 'a> {
     match plane.as_deref_mut() {
         None => Box::new(std::iter::empty()),
-        Some(ColorPlane::Rgba8(p)) => Box::new(p.tiles.iter_mut().map(ColorTile::Rgba8)),
-        Some(ColorPlane::RgbaF32(p)) => Box::new(p.tiles.iter_mut().map(ColorTile::RgbaF32)),
+        Some(ColorPlane::Rgba8(p)) => Box::new(plane_tiles(Some(p), target).map(ColorTile::Rgba8)),
+        Some(ColorPlane::RgbaF32(p)) => Box::new(plane_tiles(Some(p), target).map(ColorTile::RgbaF32)),
     }
 }
 
-fn plane_tiles<T>(plane: Option<&mut Plane<T>>) -> std::slice::IterMut<'_, PlaneTile<T>> {
-    match plane {
-        Some(p) => p.tiles.iter_mut(),
-        None => [].iter_mut(),
-    }
+/// The tiles of a plane that lie in a target, which may be smaller.
+fn plane_tiles<T: Copy>(plane: Option<&mut Plane<T>>, target: Viewport) -> impl Iterator<Item = &mut PlaneTile<T>> {
+    let across = plane.as_ref().map_or(1, |p| p.viewport().tiles_x() as usize);
+    let (x, y) = (target.tiles_x() as usize, target.tiles_y() as usize);
+    let tiles = plane.map_or([].iter_mut(), |p| p.tiles.iter_mut());
+    tiles.enumerate().filter(move |(i, _)| i % across < x && i / across < y).map(|(_, tile)| tile)
 }
 
 fn draw_context<'a>(
@@ -385,7 +388,7 @@ fn draw_context<'a>(
 ) -> DrawContext<'a> {
     let mut planes = [None; UNITS];
     for unit in &state.units {
-        if let Some(Texels::DepthPlane(plane)) = unit.texture.faces.first().and_then(|f| f.first()).map(|l| &l.texels) {
+        if let Some(plane) = unit.texture.sole_plane() {
             let guard = sampled.iter().find(|(p, _)| *p == Arc::as_ptr(plane));
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
@@ -412,20 +415,24 @@ fn draw_context<'a>(
     }
 }
 
-/// The depth planes that draws sample, each once, in an order that all threads share.
+/// The depth planes that are held for the whole pass, each once, in an order that all threads share: those that draws sample
+/// as textures of one level. Others are locked at each lookup, and must not be held besides.
 fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
-    let mut planes: Vec<Arc<Mutex<DepthPlane>>> = Vec::new();
+    let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
     for command in commands {
         let (Command::Draw(_, state) | Command::Image(_, state)) = command else { continue };
-        for level in state.units.iter().flat_map(|u| u.texture.faces.iter().flatten()) {
-            if let Texels::DepthPlane(plane) = &level.texels {
-                planes.push(plane.clone());
+        for unit in &state.units {
+            let drawn = matches!(command, Command::Draw(..));
+            match unit.texture.sole_plane().filter(|_| drawn) {
+                Some(plane) => sole.push(plane),
+                None => others.extend(unit.texture.planes()),
             }
         }
     }
-    planes.sort_by_key(Arc::as_ptr);
-    planes.dedup_by(|a, b| Arc::ptr_eq(a, b));
-    planes
+    sole.retain(|plane| !others.iter().any(|other| Arc::ptr_eq(plane, other)));
+    sole.sort_by_key(|plane| Arc::as_ptr(plane));
+    sole.dedup_by(|a, b| Arc::ptr_eq(a, b));
+    sole.into_iter().cloned().collect()
 }
 
 /// Cuts draws into jobs; what is no draw stands between them.

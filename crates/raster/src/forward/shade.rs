@@ -623,9 +623,15 @@ impl<'a> Shader<'a> {
                             color[3] *= side * ends;
                         }
                         if let Some((factor, pattern)) = self.layout.line_stipple {
-                            // Aliased lines count pixels along the major axis.
-                            let rate = if self.layout.smooth[1] { 1.0 } else { dx.abs().max(dy.abs()) / length };
-                            let count = (along * rate + stipple).to_array();
+                            // Aliased lines count pixels along the major axis, and exactly.
+                            let along = if self.layout.smooth[1] {
+                                along
+                            } else if dx.abs() >= dy.abs() {
+                                (x - from[0]) * dx.signum()
+                            } else {
+                                (y - from[1]) * dy.signum()
+                            };
+                            let count = (along + stipple).to_array();
                             for lane in 0..8 {
                                 let bit = ((count[lane].max(0.0) as u32) / factor.max(1) as u32) % 16;
                                 if pattern >> bit & 1 == 0 {

@@ -239,6 +239,18 @@ pub struct SampleCoverage {
     pub invert: bool,
 }
 
+/// Where colours that go to floating-point storage are brought into `0..=1`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clamping {
+    /// Nowhere.
+    #[default]
+    None,
+    /// Before blending.
+    Fragments,
+    /// Before and after: the format that the storage stands for holds no other numbers.
+    Results,
+}
+
 /// Everything a fragment meets after rasterisation.
 #[derive(Clone, Debug, Default)]
 pub struct FragmentState {
@@ -276,6 +288,10 @@ pub struct FragmentState {
     pub flat: bool,
     /// Depth is clamped to the range instead of clipped.
     pub depth_clamp: bool,
+    /// Bytes of red, green and blue are sRGB-encoded: blending decodes what is stored, and results are encoded.
+    pub srgb: bool,
+    /// Where colours in floating-point storage are clamped.
+    pub clamping: Clamping,
     /// Counts samples that pass.
     pub query: Option<Arc<AtomicU64>>,
 }

@@ -115,3 +115,18 @@ pub struct Texture {
     /// How to look it up.
     pub sampler: Sampler,
 }
+
+impl Texture {
+    /// The depth planes among its levels.
+    pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthPlane>>> {
+        self.faces.iter().flatten().filter_map(|level| match &level.texels {
+            Texels::DepthPlane(plane) => Some(plane),
+            _ => None,
+        })
+    }
+
+    /// The depth plane that is its only level.
+    pub(crate) fn sole_plane(&self) -> Option<&Arc<Mutex<DepthPlane>>> {
+        (self.faces.iter().flatten().count() == 1).then(|| self.planes().next()).flatten()
+    }
+}

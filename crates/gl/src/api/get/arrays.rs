@@ -32,13 +32,12 @@ impl Context {
             gl::TEXTURE_COORD_ARRAY_SIZE => Value::integer(texture.size),
             gl::TEXTURE_COORD_ARRAY_TYPE => Value::token(texture.kind),
             gl::TEXTURE_COORD_ARRAY_STRIDE => Value::integer(texture.stride),
-            // EXT_vertex_array: the counts given with the pointers are not needed, so not kept.
-            gl::VERTEX_ARRAY_COUNT_EXT
-            | gl::NORMAL_ARRAY_COUNT_EXT
-            | gl::COLOR_ARRAY_COUNT_EXT
-            | gl::INDEX_ARRAY_COUNT_EXT
-            | gl::TEXTURE_COORD_ARRAY_COUNT_EXT
-            | gl::EDGE_FLAG_ARRAY_COUNT_EXT => Value::integer(0),
+            gl::VERTEX_ARRAY_COUNT_EXT => Value::integer(client.vertex.count),
+            gl::NORMAL_ARRAY_COUNT_EXT => Value::integer(client.normal.count),
+            gl::COLOR_ARRAY_COUNT_EXT => Value::integer(client.color.count),
+            gl::INDEX_ARRAY_COUNT_EXT => Value::integer(client.index.count),
+            gl::TEXTURE_COORD_ARRAY_COUNT_EXT => Value::integer(texture.count),
+            gl::EDGE_FLAG_ARRAY_COUNT_EXT => Value::integer(client.edge.count),
             gl::CLIENT_ACTIVE_TEXTURE => Value::token(gl::TEXTURE0 + client.active_unit as u32),
             gl::ARRAY_ELEMENT_LOCK_FIRST_EXT => Value::integer(self.locked_elements().0),
             gl::ARRAY_ELEMENT_LOCK_COUNT_EXT => Value::integer(self.locked_elements().1),
@@ -52,6 +51,8 @@ impl Context {
             gl::VERTEX_ARRAY_BINDING => client.vertex_array,
             gl::ARRAY_BUFFER_BINDING => client.array_buffer,
             gl::ELEMENT_ARRAY_BUFFER_BINDING => client.element_buffer,
+            gl::PIXEL_PACK_BUFFER_BINDING => client.pack.buffer,
+            gl::PIXEL_UNPACK_BUFFER_BINDING => client.unpack.buffer,
             gl::VERTEX_ARRAY_BUFFER_BINDING => client.vertex.buffer,
             gl::NORMAL_ARRAY_BUFFER_BINDING => client.normal.buffer,
             gl::COLOR_ARRAY_BUFFER_BINDING => client.color.buffer,

@@ -1,6 +1,7 @@
 //! Values: texturing, tests, blending, masks, pixels, framebuffers.
 
 use super::Value;
+use crate::api::arguments::unit;
 use crate::api::capabilities::index_in;
 use crate::state::{PixelStore, target};
 use crate::{Context, enums as gl};
@@ -69,7 +70,7 @@ impl Context {
             gl::BLEND_DST_ALPHA => Value::token(blend.destination[1]),
             gl::BLEND_EQUATION => Value::token(blend.equation[0]),
             gl::BLEND_EQUATION_ALPHA_EXT => Value::token(blend.equation[1]),
-            gl::BLEND_COLOR => Value::normalized(&blend.color),
+            gl::BLEND_COLOR => Value::normalized(&blend.color.map(unit)),
             gl::LOGIC_OP_MODE => Value::token(self.state.logic_op.1),
             gl::COLOR_WRITEMASK => Value::booleans(&buffer.mask),
             gl::INDEX_WRITEMASK => Value::token(buffer.index_mask),
@@ -110,7 +111,8 @@ impl Context {
     pub(super) fn get_framebuffer(&mut self, pname: u32) -> Option<Value> {
         Some(match pname {
             gl::INDEX_BITS | gl::AUX_BUFFERS => Value::integer(0),
-            gl::STEREO | gl::INDEX_MODE | gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(false),
+            gl::STEREO | gl::INDEX_MODE => Value::boolean(false),
+            gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(self.draws_srgb()),
             gl::RGBA_MODE => Value::boolean(true),
             gl::DRAW_BUFFER => Value::token(self.draw_buffer_token()),
             gl::READ_BUFFER => Value::token(self.read_buffer_token()),

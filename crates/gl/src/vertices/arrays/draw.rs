@@ -7,6 +7,7 @@ use crate::state::ArrayPointer;
 use crate::vertex::VertexBatch;
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
+use crate::vertices::compile::Call;
 use crate::{Context, enums};
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ impl Context {
         self.draw_range("glDrawArrays", mode, first, count);
     }
 
-    fn draw_range(&mut self, call: &str, mode: u32, first: i32, count: i32) {
+    fn draw_range(&mut self, call: &'static str, mode: u32, first: i32, count: i32) {
         match (usize::try_from(first), usize::try_from(count)) {
             (Ok(first), Ok(count)) => self.draw_vertices(call, mode, Vertices::Range { first, count }),
             _ => self.record_error(enums::INVALID_VALUE, call, &format!("first {first}, count {count} is negative")),
@@ -41,7 +42,7 @@ impl Context {
         self.draw_indexed("glDrawRangeElements", mode, count, type_, indices);
     }
 
-    fn draw_indexed(&mut self, call: &str, mode: u32, count: i32, kind: u32, pointer: usize) {
+    fn draw_indexed(&mut self, call: &'static str, mode: u32, count: i32, kind: u32, pointer: usize) {
         let Ok(count) = usize::try_from(count) else {
             self.record_error(enums::INVALID_VALUE, call, &format!("count {count} is negative"));
             return;
@@ -64,6 +65,10 @@ impl Context {
             self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
             return;
         };
+        if firsts.iter().chain(&counts).any(|v| *v < 0) {
+            self.record_error(enums::INVALID_VALUE, CALL, "a first or count is negative");
+            return;
+        }
         for (first, count) in firsts.into_iter().zip(counts) {
             self.draw_range(CALL, mode, first, count);
         }
@@ -79,6 +84,10 @@ impl Context {
             self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
             return;
         };
+        if counts.iter().any(|v| *v < 0) {
+            self.record_error(enums::INVALID_VALUE, CALL, "a count is negative");
+            return;
+        }
         for (count, pointer) in counts.into_iter().zip(pointers) {
             self.draw_indexed(CALL, mode, count, type_, pointer);
         }
@@ -97,9 +106,10 @@ impl Context {
     }
 
     /// Draws, or compiles what the arrays hold now.
-    fn draw_vertices(&mut self, call: &str, mode: u32, vertices: Vertices) {
+    fn draw_vertices(&mut self, call: &'static str, mode: u32, vertices: Vertices) {
         let executed = !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE;
         if executed && self.refused_inside_begin(call) {
+            self.compile_refusal(call);
             return;
         }
         if mode > enums::POLYGON {
@@ -108,6 +118,7 @@ impl Context {
         }
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = vertices;
         if count == 0 || !self.client.vertex.enabled {
+            self.compile_refusal(call);
             return;
         }
         if count > MAX_VERTICES {
@@ -126,6 +137,16 @@ impl Context {
         }
         if executed {
             self.draw_batch(batch);
+        }
+    }
+
+    /// A list gets a draw of nothing: called between Begin and End even that is an error.
+    fn compile_refusal(&mut self, call: &'static str) {
+        if self.lists.recording {
+            let check: Call = Box::new(move |c| {
+                c.refused_inside_begin(call);
+            });
+            self.compile(|compiler| compiler.call(check));
         }
     }
 
@@ -337,6 +358,20 @@ mod tests {
         c.call_list(1);
         assert_eq!(c.builder.log[0].positions, [[0.0, 0.0, 0.0, 1.0]]);
         assert_eq!(c.builder.log[1].positions, [[1.0, 1.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn a_list_with_a_draw_of_nothing_is_refused_inside_begin() {
+        let mut c = context();
+        c.new_list(1, enums::COMPILE);
+        c.draw_arrays(enums::POINTS, 0, 4);
+        c.end_list();
+        c.call_list(1);
+        assert_eq!(c.error, 0);
+        c.begin(enums::POINTS);
+        c.call_list(1);
+        c.end();
+        assert_eq!(c.error, enums::INVALID_OPERATION);
     }
 
     #[test]

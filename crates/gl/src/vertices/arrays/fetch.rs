@@ -217,7 +217,7 @@ mod tests {
     use crate::memory::Arena;
 
     fn array(size: i32, kind: u32, stride: i32, pointer: usize) -> ArrayPointer {
-        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: 0 }
+        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: 0, count: 0 }
     }
 
     #[test]

@@ -60,7 +60,8 @@ impl Context {
     /// A buffer is deleted: it is no longer bound anywhere.
     pub(super) fn forget_buffer(&mut self, name: u32) {
         let client = &mut self.client;
-        for binding in [&mut client.array_buffer, &mut client.element_buffer] {
+        let (pack, unpack) = (&mut client.pack.buffer, &mut client.unpack.buffer);
+        for binding in [&mut client.array_buffer, &mut client.element_buffer, pack, unpack] {
             if *binding == name {
                 *binding = 0;
             }

@@ -1,7 +1,7 @@
 //! Where arrays lie, and which are used.
 
 use super::POSITION;
-use crate::state::MAX_TEXTURE_UNITS;
+use crate::state::{ArrayPointer, MAX_TEXTURE_UNITS};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::{Context, enums};
 use std::ops::RangeInclusive;
@@ -37,7 +37,7 @@ fn allowed(which: usize) -> (RangeInclusive<i32>, &'static [u32]) {
 }
 
 impl Context {
-    fn set_pointer(&mut self, call: &str, which: usize, size: i32, kind: u32, stride: i32, pointer: usize) {
+    fn set_pointer(&mut self, call: &str, which: usize, [size, stride, count]: [i32; 3], kind: u32, pointer: usize) {
         if self.refused_inside_begin(call) {
             return;
         }
@@ -49,6 +49,8 @@ impl Context {
             Some((enums::INVALID_ENUM, format!("type {kind:#x} is not allowed")))
         } else if stride < 0 {
             Some((enums::INVALID_VALUE, format!("stride {stride} is negative")))
+        } else if count < 0 {
+            Some((enums::INVALID_VALUE, format!("count {count} is negative")))
         } else if self.client.vertex_array != 0 && buffer == 0 && pointer != 0 {
             let why = "a vertex array object takes no arrays in client memory".to_owned();
             Some((enums::INVALID_OPERATION, why))
@@ -60,13 +62,14 @@ impl Context {
             return;
         }
         self.place_array(which, size, kind, stride, pointer);
+        self.client.array_mut(which).count = count;
     }
 
     /// Sets an array's pointer, which is valid.
     pub(super) fn place_array(&mut self, which: usize, size: i32, kind: u32, stride: i32, pointer: usize) {
         let buffer = self.client.array_buffer;
         let array = self.client.array_mut(which);
-        (array.size, array.kind, array.stride, array.pointer, array.buffer) = (size, kind, stride, pointer, buffer);
+        *array = ArrayPointer { enabled: array.enabled, size, kind, stride, pointer, buffer, count: 0 };
     }
 
     /// Texture coordinates of the active client unit.
@@ -76,93 +79,74 @@ impl Context {
 
     /// `glVertexPointer`.
     pub fn vertex_pointer(&mut self, size: i32, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glVertexPointer", POSITION, size, type_, stride, pointer);
+        self.set_pointer("glVertexPointer", POSITION, [size, stride, 0], type_, pointer);
     }
 
     /// `glNormalPointer`.
     pub fn normal_pointer(&mut self, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glNormalPointer", NORMAL, 3, type_, stride, pointer);
+        self.set_pointer("glNormalPointer", NORMAL, [3, stride, 0], type_, pointer);
     }
 
     /// `glColorPointer`.
     pub fn color_pointer(&mut self, size: i32, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glColorPointer", COLOR, size, type_, stride, pointer);
+        self.set_pointer("glColorPointer", COLOR, [size, stride, 0], type_, pointer);
     }
 
     /// `glSecondaryColorPointer`.
     pub fn secondary_color_pointer(&mut self, size: i32, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glSecondaryColorPointer", SECONDARY, size, type_, stride, pointer);
+        self.set_pointer("glSecondaryColorPointer", SECONDARY, [size, stride, 0], type_, pointer);
     }
 
     /// `glTexCoordPointer`.
     pub fn tex_coord_pointer(&mut self, size: i32, type_: u32, stride: i32, pointer: usize) {
         let which = self.active_coordinates();
-        self.set_pointer("glTexCoordPointer", which, size, type_, stride, pointer);
+        self.set_pointer("glTexCoordPointer", which, [size, stride, 0], type_, pointer);
     }
 
     /// `glFogCoordPointer`.
     pub fn fog_coord_pointer(&mut self, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glFogCoordPointer", FOG, 1, type_, stride, pointer);
+        self.set_pointer("glFogCoordPointer", FOG, [1, stride, 0], type_, pointer);
     }
 
     /// `glIndexPointer`.
     pub fn index_pointer(&mut self, type_: u32, stride: i32, pointer: usize) {
-        self.set_pointer("glIndexPointer", INDEX, 1, type_, stride, pointer);
+        self.set_pointer("glIndexPointer", INDEX, [1, stride, 0], type_, pointer);
     }
 
     /// `glEdgeFlagPointer`.
     pub fn edge_flag_pointer(&mut self, stride: i32, pointer: usize) {
-        self.set_pointer("glEdgeFlagPointer", EDGE, 1, enums::UNSIGNED_BYTE, stride, pointer);
+        self.set_pointer("glEdgeFlagPointer", EDGE, [1, stride, 0], enums::UNSIGNED_BYTE, pointer);
     }
 
-    /// EXT_vertex_array tells how many elements are static, which nothing here needs.
-    fn refused_count(&mut self, call: &str, count: i32) -> bool {
-        if count < 0 {
-            self.record_error(enums::INVALID_VALUE, call, &format!("count {count} is negative"));
-        }
-        count < 0
-    }
-
-    /// `glVertexPointerEXT`.
+    /// `glVertexPointerEXT`. EXT_vertex_array tells how many elements are static: kept for queries alone.
     pub fn vertex_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glVertexPointerEXT", count) {
-            self.vertex_pointer(size, type_, stride, pointer);
-        }
+        self.set_pointer("glVertexPointerEXT", POSITION, [size, stride, count], type_, pointer);
     }
 
     /// `glNormalPointerEXT`.
     pub fn normal_pointer_ext(&mut self, type_: u32, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glNormalPointerEXT", count) {
-            self.normal_pointer(type_, stride, pointer);
-        }
+        self.set_pointer("glNormalPointerEXT", NORMAL, [3, stride, count], type_, pointer);
     }
 
     /// `glColorPointerEXT`.
     pub fn color_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glColorPointerEXT", count) {
-            self.color_pointer(size, type_, stride, pointer);
-        }
+        self.set_pointer("glColorPointerEXT", COLOR, [size, stride, count], type_, pointer);
     }
 
     /// `glTexCoordPointerEXT`.
     pub fn tex_coord_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glTexCoordPointerEXT", count) {
-            self.tex_coord_pointer(size, type_, stride, pointer);
-        }
+        let which = self.active_coordinates();
+        self.set_pointer("glTexCoordPointerEXT", which, [size, stride, count], type_, pointer);
     }
 
     /// `glIndexPointerEXT`.
     pub fn index_pointer_ext(&mut self, type_: u32, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glIndexPointerEXT", count) {
-            self.index_pointer(type_, stride, pointer);
-        }
+        self.set_pointer("glIndexPointerEXT", INDEX, [1, stride, count], type_, pointer);
     }
 
     /// `glEdgeFlagPointerEXT`.
     pub fn edge_flag_pointer_ext(&mut self, stride: i32, count: i32, pointer: usize) {
-        if !self.refused_count("glEdgeFlagPointerEXT", count) {
-            self.edge_flag_pointer(stride, pointer);
-        }
+        self.set_pointer("glEdgeFlagPointerEXT", EDGE, [1, stride, count], enums::UNSIGNED_BYTE, pointer);
     }
 
     fn set_array_enabled(&mut self, call: &str, array: u32, enabled: bool) {

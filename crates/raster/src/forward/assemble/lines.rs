@@ -22,8 +22,8 @@ impl Assembler<'_> {
             return stipple;
         }
         let mut ends = [
-            Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0] },
-            Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0] },
+            Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0], boundary: false },
+            Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0], boundary: false },
         ];
         if (a.flags | b.flags) & (flag::CLIP | flag::FRUSTUM) != 0 || self.state.user_planes > 0 {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
@@ -55,20 +55,16 @@ impl Assembler<'_> {
             // Aliased lines are widened along the minor axis, to whole pixels.
             let half = width.floor().max(1.0) * 0.5;
             let (nx, ny) = if dx.abs() >= dy.abs() { (0.0, half) } else { (half, 0.0) };
-            [
-                [at[0][0] - nx, at[0][1] - ny],
-                [at[1][0] - nx, at[1][1] - ny],
-                [at[1][0] + nx, at[1][1] + ny],
-                [at[0][0] + nx, at[0][1] + ny],
-            ]
+            let [[x0, y0], [x1, y1]] = diamond_exit(at);
+            [[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]]
         };
         let span = if true_rectangle { length } else { dx.abs().max(dy.abs()) };
         let shape = self.out.shapes.len() as u32;
         let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
         self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, stipple });
-        let depths = [z0, z1, z1, z0];
+        let plane = line_plane([[x0, y0, z0], [x1, y1, z1]], true_rectangle);
         let quad_slots = [slots[0], slots[1], slots[1], slots[0]];
-        self.quad(quad, depths, quad_slots, provoking, FacetKind::Line, back, shape, offset);
+        self.quad(quad, plane, quad_slots, provoking, FacetKind::Line, back, shape, offset);
         stipple + span
     }
 
@@ -106,8 +102,8 @@ impl Assembler<'_> {
             match (d[0] >= 0.0, d[1] >= 0.0) {
                 (false, false) => return None,
                 (true, true) => {}
-                (true, false) => line[1] = between(&line[0], &line[1], d[0], d[1]),
-                (false, true) => line[0] = between(&line[1], &line[0], d[1], d[0]),
+                (true, false) => line[1] = between(&line[0], &line[1], d[0], d[1], false),
+                (false, true) => line[0] = between(&line[1], &line[0], d[1], d[0], false),
             }
         }
         Some(line)
@@ -142,21 +138,23 @@ impl Assembler<'_> {
         } else {
             // An aliased point is a square of whole pixels round the vertex.
             let size = (size + 0.5).floor().max(1.0);
-            let snapped = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
-            ([snapped(x), snapped(y)], size * 0.5)
+            let middle = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
+            ([middle(x), middle(y)], size * 0.5)
         };
         let shape = self.out.shapes.len() as u32;
         self.out.shapes.push(Shape::Point { center, size, fade });
         let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
             .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
-        self.quad(quad, [z; 4], [slot; 4], provoking, FacetKind::Point, back, shape, offset);
+        let origin = center.map(snapped);
+        let plane = DepthPlane { z, dz_dx: 0.0, dz_dy: 0.0, origin, z_min: z, z_max: z };
+        self.quad(quad, plane, [slot; 4], provoking, FacetKind::Point, back, shape, offset);
     }
 
-    /// Two triangles that share the diagonal, with one depth plane.
+    /// Two triangles that share the diagonal and the depth plane.
     pub(super) fn quad(
         &mut self,
         quad: [[f32; 2]; 4],
-        depths: [f32; 4],
+        plane: DepthPlane,
         slots: [u32; 4],
         provoking: u32,
         kind: FacetKind,
@@ -164,24 +162,109 @@ impl Assembler<'_> {
         shape: u32,
         offset: usize,
     ) {
-        // The width may carry it over the end of the guard band, which is beyond the target.
-        let whole = |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
-        let corner = |i: usize| CornerPosition { x: whole(quad[i][0]), y: whole(quad[i][1]), z: depths[i] };
-        let [low, high] = self.state.window.depth_range();
+        let mut plane = if offset < 3 { self.offset(plane, offset) } else { plane };
+        if self.state.depth_clamp {
+            let [low, high] = self.state.window.depth_range();
+            plane.z_min = plane.z_min.clamp(low, high);
+            plane.z_max = plane.z_max.clamp(low, high);
+        }
+        let corner = |i: usize| CornerPosition { x: snapped(quad[i][0]), y: snapped(quad[i][1]), z: plane.z };
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
             let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
-            let mut plane = if offset < 3 {
-                self.plane(positions, area, offset)
-            } else {
-                DepthPlane::new(positions[0], positions[1], positions[2], area)
-            };
-            if self.state.depth_clamp {
-                plane.z_min = plane.z_min.clamp(low, high);
-                plane.z_max = plane.z_max.clamp(low, high);
-            }
             self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
+        }
+    }
+}
+
+/// On the grid of 1/256 pixel. The width may carry a corner over the end of the guard band, which is beyond the target.
+fn snapped(v: f32) -> i32 {
+    (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32
+}
+
+/// Ends of an aliased line, moved along it so that the pixel centres between them, the first included and the last not, are
+/// those of the diamond-exit rule: a line draws the pixels whose diamond it leaves. So the pixel where a line starts belongs
+/// to it and the one where it ends to the next line of the strip, whichever way they run.
+fn diamond_exit(at: [[f32; 3]; 2]) -> [[f32; 2]; 2] {
+    let d = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
+    let (major, minor) = if d[0].abs() >= d[1].abs() { (0, 1) } else { (1, 0) };
+    let (slope, way) = (d[minor] / d[major], 1.0f32.copysign(d[major]));
+    // The rasteriser includes what lies on the lower side. Lines that run down are moved by its smallest step.
+    let step = if way < 0.0 { 1.0 / SUBPIXEL as f32 } else { 0.0 };
+    at.map(|end| {
+        let center = [end[0].floor() + 0.5, end[1].floor() + 0.5];
+        let past = (end[major] - center[major]) * way;
+        let in_diamond = (end[0] - center[0]).abs() + (end[1] - center[1]).abs() < 0.5;
+        // Within the diamond but past its centre: a start still draws the pixel, an end does not.
+        let back = if in_diamond && past > 0.0 { center[major] - end[major] } else { 0.0 };
+        let mut moved = [end[0], end[1]];
+        moved[major] += back + step;
+        moved[minor] += (back + step) * slope;
+        moved
+    })
+}
+
+/// The depth plane of a line: depth changes along it (along the longer axis if it is widened along the other one) and not
+/// across. The same line drawn the other way round gets the same plane bit by bit: polygons that share an edge both draw
+/// it, and where depths are compared for equality it must not fall into dots.
+fn line_plane(ends: [[f32; 3]; 2], rectangle: bool) -> DepthPlane {
+    let [[x0, y0, z0], [x1, y1, z1]] = if ends[0] <= ends[1] { ends } else { [ends[1], ends[0]] };
+    let (dx, dy, dz) = (x1 - x0, y1 - y0, z1 - z0);
+    let (dz_dx, dz_dy) = if rectangle {
+        let along = dz / (dx * dx + dy * dy);
+        (along * dx, along * dy)
+    } else if dx.abs() >= dy.abs() {
+        (dz / dx, 0.0)
+    } else {
+        (0.0, dz / dy)
+    };
+    // The plane's origin is on the grid: carry the end's depth there.
+    let origin = [snapped(x0), snapped(y0)];
+    let step = |at: i32, from: f32| at as f32 / SUBPIXEL as f32 - from;
+    let z = z0 + (step(origin[0], x0) * dz_dx + step(origin[1], y0) * dz_dy);
+    DepthPlane { z, dz_dx, dz_dy, origin, z_min: z0.min(z1), z_max: z0.max(z1) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_leave_diamonds() {
+        // The columns whose centres lie in between, the lower end included.
+        let columns = |x0: f32, x1: f32, y: f32| -> Vec<i32> {
+            let [[a, _], [b, _]] = diamond_exit([[x0, y, 0.0], [x1, y, 0.0]]);
+            (-2..8).filter(|&x| a.min(b) <= x as f32 + 0.5 && (x as f32 + 0.5) < a.max(b)).collect()
+        };
+        assert_eq!(columns(0.5, 3.5, 0.5), [0, 1, 2]);
+        assert_eq!(columns(3.5, 0.5, 0.5), [1, 2, 3]);
+        assert_eq!(columns(0.7, 3.7, 0.5), [0, 1, 2]);
+        assert_eq!(columns(3.7, 0.7, 0.5), [1, 2, 3]);
+        assert_eq!(columns(0.3, 3.3, 0.5), [0, 1, 2]);
+        // Outside of the diamonds only whole crossings count.
+        assert_eq!(columns(0.9, 3.9, 0.1), [1, 2, 3]);
+        assert_eq!(columns(0.1, 3.1, 0.1), [0, 1, 2]);
+        assert_eq!(columns(0.4, 0.6, 0.5), []);
+    }
+
+    #[test]
+    fn a_line_has_the_same_depths_in_both_directions() {
+        let ends = [[3.3, 70.1, 0.251], [90.7, 11.9, 0.773]];
+        for rectangle in [false, true] {
+            let there = line_plane(ends, rectangle);
+            let back = line_plane([ends[1], ends[0]], rectangle);
+            assert_eq!(
+                (there.z, there.dz_dx, there.dz_dy, there.origin),
+                (back.z, back.dz_dx, back.dz_dy, back.origin)
+            );
+            let depth = |x: f32, y: f32| {
+                let from = there.origin.map(|o| o as f32 / SUBPIXEL as f32);
+                there.z + (x - from[0]) * there.dz_dx + (y - from[1]) * there.dz_dy
+            };
+            for [x, y, z] in ends {
+                assert!((depth(x, y) - z).abs() < 1e-6, "the ends keep their depths");
+            }
         }
     }
 }

@@ -1,0 +1,127 @@
+//! ARB_pixel_buffer_object: images that lie in buffer objects instead of the client's memory.
+//!
+//! What reads or writes images asks for a memory and an address. With a buffer bound the memory is that buffer's data store,
+//! as it is now, and the address is an offset.
+
+use crate::Context;
+use crate::enums::*;
+use crate::memory::ClientMemory;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+type Failure = (u32, &'static str);
+
+/// Where the store begins: an offset of 0 must not look like no address.
+const START: usize = 1 << 16;
+
+/// A data store as memory. Writes make a copy; the buffer gets it when all of them fit.
+#[derive(Debug)]
+struct Store(Mutex<Arc<Vec<u8>>>);
+
+impl Store {
+    fn bytes(&self) -> MutexGuard<'_, Arc<Vec<u8>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl ClientMemory for Store {
+    fn read(&self, address: usize, out: &mut [u8]) -> bool {
+        let bytes = self.bytes();
+        let start = address.checked_sub(START);
+        let Some(part) = start.and_then(|start| bytes.get(start..start.checked_add(out.len())?)) else { return false };
+        out.copy_from_slice(part);
+        true
+    }
+
+    fn write(&self, address: usize, from: &[u8]) -> bool {
+        let mut bytes = self.bytes();
+        let range = address.checked_sub(START).and_then(|start| Some(start..start.checked_add(from.len())?));
+        let Some(range) = range.filter(|range| range.end <= bytes.len()) else { return false };
+        Arc::make_mut(&mut bytes)[range].copy_from_slice(from);
+        true
+    }
+
+    fn map(&self, _bytes: Vec<u8>) -> usize {
+        0
+    }
+
+    fn unmap(&self, _address: usize) -> Option<Vec<u8>> {
+        None
+    }
+}
+
+impl Context {
+    fn pixel_store_of(&self, name: u32) -> Result<Store, Failure> {
+        match self.buffers().get(&name) {
+            Some(Some(buffer)) if !buffer.is_mapped() => Ok(Store(Mutex::new(buffer.bytes.clone()))),
+            _ => Err((INVALID_OPERATION, "the buffer of pixels is mapped")),
+        }
+    }
+
+    /// Where pixels are unpacked from: a memory, and the address there.
+    pub(crate) fn unpack_memory(&self, address: usize) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
+        match self.client.unpack.buffer {
+            0 => Ok((self.memory.clone(), address)),
+            name => Ok((Arc::new(self.pixel_store_of(name)?), address.saturating_add(START))),
+        }
+    }
+
+    /// Runs `write` with the memory that pixels are packed into and the address there. `false` of `write` is an error with a
+    /// buffer, which then keeps what it had.
+    pub(crate) fn pack_into(
+        &self,
+        address: usize,
+        write: impl FnOnce(&dyn ClientMemory, usize) -> bool,
+    ) -> Result<(), Failure> {
+        let name = self.client.pack.buffer;
+        if name == 0 {
+            write(&*self.memory, address);
+            return Ok(());
+        }
+        let store = self.pixel_store_of(name)?;
+        if !write(&store, address.saturating_add(START)) {
+            return Err((INVALID_OPERATION, "the pixels do not fit in the buffer"));
+        }
+        let bytes = store.bytes().clone();
+        if let Some(Some(buffer)) = self.buffers().get_mut(&name) {
+            buffer.replace(bytes);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{BASE, context_with, read_u32};
+    use super::*;
+
+    #[test]
+    fn pixels_go_through_buffers() {
+        let mut c = context_with(2, 2);
+        c.clear_color(1.0, 0.0, 0.0, 1.0);
+        c.clear(COLOR_BUFFER_BIT);
+        c.bind_buffer(PIXEL_PACK_BUFFER, 1);
+        c.buffer_data(PIXEL_PACK_BUFFER, 20, 0, STREAM_READ);
+        c.read_pixels(0, 0, 2, 2, RGBA, UNSIGNED_BYTE, 4);
+        c.get_buffer_sub_data(PIXEL_PACK_BUFFER, 0, 8, BASE);
+        assert_eq!((c.error, read_u32(&c, BASE), read_u32(&c, BASE + 4)), (NO_ERROR, 0, 0xff00_00ff));
+        // One byte too far: nothing is written.
+        c.read_pixels(0, 0, 2, 2, RGBA, UNSIGNED_BYTE, 8);
+        assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
+        // The same bytes as a texture, and back from it.
+        c.bind_buffer(PIXEL_UNPACK_BUFFER, 1);
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 2, 2, 0, RGBA, UNSIGNED_BYTE, 4);
+        assert_eq!(c.error, NO_ERROR);
+        c.tex_sub_image_2d(TEXTURE_2D, 0, 0, 0, 2, 2, RGBA, UNSIGNED_BYTE, 8);
+        assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
+        c.bind_buffer(PIXEL_PACK_BUFFER, 2);
+        c.buffer_data(PIXEL_PACK_BUFFER, 16, 0, STREAM_READ);
+        c.get_tex_image(TEXTURE_2D, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.get_buffer_sub_data(PIXEL_PACK_BUFFER, 0, 16, BASE);
+        assert_eq!((c.error, read_u32(&c, BASE + 12)), (NO_ERROR, 0xff00_00ff));
+        // What is mapped is the client's.
+        c.map_buffer(PIXEL_PACK_BUFFER, READ_ONLY);
+        c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, 0);
+        assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
+        c.unmap_buffer(PIXEL_PACK_BUFFER);
+    }
+}

@@ -3,7 +3,7 @@
 use super::assembled::{Assembled, Piece, PieceVertices};
 use super::grid::Grid;
 use super::snapshot::VertexSnapshot;
-use super::vertices::{Eight, shade};
+use super::vertices::{Eight, front_colors, shade};
 use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
@@ -140,16 +140,13 @@ impl DrawGeometry {
         let (origin, end) = ([from(0), from(1)], [to(0), to(1)]);
         let size = [end[0] - origin[0] + 1, end[1] - origin[1] + 1];
         out.grids.push(ColorGrid { first: out.grid_colors.len(), origin, size, rising: grid.rising });
-        let mut records = vec![0.0; LANES * stride];
         for row in origin[1]..=end[1] {
             let start = (row * (grid.cells[0] + 1) + origin[0]) as usize;
             for eight in grid.vertices[start..start + size[0] as usize].chunks(LANES) {
                 let vertices = std::array::from_fn(|lane| eight[lane.min(eight.len() - 1)]);
                 let lanes = Eight { vertices, count: eight.len(), batch: &self.batch };
-                dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &lanes, &[1.0; LANES], &mut records));
-                let colors = records.chunks_exact(stride).take(eight.len());
-                let color = self.layout.color;
-                out.grid_colors.extend(colors.map(|r| [r[color], r[color + 1], r[color + 2], r[color + 3]]));
+                let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
+                out.grid_colors.extend((0..eight.len()).map(|lane| [r[lane], g[lane], b[lane], a[lane]]));
             }
         }
     }

@@ -111,8 +111,7 @@ impl Context {
         let primitive = self.primitive_state(fragment, target)?;
         let assembled = batch.assembled.get(&batch);
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
-        let grid =
-            target.color.is_some() && assembled.grid.is_some() && self.draws_grids(&snapshot, &primitive, fragment);
+        let grid = assembled.grid.is_some() && self.draws_grids(&snapshot, &primitive, fragment);
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
         }

@@ -160,6 +160,20 @@ pub(crate) fn shade<S: Simd>(
     );
 }
 
+/// The front colours of up to eight vertices alone.
+pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> [[f32; LANES]; 4] {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
+            let eye = transform(&snapshot.modelview, &position);
+            let normal = eye_normal(simd, snapshot, eight);
+            let [r, g, b, a] = colors(simd, snapshot, eight, &eye, normal).color;
+            [r.to_array(), g.to_array(), b.to_array(), a.to_array()]
+        },
+    )
+}
+
 /// The normal in eye space, if anything needs it.
 #[inline(always)]
 fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> V3<F<S>> {

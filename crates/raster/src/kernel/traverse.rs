@@ -112,8 +112,11 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     // The pixels of the window that the triangle's box may cover.
     let first = |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
     let last = |v: [i32; 3], e: [i32; 2]| (v[0].max(v[1]).max(v[2]) - e[0]) >> 8;
-    let (x0, x1) = (first(x, extent_x).max(columns.start as i32), last(x, extent_x).min(columns.end as i32 - 1));
-    let (y0, y1) = (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
+    let (x0, x1, y0, y1) = (first(x, extent_x), last(x, extent_x), first(y, extent_y), last(y, extent_y));
+    let side = BLOCK as i32;
+    let several = x0 / side != x1 / side || y0 / side != y1 / side;
+    let (x0, x1) = (x0.max(columns.start as i32), x1.min(columns.end as i32 - 1));
+    let (y0, y1) = (y0.max(rows.start as i32), y1.min(rows.end as i32 - 1));
     if x1 < x0 || y1 < y0 {
         return;
     }
@@ -137,7 +140,6 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
 
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let several = x0 / BLOCK != x1 / BLOCK || y0 / BLOCK != y1 / BLOCK;
     let mut masks = [0u64; MOST];
     for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
         let rows = y0.max(by) - by..(y1 + 1).min(by + BLOCK) - by;

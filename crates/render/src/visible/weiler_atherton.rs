@@ -119,6 +119,7 @@ impl<'f> AreaSorting<'f> {
     fn run(&mut self, counters: &mut VisibilityCounters, mut show: impl FnMut(&Setup, &Region)) -> Result<(), Limit> {
         let mut steps = 0u32;
         while let Some(mut list) = self.lists.pop() {
+            self.execution.budget.check("Weiler–Atherton")?;
             if steps.is_multiple_of(64) {
                 self.account(&list)?;
             }
@@ -204,10 +205,9 @@ impl<'f> AreaSorting<'f> {
         }
     }
 
-    /// Charges what the lists hold, and looks at the clock.
+    /// Charges what the lists hold.
     fn account(&mut self, list: &[Item]) -> Result<(), Limit> {
         let budget = &self.execution.budget;
-        budget.check("Weiler–Atherton")?;
         let items = self.lists.iter().flatten().chain(list);
         let bytes: usize = items.map(|i| BYTES_AN_ITEM + i.region.edges.len() * size_of::<Edge>()).sum();
         let more = (bytes as u64).saturating_sub(self.charged);

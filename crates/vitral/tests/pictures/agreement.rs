@@ -324,7 +324,7 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
             assert!(first.samples == found.samples, "{name} from {}", camera.position);
             let c = found.counters;
             // From below, the stones' undersides lie in the floor, as coplanar as snapped corners leave them.
-            if name != "scene1" || camera.position.y > 0.0 {
+            if name != "scene1" || camera.position.y > camera.focal_point.y {
                 seen += found.samples.iter().filter(|s| s.1 != Frame::BACKGROUND).count() as u64;
                 overruled_far += c.overruled_far;
             }
@@ -334,7 +334,7 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
         assert!(trees.windows(2).all(|t| t[0] == t[1]), "{name}");
         // The list alone is right: where it is overruled, corners were snapped to 1/256 pixel.
         println!("{name}: {seen} samples seen, {overruled_far} overruled by more than a near tie");
-        assert!(overruled_far * 500 <= seen, "{name}: {overruled_far} of {seen}");
+        assert!(overruled_far * 10_000 <= seen, "{name}: {overruled_far} of {seen}");
     }
 }
 

@@ -264,8 +264,9 @@ struct Builder<'t> {
     /// The builder of the tree that this is a branch of.
     outer: Option<&'t Builder<'t>>,
     points: Vec<DVec3>,
-    /// Bytes charged so far.
+    /// Bytes charged so far, and the corners that there were then.
     charged: u64,
+    accounted: usize,
     /// Workspace: corners of a polygon that is split.
     split: [Vec<DVec3>; 2],
 }
@@ -273,7 +274,17 @@ struct Builder<'t> {
 impl<'t> Builder<'t> {
     fn new(triangles: &'t [[DVec3; 3]], budget: &'t Budget) -> Self {
         let (tree, split) = (Tree::default(), Default::default());
-        Self { triangles, budget, tree, links: Vec::new(), outer: None, points: Vec::new(), charged: 0, split }
+        Self {
+            triangles,
+            budget,
+            tree,
+            links: Vec::new(),
+            outer: None,
+            points: Vec::new(),
+            charged: 0,
+            accounted: 0,
+            split,
+        }
     }
 
     /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
@@ -393,7 +404,8 @@ impl<'t> Builder<'t> {
     /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
     fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
         let node = self.tree.nodes.len() as u32;
-        if node.is_multiple_of(256) {
+        self.budget.check("building the BSP tree")?;
+        if node.is_multiple_of(256) || self.points.len() > self.accounted + (1 << 16) {
             self.account()?;
         }
         if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
@@ -478,9 +490,9 @@ impl<'t> Builder<'t> {
         halves
     }
 
-    /// Charges what has grown since the last time, and looks at the clock.
+    /// Charges what has grown since the last time.
     fn account(&mut self) -> Result<(), Limit> {
-        self.budget.check("building the BSP tree")?;
+        self.accounted = self.points.len();
         let parts = self.points.len() / 3 * size_of::<Part>();
         let work = size_of_val(self.points.as_slice()) + size_of_val(self.links.as_slice()) + parts;
         let now = self.tree.bytes() + work as u64;

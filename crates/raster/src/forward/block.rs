@@ -197,9 +197,9 @@ fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
     const EACH: u64 = 0x0101_0101_0101_0101;
     if let Some(row) = row.first_chunk_mut::<8>() {
         // Bit i of byte i, then all bits of the bytes that are not 0.
-        let single = u64::from(bits) * EACH & 0x8040_2010_0804_0201;
+        let single = (u64::from(bits) * EACH) & 0x8040_2010_0804_0201;
         let mask = (((single | ((single & !(EACH << 7)) + (!(EACH << 7)))) >> 7) & EACH) * 0xff;
-        *row = ((u64::from_le_bytes(*row) & !mask) | (u64::from(value) * EACH & mask)).to_le_bytes();
+        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * EACH) & mask)).to_le_bytes();
     }
 }
 

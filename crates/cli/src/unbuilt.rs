@@ -2,7 +2,7 @@
 //! for it is told so, rather than that it is unknown.
 
 /// Verbs to come.
-const VERBS: [&str; 4] = ["draw", "lab", "batch", "bench"];
+const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
 /// Options to come.
 const OPTIONS: [&str; 12] = [

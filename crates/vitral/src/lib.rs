@@ -26,6 +26,7 @@ pub use vitral_raster as raster;
 pub use vitral_render as render;
 pub use vitral_scene as scene;
 
+pub mod bench;
 pub mod dump;
 mod error;
 mod files;

@@ -134,7 +134,9 @@ fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pi
          ## Growth with polygons\n\n{width} x {height} pixels, milliseconds.\n\n{}\n![Seconds over polygons](visibility-polygons.svg)\n\n\
          ## Growth with pixels\n\n{} polygons, milliseconds.\n\n{}\n![Seconds over pixels](visibility-pixels.svg)\n\n\
          Dashed: list priority and object precision. Here their last step, like that of all others, fills the samples of\n\
-         the picture, which is what grows with pixels.\n\n\
+         the picture, which is what grows with pixels. Aliasing comes with that step: what Weiler–Atherton and the lists hold\n\
+         are outlines, good at any size; what image precision holds are samples. All of them end in the same samples, so\n\
+         their pictures, and the aliasing in them, are equal.\n\n\
          ## What is built once, and memory\n\n{} polygons, {width} x {height} pixels. Memory is what an algorithm charges to its budget for its own lists,\n\
          trees and facets.\n\n{}",
         table(over_polygons, polygons, "polygons"),

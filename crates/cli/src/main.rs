@@ -17,6 +17,7 @@ mod render_command;
 mod report;
 mod resolve;
 mod tables;
+mod trace_file;
 mod unbuilt;
 mod values;
 

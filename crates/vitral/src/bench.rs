@@ -8,10 +8,10 @@
 
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_raster::{Layer, SamplePattern, Tile, TileGrid};
+use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{ACCELERATION, VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
-use vitral_render::visible::TileSink;
+use vitral_render::visible::Nowhere;
 use vitral_render::{Acceleration, Error, Execution, PreparedView, Session, Settings};
 use vitral_scene::{Camera, Scene};
 
@@ -100,13 +100,6 @@ impl Seen {
         let pairs = |s: &Self, i: usize| (s.facets[i], s.depths[i].to_bits());
         (0..self.facets.len().min(other.facets.len())).filter(|&i| pairs(self, i) != pairs(other, i)).count() as u64
     }
-}
-
-/// Pictures go nowhere.
-struct Nowhere;
-
-impl TileSink for Nowhere {
-    fn tile(&self, _: usize, _: &Tile, _: &mut Vec<Layer>) {}
 }
 
 /// Measures one algorithm, with a session of its own. The outer error is one of the task, the inner one the limit at

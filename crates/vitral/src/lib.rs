@@ -29,6 +29,7 @@ pub use vitral_scene as scene;
 pub mod bench;
 pub mod dump;
 mod error;
+pub mod explain;
 mod files;
 pub mod info;
 mod load;

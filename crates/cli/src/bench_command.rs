@@ -138,6 +138,7 @@ fn as_json(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> Value {
             Ok(m) => {
                 value["first-seconds"] = json!(m.first_seconds);
                 value["median-seconds"] = json!(m.median_seconds);
+                value["fastest-seconds"] = json!(m.fastest_seconds);
                 value["frames"] = json!(m.frames);
                 value["bytes"] = json!(m.bytes);
                 value["differing"] = json!(differing(rows, m));

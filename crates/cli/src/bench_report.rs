@@ -72,7 +72,7 @@ fn heap(polygons: usize) -> Scene {
 /// A curve for each algorithm; those of image precision are drawn through, the others dashed.
 fn curves(steps: &[Step], size: fn(&Step) -> u32) -> Vec<Curve> {
     let curve = |(i, entrant): (usize, Entrant)| {
-        let point = |s: &Step| s.rows[i].1.as_ref().ok().map(|m| [f64::from(size(s)), m.median_seconds.max(1e-9)]);
+        let point = |s: &Step| s.rows[i].1.as_ref().ok().map(|m| [f64::from(size(s)), m.fastest_seconds.max(1e-9)]);
         let points = steps.iter().filter_map(point).collect();
         Curve { name: entrant.name(), dashed: entrant.algorithm.precision != "image", points }
     };
@@ -86,7 +86,7 @@ fn table(steps: &[Step], size: fn(&Step) -> u32, what: &str) -> String {
     let _ = writeln!(out, "|---|---|{}---:|", "---:|".repeat(steps.len()));
     for (i, (entrant, curve)) in Entrant::all().iter().zip(curves(steps, size)).enumerate() {
         let cell = |s: &Step| match &s.rows[i].1 {
-            Ok(m) => format!("{:.2}", m.median_seconds * 1e3),
+            Ok(m) => format!("{:.2}", m.fastest_seconds * 1e3),
             Err(limit) => limit.to_string(),
         };
         let cells: Vec<_> = steps.iter().map(cell).collect();
@@ -123,8 +123,8 @@ fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pi
         "# Image precision and object precision, measured\n\n\
          Written by `vitral bench --report docs --threads {threads} --frames {frames} --time-limit {limit}`, and not by hand.\n\n\
          The scene is a heap of eight rings, cut ever finer, so that the picture stays what it is while the polygons grow. One\n\
-         sample a pixel, {threads} thread(s). Times are finding the visible surface of every sample, without shading: the median\n\
-         of {frames} pictures after a first one, which also builds trees. An exponent `e` says that the time grows like `size^e`;\n\
+         sample a pixel, {threads} thread(s). Times are finding the visible surface of every sample, without shading: the fastest\n\
+         of {frames} pictures after a first one, which also builds trees (other processes can only add to it). An exponent `e` says that the time grows like `size^e`;\n\
          it is the slope of the line through the logarithms. The same machine in the same minutes serves all rows: compare\n\
          them with each other, not with other machines.\n\n\
          The notes say what to expect (COURSE.md P6): an algorithm of image precision asks, for each of `p` pixels, which of\n\

@@ -69,6 +69,8 @@ pub struct Measured {
     pub first_seconds: f64,
     /// Median of the seconds of the pictures after it; the first one's where there is no other.
     pub median_seconds: f64,
+    /// The least seconds of any of these pictures: what other processes add is the least here.
+    pub fastest_seconds: f64,
     /// Pictures that were finished.
     pub frames: usize,
     /// Bytes charged at one time, at the most.
@@ -138,6 +140,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
     }
     Ok(Ok(Measured {
         first_seconds,
+        fastest_seconds: seconds.iter().copied().reduce(f64::min).unwrap_or(first_seconds),
         median_seconds: median(&mut seconds).unwrap_or(first_seconds),
         frames: seconds.len() + 1,
         bytes: execution.budget.peak(),

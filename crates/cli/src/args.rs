@@ -36,6 +36,8 @@ pub(crate) enum Verb {
     Info(InfoArgs),
     /// Compare two pictures; exit code 6 when they differ
     Compare(CompareArgs),
+    /// Measure every visible-surface algorithm on one model: time, memory, counters, agreement with the z-buffer
+    Bench(Box<BenchArgs>),
     /// List the algorithms
     Algorithms(ListArgs),
     /// List the formats that are read and written
@@ -90,6 +92,49 @@ pub(crate) struct CompareArgs {
     #[arg(long)]
     pub(crate) json: bool,
     /// Print nothing
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of `vitral bench`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct BenchArgs {
+    /// Model files, `builtin:NAME`, or `-` for standard input
+    #[arg(required_unless_present = "report", value_name = "MODEL")]
+    pub(crate) models: Vec<PathBuf>,
+    /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
+    /// with its plots into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["models", "json", "resolution", "samples", "visibility"])]
+    pub(crate) report: Option<PathBuf>,
+    /// Only these algorithms, and the z-buffer; repeatable [default: all]
+    #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
+    pub(crate) visibility: Vec<String>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
+    pub(crate) resolution: [u32; 2],
+    /// Samples a pixel
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) samples: u32,
+    /// Pictures that the median is taken of, after a first one
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: u32,
+    /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
+    #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
+    pub(crate) time_limit: f64,
+    /// Memory that each algorithm may take, such as 512M or 1G
+    #[arg(long, value_name = "B", value_parser = values::bytes)]
+    pub(crate) max_memory: Option<u64>,
+    /// Let models name files outside their folder
+    #[arg(long)]
+    pub(crate) allow_external: bool,
+    /// Threads; 0 means as many as the process may use
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No warnings and no progress
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

@@ -1,6 +1,9 @@
 //! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
 
 mod args;
+mod bench_command;
+mod bench_plot;
+mod bench_report;
 mod choices;
 mod compare_command;
 mod info_command;
@@ -14,6 +17,7 @@ mod render_command;
 mod report;
 mod resolve;
 mod tables;
+mod trace_file;
 mod unbuilt;
 mod values;
 
@@ -47,6 +51,7 @@ fn run() -> Result<u8, Failure> {
         Verb::Render(args) => render_command::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),
+        Verb::Bench(args) => bench_command::run(&args),
         Verb::Algorithms(args) => tables::algorithms(&args),
         Verb::Formats(args) => tables::formats(&args),
         Verb::OsmesaEnv(args) => osmesa_env_command::run(&args),

@@ -37,7 +37,7 @@ pub(crate) struct RenderArgs {
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
     /// repeatable, one for each --channel
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel"])]
     pub(crate) output: Vec<PathBuf>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
@@ -90,6 +90,9 @@ pub(crate) struct AlgorithmArgs {
     /// What finds the triangles near a ray, where --visibility casts rays [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
+    /// Kinds of coherence to use: a list, or none; `vitral algorithms` says which an algorithm exploits [default: all]
+    #[arg(long, value_name = "LIST", value_parser = values::coherence)]
+    pub(crate) coherence: Option<values::CoherenceList>,
     /// What is thrown away early: a list of frustum, back-face; or none [default: frustum,back-face]
     #[arg(long, value_name = "LIST", value_parser = values::culling)]
     pub(crate) cull: Option<Culling>,
@@ -225,6 +228,13 @@ pub(crate) struct ReportArgs {
     /// The same into a file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats_file: Option<PathBuf>,
+    /// Explain a pixel on standard output: the surfaces over its centre, and what each algorithm decided; an algorithm
+    /// may take 20 s, or what --time-limit says
+    #[arg(long, value_name = "X,Y", value_parser = values::pixel)]
+    pub(crate) pixel: Option<[u32; 2]>,
+    /// Write the steps of the visibility algorithm into this file, a JSON object a line
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
     /// One JSON object with the results on standard output
     #[arg(long)]
     pub(crate) json: bool,

@@ -7,14 +7,21 @@ use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
 use crate::resolve::{Plan, resolve};
+use crate::trace_file::TraceFile;
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
+use vitral::explain::{Explanation, explain};
 use vitral::frame::compare;
 use vitral::picture::EncodeOptions;
 use vitral::render::ColorSpace;
+use vitral::render::trace::Observer;
 use vitral::{Frame, Renderer, dump, execution};
+
+/// What each algorithm may take for `--pixel`, if nothing else is said.
+const SECONDS_TO_EXPLAIN: f64 = 20.0;
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
@@ -50,11 +57,19 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     if let Some(folder) = &args.output.dump {
         dump::dump_to_folder(&mut renderer, folder)?;
     }
+    let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
+    renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
     let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
         draw(args, plan, &mut renderer)?
     };
+
+    renderer.execution_mut().observer = None;
+    if let Some(file) = tracing {
+        file.finish()?;
+    }
+    let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, pixel)).transpose()?;
 
     let stats = json!({
         "load-seconds": load_seconds,
@@ -67,9 +82,21 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
         if args.report.stats {
             result["stats"] = stats;
         }
+        if let Some(explained) = &explained {
+            result["pixel"] = json!(explained);
+        }
         report::print_json(&result)?;
+    } else if let Some(explained) = &explained {
+        report::print(explained.to_string().as_bytes())?;
     }
     Ok(if drawn.different { DIFFERENT } else { 0 })
+}
+
+/// Explains a pixel of the first frame.
+fn explain_pixel(args: &RenderArgs, renderer: &Renderer, pixel: [u32; 2]) -> Result<Explanation, Failure> {
+    let camera = renderer.frame_camera();
+    let limit = args.process.time_limit.unwrap_or(SECONDS_TO_EXPLAIN);
+    Ok(explain(renderer, &camera, pixel, Some(limit))?)
 }
 
 /// What came of the frames.

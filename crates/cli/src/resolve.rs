@@ -3,6 +3,7 @@
 use crate::outputs::Output;
 use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::Failure;
+use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::render::{Background, Channels, Lines};
@@ -54,8 +55,16 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
     outputs.iter().for_each(|o| o.channel.request(&mut channels));
     state.settings.channels = channels;
+    if let Some(file) = args.report.trace.as_ref().filter(|_| outputs.is_empty()) {
+        return Err(
+            Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
+        );
+    }
     if args.report.json && outputs.iter().any(Output::is_standard) {
         return Err(Failure::usage("--json and --output - both want standard output"));
+    }
+    if args.report.pixel.is_some() && outputs.iter().any(Output::is_standard) {
+        return Err(Failure::usage("--pixel and --output - both want standard output"));
     }
 
     let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
@@ -119,6 +128,9 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
         settings.visibility.clone_from(name);
     }
     settings.acceleration = args.acceleration.or(settings.acceleration);
+    if let Some(values::CoherenceList(kinds)) = &args.coherence {
+        settings.coherence = Some(kinds.clone());
+    }
     settings.cull = args.cull.unwrap_or(settings.cull);
     settings.illumination = args.illumination.unwrap_or(settings.illumination);
     settings.shading = args.shading.unwrap_or(settings.shading);

@@ -13,9 +13,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     if args.json {
         let visibility: Vec<_> = registry::VISIBILITY
             .iter()
-            .map(
-                |a| json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision}),
-            )
+            .map(|a| {
+                json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision,
+                    "coherence": a.coherence.iter().map(|kind| kind.name()).collect::<Vec<_>>()})
+            })
             .collect();
         let acceleration: Vec<_> = registry::ACCELERATION
             .iter()
@@ -32,6 +33,11 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     let mut text = String::from("Visible surfaces (--visibility)\n");
     for a in registry::VISIBILITY {
         let _ = writeln!(text, "  {:<14} {} ({} precision; {})", a.name, a.description, a.precision, a.source);
+    }
+    text.push_str("\nCoherence that each exploits (--coherence)\n");
+    for a in registry::VISIBILITY {
+        let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
+        let _ = writeln!(text, "  {:<14} {}", a.name, kinds.join(", "));
     }
     text.push_str("\nStructures for rays (--acceleration)\n");
     for a in registry::ACCELERATION {

@@ -2,11 +2,10 @@
 //! for it is told so, rather than that it is unknown.
 
 /// Verbs to come.
-const VERBS: [&str; 4] = ["draw", "lab", "batch", "bench"];
+const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
 /// Options to come.
-const OPTIONS: [&str; 12] = [
-    "--coherence",
+const OPTIONS: [&str; 9] = [
     "--global",
     "--iterations",
     "--light-samples",
@@ -14,17 +13,15 @@ const OPTIONS: [&str; 12] = [
     "--max-depth",
     "--panels",
     "--patch-size",
-    "--pixel",
     "--save-radiosity",
     "--shadows",
-    "--trace",
 ];
 
 /// Values to come, of options that are there.
 const VALUES: [(&str, &[&str]); 3] = [
     ("--transparency", &["kay"]),
     ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
-    ("--channel", &["attached-shadow", "cast-shadow", "steps"]),
+    ("--channel", &["attached-shadow", "cast-shadow"]),
 ];
 
 /// Whether this verb is to come.

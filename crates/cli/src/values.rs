@@ -2,7 +2,7 @@
 
 use vitral::MaterialOverride;
 use vitral::math::DVec3;
-use vitral::render::Culling;
+use vitral::render::{Coherence, Culling};
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
@@ -141,6 +141,33 @@ pub(crate) fn culling(text: &str) -> Result<Culling, String> {
     Ok(culling)
 }
 
+/// Kinds of coherence, as one value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct CoherenceList(pub(crate) Vec<Coherence>);
+
+/// Kinds of coherence with commas between them, or `none`.
+pub(crate) fn coherence(text: &str) -> Result<CoherenceList, String> {
+    if text == "none" {
+        return Ok(CoherenceList(Vec::new()));
+    }
+    let kind = |word: &str| {
+        let found = Coherence::ALL.iter().find(|(_, name)| *name == word).map(|(kind, _)| *kind);
+        let names: Vec<_> = Coherence::ALL.iter().map(|(_, name)| *name).collect();
+        found.ok_or_else(|| format!("`{word}` is not one of {}; or none alone", names.join(", ")))
+    };
+    text.split(',').map(kind).collect::<Result<_, _>>().map(CoherenceList)
+}
+
+/// A pixel, `x,y` from the top left.
+pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("`{text}` is no pixel: two whole numbers such as 320,240 are required");
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    match (x.trim().parse(), y.trim().parse()) {
+        (Ok(x), Ok(y)) => Ok([x, y]),
+        _ => Err(wrong()),
+    }
+}
+
 /// `on` or `off`.
 pub(crate) fn switch(text: &str) -> Result<bool, String> {
     match text {
@@ -195,6 +222,15 @@ mod tests {
         assert!(["#12", "#+12345", "#gggggg", "1,2,3", "1,1", "nowhere"].iter().all(|t| color(t).is_err()));
         assert_eq!(vector("1,-2,3e1"), Ok(DVec3::new(1.0, -2.0, 30.0)));
         assert!(vector("1,2").is_err() && vector("1,2,inf").is_err() && direction("0,0,0").is_err());
+    }
+
+    #[test]
+    fn coherence_is_a_list_or_none() {
+        assert_eq!(coherence("edge,scan-line"), Ok(CoherenceList(vec![Coherence::Edge, Coherence::ScanLine])));
+        assert_eq!(coherence("none"), Ok(CoherenceList(Vec::new())));
+        assert!(coherence("none,edge").is_err() && coherence("").is_err());
+        assert_eq!(pixel("3, 4"), Ok([3, 4]));
+        assert!(["", "3", "3,", "-1,2", "1,2,3"].iter().all(|t| pixel(t).is_err()));
     }
 
     #[test]

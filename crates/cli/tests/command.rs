@@ -63,6 +63,74 @@ fn render(folder: &Folder, arguments: &[&str]) -> Output {
     folder.run(&[&["render"], arguments, &SMALL].concat())
 }
 
+/// Standard output as JSON.
+fn json(output: &Output) -> serde_json::Value {
+    assert_eq!(code(output), 0, "{}", errors(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
+    let folder = Folder::new("bench");
+    let arguments = ["bench", "builtin:cubs", "--resolution", "64x48", "--frames", "1"];
+    let told = json(&folder.run(&[&arguments[..], &["--json"]].concat()));
+    let rows = told["algorithms"].as_array().unwrap();
+    assert!(rows.len() >= 8 && rows[0]["algorithm"] == "z-buffer", "{told}");
+    assert!(rows.iter().all(|r| r["differing"] == 0 && r["median-seconds"].as_f64().unwrap() > 0.0), "{told}");
+    let limited = folder.run(&[&arguments[..], &["--time-limit", "1e-9"]].concat());
+    let table = String::from_utf8(limited.stdout.clone()).unwrap();
+    assert_eq!(table.matches("the time limit of 0.000000001 s was reached").count(), rows.len(), "{table}");
+    assert!(errors(&limited).contains("1 of "), "progress is on standard error");
+    assert_eq!(code(&folder.run(&["bench"])), 2);
+}
+
+#[test]
+fn steps_are_traced_and_drawn() {
+    let folder = Folder::new("steps");
+    let algorithms = json(&folder.run(&["algorithms", "--json"]));
+    for algorithm in algorithms["visibility"].as_array().unwrap() {
+        let name = algorithm["name"].as_str().unwrap();
+        let arguments = ["builtin:cubs", "-o", "a.png", "--samples", "1", "--visibility", name];
+        let output = render(&folder, &[&arguments[..], &["--trace", "t.jsonl"]].concat());
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        let text = String::from_utf8(folder.read("t.jsonl")).unwrap();
+        let steps: Vec<serde_json::Value> = text.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+        assert!(!steps.is_empty() && steps.iter().all(|s| s["step"].is_string()), "{name}");
+        let untraced = render(&folder, &["builtin:cubs", "-o", "b.png", "--samples", "1"]);
+        assert_eq!((code(&untraced), folder.read("a.png") == folder.read("b.png")), (0, true), "{name}");
+        let drawn = render(&folder, &[&arguments[..], &["--channel", "steps"]].concat());
+        assert_eq!(code(&drawn), 0, "{}", errors(&drawn));
+        assert_ne!(folder.read("a.png"), folder.read("b.png"), "{name} shows its steps");
+    }
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "--pixel", "1,1", "--trace", "t.jsonl"])), 2);
+}
+
+#[test]
+fn a_pixel_is_explained() {
+    let folder = Folder::new("pixel");
+    let told = json(&render(&folder, &["builtin:cubs", "--pixel", "32,20", "--json"]));
+    let nearest = &told["pixel"]["surfaces"][0]["facet"];
+    assert!(nearest.is_u64(), "{told}");
+    assert!(told["pixel"]["decisions"].as_array().unwrap().iter().all(|d| d["facet"] == *nearest), "{told}");
+    let output = render(&folder, &["builtin:cubs", "--pixel", "32,20"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("surface(s) cover its centre") && text.contains("warnock: facet"), "{text}");
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "--pixel", "64,0"])), 2);
+}
+
+#[test]
+fn coherence_is_a_choice_of_what_the_algorithm_has() {
+    let folder = Folder::new("coherence");
+    let with = |list: &str, name: &str| {
+        render(&folder, &["builtin:cubs", "-o", name, "--visibility", "scan-line", "--coherence", list])
+    };
+    assert_eq!((code(&with("none", "a.png")), code(&with("edge,scan-line", "b.png"))), (0, 0));
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    let refused = with("face", "c.png");
+    assert_eq!(code(&refused), 2);
+    assert!(errors(&refused).contains("object, edge, scan-line, area, depth, frame"), "{}", errors(&refused));
+}
+
 #[test]
 fn a_model_becomes_a_picture() {
     let folder = Folder::new("picture");
@@ -88,7 +156,7 @@ fn exit_codes() {
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--shadows", "map"], 2, "--shadows: this option is not there yet"),
-        (&["a.obj", "-o", "x.png", "--visibility", "bsp"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--transparency", "kay"], 2, "this choice is not there yet"),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=on"], 2, "shadow"),
@@ -120,7 +188,7 @@ fn options_that_are_not_built_are_not_in_the_help() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
-    for unbuilt in ["--shadows", "--global", "--pixel", "--trace", "weiler-atherton", "kay", "a-buffer"] {
+    for unbuilt in ["--shadows", "--global", "--panels", "cast-shadow", "kay", "a-buffer"] {
         assert!(!help.contains(unbuilt), "{unbuilt}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");

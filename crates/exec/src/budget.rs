@@ -70,6 +70,7 @@ pub struct Budget {
     time_limit: Option<f64>,
     memory_limit: Option<u64>,
     memory: Arc<AtomicU64>,
+    peak: Arc<AtomicU64>,
     cancelled: Arc<AtomicBool>,
     progress: Option<Arc<Progress>>,
 }
@@ -96,6 +97,7 @@ impl Budget {
             time_limit: None,
             memory_limit: None,
             memory: Arc::default(),
+            peak: Arc::default(),
             cancelled: Arc::default(),
             progress: None,
         }
@@ -113,6 +115,14 @@ impl Budget {
     pub fn with_memory_limit(mut self, bytes: Option<u64>) -> Self {
         self.memory_limit = bytes;
         self
+    }
+
+    /// A budget with the same clock, cancellation and listener that starts now, with nothing charged: for one of
+    /// several computations with limits of their own.
+    #[must_use]
+    pub fn renewed(&self) -> Self {
+        let start = self.clock.seconds();
+        Self { start, memory: Arc::default(), peak: Arc::default(), ..self.clone() }
     }
 
     /// Reports progress to `progress`.
@@ -151,13 +161,21 @@ impl Budget {
                 self.release(bytes);
                 Err(Limit::Memory { needed, limit, stage })
             }
-            _ => Ok(()),
+            _ => {
+                self.peak.fetch_max(needed, Ordering::Relaxed);
+                Ok(())
+            }
         }
     }
 
     /// Gives charged bytes back.
     pub fn release(&self, bytes: u64) {
         self.memory.fetch_sub(bytes, Ordering::Relaxed);
+    }
+
+    /// The most bytes that were charged at one time.
+    pub fn peak(&self) -> u64 {
+        self.peak.load(Ordering::Relaxed)
     }
 
     /// Tells the listener, if there is one.
@@ -189,6 +207,7 @@ mod tests {
         assert!(matches!(budget.charge(30, "y"), Err(Limit::Memory { needed: 110, limit: 100, .. })));
         budget.release(80);
         assert!(budget.charge(100, "z").is_ok());
+        assert_eq!((budget.peak(), budget.renewed().peak()), (100, 0));
         budget.cancel_flag().store(true, Ordering::Relaxed);
         assert!(matches!(budget.check("c"), Err(Limit::Cancelled { .. })));
     }

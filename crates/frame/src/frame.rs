@@ -21,6 +21,8 @@ pub struct Frame {
     pub material: Option<Plane<u32>>,
     /// Unit shading normal in world space, facing the viewer; zero on the background.
     pub normal: Option<Plane<[f32; 3]>>,
+    /// The steps of the visibility algorithm over the picture, display colour.
+    pub steps: Option<Plane<[u8; 4]>>,
 }
 
 impl Frame {

@@ -5,6 +5,7 @@
 //! and shading model. [`registry`] lists the algorithms.
 #![forbid(unsafe_code)]
 
+pub mod coherence;
 pub mod cull;
 pub mod marks;
 pub mod pipeline;
@@ -15,8 +16,10 @@ mod session;
 mod settings;
 pub mod shading;
 pub mod stats;
+pub mod trace;
 pub mod visible;
 
+pub use coherence::{Coherence, CoherenceSet};
 pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};

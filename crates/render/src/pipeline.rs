@@ -3,8 +3,10 @@
 use crate::marks;
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameConstants};
 use crate::stats::Stats;
-use crate::{Error, Execution, PreparedView, Session, Settings, registry};
-use std::sync::Mutex;
+use crate::trace::{Observer, picture::Recorder};
+use crate::visible::{Nowhere, charged};
+use crate::{Coherence, Error, Execution, PreparedView, Session, Settings, registry};
+use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
 use vitral_frame::{Frame, Plane};
 use vitral_light::{Light, Rgb};
@@ -45,11 +47,25 @@ pub fn render(
     let start = execution.budget.elapsed();
     let mut stats = Stats::default();
     let mut frame = Frame { width: viewport.width, height: viewport.height, ..Frame::default() };
-    if settings.channels.color {
+    if !settings.coherence().has(Coherence::Frame) {
+        session.forget();
+    }
+    stats.reused = session.known();
+
+    // Who looks on sees the first pass.
+    let unwatched = Execution { observer: None, ..execution.clone() };
+    let mut watched = Some(execution);
+    let channels = settings.channels;
+    if channels.color || channels.steps {
+        let execution = watched.take().unwrap_or(&unwatched);
         render_color(session, shot, settings, viewport, execution, &mut stats, &mut frame)?;
     }
-    if settings.channels.any_data() {
+    if channels.any_data() {
+        let execution = watched.take().unwrap_or(&unwatched);
         render_data(session, shot, settings, viewport, execution, &mut stats, &mut frame)?;
+    }
+    if channels.steps {
+        render_steps(session, shot, settings, viewport, &unwatched, &mut frame)?;
     }
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
@@ -146,6 +162,34 @@ fn render_data(
     drop(constants);
     drop(view);
     session.grid = Some(grid);
+    Ok(())
+}
+
+/// The steps of the algorithm with one sample a pixel, over the colour picture, which goes if it was not asked for.
+fn render_steps(
+    session: &mut Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    viewport: Viewport,
+    execution: &Execution,
+    frame: &mut Frame,
+) -> Result<(), Error> {
+    let bytes = Recorder::bytes(viewport.width, viewport.height);
+    charged(&execution.budget, bytes, "the picture of the steps", || {
+        let recorder = Arc::new(Recorder::new(viewport.width, viewport.height));
+        let watched = Execution { observer: Some(Arc::clone(&recorder) as Arc<dyn Observer>), ..execution.clone() };
+        let mut grid = TileGrid::new(viewport, 1);
+        let culled = &mut crate::stats::CullCounters::default();
+        let pattern = SamplePattern::new(1);
+        let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, &watched, culled);
+        let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
+        algorithm.resolve(&view, None, &mut grid, &watched, &Nowhere)?;
+        frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
+        Ok(())
+    })?;
+    if !settings.channels.color {
+        frame.color = None;
+    }
     Ok(())
 }
 

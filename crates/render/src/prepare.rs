@@ -6,7 +6,7 @@
 
 use crate::cull::{backface, frustum};
 use crate::stats::CullCounters;
-use crate::{Acceleration, Execution, Session, Settings, Transparency};
+use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
 use vitral_math::{DMat4, DVec3};
@@ -42,6 +42,8 @@ pub struct PreparedView<'a> {
     pub screen: Screen,
     /// What finds the triangles near a ray, for algorithms that follow rays.
     pub acceleration: Acceleration,
+    /// The kinds of coherence that are used.
+    pub coherence: CoherenceSet,
     /// What may be visible, in scene order.
     pub instances: Vec<PreparedInstance<'a>>,
 }
@@ -69,7 +71,9 @@ impl<'a> PreparedView<'a> {
         let clip_from_world = view.clip_from_world();
         let surfaces = !matches!(settings.lines, crate::Lines::Wireframe);
         let mut instances = Vec::new();
-        for visible in frustum::cull(session, &clip_from_world, settings.cull.frustum, counters) {
+        let coherence = settings.coherence();
+        let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
+        for visible in frustum::cull(session, &clip_from_world, cull_objects, counters) {
             let instance = &session.world.instances[visible.instance];
             let solid = |double_sided: bool| {
                 settings.cull.back_face && !double_sided && is_solid(session, instance, camera, &view, execution)
@@ -87,7 +91,7 @@ impl<'a> PreparedView<'a> {
         }
         let screen = Screen::new(viewport, &pattern);
         let acceleration = settings.acceleration.unwrap_or_default();
-        Self { session, view, camera: *camera, viewport, pattern, screen, acceleration, instances }
+        Self { session, view, camera: *camera, viewport, pattern, screen, acceleration, coherence, instances }
     }
 
     /// The viewer in world space, and whether projectors meet there.

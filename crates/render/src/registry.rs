@@ -1,10 +1,10 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::Acceleration;
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
+use crate::{Acceleration, Coherence};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -18,6 +18,8 @@ pub struct VisibilityAlgorithm {
     pub precision: &'static str,
     /// Whether it follows rays, so that [`ACCELERATION`] is a choice.
     pub casts_rays: bool,
+    /// Kinds of coherence that it exploits and that can be switched off.
+    pub coherence: &'static [Coherence],
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
 }
@@ -30,6 +32,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Catmull 1974",
         precision: "image",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Frame],
         algorithm: &ZBuffer,
     },
     VisibilityAlgorithm {
@@ -38,6 +41,14 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Watkins 1970",
         precision: "image",
         casts_rays: false,
+        coherence: &[
+            Coherence::Object,
+            Coherence::Edge,
+            Coherence::ScanLine,
+            Coherence::Area,
+            Coherence::Depth,
+            Coherence::Frame,
+        ],
         algorithm: &ScanLine,
     },
     VisibilityAlgorithm {
@@ -46,6 +57,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Warnock 1969",
         precision: "image",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Area, Coherence::Depth, Coherence::Frame],
         algorithm: &Warnock,
     },
     VisibilityAlgorithm {
@@ -54,6 +66,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Appel 1968",
         precision: "image",
         casts_rays: true,
+        coherence: &[Coherence::Object, Coherence::Area, Coherence::Frame],
         algorithm: &RayCast,
     },
     VisibilityAlgorithm {
@@ -62,6 +75,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Foley et al. 1990",
         precision: "image",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Frame],
         algorithm: &BruteForce,
     },
     VisibilityAlgorithm {
@@ -70,6 +84,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Newell, Newell & Sancha 1972",
         precision: "list-priority",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Frame],
         algorithm: &Painter,
     },
     VisibilityAlgorithm {
@@ -78,6 +93,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Fuchs, Kedem & Naylor 1980",
         precision: "list-priority",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Frame],
         algorithm: &Bsp,
     },
     VisibilityAlgorithm {
@@ -86,6 +102,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         source: "Weiler & Atherton 1977",
         precision: "object",
         casts_rays: false,
+        coherence: &[Coherence::Object, Coherence::Frame],
         algorithm: &WeilerAtherton,
     },
 ];

@@ -9,6 +9,7 @@ use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::FaceTable;
+use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
@@ -27,12 +28,24 @@ pub struct Execution {
     pub level: Level,
     /// Time, memory, cancellation, progress.
     pub budget: Budget,
+    /// Is told the steps of the algorithm.
+    pub observer: Option<Arc<dyn Observer>>,
+}
+
+impl Execution {
+    /// Tells the observer, if there is one, what `step` makes.
+    #[inline]
+    pub fn tell(&self, step: impl FnOnce() -> Step) {
+        if let Some(observer) = &self.observer {
+            observer.step(&step());
+        }
+    }
 }
 
 impl Default for Execution {
     /// All threads that the process may use, the machine's best instruction set, no limits.
     fn default() -> Self {
-        Self { workers: Workers::new(0), level: Level::new(), budget: Budget::default() }
+        Self { workers: Workers::new(0), level: Level::new(), budget: Budget::default(), observer: None }
     }
 }
 
@@ -71,6 +84,18 @@ struct MeshKnowledge {
     tree: OnceLock<BoundsTree>,
     faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
+}
+
+impl MeshKnowledge {
+    fn count(&self) -> usize {
+        let known = [
+            self.solidity.get().is_some(),
+            self.tree.get().is_some(),
+            self.faces.get().is_some(),
+            self.edges.get().is_some(),
+        ];
+        known.into_iter().filter(|known| *known).count()
+    }
 }
 
 impl Session {
@@ -150,6 +175,26 @@ impl Session {
     pub fn uniform_grid(&self, execution: &Execution) -> Result<Arc<Grid>, Limit> {
         let triangles = self.triangles(execution)?;
         keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))
+    }
+
+    /// Forgets all that was found out for earlier pictures.
+    pub(crate) fn forget(&mut self) {
+        self.meshes.iter_mut().for_each(|known| *known = MeshKnowledge::default());
+        self.bsp = Mutex::default();
+        self.triangles = Mutex::default();
+        self.bvh = Mutex::default();
+        self.octree = Mutex::default();
+        self.uniform_grid = Mutex::default();
+    }
+
+    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays.
+    pub(crate) fn known(&self) -> u64 {
+        fn kept<T>(known: &Kept<T>) -> usize {
+            usize::from(known.lock().is_ok_and(|known| known.is_some()))
+        }
+        let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
+        let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.uniform_grid) + kept(&self.triangles);
+        (of_meshes + of_rays + kept(&self.bsp)) as u64
     }
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {

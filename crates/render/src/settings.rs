@@ -1,6 +1,6 @@
 //! What the user may choose, in one plain structure that command line, files and other faces share.
 
-use crate::registry;
+use crate::{Coherence, CoherenceSet, registry};
 use serde::{Deserialize, Serialize};
 use vitral_light::Illumination;
 use vitral_raster::{MAX_SIDE, Viewport};
@@ -19,6 +19,8 @@ pub struct Settings {
     pub visibility: String,
     /// What finds the triangles near a ray; only for algorithms that cast rays. `None`: [`Acceleration::Bvh`] for them.
     pub acceleration: Option<Acceleration>,
+    /// Kinds of coherence that the algorithm uses; `None`: all that it exploits. They do not change the picture.
+    pub coherence: Option<Vec<Coherence>>,
     /// What is thrown away early.
     pub cull: Culling,
     /// How light is reflected.
@@ -51,6 +53,7 @@ impl Default for Settings {
             samples: 4,
             visibility: "z-buffer".to_owned(),
             acceleration: None,
+            coherence: None,
             cull: Culling::default(),
             illumination: Illumination::default(),
             shading: Shading::default(),
@@ -218,11 +221,13 @@ pub struct Channels {
     pub material: bool,
     /// Normals.
     pub normal: bool,
+    /// The steps of the visibility algorithm over the picture.
+    pub steps: bool,
 }
 
 impl Default for Channels {
     fn default() -> Self {
-        Self { color: true, depth: false, surface: false, object: false, material: false, normal: false }
+        Self { color: true, depth: false, surface: false, object: false, material: false, normal: false, steps: false }
     }
 }
 
@@ -256,6 +261,16 @@ pub enum SettingsError {
         /// What there is.
         choices: String,
     },
+    /// A kind of coherence that the algorithm does not exploit.
+    #[error("`{visibility}` does not exploit {kind} coherence: choose of {choices}; or none")]
+    Coherence {
+        /// The visibility algorithm.
+        visibility: String,
+        /// Asked for.
+        kind: &'static str,
+        /// What it exploits.
+        choices: String,
+    },
     /// A structure for rays, but no rays.
     #[error("an acceleration structure was chosen, but `{visibility}` casts no rays: choose {choices}")]
     Acceleration {
@@ -282,7 +297,18 @@ impl Settings {
             let choices: Vec<_> = casting.map(|a| a.name).collect();
             return Err(SettingsError::Acceleration { visibility, choices: choices.join(", ") });
         }
+        let asked = self.coherence.iter().flatten();
+        if let Some(kind) = asked.copied().find(|kind| !algorithm.coherence.contains(kind)) {
+            let choices: Vec<_> = algorithm.coherence.iter().map(|kind| kind.name()).collect();
+            return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
+        }
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
+    }
+
+    /// The kinds of coherence that are used.
+    pub fn coherence(&self) -> CoherenceSet {
+        let all = || registry::visibility(&self.visibility).map_or(&[][..], |a| a.coherence);
+        CoherenceSet::of(self.coherence.as_deref().unwrap_or_else(all))
     }
 }

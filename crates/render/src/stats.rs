@@ -13,6 +13,8 @@ pub struct Stats {
     pub geometry: GeometryStats,
     /// What finding the visible surfaces took.
     pub visibility: VisibilityCounters,
+    /// Saved by frame coherence: what earlier pictures found out (properties of meshes, trees, structures for rays).
+    pub reused: u64,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -83,8 +85,17 @@ impl GeometryStats {
 pub struct VisibilityCounters {
     /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
     pub depth_comparisons: u64,
-    /// Steps that coherence saved: edges carried to the next line, facets passed over or inherited without a test.
-    pub saved: u64,
+    /// Saved by edge coherence: crossings stepped from the line before.
+    pub saved_by_edge: u64,
+    /// Saved by scan-line coherence: edges that stayed in the table.
+    pub saved_by_scan_line: u64,
+    /// Saved by area coherence: pixels decided with their neighbours, inherited surrounders, rays that went together or met
+    /// what the one before met.
+    pub saved_by_area: u64,
+    /// Saved by depth coherence: polygons passed over because something nearer hides them in a whole span or window.
+    pub saved_by_depth: u64,
+    /// Saved by frame coherence: nodes of a tree that was there already.
+    pub saved_by_frame: u64,
     /// Scan-line: edges in the active edge table, summed over the lines.
     pub active_edges: u64,
     /// Scan-line: spans with a polygon in.
@@ -150,7 +161,11 @@ pub struct VisibilityCounters {
 impl VisibilityCounters {
     pub(crate) fn add(&mut self, o: &Self) {
         self.depth_comparisons += o.depth_comparisons;
-        self.saved += o.saved;
+        self.saved_by_edge += o.saved_by_edge;
+        self.saved_by_scan_line += o.saved_by_scan_line;
+        self.saved_by_area += o.saved_by_area;
+        self.saved_by_depth += o.saved_by_depth;
+        self.saved_by_frame += o.saved_by_frame;
         self.active_edges += o.active_edges;
         self.spans += o.spans;
         self.penetrated_spans += o.penetrated_spans;

@@ -26,8 +26,10 @@ pub use vitral_raster as raster;
 pub use vitral_render as render;
 pub use vitral_scene as scene;
 
+pub mod bench;
 pub mod dump;
 mod error;
+pub mod explain;
 mod files;
 pub mod info;
 mod load;

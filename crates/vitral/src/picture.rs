@@ -24,17 +24,20 @@ pub enum Channel {
     Material,
     /// World-space normals: -1..1 as 0..255 in pictures, `(height, width, 3)` floats in NPY.
     Normal,
+    /// The steps of the visibility algorithm, drawn over the picture.
+    Steps,
 }
 
 impl Channel {
     /// All channels with their names and a line each, the default first.
-    pub const ALL: [(Self, &'static str, &'static str); 6] = [
+    pub const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Color, "color", "the picture"),
         (Self::Depth, "depth", "1 near, 0 far: 16-bit grey in PNG, float32 in NPY"),
         (Self::Id, "id", "surface ids: uint32 in NPY (4294967295 is background), colours in pictures"),
         (Self::Object, "object", "instances, likewise"),
         (Self::Material, "material", "materials, likewise"),
         (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),
+        (Self::Steps, "steps", "the steps of the visibility algorithm over the picture: windows, list order or cost"),
     ];
 
     /// Its name on the command line.
@@ -51,6 +54,7 @@ impl Channel {
             Self::Object => channels.object = true,
             Self::Material => channels.material = true,
             Self::Normal => channels.normal = true,
+            Self::Steps => channels.steps = true,
         }
     }
 }
@@ -167,6 +171,8 @@ pub fn encode_with(
             let plane = frame.color.as_ref().ok_or_else(missing)?;
             picture(plane, format, PngOptions { srgb: options.srgb }, options)
         }
+        Channel::Steps if format == PictureFormat::Npy => Err(impossible(".png, .jpg or .ppm")),
+        Channel::Steps => picture(frame.steps.as_ref().ok_or_else(missing)?, format, numbers, options),
         Channel::Depth => {
             let plane = frame.depth.as_ref().ok_or_else(missing)?;
             match format {
@@ -260,6 +266,7 @@ mod tests {
             object: None,
             material: None,
             normal: Plane::from_rows(2, 1, vec![[0.0, 0.0, 1.0], [0.0; 3]]),
+            steps: Plane::from_rows(2, 1, vec![[9, 9, 9, 255]; 2]),
         }
     }
 
@@ -273,6 +280,7 @@ mod tests {
             (C::Depth, [0, 4, 4, 0]),
             (C::Id, [0, 0, 0, 0]),
             (C::Normal, [0, 0, 0, 0]),
+            (C::Steps, [0, 0, 0, 4]),
             (C::Object, [2, 2, 2, 2]),
         ] {
             assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), codes, "{}", channel.name());

@@ -40,7 +40,7 @@ pub struct Renderer {
 pub fn execution(threads: usize) -> Result<Execution, Error> {
     let level = level_from_environment().map_err(|what| Error::usage(what, ""))?;
     let budget = Budget::new(Arc::new(SystemClock::default()));
-    Ok(Execution { workers: Workers::new(threads), level, budget })
+    Ok(Execution { workers: Workers::new(threads), level, budget, observer: None })
 }
 
 impl Renderer {

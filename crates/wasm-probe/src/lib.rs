@@ -48,7 +48,7 @@ pub extern "C" fn length() -> usize {
 fn draw(level: Level) -> Vec<u8> {
     let scene = Arc::new(builtin::scene("scene1").expect("scene1 is built in"));
     let mut session = Session::new(scene).expect("built-in scenes are sound");
-    let execution = Execution { workers: Workers::single(), level, budget: Budget::default() };
+    let execution = Execution { workers: Workers::single(), level, budget: Budget::default(), observer: None };
     let camera = session.world().cameras[0];
     let smooth = Settings {
         width: SIZE.0,

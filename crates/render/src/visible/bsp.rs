@@ -17,7 +17,7 @@
 mod tree;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Pieces, Raster, draw};
+use super::pieces::{Cut, Pieces, Raster, draw, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::{Execution, PreparedView};
 use std::sync::Arc;
@@ -55,7 +55,7 @@ impl VisibleSurface for Bsp {
         resolved.counters.tree_nodes = tree.node_count();
         resolved.counters.fragments = tree.fragment_count();
         resolved.counters.splits = tree.splits();
-        resolved.counters.saved = if reused { tree.node_count() } else { 0 };
+        resolved.counters.saved_by_frame = if reused { tree.node_count() } else { 0 };
         Ok(resolved)
     }
 }
@@ -101,12 +101,15 @@ fn picture(
     let raster = Raster::new(view.viewport, &view.pattern);
     let runs = execution.workers.map(order.len().div_ceil(FRAGMENTS_A_RUN), |run| {
         let (mut pieces, mut cuts) = (Pieces::default(), Vec::new());
-        for &fragment in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN) {
+        let places_in_list = (0..order.len() as u32).rev().skip(run * FRAGMENTS_A_RUN);
+        for (&fragment, place) in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
             for at in places.of(tree.facet(fragment), &setups) {
                 let setup = setups[at as usize];
                 cuts.clear();
                 cuts.extend(tree.cuts(fragment).map(|(plane, positive)| lines.cut(plane, positive, setup)));
-                pieces.add(at, setup, &cuts, &raster);
+                if let Some(outline) = pieces.add(at, setup, &cuts, &raster) {
+                    execution.tell(|| piece_step(place, setup.facet, cuts.len(), outline));
+                }
             }
         }
         pieces.finish(view.viewport);

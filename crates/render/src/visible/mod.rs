@@ -13,6 +13,7 @@ pub mod weiler_atherton;
 pub mod zbuffer;
 
 pub(crate) use bsp::Tree as BspTree;
+pub(crate) use screen_setups::charged;
 
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
@@ -23,6 +24,14 @@ use vitral_raster::{Batch, Layer, Tile, TileGrid};
 pub trait TileSink: Sync {
     /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
     fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>);
+}
+
+/// Takes tiles and does nothing with them.
+#[derive(Clone, Copy, Debug)]
+pub struct Nowhere;
+
+impl TileSink for Nowhere {
+    fn tile(&self, _: usize, _: &Tile, _: &mut Vec<Layer>) {}
 }
 
 /// What an algorithm did.

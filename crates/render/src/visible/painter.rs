@@ -21,9 +21,10 @@
 mod compare;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Pieces, Raster, corners, draw};
+use super::pieces::{Cut, Pieces, Raster, corners, draw, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use crate::{Execution, PreparedView};
 use compare::{Polygon, Verdict, compare, crossing};
 use std::cmp::Ordering;
@@ -278,6 +279,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
                     self.counters.reordered += 1;
+                    let [facet, before] = [other, top.polygon].map(|p| self.facet(p));
+                    self.execution.tell(|| Step::Moved { facet, before });
                     self.mark(other);
                     true
                 }
@@ -326,6 +329,10 @@ impl<'f, 'c> Sorting<'f, 'c> {
         }
     }
 
+    fn facet(&self, polygon: u32) -> u32 {
+        self.setups[self.polygons[polygon as usize].setup as usize].facet
+    }
+
     /// Splits the last marked polygon where its plane meets that of another.
     fn split_at_plane(&mut self, polygon: u32, other: u32) -> bool {
         let [p, q] = [polygon, other].map(|i| self.setups[self.polygons[i as usize].setup as usize]);
@@ -337,6 +344,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         self.counters.cycles += 1;
         let first = self.marked.iter().position(|m| m.polygon == start).unwrap_or(0);
         let last = self.marked.len() - 1;
+        let circle = || self.marked[first..].iter().map(|m| self.facet(m.polygon)).collect();
+        self.execution.tell(|| Step::Circle { facets: circle() });
         // Each has to be painted after the next one, and the last after the first.
         for place in (first..=last).rev() {
             let next = if place == last { first } else { place + 1 };
@@ -359,6 +368,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let polygon = self.polygons[number].clone();
         let Some(halves) = polygon.split(&self.corners, &line) else { return false };
         self.counters.splits += 1;
+        let facet = self.facet(number as u32);
+        self.execution.tell(|| Step::Split { facet, line: [line.a, line.b, line.c] });
         self.finish(number as u32, State::Split);
         for left in self.marked.drain(place..) {
             let state = &mut self.briefs[left.polygon as usize].state;
@@ -396,7 +407,11 @@ impl<'f, 'c> Sorting<'f, 'c> {
         for &number in &self.painted {
             let polygon = &self.polygons[number as usize];
             let cuts = &self.cuts[polygon.cuts.start as usize..polygon.cuts.end as usize];
-            list.add(polygon.setup, self.setups[polygon.setup as usize], cuts, &self.raster);
+            let setup = self.setups[polygon.setup as usize];
+            let order = list.len() as u32;
+            if let Some(outline) = list.add(polygon.setup, setup, cuts, &self.raster) {
+                self.execution.tell(|| piece_step(order, setup.facet, cuts.len(), outline));
+            }
         }
         list.finish(self.raster.viewport());
         list

@@ -16,6 +16,7 @@
 
 use super::facets::{Facets, extent};
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use std::ops::Range;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
@@ -73,6 +74,12 @@ impl Cut {
         let slack = (self.c.abs() + (self.b * y).abs() + (self.a * x).abs()) * 1e-14;
         if self.positive { v + slack } else { slack - v }
     }
+}
+
+/// The step that gives a piece its place in the list, the smallest from the back.
+pub(super) fn piece_step(order: u32, facet: u32, cuts: usize, outline: &[[f64; 2]]) -> Step {
+    let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
+    Step::Piece { order, facet, cuts: cuts as u32, outline }
 }
 
 /// The corners of a triangle on the screen.
@@ -173,8 +180,8 @@ impl Raster {
 }
 
 impl Pieces {
-    /// Adds the next piece of the list, if it can have samples.
-    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster) {
+    /// Adds the next piece of the list, if it can have samples, and gives its outline.
+    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster) -> Option<&[[f64; 2]]> {
         let [outline, scratch] = &mut self.outline;
         outline.clear();
         outline.extend(corners(setup));
@@ -189,7 +196,7 @@ impl Pieces {
         }
         let Some(pixels) = raster.pixels(outline) else {
             self.cuts.truncate(first);
-            return;
+            return None;
         };
 
         // Forget the cuts that later ones made superfluous.
@@ -209,6 +216,7 @@ impl Pieces {
         for ty in ty0..=ty1 {
             self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
         }
+        Some(&self.outline[0])
     }
 
     /// Sorts the pieces into tiles, keeping their order. Call it once, at the end.

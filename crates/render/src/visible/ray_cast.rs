@@ -28,7 +28,7 @@ use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Structure, Tree};
 use crate::stats::VisibilityCounters;
-use crate::{Acceleration, Execution, PreparedView};
+use crate::{Acceleration, Coherence, Execution, PreparedView};
 use eye::Eye;
 use std::sync::Mutex;
 use vitral_exec::Limit;
@@ -85,7 +85,11 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn run_packets<T: Tree>(&self, grid: &mut TileGrid, tree: &T) -> Result<Resolved, Limit> {
-        self.run(grid, tree, packet::look)
+        if self.view.coherence.has(Coherence::Area) {
+            self.run(grid, tree, packet::look)
+        } else {
+            self.run(grid, tree, single::look)
+        }
     }
 
     /// Sets up what is on the screen and lets `look` fill each tile.

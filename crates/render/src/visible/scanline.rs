@@ -22,7 +22,8 @@
 use super::facets::{Facets, fill_tiles, nearer};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
-use crate::{Execution, PreparedView};
+use crate::trace::{Span, SpanVerdict, Step};
+use crate::{Coherence, CoherenceSet, Execution, PreparedView};
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_raster::{Batch, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
@@ -112,25 +113,47 @@ fn sweep(
     let view = facets.view();
     let height = TILE.min(view.viewport.height as usize - row * TILE);
     let lines = lines(&view.pattern, row * TILE, height);
-    let spacing = spacing(&lines);
+    let (coherence, execution) = (view.coherence, facets.execution());
+    // Without edge coherence each crossing is found anew, as if lines had no common distance.
+    let spacing = if coherence.has(Coherence::Edge) { spacing(&lines) } else { 0 };
     let mut polygons: Vec<_> = facets.in_row(row).map(|setup| Polygon { setup, slot: OUT }).collect();
     let edges = edge_table(&polygons, &lines);
     let mut starting = edges.as_slice();
     let mut active: Vec<ActiveEdge> = Vec::new();
-    let mut spans = Spans { polygons: &mut polygons, inside: Vec::new(), last: 0, rivals: Vec::new(), tiles, counters };
+    let mut spans = Spans {
+        polygons: &mut polygons,
+        inside: Vec::new(),
+        last: 0,
+        rivals: Vec::new(),
+        coherence,
+        told: None,
+        tiles,
+        counters,
+    };
     for (number, line) in lines.iter().enumerate() {
-        facets.execution().budget.check("scan-line")?;
+        execution.budget.check("scan-line")?;
+        if execution.observer.is_some() {
+            spans.told = Some(Vec::new());
+        }
 
         // Let edges leave that end above the line, move the others to it, and let edges join that begin.
         active.retain(|e| usize::from(e.end) > number);
+        if !coherence.has(Coherence::ScanLine) {
+            // Each line begins with an empty table, and looks for its edges among all that began above it.
+            active.clear();
+            starting = &edges;
+        }
         for edge in &mut active {
             edge.advance(spacing, spans.polygons[edge.polygon as usize].setup, line.y);
         }
+        let kept = active.len() as u64;
         let joining = starting.partition_point(|e| usize::from(e.lines.start) <= number);
-        for edge in &starting[..joining] {
+        for edge in starting[..joining].iter().filter(|e| usize::from(e.lines.end) > number) {
             active.push(ActiveEdge::new(edge, spans.polygons[edge.polygon as usize].setup, line.y, spacing));
         }
         starting = &starting[joining..];
+        spans.counters.saved_by_scan_line += kept;
+        spans.counters.saved_by_edge += if spacing == 0 { 0 } else { kept };
 
         // Sort from left to right.
         for edge in &mut active {
@@ -138,8 +161,11 @@ fn sweep(
         }
         sort(&mut active, joining > 0);
         spans.counters.active_edges += active.len() as u64;
-        spans.counters.saved += (active.len() - joining) as u64;
         spans.walk(&active, line);
+        if let Some(told) = spans.told.take() {
+            let (row, sample) = ((row * TILE + line.row) as u32, line.sample as u32);
+            execution.tell(|| Step::Line { row, sample, active_edges: active.len() as u32, spans: told });
+        }
     }
     Ok(())
 }
@@ -255,6 +281,9 @@ struct Spans<'s, 'f> {
     last: u32,
     /// Workspace: polygons that may be visible somewhere in the span, with their nearest depth in it.
     rivals: Vec<(f32, u32)>,
+    coherence: CoherenceSet,
+    /// The spans of the line, if somebody wants to know.
+    told: Option<Vec<Span>>,
     tiles: &'s mut [Tile],
     counters: &'s mut VisibilityCounters,
 }
@@ -266,11 +295,29 @@ impl Spans<'_, '_> {
         for edge in active {
             if edge.column > from {
                 if !self.inside.is_empty() {
-                    self.fill(from as usize..edge.column as usize, line);
+                    self.fill_all(from as usize..edge.column as usize, line);
                 }
                 from = edge.column;
             }
             self.turn(edge.polygon);
+        }
+    }
+
+    /// Fills what lies between two edges: as one span, or pixel by pixel without area coherence.
+    fn fill_all(&mut self, pixels: Range<usize>, line: &Line) {
+        if self.coherence.has(Coherence::Area) {
+            self.counters.saved_by_area += pixels.len() as u64 - 1;
+            return self.fill(pixels, line);
+        }
+        pixels.for_each(|x| self.fill(x..x + 1, line));
+    }
+
+    /// Notes how a span was decided.
+    fn tell(&mut self, pixels: &Range<usize>, verdict: SpanVerdict, winner: Option<u32>) {
+        if let Some(told) = &mut self.told {
+            let facet = winner.map(|p| self.polygons[p as usize].setup.facet);
+            let pixels = [pixels.start, pixels.end].map(|x| x as u32);
+            told.push(Span { pixels, inside: self.inside.len() as u32, verdict, facet });
         }
     }
 
@@ -293,13 +340,16 @@ impl Spans<'_, '_> {
     fn fill(&mut self, pixels: Range<usize>, line: &Line) {
         self.counters.spans += 1;
         if let [only] = self.inside[..] {
+            self.tell(&pixels, SpanVerdict::Only, Some(only));
             return self.fill_with(only, pixels, line);
         }
         self.find_rivals(&pixels, line);
         if let [(_, winner)] = self.rivals[..] {
             self.last = winner;
+            self.tell(&pixels, SpanVerdict::Hides, Some(winner));
             return self.fill_with(winner, pixels, line);
         }
+        self.tell(&pixels, SpanVerdict::Samples, None);
         self.counters.penetrated_spans += 1;
         self.counters.depth_comparisons += (pixels.len() * (self.rivals.len() - 1)) as u64;
         let rivals = std::mem::take(&mut self.rivals);
@@ -318,15 +368,16 @@ impl Spans<'_, '_> {
     /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
     fn find_rivals(&mut self, pixels: &Range<usize>, line: &Line) {
         let ends = [pixels.start, pixels.end - 1].map(|x| x as i32 * SUBPIXEL + line.sample_x);
-        let lucky = if self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
+        let by_depth = self.coherence.has(Coherence::Depth);
+        let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
         // Some polygon is nowhere farther than `floor`.
         let (mut floor, near) = depth_range(self.polygons[lucky as usize].setup, ends, line.y);
         self.rivals.clear();
         self.rivals.push((near, lucky));
         for &p in self.inside.iter().filter(|&&p| p != lucky) {
             let setup = self.polygons[p as usize].setup;
-            if setup.z_max < floor {
-                self.counters.saved += 1;
+            if by_depth && setup.z_max < floor {
+                self.counters.saved_by_depth += 1;
                 continue;
             }
             self.counters.depth_comparisons += 1;

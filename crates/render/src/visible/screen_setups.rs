@@ -55,7 +55,7 @@ impl ScreenSetups {
 }
 
 /// Runs `work` while `bytes` are charged.
-pub(super) fn charged<R>(
+pub(crate) fn charged<R>(
     budget: &Budget,
     bytes: u64,
     stage: &'static str,

@@ -18,7 +18,8 @@
 use super::facets::{Facets, extent, fill_tiles, nearer, put};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
-use crate::{Execution, PreparedView};
+use crate::trace::{Step, WindowVerdict};
+use crate::{Coherence, CoherenceSet, Execution, PreparedView};
 use std::cmp::Ordering;
 use std::ops::Range;
 use vitral_exec::Limit;
@@ -86,6 +87,7 @@ const BYTES_A_POLYGON: usize = size_of::<&Setup>() + 7 * size_of::<Entry>();
 /// The subdivision of one tile.
 struct Subdivision<'t, 'f> {
     execution: &'f Execution,
+    coherence: CoherenceSet,
     pattern: &'f SamplePattern,
     /// Place of the samples within a pixel.
     extent: [[i32; 2]; 2],
@@ -105,7 +107,8 @@ impl<'t, 'f> Subdivision<'t, 'f> {
         let stack = (0..polygons.len() as u32).map(|polygon| Entry { polygon, surrounds: false }).collect();
         let size = [view.viewport.width - tile.x, view.viewport.height - tile.y].map(|s| TILE.min(s as usize));
         let (pattern, extent) = (&view.pattern, extent(&view.pattern));
-        Self { execution: facets.execution(), pattern, extent, size, polygons, stack, tile, counters }
+        let (execution, coherence) = (facets.execution(), view.coherence);
+        Self { execution, coherence, pattern, extent, size, polygons, stack, tile, counters }
     }
 
     /// Draws what is seen in a window, of the polygons at `list` on the stack.
@@ -122,7 +125,10 @@ impl<'t, 'f> Subdivision<'t, 'f> {
         let samples = self.sample_box(window);
         let start = self.stack.len();
         self.classify(samples, list);
-        self.drop_hidden(samples, start);
+        if self.coherence.has(Coherence::Depth) {
+            self.drop_hidden(samples, start);
+        }
+        self.execution.tell(|| self.step(window, &self.stack[start..]));
 
         // Draw the simple cases; cut the window otherwise.
         let result = match &self.stack[start..] {
@@ -147,6 +153,26 @@ impl<'t, 'f> Subdivision<'t, 'f> {
         result
     }
 
+    /// What is to be told of a window with this list.
+    fn step(&self, window: Window, list: &[Entry]) -> Step {
+        let (columns, rows) = self.pixels(window);
+        let pixels = [
+            self.tile.x + columns.start as u32,
+            self.tile.y + rows.start as u32,
+            columns.len() as u32,
+            rows.len() as u32,
+        ];
+        let (verdict, drawn) = match list {
+            [] => (WindowVerdict::Empty, None),
+            [only] if only.surrounds => (WindowVerdict::Surrounded, Some(only)),
+            [only] => (WindowVerdict::One, Some(only)),
+            _ if window.side == 1 => (WindowVerdict::Pixel, None),
+            _ => (WindowVerdict::Cut, None),
+        };
+        let facet = drawn.map(|entry| self.polygons[entry.polygon as usize].facet);
+        Step::Window { pixels, polygons: list.len() as u32, verdict, facet }
+    }
+
     fn sample_box(&self, window: Window) -> SampleBox {
         let (tile_x, tile_y) = (self.tile.x as usize, self.tile.y as usize);
         let ends = |tile: usize, first: usize, size: usize, [low, high]: [i32; 2]| {
@@ -161,8 +187,8 @@ impl<'t, 'f> Subdivision<'t, 'f> {
     fn classify(&mut self, samples: SampleBox, list: Range<usize>) {
         for i in list {
             let mut entry = self.stack[i];
-            if entry.surrounds {
-                self.counters.saved += 1;
+            if entry.surrounds && self.coherence.has(Coherence::Area) {
+                self.counters.saved_by_area += 1;
             } else {
                 self.counters.window_tests += 1;
                 match relation(self.polygons[entry.polygon as usize], samples) {
@@ -208,6 +234,7 @@ impl<'t, 'f> Subdivision<'t, 'f> {
                 kept += 1;
             }
         }
+        self.counters.saved_by_depth += (self.stack.len() - kept) as u64;
         self.stack.truncate(kept);
     }
 

@@ -21,6 +21,7 @@ mod region;
 use super::facets::{Facets, fill_tiles, nearer, put};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use crate::{Execution, PreparedView};
 use region::{Clipped, Convex, Edge, Line, Region};
 use vitral_exec::Limit;
@@ -72,6 +73,8 @@ struct Item {
 struct AreaSorting<'f> {
     execution: &'f Execution,
     polygons: Vec<Polygon<'f>>,
+    /// The tile's first pixel.
+    tile: [u32; 2],
     /// Lists that are still to be treated.
     lists: Vec<Vec<Item>>,
     charged: u64,
@@ -112,7 +115,8 @@ impl<'f> AreaSorting<'f> {
             items.push(Item { polygon: polygons.len() as u32, clipped_with: false, region, bounds });
             polygons.push(Polygon::new(setup, Convex::polygon(&corners), origin));
         }
-        Self { execution, polygons, lists: vec![items], charged: 0 }
+        let tile = origin.map(|v| (v / SUBPIXEL) as u32);
+        Self { execution, polygons, tile, lists: vec![items], charged: 0 }
     }
 
     /// Calls `show` with the visible polygons.
@@ -129,6 +133,7 @@ impl<'f> AreaSorting<'f> {
             let Some(first) = list.iter().position(|i| !i.clipped_with) else {
                 for item in &list {
                     counters.visible_polygons += 1;
+                    self.execution.tell(|| self.visible(item));
                     show(self.polygons[item.polygon as usize].setup, &item.region);
                 }
                 continue;
@@ -136,15 +141,26 @@ impl<'f> AreaSorting<'f> {
             let clipping = list[first].polygon;
             let inside = self.clip(&mut list, clipping, counters);
             list.retain(|i| !i.region.is_empty());
+            let (inside_count, outside) = (inside.len() as u32, list.len() as u32);
             if !list.is_empty() {
                 self.lists.push(list);
             }
-            counters.recursions += u64::from(inside.iter().any(|i| !i.clipped_with));
+            let again = inside.iter().any(|i| !i.clipped_with);
+            counters.recursions += u64::from(again);
+            let (facet, tile) = (self.polygons[clipping as usize].setup.facet, self.tile);
+            self.execution.tell(|| Step::Clip { tile, facet, inside: inside_count, outside, again });
             if !inside.is_empty() {
                 self.lists.push(inside);
             }
         }
         Ok(())
+    }
+
+    /// What is to be told of a visible polygon.
+    fn visible(&self, item: &Item) -> Step {
+        let place = |p: [f64; 2]| [0, 1].map(|k| (p[k] / f64::from(SUBPIXEL)) as f32 + self.tile[k] as f32);
+        let edges = item.region.edges.iter().map(|e| e.ends.map(|end| place(end.about))).collect();
+        Step::Visible { facet: self.polygons[item.polygon as usize].setup.facet, edges }
     }
 
     /// Clips a list by a polygon: leaves the outside, and gives what is inside and not hidden.

@@ -12,16 +12,18 @@
 //! Source: [Catmull 1974], [Straßer 1974]; hierarchical depth after [Greene et al. 1993]. Departs from them: equal
 //! depths go to the lower facet, so the order of triangles cannot be seen.
 
+use super::brute_force::size_in_picture;
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::GeometryStats;
+use crate::trace::Step;
 use crate::{Execution, PreparedView};
 use std::ops::Range;
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, BlockSink, Draw, Layer, LayerSink, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink, transform,
-    traverse,
+    Batch, BlockSink, Draw, Layer, LayerSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink,
+    transform, traverse,
 };
 
 /// Triangles in one piece of work.
@@ -63,6 +65,9 @@ impl VisibleSurface for ZBuffer {
         let rounds = rounds(&jobs);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
         let layers: Vec<Mutex<Vec<Layer>>> = grid.tiles.iter().map(|_| Mutex::default()).collect();
+        // How many facets cover each pixel, for who looks on.
+        let watched = if execution.observer.is_some() { grid.tiles.len() } else { 0 };
+        let costs: Vec<Mutex<Vec<u32>>> = (0..watched).map(|_| Mutex::default()).collect();
         for (number, round) in rounds.iter().enumerate() {
             execution.budget.check("visibility")?;
             let last = number + 1 == rounds.len();
@@ -85,8 +90,14 @@ impl VisibleSurface for ZBuffer {
                 let mut layers = layers[index].lock().expect("no thread panics while it holds layers");
                 let tile_batches = batches.iter().map(|(layered, batch)| (*layered, batch));
                 let tile_batches = tile_batches.chain(marks.filter(|_| last).map(|m| (true, m)));
+                if execution.observer.is_some() {
+                    count_facets(view, &batches, index, tile, &mut costs[index].lock().expect("counts"));
+                }
                 walk(execution.level, tile_batches, index, tile, &view.pattern, &mut layers);
                 if last {
+                    if execution.observer.is_some() {
+                        tell_tile(view, &costs[index], execution, tile);
+                    }
                     sink.tile(index, tile, &mut layers);
                 }
             });
@@ -97,6 +108,28 @@ impl VisibleSurface for ZBuffer {
         spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
         Ok(resolved)
     }
+}
+
+/// Adds for each pixel of a tile how many opaque facets of these batches cover its first sample.
+fn count_facets(view: &PreparedView<'_>, batches: &[(bool, Batch)], index: usize, tile: &Tile, counts: &mut Vec<u32>) {
+    let (rows, columns) = size_in_picture(view, tile);
+    counts.resize(rows * columns, 0);
+    let [sx, sy] = view.pattern.position(0);
+    let setups = batches.iter().filter(|(layered, _)| !layered).flat_map(|(_, batch)| batch.tile(index));
+    for setup in setups {
+        for (i, count) in counts.iter_mut().enumerate() {
+            let x = (tile.x as i32 + (i % columns) as i32) * SUBPIXEL + sx;
+            let y = (tile.y as i32 + (i / columns) as i32) * SUBPIXEL + sy;
+            *count += u32::from(setup.covers(x, y));
+        }
+    }
+}
+
+fn tell_tile(view: &PreparedView<'_>, counts: &Mutex<Vec<u32>>, execution: &Execution, tile: &Tile) {
+    let (rows, columns) = size_in_picture(view, tile);
+    let pixels = [tile.x, tile.y, columns as u32, rows as u32];
+    let facets = std::mem::take(&mut *counts.lock().expect("counts"));
+    execution.tell(|| Step::Tile { pixels, facets });
 }
 
 /// Cuts the view's draws into jobs of about equal size, all opaque ones first.

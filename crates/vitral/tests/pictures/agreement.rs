@@ -279,7 +279,7 @@ fn p7_p19_p20_counters_tell_the_work_and_what_coherence_saved() {
         find(&renderer, algorithm, 1, renderer.execution()).unwrap().counters
     };
     let scan = counters("scan-line");
-    assert!(scan.saved > 0 && scan.spans > 0 && scan.active_edges > scan.spans, "{scan:?}");
+    assert!(scan.saved_by_edge > 0 && scan.spans > 0 && scan.active_edges > scan.spans, "{scan:?}");
     assert!(scan.penetrated_spans < scan.spans / 2, "most spans are decided as a whole: {scan:?}");
     let warnock = counters("warnock");
     assert!(warnock.window_tests > warnock.windows && warnock.depth_comparisons > 0, "{warnock:?}");
@@ -329,7 +329,11 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
                 overruled_far += c.overruled_far;
             }
             trees.push((c.tree_nodes, c.fragments, c.splits));
-            assert_eq!(c.saved, if trees.len() == 1 { 0 } else { c.tree_nodes }, "{name}: the tree is built once");
+            assert_eq!(
+                c.saved_by_frame,
+                if trees.len() == 1 { 0 } else { c.tree_nodes },
+                "{name}: the tree is built once"
+            );
         }
         assert!(trees.windows(2).all(|t| t[0] == t[1]), "{name}");
         // The list alone is right: where it is overruled, corners were snapped to 1/256 pixel.

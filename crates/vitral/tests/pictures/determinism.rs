@@ -36,7 +36,7 @@ fn equal_bytes_at_every_level_with_one_and_three_threads() {
     for (name, level) in available_levels() {
         for threads in [1, 3] {
             let workers = Workers::new(threads);
-            let frames = pictures(&Execution { workers, level, budget: Budget::default() });
+            let frames = pictures(&Execution { workers, level, budget: Budget::default(), observer: None });
             let expected = reference.get_or_insert_with(|| frames.clone());
             for (i, (frame, expected)) in frames.iter().zip(expected.iter()).enumerate() {
                 assert!(frame == expected, "{name} with {threads} threads: picture {i} differs from the scalar one");

@@ -19,8 +19,9 @@
 //! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
 
 use crate::Execution;
+use crate::trace::Step;
 use std::ops::Range;
-use vitral_exec::{Budget, Limit};
+use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};
 use vitral_scene::World;
 
@@ -183,7 +184,7 @@ impl Tree {
     /// Builds the tree of triangles; the facets are their indices.
     fn new(triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Self, Limit> {
         let budget = &execution.budget;
-        let mut top = Builder::new(triangles, budget);
+        let mut top = Builder::new(triangles, execution);
         let result = top.of_all(triangles, execution);
         budget.release(top.charged);
         result
@@ -258,7 +259,7 @@ fn triangles(world: &World, execution: &Execution) -> Result<Vec<[DVec3; 3]>, Li
 /// Builds a tree, or what hangs below a set of parts.
 struct Builder<'t> {
     triangles: &'t [[DVec3; 3]],
-    budget: &'t Budget,
+    execution: &'t Execution,
     tree: Tree,
     links: Vec<CutLink>,
     /// The builder of the tree that this is a branch of.
@@ -272,11 +273,11 @@ struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    fn new(triangles: &'t [[DVec3; 3]], budget: &'t Budget) -> Self {
+    fn new(triangles: &'t [[DVec3; 3]], execution: &'t Execution) -> Self {
         let (tree, split) = (Tree::default(), Default::default());
         Self {
             triangles,
-            budget,
+            execution,
             tree,
             links: Vec::new(),
             outer: None,
@@ -312,7 +313,7 @@ impl<'t> Builder<'t> {
         }
         let outer = &*self;
         let branches = execution.workers.map(jobs.len(), |i| {
-            let mut builder = Builder { outer: Some(outer), ..Builder::new(triangles, &execution.budget) };
+            let mut builder = Builder { outer: Some(outer), ..Builder::new(triangles, execution) };
             let done = builder.branch(&jobs[i].parts, &outer.points);
             execution.budget.release(builder.charged);
             done.map(|()| builder.tree)
@@ -404,7 +405,7 @@ impl<'t> Builder<'t> {
     /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
     fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
         let node = self.tree.nodes.len() as u32;
-        self.budget.check("building the BSP tree")?;
+        self.execution.budget.check("building the BSP tree")?;
         if node.is_multiple_of(256) || self.points.len() > self.accounted + (1 << 16) {
             self.account()?;
         }
@@ -460,6 +461,8 @@ impl<'t> Builder<'t> {
     /// Cuts a part in the halves in front of and behind a plane.
     fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
         self.tree.splits += 1;
+        let (facet, equation) = (part.facet, plane.equation.to_array());
+        self.execution.tell(|| Step::TreeSplit { facet, plane: equation });
         let [mut front, mut back] = std::mem::take(&mut self.split);
         front.clear();
         back.clear();
@@ -502,7 +505,7 @@ impl<'t> Builder<'t> {
             return Err(Limit::Memory { needed: now, limit: now, stage: "the BSP tree" });
         }
         let more = now.saturating_sub(self.charged);
-        self.budget.charge(more, "the BSP tree")?;
+        self.execution.budget.charge(more, "the BSP tree")?;
         self.charged += more;
         Ok(())
     }
@@ -612,8 +615,8 @@ mod tests {
     #[test]
     fn p22_the_halves_add_up() {
         let triangles = [FLAT.map(DVec3::from_array)];
-        let budget = Budget::default();
-        let mut builder = Builder::new(&triangles, &budget);
+        let execution = Execution::default();
+        let mut builder = Builder::new(&triangles, &execution);
         builder.points.extend(triangles[0]);
         let part = Part { facet: 0, cuts: NONE, first: 0, count: 3 };
         let mut parts = vec![part];

@@ -14,6 +14,7 @@
 use super::{Cast, Place, Stamps};
 use crate::raytrace::{Structure, Tree, Visitor};
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use crate::visible::brute_force::size_in_picture;
 use crate::visible::facets::extent;
 use vitral_exec::Limit;
@@ -134,7 +135,13 @@ pub(super) fn look<T: Tree>(
             let [boxes, tests] = dispatch!(cast.execution.level, simd =>
                 look_at_block(simd, cast, tile, (x, y), layers, &mut stamps));
             counters.rays += rays;
+            counters.saved_by_area += rays - 1;
             counters.box_tests += boxes;
+            cast.execution.tell(|| {
+                let size = [columns - x, rows - y].map(|s| s.min(BLOCK) as u32);
+                let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
+                Step::Rays { pixels, rays, boxes, facets: tests }
+            });
             counters.triangle_tests += tests * rays;
         }
     }

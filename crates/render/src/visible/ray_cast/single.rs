@@ -8,8 +8,10 @@
 //! Source: [Appel 1968].
 
 use super::{Cast, NONE, Stamps};
+use crate::Coherence;
 use crate::raytrace::{Structure, Visitor};
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use crate::visible::brute_force::size_in_picture;
 use crate::visible::facets::nearer;
 use vitral_exec::Limit;
@@ -84,10 +86,12 @@ pub(super) fn look<T: Structure>(
     let mut search =
         Search { cast, sample: [0; 2], nearest: background, setups: none, layers: layer_list, stamps, tests: 0 };
     let pattern = &cast.view.pattern;
+    let try_before = cast.view.coherence.has(Coherence::Area);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
         for column in 0..columns {
+            let before_pixel = (counters.box_tests, search.tests);
             for sample in 0..pattern.len() {
                 let [sx, sy] = pattern.position(sample);
                 let x = (tile.x as i32 + column as i32) * SUBPIXEL + sx;
@@ -97,8 +101,9 @@ pub(super) fn look<T: Structure>(
 
                 // Try what the ray before met, then follow the beam.
                 let before = std::mem::replace(&mut search.setups, none);
-                if before != none {
+                if try_before && before != none {
                     search.test(before);
+                    counters.saved_by_area += u64::from(search.setups != none);
                 }
                 counters.box_tests += cast.structure.traverse(&cast.eye.beam(x, y), &mut search);
                 counters.rays += 1;
@@ -111,6 +116,10 @@ pub(super) fn look<T: Structure>(
                 let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
                 layers.extend(seen.map(|(depth, facet)| Layer { at: at as u32, depth, facet }));
             }
+            let (rays, boxes) = (pattern.len() as u64, counters.box_tests - before_pixel.0);
+            let facets = search.tests - before_pixel.1;
+            let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
+            cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets });
         }
     }
     counters.triangle_tests = search.tests;

@@ -1,0 +1,160 @@
+//! `vitral bench`: every visible-surface algorithm on one model, as a table.
+
+use crate::args::BenchArgs;
+use crate::bench_report;
+use crate::interrupt::{self, INTERRUPTED};
+use crate::report::{self, Failure};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::sync::atomic::Ordering;
+use vitral::bench::{Entrant, Measured, Task, measure};
+use vitral::exec::Limit;
+use vitral::{Execution, Renderer, State, execution};
+
+/// A row of the table: who, and what it took or the limit it met.
+pub(crate) type Row = (Entrant, Result<Measured, Limit>);
+
+/// Runs the verb; gives the exit code.
+pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
+    let execution = execution(args.threads)?;
+    let cancelled = execution.budget.cancel_flag();
+    interrupt::listen(cancelled.clone());
+    let result = match &args.report {
+        Some(folder) => bench_report::write(args, folder, &execution),
+        None => bench(args, execution),
+    };
+    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
+}
+
+fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
+    // The model.
+    let models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
+    let mut state = State { models, ..State::default() };
+    state.load.allow_external = args.allow_external;
+    let settings = &mut state.settings;
+    ([settings.width, settings.height], settings.samples) = (args.resolution, args.samples);
+    settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
+    let scene = state.load_scene(&execution.workers)?;
+    if !args.quiet {
+        report::warnings(&scene.warnings);
+    }
+    let mut renderer = Renderer::with_execution(scene, execution)?;
+    state.apply(&mut renderer)?;
+
+    // The algorithms.
+    let wanted = |e: &Entrant| args.visibility.is_empty() || args.visibility.iter().any(|v| v == e.algorithm.name);
+    let all = Entrant::all();
+    let entrants: Vec<_> = all.iter().enumerate().filter(|(i, e)| *i == 0 || wanted(e)).map(|(_, e)| *e).collect();
+    let rows = rows(args, &renderer, &entrants)?;
+    if args.json {
+        report::print_json(&as_json(args, &renderer, &rows))?;
+    } else {
+        report::print(table(args, &renderer, &rows).as_bytes())?;
+    }
+    Ok(0)
+}
+
+/// Measures one after the other, and says on standard error where it is.
+pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) -> Result<Vec<Row>, Failure> {
+    let camera = renderer.frame_camera();
+    let task = Task {
+        scene: renderer.scene(),
+        camera: &camera,
+        settings: &renderer.settings,
+        frames: args.frames as usize + 1,
+        time_limit: Some(args.time_limit),
+        memory_limit: args.max_memory,
+    };
+    let mut rows = Vec::new();
+    for (i, entrant) in entrants.iter().enumerate() {
+        if !args.quiet {
+            report::line(&format!("{} of {}: {}", i + 1, entrants.len(), entrant.name()));
+        }
+        let measured = measure(&task, entrant, renderer.execution()).map_err(vitral::Error::from)?;
+        if let Err(limit @ Limit::Cancelled { .. }) = measured {
+            return Err(limit.into());
+        }
+        rows.push((*entrant, measured));
+    }
+    Ok(rows)
+}
+
+/// Samples that differ from what the first row saw, if both saw something.
+pub(crate) fn differing(rows: &[Row], row: &Measured) -> Option<u64> {
+    rows.first().and_then(|(_, first)| first.as_ref().ok()).map(|first| row.seen.differing(&first.seen))
+}
+
+/// The counters of a row that are not 0, by name.
+fn counters(measured: &Measured) -> Vec<(String, u64)> {
+    let value = serde_json::to_value(measured.counters).unwrap_or_default();
+    let Value::Object(fields) = value else { return Vec::new() };
+    fields.into_iter().filter_map(|(name, v)| v.as_u64().filter(|&n| n > 0).map(|n| (name, n))).collect()
+}
+
+fn table(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> String {
+    let [width, height] = args.resolution;
+    let mut text = format!(
+        "{} triangles, {width} x {height} pixels, {} sample(s) a pixel, {} thread(s)\n\n{:<18} {:<14} {:>11} {:>11} {:>12} {:>10}\n",
+        renderer.world().facet_count,
+        args.samples,
+        renderer.execution().workers.threads(),
+        "algorithm",
+        "precision",
+        "first, ms",
+        "median, ms",
+        "memory, KiB",
+        "differing",
+    );
+    // Writing to a String cannot fail.
+    for (entrant, row) in rows {
+        let _ = write!(text, "{:<18} {:<14} ", entrant.name(), entrant.algorithm.precision);
+        let _ = match row {
+            Ok(m) => {
+                let differs = differing(rows, m).map_or("-".to_owned(), |n| n.to_string());
+                let (first, median) = (m.first_seconds * 1e3, m.median_seconds * 1e3);
+                writeln!(text, "{first:>11.2} {median:>11.2} {:>12} {differs:>10}", m.bytes.div_ceil(1024))
+            }
+            Err(limit) => writeln!(text, "{limit}"),
+        };
+    }
+    text.push_str("\nfirst: with what is built once; memory: what the algorithm charged; differing: samples unlike the z-buffer's\n\n");
+    for (entrant, row) in rows {
+        let Ok(m) = row else { continue };
+        let list: Vec<_> = counters(m).into_iter().map(|(name, n)| format!("{name} {n}")).collect();
+        let list = if list.is_empty() { "counts nothing of its own".to_owned() } else { list.join(", ") };
+        let _ = writeln!(text, "{}: {list}", entrant.name());
+    }
+    text
+}
+
+fn as_json(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> Value {
+    let row = |(entrant, row): &Row| {
+        let mut value = json!({
+            "algorithm": entrant.algorithm.name,
+            "acceleration": entrant.acceleration.map(|(name, _)| name),
+            "precision": entrant.algorithm.precision,
+        });
+        match row {
+            Ok(m) => {
+                value["first-seconds"] = json!(m.first_seconds);
+                value["median-seconds"] = json!(m.median_seconds);
+                value["fastest-seconds"] = json!(m.fastest_seconds);
+                value["frames"] = json!(m.frames);
+                value["bytes"] = json!(m.bytes);
+                value["differing"] = json!(differing(rows, m));
+                value["geometry"] = json!(m.geometry);
+                value["counters"] = json!(counters(m).into_iter().collect::<std::collections::BTreeMap<_, _>>());
+            }
+            Err(limit) => value["limit"] = json!(limit.to_string()),
+        }
+        value
+    };
+    json!({
+        "models": args.models,
+        "triangles": renderer.world().facet_count,
+        "resolution": args.resolution,
+        "samples": args.samples,
+        "threads": renderer.execution().workers.threads(),
+        "algorithms": rows.iter().map(row).collect::<Vec<_>>(),
+    })
+}

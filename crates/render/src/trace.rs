@@ -1,0 +1,251 @@
+//! The steps of the algorithms, for whoever wants to look on.
+//!
+//! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any thread: in one tile or
+//! band they come in order, those of different tiles mix. Nobody listening costs nothing that can be measured: the
+//! question is asked once for a window, a line, a polygon of a list or a block of rays, never in a loop over samples.
+//!
+//! [`picture`] draws the steps over the image.
+
+pub mod picture;
+
+use serde::Serialize;
+
+/// Is told the steps of an algorithm.
+pub trait Observer: std::fmt::Debug + Send + Sync {
+    /// A step was done.
+    fn step(&self, step: &Step);
+}
+
+/// What was found about a window of Warnock's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WindowVerdict {
+    /// No polygon is in it.
+    Empty,
+    /// One polygon is contained or intersects: it is drawn.
+    One,
+    /// A polygon surrounds it, in front of all others: it fills the window.
+    Surrounded,
+    /// One pixel: decided sample by sample.
+    Pixel,
+    /// Not simple: cut in four.
+    Cut,
+}
+
+/// How a span of a line was decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpanVerdict {
+    /// One polygon is in.
+    Only,
+    /// One hides the others at both ends, hence throughout.
+    Hides,
+    /// Sample by sample.
+    Samples,
+}
+
+/// A span of a scan line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Span {
+    /// First pixel, and the one behind the last.
+    pub pixels: [u32; 2],
+    /// Polygons that are in.
+    pub inside: u32,
+    /// How it was decided.
+    pub verdict: SpanVerdict,
+    /// The facet that fills it, where one does.
+    pub facet: Option<u32>,
+}
+
+/// A step. Places are pixels from the top left.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "step", rename_all = "kebab-case")]
+pub enum Step {
+    /// Z-buffer: a tile is done; for each of its pixels, row by row, how many opaque facets cover its first sample.
+    Tile {
+        /// Left, top, width, height.
+        pixels: [u32; 4],
+        /// Facets a pixel.
+        facets: Vec<u32>,
+    },
+    /// Warnock: a window was looked at.
+    Window {
+        /// Left, top, width, height.
+        pixels: [u32; 4],
+        /// Polygons left on its list.
+        polygons: u32,
+        /// What that means.
+        verdict: WindowVerdict,
+        /// The facet that is drawn, where it is one.
+        facet: Option<u32>,
+    },
+    /// Scan-line: a line of samples was swept.
+    Line {
+        /// Row of pixels.
+        row: u32,
+        /// Which sample of the pixels.
+        sample: u32,
+        /// Edges in the active edge table.
+        active_edges: u32,
+        /// The spans with something in, from left to right.
+        spans: Vec<Span>,
+    },
+    /// Ray casting and brute force: the rays through some pixels were followed.
+    Rays {
+        /// Left, top, width, height.
+        pixels: [u32; 4],
+        /// Rays.
+        rays: u64,
+        /// Boxes or cells looked at.
+        boxes: u64,
+        /// Facets tested.
+        facets: u64,
+    },
+    /// BSP, while the tree is built: a facet, or a part of one, crosses a plane and is split.
+    TreeSplit {
+        /// The facet.
+        facet: u32,
+        /// `a x + b y + c z + d = 0`, world space.
+        plane: [f64; 4],
+    },
+    /// Painter: a polygon has to be painted before one that was farther in the first order.
+    Moved {
+        /// Facet of the polygon that is moved.
+        facet: u32,
+        /// Facet of the one that waits.
+        before: u32,
+    },
+    /// Painter: polygons wait for each other in a circle.
+    Circle {
+        /// Their facets.
+        facets: Vec<u32>,
+    },
+    /// Painter: a polygon is split along `a x + b y + c = 0` on the screen, 1/256 pixel.
+    Split {
+        /// The facet.
+        facet: u32,
+        /// The line.
+        line: [f64; 3],
+    },
+    /// List priority: a polygon has its place in the list, the smallest first from the back.
+    Piece {
+        /// The place.
+        order: u32,
+        /// The facet.
+        facet: u32,
+        /// Lines it was cut along.
+        cuts: u32,
+        /// Its corners.
+        outline: Vec<[f32; 2]>,
+    },
+    /// Weiler–Atherton: a list was clipped with a polygon.
+    Clip {
+        /// Left and top of the tile.
+        tile: [u32; 2],
+        /// The facet of the clipping polygon.
+        facet: u32,
+        /// Parts inside that it does not hide, its own among them.
+        inside: u32,
+        /// Parts outside.
+        outside: u32,
+        /// The preliminary order erred: the inside is treated again.
+        again: bool,
+    },
+    /// Weiler–Atherton: a visible polygon.
+    Visible {
+        /// The facet.
+        facet: u32,
+        /// The edges of its outline and its holes.
+        edges: Vec<[[f32; 2]; 2]>,
+    },
+}
+
+impl Step {
+    /// Whether a pixel's first sample is in what the step is about.
+    pub fn concerns(&self, [x, y]: [u32; 2]) -> bool {
+        match self {
+            Self::Tile { pixels: [left, top, width, height], .. }
+            | Self::Window { pixels: [left, top, width, height], .. }
+            | Self::Rays { pixels: [left, top, width, height], .. } => {
+                (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
+            }
+            Self::Line { row, sample, .. } => *row == y && *sample == 0,
+            Self::Piece { outline, .. } => {
+                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
+            }
+            Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
+            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
+            Self::Clip { .. } => false,
+        }
+    }
+
+    /// The step in words, for one of the pixels it concerns.
+    pub fn tell(&self, [x, y]: [u32; 2]) -> String {
+        match self {
+            Self::Tile { pixels: [left, top, width, _], facets } => {
+                let count = facets.get(((y - top) * width + (x - left)) as usize).copied().unwrap_or(0);
+                format!("{count} opaque facet(s) of the tile cover it; the nearest depth stayed")
+            }
+            Self::Window { pixels: [left, top, width, height], polygons, verdict, .. } => {
+                let what = match verdict {
+                    WindowVerdict::Empty => "empty",
+                    WindowVerdict::One => "one polygon is drawn",
+                    WindowVerdict::Surrounded => "filled by a polygon that surrounds it in front of all others",
+                    WindowVerdict::Pixel => "one pixel, the nearest at each sample",
+                    WindowVerdict::Cut => "cut in four",
+                };
+                format!("window {left},{top} of {width} x {height}, {polygons} polygon(s) left: {what}")
+            }
+            Self::Line { active_edges, spans, .. } => {
+                let line = format!("{active_edges} active edge(s)");
+                match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
+                    Some(span) => {
+                        let how = match span.verdict {
+                            SpanVerdict::Only => "one polygon is in",
+                            SpanVerdict::Hides => "one hides the others at both ends",
+                            SpanVerdict::Samples => "decided sample by sample",
+                        };
+                        let [from, to] = span.pixels;
+                        format!("{line}; span {from} to {} with {} polygon(s) in: {how}", to - 1, span.inside)
+                    }
+                    None => format!("{line}; no polygon is in here"),
+                }
+            }
+            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets } => {
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {boxes} box(es), {facets} facet(s) tested")
+            }
+            Self::Piece { order, facet, cuts, .. } => {
+                format!("place {order} in the list, from the back: facet {facet}, cut {cuts} time(s)")
+            }
+            Self::Visible { facet, edges } => format!("a visible polygon of facet {facet}, with {} edges", edges.len()),
+            other => format!("{other:?}"),
+        }
+    }
+}
+
+/// Whether a pixel's centre is inside an outline, by the parity of crossings.
+fn holds(edges: impl Iterator<Item = [[f32; 2]; 2]>, [x, y]: [u32; 2]) -> bool {
+    let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+    let crossings = edges.filter(|[a, b]| {
+        let crosses = (a[1] > y) != (b[1] > y);
+        crosses && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    });
+    crossings.count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_knows_its_pixels() {
+        let window = Step::Window { pixels: [8, 4, 4, 2], polygons: 2, verdict: WindowVerdict::Cut, facet: None };
+        assert!(window.concerns([8, 4]) && window.concerns([11, 5]));
+        assert!(!window.concerns([12, 4]) && !window.concerns([8, 6]) && !window.concerns([7, 4]));
+        let outline = vec![[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]];
+        let piece = Step::Piece { order: 1, facet: 2, cuts: 0, outline };
+        assert!(piece.concerns([1, 1]) && !piece.concerns([8, 8]) && !piece.concerns([1, 11]));
+        assert!(!Step::Moved { facet: 0, before: 1 }.concerns([0, 0]));
+    }
+}

@@ -1,0 +1,239 @@
+//! A picture of an algorithm's steps, over the image in grey.
+//!
+//! - Windows and visible polygons: outlines; the window's verdict is its colour (green one polygon, yellow surrounded, red
+//!   single pixels).
+//! - Lists: the order as a ramp from blue (the first, far) over green to red (the last, near), with the outlines of
+//!   polygons that were cut.
+//! - Everything else: what each pixel cost, from blue to red: facets over it, polygons in its spans, boxes and facets
+//!   its rays were tested against.
+//!
+//! Steps are added as they come and not kept, so a large model takes no more than the picture. Sums and maxima do not
+//! depend on the order of threads.
+
+use super::{Observer, Step, WindowVerdict};
+use std::sync::Mutex;
+use vitral_frame::Plane;
+
+/// Draws steps.
+#[derive(Debug)]
+pub struct Recorder {
+    width: u32,
+    height: u32,
+    planes: Mutex<Planes>,
+}
+
+/// What is known of each pixel.
+#[derive(Debug, Default)]
+struct Planes {
+    cost: Vec<u64>,
+    /// 1 + place in the list of what is on top, 0 where nothing is.
+    order: Vec<u32>,
+    /// The same of the outline that is on top.
+    outline: Vec<u32>,
+    /// An outline's colour, 0 for none.
+    mark: Vec<u8>,
+}
+
+const MARKS: [[u8; 3]; 4] = [[70, 110, 220], [60, 190, 90], [250, 210, 60], [225, 60, 50]];
+
+/// What is added to a mark that lets the image through.
+const FAINT: u8 = 8;
+
+impl Recorder {
+    /// For a picture of this size.
+    pub fn new(width: u32, height: u32) -> Self {
+        let count = width as usize * height as usize;
+        let planes =
+            Planes { cost: vec![0; count], order: vec![0; count], outline: vec![0; count], mark: vec![0; count] };
+        Self { width, height, planes: Mutex::new(planes) }
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(width: u32, height: u32) -> u64 {
+        u64::from(width) * u64::from(height) * 24
+    }
+
+    /// The steps over `image`.
+    pub fn over(&self, image: &Plane<[u8; 4]>) -> Plane<[u8; 4]> {
+        let planes = self.planes.lock().expect("no thread panics while it draws steps");
+        let most = |values: &mut dyn Iterator<Item = u64>| values.max().unwrap_or(0).max(1) as f32;
+        let dearest = most(&mut planes.cost.iter().copied());
+        let last = most(&mut planes.order.iter().map(|&o| u64::from(o)));
+        let lists = planes.order.iter().any(|&o| o > 0);
+        let pixel = |i: usize, &[r, g, b, _]: &[u8; 4]| {
+            // Light grey, so that colours can be told from the image.
+            let grey = (u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) / 256;
+            let light = 0.45 + grey as f32 / 255.0 * 0.5;
+            let shade = |color: [u8; 3]| color.map(|c| f32::from(c) * light);
+            let color = if planes.mark[i] > FAINT {
+                let color = shade(MARKS[usize::from(planes.mark[i] - FAINT) - 1]);
+                color.map(|c| c * 0.4 + light * 255.0 * 0.6)
+            } else if planes.mark[i] > 0 {
+                MARKS[usize::from(planes.mark[i]) - 1].map(f32::from)
+            } else if lists {
+                match planes.order[i] {
+                    0 => [light * 255.0; 3],
+                    order if planes.outline[i] >= order => [20.0; 3],
+                    order => shade(ramp(order as f32 / last)),
+                }
+            } else if planes.cost[i] > 0 {
+                // The root lets cheap pixels be told apart beside dear ones.
+                shade(ramp((planes.cost[i] as f32 / dearest).sqrt()))
+            } else {
+                [light * 255.0; 3]
+            };
+            let [r, g, b] = color.map(|c| (c + 0.5).clamp(0.0, 255.0) as u8);
+            [r, g, b, 255]
+        };
+        let data = image.data().iter().enumerate().map(|(i, p)| pixel(i, p)).collect();
+        Plane::from_rows(image.width(), image.height(), data).expect("as many pixels as before")
+    }
+
+    fn index(&self, x: i64, y: i64) -> Option<usize> {
+        let inside = x >= 0 && y >= 0 && x < i64::from(self.width) && y < i64::from(self.height);
+        inside.then(|| y as usize * self.width as usize + x as usize)
+    }
+
+    /// Adds the same cost to all pixels of a rectangle.
+    fn spend(&self, planes: &mut Planes, [left, top, width, height]: [u32; 4], cost: u64) {
+        for y in top..(top + height).min(self.height) {
+            let row = y as usize * self.width as usize;
+            let (from, to) = (row + left as usize, row + (left + width).min(self.width) as usize);
+            planes.cost[from..to].iter_mut().for_each(|c| *c += cost);
+        }
+    }
+
+    /// Calls `f` with the pixels along a line.
+    fn line(&self, [a, b]: [[f32; 2]; 2], mut f: impl FnMut(usize)) {
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        // What lies far outside the picture is not walked through.
+        let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, 65_536.0);
+        for i in 0..=steps as u32 {
+            let t = i as f32 / steps;
+            let (x, y) = (a[0] + dx * t, a[1] + dy * t);
+            if let Some(at) = self.index(x.floor() as i64, y.floor() as i64) {
+                f(at);
+            }
+        }
+    }
+
+    /// Calls `f` with the pixels whose centres a convex outline holds.
+    fn fill(&self, outline: &[[f32; 2]], mut f: impl FnMut(usize)) {
+        let (low, high) =
+            outline.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
+        for y in low.max(0.0) as i64..=(high.min(self.height as f32) as i64) {
+            let middle = y as f32 + 0.5;
+            let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+            let crossed = edges.filter(|(a, b)| (a[1] > middle) != (b[1] > middle));
+            let at = crossed.map(|(a, b)| a[0] + (middle - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+            let (from, to) = at.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            if from <= to {
+                let columns = (from - 0.5).ceil().max(0.0) as i64..(to - 0.5).ceil().min(self.width as f32) as i64;
+                columns.filter_map(|x| self.index(x, y)).for_each(&mut f);
+            }
+        }
+    }
+
+    fn window(&self, planes: &mut Planes, [left, top, width, height]: [u32; 4], verdict: WindowVerdict) {
+        let mark = match verdict {
+            WindowVerdict::Empty => 1,
+            WindowVerdict::One => 2,
+            WindowVerdict::Surrounded => 3,
+            WindowVerdict::Pixel => 4,
+            WindowVerdict::Cut => return,
+        };
+        // Windows that are nothing but sides would hide the image.
+        let mark = if width.max(height) < 3 { mark + FAINT } else { mark };
+        // The upper and left sides are enough: the others are those of neighbours.
+        let across = (left..left + width).map(|x| (x, top));
+        let down = (top..top + height).map(|y| (left, y));
+        for (x, y) in across.chain(down) {
+            if let Some(at) = self.index(x.into(), y.into()) {
+                planes.mark[at] = mark;
+            }
+        }
+    }
+}
+
+impl Observer for Recorder {
+    fn step(&self, step: &Step) {
+        let planes = &mut *self.planes.lock().expect("no thread panics while it draws steps");
+        match step {
+            Step::Tile { pixels: [left, top, width, _], facets } => {
+                for (row, facets) in facets.chunks((*width).max(1) as usize).enumerate() {
+                    for (x, &count) in (i64::from(*left)..).zip(facets) {
+                        if let Some(at) = self.index(x, i64::from(*top) + row as i64) {
+                            planes.cost[at] += u64::from(count);
+                        }
+                    }
+                }
+            }
+            Step::Window { pixels, verdict, .. } => self.window(planes, *pixels, *verdict),
+            Step::Line { row, spans, .. } => {
+                for span in spans {
+                    let [from, to] = span.pixels;
+                    self.spend(planes, [from, *row, to - from, 1], u64::from(span.inside));
+                }
+            }
+            Step::Rays { pixels, boxes, facets, .. } => {
+                self.spend(planes, *pixels, boxes + facets);
+            }
+            Step::Piece { order, cuts, outline, .. } => {
+                self.fill(outline, |at| planes.order[at] = planes.order[at].max(order + 1));
+                if *cuts > 0 {
+                    for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+                        self.line([*a, *b], |at| planes.outline[at] = planes.outline[at].max(order + 1));
+                    }
+                }
+            }
+            Step::Visible { edges, .. } => {
+                for edge in edges {
+                    self.line(*edge, |at| planes.mark[at] = 1);
+                }
+            }
+            Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
+            Step::Clip { .. } => {}
+        }
+    }
+}
+
+/// From blue over green and yellow to red, for 0 to 1.
+fn ramp(t: f32) -> [u8; 3] {
+    const STOPS: [[f32; 3]; 5] =
+        [[50.0, 60.0, 200.0], [50.0, 170.0, 220.0], [90.0, 210.0, 90.0], [250.0, 220.0, 60.0], [230.0, 50.0, 40.0]];
+    let place = t.clamp(0.0, 1.0) * 4.0;
+    let i = (place as usize).min(3);
+    let part = place - i as f32;
+    [0, 1, 2].map(|k| (STOPS[i][k] + (STOPS[i + 1][k] - STOPS[i][k]) * part) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_on_top_of_the_list_has_its_colour() {
+        let recorder = Recorder::new(4, 4);
+        let square = |low: f32, high: f32| vec![[low, low], [high, low], [high, high], [low, high]];
+        let piece = |order, outline| Step::Piece { order, facet: 0, cuts: 0, outline };
+        // Told in the wrong order, as threads may.
+        recorder.step(&piece(1, square(0.0, 2.0)));
+        recorder.step(&piece(0, square(0.0, 4.0)));
+        let order = recorder.planes.lock().unwrap().order.clone();
+        assert_eq!(order, [2, 2, 1, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]);
+        let image = Plane::from_rows(4, 4, vec![[255; 4]; 16]).unwrap();
+        let shown = recorder.over(&image);
+        assert_ne!(shown.data()[0], shown.data()[15]);
+    }
+
+    #[test]
+    fn costs_add_up_and_windows_have_sides() {
+        let recorder = Recorder::new(4, 2);
+        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2 });
+        recorder.step(&Step::Tile { pixels: [0, 0, 4, 1], facets: vec![0, 1, 1, 3] });
+        recorder.step(&Step::Window { pixels: [0, 0, 4, 2], polygons: 1, verdict: WindowVerdict::One, facet: Some(0) });
+        let planes = recorder.planes.lock().unwrap();
+        assert_eq!(planes.cost, [0, 1, 8, 10, 0, 0, 7, 7]);
+        assert_eq!(planes.mark, [2, 2, 2, 2, 2, 0, 0, 0]);
+    }
+}

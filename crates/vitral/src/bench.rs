@@ -1,0 +1,205 @@
+//! Every visible-surface algorithm on one view: time, memory, counters, and whether it sees what the z-buffer sees.
+//!
+//! What is measured is finding the surface of each sample (culling, preparing, the algorithm), without shading. The first
+//! picture also builds what outlives a frame (a BSP tree, boxes round triangles); the median is that of the ones after it.
+//! Memory is what the algorithm charged to its budget at the most: its own lists, trees and facets, not the picture's
+//! tiles, which all have. The z-buffer keeps nothing that grows with the model beyond one round of triangles, which it
+//! does not charge.
+
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_raster::{SamplePattern, TileGrid};
+use vitral_render::registry::{ACCELERATION, VISIBILITY, VisibilityAlgorithm};
+use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
+use vitral_render::visible::Nowhere;
+use vitral_render::{Acceleration, Error, Execution, PreparedView, Session, Settings};
+use vitral_scene::{Camera, Scene};
+
+/// An algorithm of the registry, and for rays the structure.
+#[derive(Clone, Copy)]
+pub struct Entrant {
+    /// The algorithm.
+    pub algorithm: &'static VisibilityAlgorithm,
+    /// The structure, where it casts rays.
+    pub acceleration: Option<(&'static str, Acceleration)>,
+}
+
+impl Entrant {
+    /// All algorithms; those that cast rays once for each structure. The z-buffer comes first.
+    pub fn all() -> Vec<Self> {
+        let structures = ACCELERATION.iter().filter(|a| a.value != Acceleration::None);
+        let structures: Vec<_> = structures.map(|a| Some((a.name, a.value))).collect();
+        let of = |algorithm: &'static VisibilityAlgorithm| {
+            let choices = if algorithm.casts_rays { structures.clone() } else { vec![None] };
+            choices.into_iter().map(move |acceleration| Self { algorithm, acceleration })
+        };
+        VISIBILITY.iter().flat_map(of).collect()
+    }
+
+    /// The algorithm's name, with the structure.
+    pub fn name(&self) -> String {
+        match self.acceleration {
+            Some((structure, _)) => format!("{} ({structure})", self.algorithm.name),
+            None => self.algorithm.name.to_owned(),
+        }
+    }
+}
+
+/// What is to be measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The scene.
+    pub scene: &'a Arc<Scene>,
+    /// The viewer.
+    pub camera: &'a Camera,
+    /// Size, samples, culling.
+    pub settings: &'a Settings,
+    /// Pictures at most.
+    pub frames: usize,
+    /// Seconds that an algorithm may take for all its pictures.
+    pub time_limit: Option<f64>,
+    /// Bytes that an algorithm may charge.
+    pub memory_limit: Option<u64>,
+}
+
+/// What an algorithm took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Seconds of the first picture, with whatever is built once.
+    pub first_seconds: f64,
+    /// Median of the seconds of the pictures after it; the first one's where there is no other.
+    pub median_seconds: f64,
+    /// The least seconds of any of these pictures: what other processes add is the least here.
+    pub fastest_seconds: f64,
+    /// Pictures that were finished.
+    pub frames: usize,
+    /// Bytes charged at one time, at the most.
+    pub bytes: u64,
+    /// Triangles on their way to the screen.
+    pub geometry: GeometryStats,
+    /// Counters of the first picture.
+    pub counters: VisibilityCounters,
+    /// What is seen.
+    pub seen: Seen,
+}
+
+/// What is seen at each sample: facets and depths, tile by tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    facets: Vec<u32>,
+    depths: Vec<f32>,
+}
+
+impl Seen {
+    fn of(grid: &TileGrid) -> Self {
+        let facets = grid.tiles.iter().flat_map(|t| t.facet.iter().copied()).collect();
+        let depths = grid.tiles.iter().flat_map(|t| t.depth.iter().copied()).collect();
+        Self { facets, depths }
+    }
+
+    /// Samples where the facet or the depth is another.
+    pub fn differing(&self, other: &Self) -> u64 {
+        let pairs = |s: &Self, i: usize| (s.facets[i], s.depths[i].to_bits());
+        (0..self.facets.len().min(other.facets.len())).filter(|&i| pairs(self, i) != pairs(other, i)).count() as u64
+    }
+}
+
+/// Measures one algorithm, with a session of its own. The outer error is one of the task, the inner one the limit at
+/// which the algorithm gave up before its first picture was finished.
+///
+/// # Errors
+/// Settings or a scene that cannot be.
+pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Result<Result<Measured, Limit>, Error> {
+    let mut settings = task.settings.clone();
+    settings.visibility = entrant.algorithm.name.to_owned();
+    settings.acceleration = entrant.acceleration.map(|(_, value)| value);
+    let viewport = settings.check()?;
+    let session = Session::new(Arc::clone(task.scene))?;
+    let budget = execution.budget.renewed().with_time_limit(task.time_limit).with_memory_limit(task.memory_limit);
+    let execution = Execution { budget, ..execution.clone() };
+    let samples = settings.samples as usize;
+    let mut grid = TileGrid::new(viewport, samples);
+    let picture = |grid: &mut TileGrid| -> Result<_, Limit> {
+        let start = execution.budget.elapsed();
+        let pattern = SamplePattern::new(samples);
+        let culled = &mut CullCounters::default();
+        let view = PreparedView::new(&session, task.camera, &settings, viewport, pattern, &execution, culled);
+        let resolved = entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &Nowhere)?;
+        Ok((execution.budget.elapsed() - start, resolved))
+    };
+    let (first_seconds, resolved) = match picture(&mut grid) {
+        Ok(first) => first,
+        Err(limit) => return Ok(Err(limit)),
+    };
+    let seen = Seen::of(&grid);
+    let mut seconds = Vec::new();
+    while seconds.len() + 1 < task.frames {
+        // A limit now only means fewer pictures.
+        let Ok((more, _)) = picture(&mut grid) else { break };
+        seconds.push(more);
+    }
+    Ok(Ok(Measured {
+        first_seconds,
+        fastest_seconds: seconds.iter().copied().reduce(f64::min).unwrap_or(first_seconds),
+        median_seconds: median(&mut seconds).unwrap_or(first_seconds),
+        frames: seconds.len() + 1,
+        bytes: execution.budget.peak(),
+        geometry: resolved.geometry,
+        counters: resolved.counters,
+        seen,
+    }))
+}
+
+/// The middle value.
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(values[middle]),
+        _ => Some((values[middle - 1] + values[middle]) / 2.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Renderer, execution, load_builtin};
+
+    #[test]
+    fn p25_every_algorithm_is_measured_and_agrees() {
+        let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
+        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (48, 36, 1);
+        let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
+        let (scene, settings) = (renderer.scene(), &renderer.settings);
+        let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };
+        let all = Entrant::all();
+        let measured: Vec<_> = all.iter().map(|e| measure(&task, e, &execution).unwrap().unwrap()).collect();
+        assert!(measured[0].seen.facets.iter().any(|&f| f != u32::MAX), "something is seen");
+        for (entrant, m) in all.iter().zip(&measured) {
+            assert_eq!((m.seen.differing(&measured[0].seen), m.frames), (0, 2), "{}", entrant.name());
+            assert!(m.bytes > 0 || entrant.algorithm.name == "z-buffer", "{}", entrant.name());
+        }
+        let other = Seen { facets: vec![0; 9], depths: vec![0.5; 9] };
+        let shifted = Seen { facets: vec![0; 9], depths: vec![0.25; 9] };
+        assert_eq!(other.differing(&shifted), 9);
+    }
+
+    #[test]
+    fn an_algorithm_at_its_limit_says_which() {
+        let renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
+        let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
+        let (scene, settings) = (renderer.scene(), &renderer.settings);
+        let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: Some(0.0), memory_limit: None };
+        let first = measure(&task, &Entrant::all()[0], &execution).unwrap();
+        assert!(matches!(first, Err(Limit::Time { .. })));
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(
+            [median(&mut []), median(&mut [3.0, 1.0, 2.0]), median(&mut [4.0, 1.0])],
+            [None, Some(2.0), Some(2.5)]
+        );
+    }
+}

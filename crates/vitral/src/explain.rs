@@ -1,0 +1,230 @@
+//! One pixel explained: which surfaces cover it, how near each is, and what every algorithm decided and why.
+//!
+//! What is explained is the sample at the pixel's centre, as in the channels of data.
+
+use crate::bench::Entrant;
+use crate::{Error, Renderer};
+use serde::Serialize;
+use std::fmt;
+use std::sync::{Arc, Mutex};
+use vitral_exec::Budget;
+use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
+use vitral_render::stats::CullCounters;
+use vitral_render::trace::{Observer, Step};
+use vitral_render::visible::Nowhere;
+use vitral_render::{Execution, PreparedView, Session};
+use vitral_scene::Camera;
+
+/// Steps that are kept of one algorithm.
+const MOST_STEPS: usize = 200;
+
+/// A pixel, and what is known of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Explanation {
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// The surfaces that cover its centre, the nearest first.
+    pub surfaces: Vec<Surface>,
+    /// What each algorithm decided.
+    pub decisions: Vec<Decision>,
+}
+
+/// A facet over the pixel's centre.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Surface {
+    /// The facet: a triangle of the scene.
+    pub facet: u32,
+    /// The face of the file that it is of, as in the channel `id`.
+    pub surface: u32,
+    /// Name of its mesh.
+    pub mesh: String,
+    /// Name of its material, if it has one.
+    pub material: Option<String>,
+    /// 1 on the near plane, 0 on the far plane.
+    pub depth: f32,
+    /// Something behind it may be seen through it: a layer, which hides nothing.
+    pub layer: bool,
+}
+
+/// What an algorithm decided.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Decision {
+    /// The algorithm, with its structure.
+    pub algorithm: String,
+    /// The opaque facet that is seen, none for the background.
+    pub facet: Option<u32>,
+    /// Its depth.
+    pub depth: Option<f32>,
+    /// The steps that concerned the pixel, in the order they came.
+    pub steps: Vec<String>,
+    /// The limit at which it gave up.
+    pub limit: Option<String>,
+}
+
+/// Keeps the steps that concern a pixel.
+#[derive(Debug)]
+struct Onlooker {
+    pixel: [u32; 2],
+    steps: Mutex<Vec<String>>,
+}
+
+impl Observer for Onlooker {
+    fn step(&self, step: &Step) {
+        if step.concerns(self.pixel) {
+            let mut steps = self.steps.lock().expect("no thread panics while it keeps a step");
+            if steps.len() < MOST_STEPS {
+                steps.push(step.tell(self.pixel));
+            }
+        }
+    }
+}
+
+/// Explains a pixel of the picture that `camera` sees. Each algorithm may take `time_limit` seconds.
+///
+/// # Errors
+/// A pixel outside the picture, settings that cannot be, or a cancellation.
+pub fn explain(
+    renderer: &Renderer,
+    camera: &Camera,
+    pixel: [u32; 2],
+    time_limit: Option<f64>,
+) -> Result<Explanation, Error> {
+    let settings = &renderer.settings;
+    if pixel[0] >= settings.width || pixel[1] >= settings.height {
+        let size = format!("the picture has {} x {} pixels, counted from 0", settings.width, settings.height);
+        return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
+    }
+    // The limit is each algorithm's; what remains of the whole is that the user may cancel.
+    let budget = renderer.execution().budget.renewed().with_time_limit(None);
+    let surfaces = surfaces(renderer, camera, pixel, &budget)?;
+    let mut decisions = Vec::new();
+    for entrant in Entrant::all() {
+        decisions.push(decide(renderer, camera, pixel, &entrant, time_limit)?);
+        budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
+    }
+    Ok(Explanation { pixel, surfaces, decisions })
+}
+
+/// Looks at every facet of the view.
+fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<Surface>, Error> {
+    let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
+    let (culled, pattern) = (&mut CullCounters::default(), SamplePattern::new(1));
+    let (session, execution) = (renderer.session(), renderer.execution());
+    let view = PreparedView::new(session, camera, &renderer.settings, viewport, pattern, execution, culled);
+    let [x, y] = center(&view, pixel);
+    let (world, materials) = (session.world(), &session.scene().materials);
+    let mut found = Vec::new();
+    for prepared in &view.instances {
+        let instance = &world.instances[prepared.instance];
+        let opaque = prepared.opaque.iter().map(|d| (false, d));
+        for (layer, draw) in opaque.chain(prepared.layered.iter().map(|d| (true, d))) {
+            budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
+            for triangle in draw.ranges.iter().cloned().flatten() {
+                let facet = draw.first_facet + triangle;
+                let setups = view.setups(facet, draw.cull_back);
+                let Some(setup) = setups.iter().find(|s| s.covers(x, y)) else { continue };
+                let material = instance.mesh.material_of_triangle(triangle as usize);
+                found.push(Surface {
+                    facet,
+                    surface: world.surface_of_facet(facet),
+                    mesh: instance.mesh.name.clone(),
+                    material: material.and_then(|m| materials.get(m as usize)).map(|m| m.name.clone()),
+                    depth: setup.depth(x, y),
+                    layer,
+                });
+            }
+        }
+    }
+    found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.facet.cmp(&b.facet)));
+    Ok(found)
+}
+
+/// The place of a pixel's sample, 1/256 pixel.
+fn center(view: &PreparedView<'_>, pixel: [u32; 2]) -> [i32; 2] {
+    let offset = view.pattern.position(0);
+    [0, 1].map(|k| pixel[k] as i32 * SUBPIXEL + offset[k])
+}
+
+/// Lets an algorithm make the picture, and looks on.
+fn decide(
+    renderer: &Renderer,
+    camera: &Camera,
+    pixel: [u32; 2],
+    entrant: &Entrant,
+    time_limit: Option<f64>,
+) -> Result<Decision, Error> {
+    let mut settings = renderer.settings.clone();
+    (settings.visibility, settings.coherence) = (entrant.algorithm.name.to_owned(), None);
+    settings.acceleration = entrant.acceleration.map(|(_, value)| value);
+    let viewport = settings.check().map_err(vitral_render::Error::from)?;
+    let onlooker = Arc::new(Onlooker { pixel, steps: Mutex::default() });
+    let own = renderer.execution();
+    let budget = own.budget.renewed().with_time_limit(time_limit);
+    let execution = Execution { budget, observer: Some(Arc::clone(&onlooker) as Arc<dyn Observer>), ..own.clone() };
+    let session: &Session = renderer.session();
+    let culled = &mut CullCounters::default();
+    let view = PreparedView::new(session, camera, &settings, viewport, SamplePattern::new(1), &execution, culled);
+    let mut grid = TileGrid::new(viewport, 1);
+    let resolved = entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &Nowhere);
+    let (tile, at) = grid.locate(pixel[0], pixel[1]);
+    let seen = resolved.is_ok() && tile.facet[at] != NO_FACET;
+    let steps = std::mem::take(&mut *onlooker.steps.lock().expect("no thread panics while it keeps a step"));
+    Ok(Decision {
+        algorithm: entrant.name(),
+        facet: seen.then(|| tile.facet[at]),
+        depth: seen.then(|| tile.depth[at]),
+        steps,
+        limit: resolved.err().map(|limit| limit.to_string()),
+    })
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.pixel;
+        writeln!(f, "pixel {x},{y}: {} surface(s) cover its centre, the nearest first", self.surfaces.len())?;
+        for s in &self.surfaces {
+            let material = s.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
+            let layer = if s.layer { ", transparent" } else { "" };
+            let (facet, surface) = (s.facet, s.surface);
+            writeln!(f, "  depth {:.7}  facet {facet} (surface {surface}, {}{material}{layer})", s.depth, s.mesh)?;
+        }
+        for d in &self.decisions {
+            match (&d.limit, d.facet, d.depth) {
+                (Some(limit), ..) => writeln!(f, "{}: {limit}", d.algorithm)?,
+                (None, Some(facet), Some(depth)) => writeln!(f, "{}: facet {facet} at depth {depth:.7}", d.algorithm)?,
+                _ => writeln!(f, "{}: background", d.algorithm)?,
+            }
+            for step in &d.steps {
+                writeln!(f, "  {step}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_builtin;
+
+    #[test]
+    fn the_nearest_surface_is_what_every_algorithm_sees_and_says_why() {
+        let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
+        (renderer.settings.width, renderer.settings.height) = (64, 48);
+        renderer.settings.cull.back_face = false;
+        let camera = renderer.frame_camera();
+        let told = explain(&renderer, &camera, [32, 20], None).unwrap();
+        assert!(told.surfaces.len() >= 2, "front and back of a cube: {told}");
+        assert!(told.surfaces.windows(2).all(|w| w[0].depth >= w[1].depth));
+        for d in &told.decisions {
+            assert_eq!((d.facet, d.depth), (Some(told.surfaces[0].facet), Some(told.surfaces[0].depth)), "{told}");
+            assert!(!d.steps.is_empty(), "{} says why: {told}", d.algorithm);
+        }
+        let nothing = explain(&renderer, &camera, [0, 0], None).unwrap();
+        assert!(nothing.surfaces.is_empty() && nothing.decisions.iter().all(|d| d.facet.is_none()));
+        assert!(explain(&renderer, &camera, [64, 0], None).is_err());
+    }
+}

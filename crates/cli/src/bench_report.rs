@@ -20,6 +20,9 @@ const POLYGONS: [usize; 4] = [512, 2048, 8192, 32_768];
 /// Width and height, with [`POLYGONS`] of the second size.
 const PIXELS: [[u32; 2]; 4] = [[80, 60], [160, 120], [320, 240], [640, 480]];
 
+/// A number of a step.
+type Number = fn(&Step) -> u32;
+
 /// What was measured at one size.
 struct Step {
     polygons: u32,
@@ -118,7 +121,7 @@ fn memory(step: &Step) -> String {
 fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pixels: &[Step]) -> String {
     let threads = execution.workers.threads();
     let [width, height] = PIXELS[2];
-    let (polygons, pixels): (fn(&Step) -> u32, fn(&Step) -> u32) = (|s| s.polygons, |s| s.pixels);
+    let (polygons, pixels): (Number, Number) = (|s| s.polygons, |s| s.pixels);
     format!(
         "# Image precision and object precision, measured\n\n\
          Written by `vitral bench --report docs --threads {threads} --frames {frames} --time-limit {limit}`, and not by hand.\n\n\

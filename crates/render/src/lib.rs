@@ -15,14 +15,15 @@ mod session;
 mod settings;
 pub mod shading;
 pub mod stats;
+pub mod transparency;
 pub mod visible;
 
 pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading,
-    Transparency, TransparencyOrder,
+    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Kay, Lines, Settings, SettingsError,
+    Shading, Transparency, TransparencyOrder,
 };
 pub use stats::Stats;
 

@@ -20,8 +20,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, BlockSink, Draw, Layer, LayerSink, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink, transform,
-    traverse,
+    Batch, BlockSink, Draw, LayerList, LayerSink, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink,
+    transform, traverse,
 };
 
 /// Triangles in one piece of work.
@@ -62,7 +62,7 @@ impl VisibleSurface for ZBuffer {
         let jobs = jobs(view);
         let rounds = rounds(&jobs);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
-        let layers: Vec<Mutex<Vec<Layer>>> = grid.tiles.iter().map(|_| Mutex::default()).collect();
+        let layers: Vec<_> = grid.tiles.iter().map(|_| Mutex::new(view.layer_list())).collect();
         for (number, round) in rounds.iter().enumerate() {
             execution.budget.check("visibility")?;
             let last = number + 1 == rounds.len();
@@ -87,6 +87,7 @@ impl VisibleSurface for ZBuffer {
                 let tile_batches = tile_batches.chain(marks.filter(|_| last).map(|m| (true, m)));
                 walk(execution.level, tile_batches, index, tile, &view.pattern, &mut layers);
                 if last {
+                    layers.finish();
                     sink.tile(index, tile, &mut layers);
                 }
             });
@@ -207,7 +208,7 @@ pub(super) fn walk<'b>(
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
 ) {
     let place = (tile.x, tile.y);
     dispatch!(level, simd => {

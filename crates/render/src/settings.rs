@@ -38,7 +38,7 @@ pub struct Settings {
     /// In which order they are.
     pub transparency_order: TransparencyOrder,
     /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind others are dropped,
-    /// and the picture comes with a warning.
+    /// and the picture comes with a warning. Two for each sample are always allowed.
     pub layer_memory: u64,
     /// Edges instead of, or on top of, surfaces.
     pub lines: Lines,

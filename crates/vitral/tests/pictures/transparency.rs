@@ -6,7 +6,8 @@ use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;
 use vitral::render::transparency::registry::ORDERS;
 use vitral::render::{Background, Transparency, TransparencyOrder};
-use vitral::scene::{Part, solids};
+use vitral::scene::Part;
+use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
 
 /// A square from -1 to 1 at height `z`, which rises by `slope` along x.

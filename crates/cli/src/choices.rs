@@ -3,6 +3,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::sync::LazyLock;
+use vitral::render::transparency::registry as transparency;
 use vitral::render::{Acceleration, ColorSpace, Interpolation, Transparency, TransparencyOrder, registry};
 use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
@@ -25,13 +26,11 @@ static VIEWS: LazyLock<Vec<Choice<View>>> =
 static CHANNELS: LazyLock<Vec<Choice<Channel>>> =
     LazyLock::new(|| Channel::ALL.iter().map(|&(channel, name, description)| (name, description, channel)).collect());
 
-const TRANSPARENCY: [Choice<Transparency>; 2] = [
-    ("linear", "opacity of the surface, the rest of what is behind", Transparency::Linear),
-    ("none", "every surface is opaque; cut-outs stay", Transparency::None),
-];
+static TRANSPARENCY: LazyLock<Vec<Choice<Transparency>>> =
+    LazyLock::new(|| transparency::MODELS.iter().map(|m| (m.name, m.description, m.value)).collect());
 
-const TRANSPARENCY_ORDER: [Choice<TransparencyOrder>; 1] =
-    [("sorted", "by depth at each sample", TransparencyOrder::Sorted)];
+static TRANSPARENCY_ORDER: LazyLock<Vec<Choice<TransparencyOrder>>> =
+    LazyLock::new(|| transparency::ORDERS.iter().map(|o| (o.name, o.description, o.value)).collect());
 
 const COLOR_SPACE: [Choice<ColorSpace>; 2] = [
     ("srgb", "linear light, encoded as sRGB", ColorSpace::Srgb),
@@ -85,7 +84,7 @@ pub(crate) fn channel() -> impl TypedValueParser<Value = Channel> {
     of(&CHANNELS)
 }
 
-pub(crate) fn transparency() -> impl TypedValueParser<Value = Transparency> {
+pub(crate) fn transparency_model() -> impl TypedValueParser<Value = Transparency> {
     of(&TRANSPARENCY)
 }
 

@@ -106,7 +106,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "KIND", value_parser = choices::interpolation())]
     pub(crate) interpolation: Option<Interpolation>,
     /// How transparent surfaces are combined [default: linear]
-    #[arg(long, value_name = "MODEL", value_parser = choices::transparency())]
+    #[arg(long, value_name = "MODEL", value_parser = choices::transparency_model())]
     pub(crate) transparency: Option<Transparency>,
     /// In which order they are combined [default: sorted]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]

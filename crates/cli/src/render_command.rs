@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
 
 fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: Instant) -> Result<u8, Failure> {
     let scene = plan.state.load_scene(&execution.workers)?;
-    let warnings = scene.warnings.clone();
+    let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);
     }
@@ -71,6 +71,7 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     }
     let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, pixel)).transpose()?;
 
+    warnings.extend(drawn.warnings);
     let stats = json!({
         "load-seconds": load_seconds,
         "frames": drawn.frames,
@@ -106,6 +107,8 @@ struct Drawn {
     frames: Vec<Value>,
     /// Files that were written.
     written: Vec<String>,
+    /// What is not as it was asked for.
+    warnings: Vec<String>,
     /// A picture differs from the reference.
     different: bool,
 }
@@ -123,6 +126,12 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer) -> Result<Drawn
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
         let rendered = renderer.render_from(&cameras[number as usize])?;
+        // A turntable's frames mostly share their warnings.
+        let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
+        if !args.report.quiet {
+            report::warnings(&news);
+        }
+        drawn.warnings.extend(news);
         let encode_start = Instant::now();
         let wanted = match &args.output.reference {
             Some(reference) => differs(args, reference, &rendered.frame)?,

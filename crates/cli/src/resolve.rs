@@ -44,6 +44,8 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
+        // Layers are dropped with a warning rather than that the picture fails.
+        state.settings.layer_memory = state.settings.layer_memory.min(limit / 2);
     }
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);

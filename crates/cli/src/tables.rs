@@ -6,6 +6,7 @@ use clap::CommandFactory;
 use serde_json::json;
 use std::fmt::Write;
 use vitral::render::registry;
+use vitral::render::transparency::registry as transparency;
 use vitral::{Illumination, Shading};
 
 /// `vitral algorithms`.
@@ -26,8 +27,16 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
         let shading: Vec<_> =
             Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what})).collect();
+        let models: Vec<_> = transparency::MODELS
+            .iter()
+            .map(|m| json!({"name": m.name, "description": m.description, "source": m.source}))
+            .collect();
+        let orders: Vec<_> = transparency::ORDERS
+            .iter()
+            .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact}))
+            .collect();
         let all = json!({"visibility": visibility, "acceleration": acceleration, "illumination": illumination,
-            "shading": shading});
+            "shading": shading, "transparency": models, "transparency-order": orders});
         return report::print_json(&all).map(|()| 0);
     }
     let mut text = String::from("Visible surfaces (--visibility)\n");
@@ -50,6 +59,15 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nShading (--shading)\n");
     for (_, name, what) in Shading::ALL {
         let _ = writeln!(text, "  {name:<14} {what}");
+    }
+    text.push_str("\nTransparency (--transparency)\n");
+    for m in transparency::MODELS {
+        let source = if m.source.is_empty() { String::new() } else { format!(" ({})", m.source) };
+        let _ = writeln!(text, "  {:<14} {}{source}", m.name, m.description);
+    }
+    text.push_str("\nOrders of transparency (--transparency-order)\n");
+    for o in transparency::ORDERS {
+        let _ = writeln!(text, "  {:<14} {} ({})", o.name, o.description, o.source);
     }
     report::print(text.as_bytes()).map(|()| 0)
 }

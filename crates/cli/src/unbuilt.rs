@@ -18,11 +18,7 @@ const OPTIONS: [&str; 9] = [
 ];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 3] = [
-    ("--transparency", &["kay"]),
-    ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
-    ("--channel", &["attached-shadow", "cast-shadow"]),
-];
+const VALUES: [(&str, &[&str]); 1] = [("--channel", &["attached-shadow", "cast-shadow"])];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

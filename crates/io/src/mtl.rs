@@ -7,7 +7,8 @@
 //! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni` 1; `Ns` below 1
 //! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are taken as linear
 //! coefficients, as they stand. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
-//! `1 - mean(Tf)`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into opaque materials.
+//! `1 - mean(Tf)`, and the filter is the hue of `Tf`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into
+//! opaque materials.
 //!
 //! Maps: `map_Kd` (sRGB; its alpha counts only in a material that `d` makes transparent), `map_Ks` (linear), `map_Ke`
 //! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
@@ -131,7 +132,7 @@ impl MtlMaterial {
         let shiny = self.illum.is_none_or(|i| i >= 2);
         let map_ks = self.map_ks.as_ref().filter(|_| shiny);
         let ks = if shiny { self.ks.unwrap_or(if map_ks.is_some() { [1.0; 3] } else { [0.0; 3] }) } else { [0.0; 3] };
-        let opacity = self.opacity();
+        let (opacity, filter) = (self.opacity(), self.filter());
         let is_transparent = opacity < 1.0 || self.map_d.is_some();
 
         // With a map of its own for opacity, the diffuse map's alpha must not count a second time.
@@ -154,6 +155,7 @@ impl MtlMaterial {
             },
             emission: self.ke.unwrap_or(if self.map_ke.is_some() { [1.0; 3] } else { [0.0; 3] }),
             opacity,
+            filter,
             alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
             ior: self.ni.filter(|&n| n >= 0.001).unwrap_or(1.0),
             unlit: !lit,
@@ -164,6 +166,17 @@ impl MtlMaterial {
             normal_texture: texture(&self.norm, Usage::Data),
             ..Material::default()
         }
+    }
+
+    /// The colour of what passes, apart from how much: `kt` times it is `Tf` where `Tf` gives both.
+    fn filter(&self) -> [f32; 3] {
+        let Some(tf) = self.tf.filter(|_| matches!(self.illum, Some(4 | 6 | 7 | 9))) else { return [1.0; 3] };
+        let tf = tf.map(|c| c.clamp(0.0, 1.0));
+        let whole = match (self.d, self.tr) {
+            (None, None) => (tf[0] + tf[1] + tf[2]) / 3.0,
+            _ => tf[0].max(tf[1]).max(tf[2]),
+        };
+        if whole > 0.0 { tf.map(|c| c / whole) } else { [1.0; 3] }
     }
 
     fn opacity(&self) -> f32 {
@@ -324,6 +337,10 @@ mod tests {
         assert_eq!(one("newmtl a\nTf 1 1 1\nillum 2").0.opacity, 1.0);
         assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 4").0.opacity, 0.5);
         assert_eq!(one("newmtl a\nTr .75").0.opacity, 0.25);
+        assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 2").0.filter, [1.0; 3]);
+        assert_eq!(one("newmtl a\nTf 0 .375 .375\nillum 4").0.filter, [0.0, 1.5, 1.5], "kt is 0.25");
+        assert_eq!(one("newmtl a\nTf 0 .5 .25\nd .4\nillum 4").0.filter, [0.0, 1.0, 0.5]);
+        assert_eq!(one("newmtl a\nTf 0 0 0\nillum 4").0.filter, [1.0; 3]);
     }
 
     #[test]

@@ -20,6 +20,8 @@ pub struct Material {
     pub alpha_mode: AlphaMode,
     /// What kind of transparency the surface has.
     pub transmission: Transmission,
+    /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
+    pub filter: Rgb,
     /// Index of refraction.
     pub ior: f32,
     /// Both sides are visible and lit, whatever the mesh's closedness.
@@ -55,6 +57,7 @@ impl Default for Material {
             opacity: 1.0,
             alpha_mode: AlphaMode::Opaque,
             transmission: Transmission::Transparent,
+            filter: [1.0; 3],
             ior: 1.5,
             double_sided: false,
             unlit: false,

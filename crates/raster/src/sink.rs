@@ -1,7 +1,7 @@
 //! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
 use crate::kernel::traverse::{Block, BlockSink};
-use crate::{BLOCK, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 
@@ -194,12 +194,12 @@ pub struct Layer {
 pub struct LayerSink<'a> {
     tile: &'a Tile,
     pattern: &'a SamplePattern,
-    layers: &'a mut Vec<Layer>,
+    layers: &'a mut LayerList,
 }
 
 impl<'a> LayerSink<'a> {
     /// Adds to `layers`, in front of what `tile` holds.
-    pub fn new(tile: &'a Tile, pattern: &'a SamplePattern, layers: &'a mut Vec<Layer>) -> Self {
+    pub fn new(tile: &'a Tile, pattern: &'a SamplePattern, layers: &'a mut LayerList) -> Self {
         Self { tile, pattern, layers }
     }
 }

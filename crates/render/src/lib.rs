@@ -17,6 +17,7 @@ mod settings;
 pub mod shading;
 pub mod stats;
 pub mod trace;
+pub mod transparency;
 pub mod visible;
 
 pub use coherence::{Coherence, CoherenceSet};
@@ -24,8 +25,8 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Lines, Settings, SettingsError, Shading,
-    Transparency, TransparencyOrder,
+    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Kay, Lines, Settings, SettingsError,
+    Shading, Transparency, TransparencyOrder,
 };
 pub use stats::Stats;
 

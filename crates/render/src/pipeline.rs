@@ -20,6 +20,8 @@ pub struct Rendered {
     pub frame: Frame,
     /// Counters and times.
     pub stats: Stats,
+    /// What is not as it was asked for, a line each.
+    pub warnings: Vec<String>,
 }
 
 /// From where, and in which light.
@@ -69,7 +71,18 @@ pub fn render(
     }
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
-    Ok(Rendered { frame, stats })
+    let warnings = warnings(&stats, settings);
+    Ok(Rendered { frame, stats, warnings })
+}
+
+/// What the user has to know about the picture.
+fn warnings(stats: &Stats, settings: &Settings) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if stats.picture.lost_layers > 0 {
+        let allowed = settings.layer_memory >> 20;
+        warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
+    }
+    warnings
 }
 
 /// The colour picture, with all samples.

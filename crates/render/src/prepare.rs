@@ -11,7 +11,7 @@ use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::geometry::Screen;
-use vitral_raster::{Batch, Draw, SamplePattern, ScreenVertex, Setup, Viewport};
+use vitral_raster::{Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
 use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
 
 /// One instance's triangles, ready for the rasteriser.
@@ -44,6 +44,8 @@ pub struct PreparedView<'a> {
     pub acceleration: Acceleration,
     /// The kinds of coherence that are used.
     pub coherence: CoherenceSet,
+    /// Most layers in a tile.
+    layer_limit: usize,
     /// What may be visible, in scene order.
     pub instances: Vec<PreparedInstance<'a>>,
 }
@@ -91,7 +93,24 @@ impl<'a> PreparedView<'a> {
         }
         let screen = Screen::new(viewport, &pattern);
         let acceleration = settings.acceleration.unwrap_or_default();
-        Self { session, view, camera: *camera, viewport, pattern, screen, acceleration, coherence, instances }
+        let layer_limit = layer_limit(viewport, settings.layer_memory);
+        Self {
+            session,
+            view,
+            camera: *camera,
+            viewport,
+            pattern,
+            screen,
+            acceleration,
+            coherence,
+            layer_limit,
+            instances,
+        }
+    }
+
+    /// An empty list for the layers of a tile.
+    pub(crate) fn layer_list(&self) -> LayerList {
+        LayerList::new(self.layer_limit, self.pattern.len())
     }
 
     /// The viewer in world space, and whether projectors meet there.
@@ -135,6 +154,12 @@ pub fn is_solid(
 ) -> bool {
     depth_range(camera, &instance.bounds).0 > view.near
         && backface::applies(session.solidity(instance.mesh_index, &execution.workers))
+}
+
+/// How many layers each tile may have when all of them together take `bytes`.
+fn layer_limit(viewport: Viewport, bytes: u64) -> usize {
+    let tiles = u64::from(viewport.tiles_x()) * u64::from(viewport.tiles_y());
+    (bytes / (tiles * size_of::<Layer>() as u64)).try_into().unwrap_or(usize::MAX)
 }
 
 /// Whether a transform turns left-handed into right-handed.

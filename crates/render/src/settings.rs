@@ -35,8 +35,13 @@ pub struct Settings {
     pub color_space: ColorSpace,
     /// How transparent surfaces are combined.
     pub transparency: Transparency,
+    /// The numbers of [`Transparency::Kay`].
+    pub kay: Kay,
     /// In which order they are.
     pub transparency_order: TransparencyOrder,
+    /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind others are dropped,
+    /// and the picture comes with a warning. Two for each sample are always allowed.
+    pub layer_memory: u64,
     /// Edges instead of, or on top of, surfaces.
     pub lines: Lines,
     /// Behind everything.
@@ -61,7 +66,9 @@ impl Default for Settings {
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
             transparency: Transparency::default(),
+            kay: Kay::default(),
             transparency_order: TransparencyOrder::default(),
+            layer_memory: 1 << 30,
             lines: Lines::default(),
             background: Background::default(),
             channels: Channels::default(),
@@ -151,17 +158,45 @@ pub enum Transparency {
     /// `opacity` of the surface, the rest of what is behind.
     #[default]
     Linear,
+    /// Less where the surface turns away from the viewer.
+    Kay,
+    /// Tinted by the material's filter; highlights stay whole.
+    Filtered,
     /// Everything is opaque (cut-outs stay).
     None,
+}
+
+/// `kt = least + (kt of the material - least) (1 - (1 - |nz|)^exponent)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Kay {
+    /// Larger for thinner glass, above 0; 2 or 3 are usual.
+    pub exponent: f32,
+    /// Transmission at the silhouette, `0..=1`.
+    pub least: f32,
+}
+
+impl Default for Kay {
+    fn default() -> Self {
+        Self { exponent: 3.0, least: 0.0 }
+    }
 }
 
 /// The order in which transparent surfaces are combined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TransparencyOrder {
-    /// Sorted by depth at each sample.
+    /// Lists of fragments with coverage masks in each pixel.
     #[default]
+    ABuffer,
+    /// Sorted by depth at each sample.
     Sorted,
+    /// The farthest layer that is left, pass after pass.
+    MultiPass,
+    /// Opaque and transparent surfaces in a buffer each: exact for one layer.
+    TwoBuffer,
+    /// As they come: the error of the plain z-buffer.
+    Submission,
 }
 
 /// Edges instead of, or on top of, surfaces.
@@ -239,7 +274,7 @@ impl Channels {
 }
 
 /// Settings that cannot be carried out.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
     /// The picture's size.
@@ -253,6 +288,9 @@ pub enum SettingsError {
     /// Number of samples.
     #[error("{0} samples a pixel: 1 to 16 are possible")]
     Samples(u32),
+    /// The numbers of Kay's model.
+    #[error("kay: exponent {} and least {}: above 0, and 0 to 1, are required", .0.exponent, .0.least)]
+    Kay(Kay),
     /// The name of an algorithm.
     #[error("there is no visibility algorithm `{name}`: choose {choices}")]
     Visibility {
@@ -286,6 +324,10 @@ impl Settings {
     pub fn check(&self) -> Result<Viewport, SettingsError> {
         if !(1..=16).contains(&self.samples) {
             return Err(SettingsError::Samples(self.samples));
+        }
+        let Kay { exponent, least } = self.kay;
+        if !(exponent > 0.0 && exponent.is_finite() && (0.0..=1.0).contains(&least)) {
+            return Err(SettingsError::Kay(self.kay));
         }
         let visibility = self.visibility.clone();
         let Some(algorithm) = registry::visibility(&visibility) else {

@@ -211,6 +211,8 @@ pub struct PictureCounters {
     pub shaded_points: u64,
     /// Samples of transparent or cut-out surfaces, lines and points that were kept.
     pub layer_samples: u64,
+    /// Layers behind others that were dropped to stay within the memory for layers.
+    pub lost_layers: u64,
 }
 
 impl PictureCounters {
@@ -219,6 +221,7 @@ impl PictureCounters {
         self.covered_pixels += o.covered_pixels;
         self.shaded_points += o.shaded_points;
         self.layer_samples += o.layer_samples;
+        self.lost_layers += o.lost_layers;
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{DMat4, DVec3};
-use vitral_raster::{Layer, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_raster::{LayerList, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
 use vitral_render::stats::{CullCounters, VisibilityCounters};
 use vitral_render::visible::TileSink;
 use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
@@ -19,7 +19,7 @@ type Picture = Vec<(u32, u32, Vec<(u32, u32)>)>;
 struct Collect(Mutex<Vec<(usize, Picture)>>);
 
 impl TileSink for Collect {
-    fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>) {
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let mut picture: Picture =
             tile.depth.iter().zip(&tile.facet).map(|(d, f)| (d.to_bits(), *f, Vec::new())).collect();
         for layer in layers.iter() {

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 use vitral::exec::{Budget, Workers};
 use vitral::math::{DVec3, Vec3};
-use vitral::raster::{Layer, SamplePattern, Tile, TileGrid, Viewport};
+use vitral::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::render::raytrace::intersect::Ray;
 use vitral::render::raytrace::{Counters, Structure, bvh::Bvh, grid::Grid, octree::Octree};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
@@ -88,7 +88,7 @@ fn prepare(model: &str, file: &str) -> Result<(), Failure> {
 struct Finished(Mutex<usize>);
 
 impl TileSink for Finished {
-    fn tile(&self, _: usize, _: &Tile, _: &mut Vec<Layer>) {
+    fn tile(&self, _: usize, _: &Tile, _: &mut LayerList) {
         *self.0.lock().expect("tiles are counted") += 1;
     }
 }

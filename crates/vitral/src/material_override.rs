@@ -54,7 +54,7 @@ enum Failure {
 }
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 19] = [
+const PROPERTIES: [(&str, &str, Setter); 20] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -68,6 +68,7 @@ const PROPERTIES: [(&str, &str, Setter); 19] = [
     ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
     ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
     ("transmission", "transparent, translucent", set_transmission),
+    ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, color(v))),
     ("ior", "index of refraction, 1 or more", set_ior),
     ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
@@ -277,11 +278,19 @@ mod tests {
     #[test]
     fn properties_are_set_by_name() {
         let mut scene = load_builtin("sphere").unwrap();
-        for text in ["ball.ior=1.7", "ball.kd=0.1,0.2,0.3", "*.shininess=5", "ball.kt=0.25", "ball.emission=#ff0000"] {
+        for text in [
+            "ball.ior=1.7",
+            "ball.kd=0.1,0.2,0.3",
+            "*.shininess=5",
+            "ball.kt=0.25",
+            "ball.filter=0,1,0.5",
+            "ball.emission=#ff0000",
+        ] {
             change(&mut scene, text).unwrap();
         }
         let ball = &scene.materials[0];
         assert_eq!((ball.ior, ball.opacity, ball.alpha_mode), (1.7, 0.75, AlphaMode::Blend));
+        assert_eq!(ball.filter, [0.0, 1.0, 0.5]);
         assert_eq!(ball.emission, [1.0, 0.0, 0.0]);
         let Reflectance::Phong { kd, shininess, .. } = ball.reflectance else { panic!("the form stays") };
         assert_eq!((kd, shininess), ([0.1, 0.2, 0.3], 5.0));

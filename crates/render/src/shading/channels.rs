@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
-use vitral_raster::{Layer, NO_FACET, TILE_PIXELS, Tile};
+use vitral_raster::{LayerList, NO_FACET, TILE_PIXELS, Tile};
 
 /// The wanted planes of one tile, row by row; unwanted ones stay empty.
 #[derive(Debug, Default)]
@@ -40,7 +40,7 @@ impl<'a> ChannelSink<'a> {
 }
 
 impl TileSink for ChannelSink<'_> {
-    fn tile(&self, index: usize, tile: &Tile, _layers: &mut Vec<Layer>) {
+    fn tile(&self, index: usize, tile: &Tile, _layers: &mut LayerList) {
         let mut planes = DataPlanes::default();
         if self.wanted.depth {
             planes.depth = tile.depth.clone();

@@ -1,13 +1,15 @@
 //! From illuminated points to the pixels of a tile: samples, layers, background, display encoding.
 //!
-//! At each sample, layers are laid over what is behind from far to near, `I = (1 - kt) I1 + kt I2` with the opacity
-//! `1 - kt` of the layer; a pixel is the mean of its samples. Everything is premultiplied and, except in the raw
+//! The layers in front of a pixel are laid over its samples by the chosen order of transparency (see
+//! [`crate::transparency`]); a pixel is the mean of its samples. Everything is premultiplied and, except in the raw
 //! colour space, linear; bytes are encoded at the end.
 //! Source: [Porter & Duff 1984] for the operator.
 
 use super::FrameConstants;
-use super::points::{NO_POINT, Points, Source, visible_part};
+use super::group::Lit;
+use super::points::{FragmentPoint, NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
+use crate::transparency::{Fragment, MOST_SAMPLES};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
 use vitral_raster::{TILE, Tile};
@@ -28,7 +30,7 @@ impl Composer {
         simd: S,
         tile: &Tile,
         points: &Points,
-        colors: &[[f32; 4]],
+        lit: &Lit,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
         out: &mut [[u8; 4]],
@@ -39,57 +41,51 @@ impl Composer {
         }
         self.places.clear();
         self.colors.clear();
-        self.mix(tile, points, colors, constants, marks);
+        self.mix(tile, points, lit, constants, marks);
         encode(simd, &self.places, &mut self.colors, constants.raw, out);
     }
 
     /// Mixes the samples of every pixel that shows more than the background.
-    fn mix(
-        &mut self,
-        tile: &Tile,
-        points: &Points,
-        colors: &[[f32; 4]],
-        constants: &FrameConstants<'_>,
-        marks: &MarkColors,
-    ) {
+    fn mix(&mut self, tile: &Tile, points: &Points, lit: &Lit, constants: &FrameConstants<'_>, marks: &MarkColors) {
         let samples = constants.view.pattern.len();
-        let (mut pixels, mut layers) = (points.pixels.as_slice(), points.layers.as_slice());
+        let (mut pixels, mut layers) = (points.pixels.as_slice(), points.fragments.as_slice());
+        let mut fragments = Vec::new();
         loop {
             // The next pixel in either list.
-            let of_layer = layers.first().map_or(u32::MAX, |l| l.sample / samples as u32);
+            let of_layer = layers.first().map_or(u32::MAX, |l| l.pixel);
             let of_surface = pixels.first().map_or(u32::MAX, |p| p.index);
             let index = of_layer.min(of_surface);
             if index == u32::MAX {
                 return;
             }
             let background = constants.background[tile.y as usize + index as usize / TILE];
-            let behind = |point: u32| if point == NO_POINT { background } else { colors[point as usize] };
+            let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
             let mut source = Source::Point(NO_POINT);
             if of_surface == index {
                 source = pixels[0].source;
                 pixels = &pixels[1..];
             }
-            let point_of = |s: usize| match source {
-                Source::Point(point) => point,
-                Source::Mixed(start) => points.mixed[start as usize + s],
-            };
-            let in_front = layers.iter().take_while(|l| l.sample / samples as u32 == index).count();
+            let in_front = layers.iter().take_while(|l| l.pixel == index).count();
             let (mine, rest) = layers.split_at(in_front);
             layers = rest;
             let color = match source {
                 Source::Point(point) if mine.is_empty() => behind(point),
                 _ => {
-                    let mut sum = [0.0; 4];
-                    for s in 0..samples {
-                        let mut color = behind(point_of(s));
-                        let sample = index * samples as u32 + s as u32;
-                        for layer in mine.iter().filter(|l| l.sample == sample) {
-                            let source = layer.source as usize;
-                            over(&mut color, if layer.is_mark { marks.color(source) } else { colors[source] });
+                    let mut below = [[0.0; 4]; MOST_SAMPLES];
+                    let below = &mut below[..samples];
+                    match source {
+                        Source::Point(point) => below.fill(behind(point)),
+                        Source::Mixed(start) => {
+                            let points = &points.mixed[start as usize..][..samples];
+                            below.iter_mut().zip(points).for_each(|(sample, &point)| *sample = behind(point));
                         }
-                        add(&mut sum, color);
                     }
-                    sum.map(|c| c / samples as f32)
+                    if !mine.is_empty() {
+                        fragments.clear();
+                        fragments.extend(mine.iter().map(|f| fragment(f, points, lit, marks)));
+                        (constants.lay)(&fragments, below);
+                    }
+                    mean(below)
                 }
             };
             self.places.push(index);
@@ -98,17 +94,26 @@ impl Composer {
     }
 }
 
-fn add(sum: &mut [f32; 4], color: [f32; 4]) {
-    for k in 0..4 {
-        sum[k] += color[k];
+fn mean(samples: &[[f32; 4]]) -> [f32; 4] {
+    let mut sum = [0.0; 4];
+    for color in samples {
+        for k in 0..4 {
+            sum[k] += color[k];
+        }
     }
+    sum.map(|c| c / samples.len() as f32)
 }
 
-/// Lays a premultiplied colour over another.
-fn over(below: &mut [f32; 4], above: [f32; 4]) {
-    for k in 0..4 {
-        below[k] = above[k] + (1.0 - above[3]) * below[k];
-    }
+/// A fragment with its colour.
+fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, marks: &MarkColors) -> Fragment<'a> {
+    let (start, source) = (f.start as usize, f.source as usize);
+    let color = if f.is_mark { marks.color(source) } else { lit.colors[source] };
+    let passes = match lit.passes.get(source) {
+        Some(passes) if !f.is_mark => *passes,
+        _ => [1.0 - color[3]; 3],
+    };
+    let depths = &points.depths[start..start + f.mask.count_ones() as usize];
+    Fragment { facet: f.facet, mask: f.mask, depths, color, passes }
 }
 
 /// Premultiplied colours to display bytes with straight alpha, put in their places; two pixels a step.
@@ -137,17 +142,6 @@ fn encode<S: Simd>(simd: S, places: &[u32], colors: &mut Vec<[f32; 4]>, raw: boo
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn t6_linear_transparency_mixes_exactly() {
-        // I = (1 - kt) I1 + kt I2 with I1 = 0.8 in front, I2 = 0.4 behind, premultiplied.
-        for (kt, expected) in [(0.0, 0.8), (1.0, 0.4), (0.25, 0.75 * 0.8 + 0.25 * 0.4)] {
-            let opacity = 1.0 - kt;
-            let mut below = [0.4, 0.4, 0.4, 1.0];
-            over(&mut below, [0.8 * opacity, 0.8 * opacity, 0.8 * opacity, opacity]);
-            assert!((below[0] - expected).abs() < 1e-6 && below[3] == 1.0);
-        }
-    }
 
     #[test]
     fn colors_encode_with_straight_alpha() {

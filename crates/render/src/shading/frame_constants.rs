@@ -2,6 +2,8 @@
 
 use super::group::{Model, model};
 use crate::prepare::{is_solid, mirrors};
+use crate::settings::Kay;
+use crate::transparency::{Lay, registry};
 use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Settings, Shading, Transparency};
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
@@ -77,6 +79,12 @@ pub(crate) struct FrameConstants<'a> {
     pub shading: Shading,
     pub interpolation: Interpolation,
     pub raw: bool,
+    /// How much transparent surfaces let through.
+    pub transparency: Transparency,
+    /// The numbers of Kay's model.
+    pub kay: Kay,
+    /// How they are laid over each other.
+    pub lay: Lay,
     /// Surfaces are drawn in the background's colour.
     pub surfaces_are_background: bool,
     /// Background of each row in the space in which colours are composed, and 0 or 1 for its alpha.
@@ -112,6 +120,9 @@ impl<'a> FrameConstants<'a> {
             shading: settings.shading,
             interpolation: settings.interpolation,
             raw,
+            transparency: settings.transparency,
+            kay: settings.kay,
+            lay: registry::lay(settings.transparency_order),
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
             background_bytes: background.iter().map(bytes).collect(),
             background,

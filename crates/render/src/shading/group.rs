@@ -6,7 +6,8 @@ use super::frame_constants::{MaterialConstants, TextureConstants};
 use super::geometry::{F, Slots, Surface, blend, constant, gather, surface};
 use super::points::{Group, Points};
 use super::{flat, gouraud, phong};
-use crate::Shading;
+use crate::transparency::{filtered, kay, linear};
+use crate::{Shading, Transparency};
 use vitral_light::{
     Illumination, Material, Microfacet, Phong, PreparedLight, Reflectance, Reflected, Rgb, constant_color,
     cook_torrance, microfacet_from_phong, phong_from_microfacet,
@@ -82,17 +83,36 @@ impl Lighting<'_> {
     }
 }
 
-/// Illuminates all points; `colors` gets premultiplied RGBA in the space in which pictures are composed.
+/// What comes of a tile's points, in the space in which pictures are composed.
+#[derive(Default)]
+pub(crate) struct Lit {
+    /// Premultiplied RGBA.
+    pub colors: Vec<[f32; 4]>,
+    /// What passes of the light from behind; empty where that is `1 - A` in all channels.
+    pub passes: Vec<[f32; 3]>,
+}
+
+impl Lit {
+    /// Makes room for `count` points.
+    pub(crate) fn reset(&mut self, count: usize, filtered: bool) {
+        self.colors.clear();
+        self.colors.resize(count, [0.0; 4]);
+        self.passes.clear();
+        self.passes.resize(if filtered { count } else { 0 }, [0.0; 3]);
+    }
+}
+
+/// Illuminates all points.
 #[inline(always)]
 pub(crate) fn shade_all<S: Simd>(
     simd: S,
     points: &Points,
     facets: &mut FacetTable,
     constants: &FrameConstants<'_>,
-    colors: &mut [[f32; 4]],
+    lit: &mut Lit,
 ) {
     if constants.surfaces_are_background {
-        for (color, place) in colors.iter_mut().zip(&points.place) {
+        for (color, place) in lit.colors.iter_mut().zip(&points.place) {
             *color = constants.background[(place[1] as usize).min(constants.background.len() - 1)];
         }
         return;
@@ -103,7 +123,7 @@ pub(crate) fn shade_all<S: Simd>(
         facets.fill(simd, points, order, &subject);
         for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
             let slots = slots(points, eight, records, subject.first_facet);
-            shade_eight(simd, &subject, material, eight, &slots, facets, constants, colors);
+            shade_eight(simd, &subject, material, eight, &slots, facets, constants, lit);
         }
     }
 }
@@ -155,11 +175,11 @@ fn shade_eight<S: Simd>(
     slots: &Slots,
     facets: &FacetTable,
     constants: &FrameConstants<'_>,
-    colors: &mut [[f32; 4]],
+    lit: &mut Lit,
 ) {
     simd.vectorize(
         #[inline(always)]
-        || shade_eight_inlined(simd, subject, material, eight, slots, facets, constants, colors),
+        || shade_eight_inlined(simd, subject, material, eight, slots, facets, constants, lit),
     );
 }
 
@@ -172,11 +192,12 @@ fn shade_eight_inlined<S: Simd>(
     slots: &Slots,
     facets: &FacetTable,
     constants: &FrameConstants<'_>,
-    colors: &mut [[f32; 4]],
+    lit: &mut Lit,
 ) {
     let (mesh, instance) = (subject.mesh, subject.instance);
     let surface = surface(simd, &facets.records, slots);
-    let looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
+    let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
+    looks.let_through(simd, &surface, material, constants);
 
     let lighting = Lighting {
         lights: &constants.lights,
@@ -222,10 +243,21 @@ fn shade_eight_inlined<S: Simd>(
         Model::Constant(_) => V3::splat(looks.alpha, [0.0; 3]),
         _ => looks.emission,
     };
-    let color = (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha);
+    let mut color = (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha);
+    if constants.transparency == Transparency::Filtered && material.blend {
+        color = (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage);
+        let passes = filtered::passes(looks.coverage, looks.kt, material.material.filter);
+        let soa = [passes.x.to_array(), passes.y.to_array(), passes.z.to_array()];
+        for (lane, &p) in eight.iter().enumerate() {
+            lit.passes[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane]];
+        }
+    } else if constants.transparency == Transparency::Filtered {
+        let gap = linear::opacity(looks.alpha).to_array();
+        eight.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
+    }
     let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
     for (lane, &p) in eight.iter().enumerate() {
-        colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
+        lit.colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
     }
 }
 
@@ -243,6 +275,11 @@ struct Looks<S: Simd> {
     roughness_factor: F<S>,
     /// How much of the ambient light arrives.
     occlusion: F<S>,
+    /// How much of the point textures and vertex colours leave of the surface.
+    coverage: F<S>,
+    /// Transmission of the surface where it is.
+    kt: F<S>,
+    /// Opacity, both together.
     alpha: F<S>,
 }
 
@@ -291,7 +328,11 @@ impl<S: Simd> Looks<S> {
         if let Some(t) = lookup(&material.opacity) {
             alpha *= t[0];
         }
-        let alpha = lanes::Lanes::saturate(alpha * material.material.opacity);
+        // Only blended surfaces have degrees of opacity; Kay's model changes it later.
+        let opacity = material.material.opacity;
+        let coverage = lanes::Lanes::saturate(alpha);
+        let kt = constant(simd, if material.blend { linear::opacity(opacity) } else { 0.0 });
+        let alpha = lanes::Lanes::saturate(alpha * opacity);
         let alpha = match (material.cutoff, material.blend) {
             (Some(cutoff), _) => {
                 let gone = lanes::Lanes::lt(alpha, constant(simd, cutoff));
@@ -325,8 +366,30 @@ impl<S: Simd> Looks<S> {
             metallic_factor,
             roughness_factor,
             occlusion,
+            coverage,
+            kt,
             alpha,
         }
+    }
+
+    /// Kay's model: how much light a blended surface lets through depends on how it is turned.
+    #[inline(always)]
+    fn let_through(
+        &mut self,
+        simd: S,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        constants: &FrameConstants<'_>,
+    ) {
+        if constants.transparency != Transparency::Kay || !material.blend {
+            return;
+        }
+        let flat = constants.shading == Shading::Flat;
+        let n = if flat { surface.facet_normal } else { phong::interpolated_normal(surface) };
+        let least = constant(simd, constants.kay.least);
+        let least = lanes::Lanes::min(least, self.kt);
+        self.kt = kay::transmission(least, self.kt, n.z, constant(simd, constants.kay.exponent));
+        self.alpha = self.coverage * linear::opacity(self.kt);
     }
 
     /// The surface's own colour.

@@ -28,8 +28,9 @@ use facets::FacetTable;
 use points::Points;
 use std::sync::Mutex;
 use vitral_math::lanes::{Level, dispatch};
-use vitral_raster::{Layer, TILE_PIXELS, Tile};
+use vitral_raster::{LayerList, TILE_PIXELS, Tile};
 
+use crate::Transparency;
 use crate::marks::MarkColors;
 use crate::stats::PictureCounters;
 use crate::visible::TileSink;
@@ -50,7 +51,7 @@ pub(crate) struct ColorSink<'a> {
 struct Scratch {
     points: Points,
     facets: FacetTable,
-    colors: Vec<[f32; 4]>,
+    lit: group::Lit,
     composer: Composer,
 }
 
@@ -77,22 +78,22 @@ impl<'a> ColorSink<'a> {
 }
 
 impl TileSink for ColorSink<'_> {
-    fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>) {
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
-        let Scratch { points, facets, colors, composer } = &mut scratch;
+        let Scratch { points, facets, lit, composer } = &mut scratch;
         let constants = self.constants;
         points.collect(tile, layers, constants, self.marks);
-        colors.clear();
-        colors.resize(points.len(), [0.0; 4]);
-        dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, colors));
+        lit.reset(points.len(), constants.transparency == Transparency::Filtered);
+        dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
         let mut picture = vec![[0; 4]; TILE_PIXELS];
-        dispatch!(self.level, simd => composer.compose(simd, tile, points, colors, constants, self.marks, &mut picture));
+        dispatch!(self.level, simd => composer.compose(simd, tile, points, lit, constants, self.marks, &mut picture));
         *self.tiles[index].lock().expect("tile picture") = picture;
         let counters = PictureCounters {
             pixels: 0,
             covered_pixels: points.covered_pixels,
             shaded_points: points.len() as u64,
             layer_samples: layers.len() as u64,
+            lost_layers: layers.lost(),
         };
         self.counters.lock().expect("counters").add(&counters);
         self.spare.lock().expect("spare scratch").push(scratch);

@@ -15,8 +15,11 @@ pub(crate) struct Points {
     pub pixels: Vec<Pixel>,
     /// The points of the samples of mixed pixels, or [`NO_POINT`].
     pub mixed: Vec<u32>,
-    /// Layers sorted by pixel and sample, at each sample from far to near.
-    pub layers: Vec<LayerPoint>,
+    /// Layers, facet by facet in each pixel, in the order of the scene.
+    pub fragments: Vec<FragmentPoint>,
+    /// Their depths, sample by sample.
+    pub depths: Vec<f32>,
+    layers: Vec<LayerPoint>,
     /// Points in the order of their groups.
     pub order: Vec<u32>,
     /// Runs of `order` with one object and material.
@@ -50,12 +53,31 @@ pub(crate) enum Source {
 }
 
 /// A layer at a sample.
-#[derive(Clone, Copy)]
-pub(crate) struct LayerPoint {
-    /// `pixel * samples + sample`.
-    pub sample: u32,
+#[derive(Clone, Copy, Default)]
+struct LayerPoint {
+    pixel: u32,
+    sample: u32,
     depth: f32,
     facet: u32,
+}
+
+impl LayerPoint {
+    fn key(&self) -> u64 {
+        u64::from(self.pixel) << 36 | u64::from(self.facet) << 4 | u64::from(self.sample)
+    }
+}
+
+/// A facet in a pixel, in front of its opaque samples.
+#[derive(Clone, Copy)]
+pub(crate) struct FragmentPoint {
+    /// The pixel's number in the tile.
+    pub pixel: u32,
+    /// The facet.
+    pub facet: u32,
+    /// Which samples it covers.
+    pub mask: u32,
+    /// Its depth at each of them, from this place in [`Points::depths`].
+    pub start: u32,
     /// Index of a point, or of a mark.
     pub source: u32,
     /// It is a line or a point of the model, not a surface.
@@ -91,6 +113,8 @@ impl Points {
         self.facet.clear();
         self.place.clear();
         self.layers.clear();
+        self.fragments.clear();
+        self.depths.clear();
         self.pixels.clear();
         self.mixed.clear();
         if tile.touched {
@@ -152,42 +176,70 @@ impl Points {
     }
 
     fn collect_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>, marks: &MarkColors) {
-        let samples = constants.view.pattern.len();
-        let (width, height) = visible_part(tile, constants);
-        self.layers.extend(layers.iter().filter_map(|l| {
-            let (sample, pixel) = (l.at as usize / TILE_PIXELS, l.at as usize % TILE_PIXELS);
-            let inside = pixel % TILE < width && pixel / TILE < height;
-            let sample = (pixel * samples + sample) as u32;
-            let mark = marks.index(l.facet);
-            let source = mark.unwrap_or(NO_POINT);
-            inside.then_some(LayerPoint { sample, depth: l.depth, facet: l.facet, source, is_mark: mark.is_some() })
-        }));
-
-        // One point for each facet in a pixel.
-        let key = |l: &LayerPoint| (l.sample / samples as u32, l.facet, l.sample);
-        self.layers.sort_unstable_by_key(key);
+        self.sort_layers(tile, layers, constants);
+        // A clipped facet's pieces may both touch a sample on their common border: keep the nearer.
+        self.layers.dedup_by(|second, first| {
+            let same = second.key() == first.key();
+            if same {
+                first.depth = first.depth.max(second.depth);
+            }
+            same
+        });
         let mut i = 0;
         while i < self.layers.len() {
-            let (pixel, facet) = (self.layers[i].sample / samples as u32, self.layers[i].facet);
-            let same = |l: &LayerPoint| l.sample / samples as u32 == pixel && l.facet == facet;
-            let end = i + self.layers[i..].iter().take_while(|l| same(l)).count();
-            if !self.layers[i].is_mark {
-                let mask = self.layers[i..end].iter().fold(0, |m, l| m | 1 << (l.sample as usize % samples));
+            // One point for each facet in a pixel.
+            let LayerPoint { pixel, facet, .. } = self.layers[i];
+            let same = |l: &&LayerPoint| l.pixel == pixel && l.facet == facet;
+            let (start, mut mask) = (self.depths.len() as u32, 0);
+            for layer in self.layers[i..].iter().take_while(same) {
+                mask |= 1 << layer.sample;
+                self.depths.push(layer.depth);
+                i += 1;
+            }
+            let mark = marks.index(facet);
+            let source = mark.unwrap_or_else(|| {
                 let (x, y) = (pixel as usize % TILE, pixel as usize / TILE);
                 let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                let point = self.push(facet, middle(place, mask, constants));
-                self.layers[i..end].iter_mut().for_each(|l| l.source = point);
-            }
-            i = end;
+                self.push(facet, middle(place, mask, constants))
+            });
+            self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark: mark.is_some() });
         }
+    }
 
-        // From far to near at each sample; of equal depths the lower facet is in front.
-        let order = |a: &LayerPoint, b: &LayerPoint| {
-            (a.sample.cmp(&b.sample)).then(a.depth.total_cmp(&b.depth)).then(b.facet.cmp(&a.facet))
-        };
-        self.layers.sort_unstable_by(order);
-        // A clipped facet's pieces may both touch a sample on their common border: keep one.
-        self.layers.dedup_by_key(|l| (l.sample, l.facet));
+    /// Layers pixel by pixel, facet by facet, sample by sample. A counting sort by pixel leaves each pixel's in the order
+    /// in which they came, which mostly is that of the scene: little is left to sort.
+    fn sort_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>) {
+        let (width, height) = visible_part(tile, constants);
+        let pixel_of = |l: &Layer| l.at as usize % TILE_PIXELS;
+        let inside = |pixel: usize| pixel % TILE < width && pixel / TILE < height;
+        let starts = &mut self.starts;
+        starts.clear();
+        starts.resize(TILE_PIXELS + 1, 0);
+        for pixel in layers.iter().map(pixel_of).filter(|&p| inside(p)) {
+            starts[pixel + 1] += 1;
+        }
+        for pixel in 0..TILE_PIXELS {
+            starts[pixel + 1] += starts[pixel];
+        }
+        self.layers.clear();
+        self.layers.resize(starts[TILE_PIXELS] as usize, LayerPoint::default());
+        for layer in layers {
+            let (sample, pixel) = (layer.at / TILE_PIXELS as u32, pixel_of(layer));
+            if inside(pixel) {
+                self.layers[starts[pixel] as usize] =
+                    LayerPoint { pixel: pixel as u32, sample, depth: layer.depth, facet: layer.facet };
+                starts[pixel] += 1;
+            }
+        }
+        // Each start has moved to the end of its pixel.
+        let mut start = 0;
+        for &end in &starts[..TILE_PIXELS] {
+            let end = end as usize;
+            if end > start + 1 {
+                self.layers[start..end].sort_unstable_by_key(LayerPoint::key);
+            }
+            start = end;
+        }
     }
 
     fn push(&mut self, facet: u32, place: [f32; 2]) -> u32 {

@@ -18,7 +18,7 @@ use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::dispatch;
-use vitral_raster::{Batch, Layer, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse};
+use vitral_raster::{Batch, Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse};
 
 /// Tests of a facet at a sample that are not refused: about an hour on one thread.
 pub const MOST_TESTS: u64 = 1 << 40;
@@ -46,7 +46,7 @@ impl VisibleSurface for BruteForce {
             if needed > MOST_TESTS {
                 return Err(Limit::Work { needed, limit: MOST_TESTS, stage: "brute force" });
             }
-            let look = |tile: &mut Tile, layers: &mut Vec<Layer>| look(view, &facets, tile, layers, execution);
+            let look = |tile: &mut Tile, layers: &mut LayerList| look(view, &facets, tile, layers, execution);
             resolved.counters = each_tile(view, marks, grid, execution, sink, look)?;
             Ok(resolved)
         })
@@ -60,20 +60,21 @@ pub(super) fn each_tile(
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,
-    look: impl Fn(&mut Tile, &mut Vec<Layer>) -> Result<VisibilityCounters, Limit> + Sync + Send,
+    look: impl Fn(&mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit> + Sync + Send,
 ) -> Result<VisibilityCounters, Limit> {
     let outcome = Mutex::new(Ok(VisibilityCounters::default()));
     execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
         if outcome.lock().expect("counters").is_err() {
             return;
         }
-        let (tile, mut layers) = (&mut tiles[0], Vec::new());
+        let (tile, mut layers) = (&mut tiles[0], view.layer_list());
         tile.clear();
         match look(tile, &mut layers) {
             Ok(counters) => {
                 if let Some(marks) = marks {
                     add_marks(view, marks, index, tile, &mut layers, execution);
                 }
+                layers.finish();
                 sink.tile(index, tile, &mut layers);
                 if let Ok(sum) = &mut *outcome.lock().expect("counters") {
                     sum.add(&counters);
@@ -91,7 +92,7 @@ fn add_marks(
     marks: &Batch,
     index: usize,
     tile: &Tile,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
     execution: &Execution,
 ) {
     dispatch!(execution.level, simd => {
@@ -113,7 +114,7 @@ fn look(
     view: &PreparedView<'_>,
     facets: &ScreenSetups,
     tile: &mut Tile,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
     execution: &Execution,
 ) -> Result<VisibilityCounters, Limit> {
     let (opaque, layered) = facets.setups.split_at(facets.opaque);

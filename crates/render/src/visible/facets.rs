@@ -108,9 +108,10 @@ impl<'v, 'a> Facets<'v, 'a> {
 
     /// Collects what lies in front of a tile's finished opaque samples, and hands the tile on.
     fn finish(&self, index: usize, tile: &mut Tile, marks: Option<&Batch>, sink: &dyn TileSink) {
-        let mut layers = Vec::new();
+        let mut layers = self.view.layer_list();
         let in_front = self.layered.iter().chain(marks).map(|batch| (true, batch));
         walk(self.execution.level, in_front, index, tile, &self.view.pattern, &mut layers);
+        layers.finish();
         sink.tile(index, tile, &mut layers);
     }
 }

@@ -18,12 +18,12 @@ pub(crate) use screen_setups::charged;
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
-use vitral_raster::{Batch, Layer, Tile, TileGrid};
+use vitral_raster::{Batch, LayerList, Tile, TileGrid};
 
 /// Takes tiles as they are finished, from any thread, each once.
 pub trait TileSink: Sync {
     /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
-    fn tile(&self, index: usize, tile: &Tile, layers: &mut Vec<Layer>);
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
 }
 
 /// Takes tiles and does nothing with them.
@@ -31,7 +31,7 @@ pub trait TileSink: Sync {
 pub struct Nowhere;
 
 impl TileSink for Nowhere {
-    fn tile(&self, _: usize, _: &Tile, _: &mut Vec<Layer>) {}
+    fn tile(&self, _: usize, _: &Tile, _: &mut LayerList) {}
 }
 
 /// What an algorithm did.

@@ -32,7 +32,7 @@ use crate::{Acceleration, Coherence, Execution, PreparedView};
 use eye::Eye;
 use std::sync::Mutex;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, Layer, Setup, Tile, TileGrid};
+use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
 
 /// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
 const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
@@ -97,7 +97,7 @@ impl Job<'_> {
         &self,
         grid: &mut TileGrid,
         structure: &T,
-        look: impl Fn(&Cast<'_, T>, &mut Tile, &mut Vec<Layer>) -> Result<VisibilityCounters, Limit> + Sync + Send,
+        look: impl Fn(&Cast<'_, T>, &mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit> + Sync + Send,
     ) -> Result<Resolved, Limit> {
         let (view, execution) = (self.view, self.execution);
         let mut resolved = Resolved::default();
@@ -110,7 +110,7 @@ impl Job<'_> {
             return Err(Limit::Work { needed: all, limit: MOST_TESTS, stage: "ray casting without a structure" });
         }
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;
-        let look = |tile: &mut Tile, layers: &mut Vec<Layer>| look(&cast, tile, layers);
+        let look = |tile: &mut Tile, layers: &mut LayerList| look(&cast, tile, layers);
         resolved.counters = each_tile(view, self.marks, grid, execution, self.sink, look)?;
         resolved.counters.tests_saved = all.saturating_sub(resolved.counters.triangle_tests);
         Ok(resolved)

@@ -22,8 +22,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, BlockSink, Draw, Layer, LayerSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink,
-    transform, traverse,
+    Batch, BlockSink, Draw, LayerList, LayerSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid,
+    VisibilitySink, transform, traverse,
 };
 
 /// Triangles in one piece of work.
@@ -64,7 +64,7 @@ impl VisibleSurface for ZBuffer {
         let jobs = jobs(view);
         let rounds = rounds(&jobs);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
-        let layers: Vec<Mutex<Vec<Layer>>> = grid.tiles.iter().map(|_| Mutex::default()).collect();
+        let layers: Vec<_> = grid.tiles.iter().map(|_| Mutex::new(view.layer_list())).collect();
         // How many facets cover each pixel, for who looks on.
         let watched = if execution.observer.is_some() { grid.tiles.len() } else { 0 };
         let costs: Vec<Mutex<Vec<u32>>> = (0..watched).map(|_| Mutex::default()).collect();
@@ -98,6 +98,7 @@ impl VisibleSurface for ZBuffer {
                     if execution.observer.is_some() {
                         tell_tile(view, &costs[index], execution, tile);
                     }
+                    layers.finish();
                     sink.tile(index, tile, &mut layers);
                 }
             });
@@ -240,7 +241,7 @@ pub(super) fn walk<'b>(
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
 ) {
     let place = (tile.x, tile.y);
     dispatch!(level, simd => {

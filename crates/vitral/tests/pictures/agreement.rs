@@ -7,7 +7,7 @@ use crate::traps;
 use std::sync::Mutex;
 use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::{DVec3, func};
-use vitral::raster::{Layer, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
+use vitral::raster::{LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
 use vitral::render::PreparedView;
 use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
@@ -135,7 +135,7 @@ struct Keep {
 }
 
 impl TileSink for Keep {
-    fn tile(&self, index: usize, _: &Tile, layers: &mut Vec<Layer>) {
+    fn tile(&self, index: usize, _: &Tile, layers: &mut LayerList) {
         self.tiles.lock().unwrap()[index] += 1;
         self.layers.lock().unwrap().extend(layers.iter().map(|l| [index as u32, l.at, l.facet, l.depth.to_bits()]));
     }

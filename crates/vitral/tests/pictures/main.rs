@@ -7,4 +7,5 @@ mod determinism;
 mod interpolation;
 mod lighting;
 mod robust;
+mod transparency;
 mod traps;

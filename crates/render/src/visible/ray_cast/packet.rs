@@ -19,7 +19,7 @@ use crate::visible::brute_force::size_in_picture;
 use crate::visible::facets::extent;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
-use vitral_raster::{BLOCK, Layer, LayerSink, SUBPIXEL, TILE, Tile, VisibilitySink, traverse_block};
+use vitral_raster::{BLOCK, LayerList, LayerSink, SUBPIXEL, TILE, Tile, VisibilitySink, traverse_block};
 
 /// The opaque facets of a block.
 struct Opaque<'a, S, T> {
@@ -39,7 +39,7 @@ struct Layers<'a, S, T> {
     cast: &'a Cast<'a, T>,
     tile: &'a Tile,
     block: (usize, usize),
-    layers: &'a mut Vec<Layer>,
+    layers: &'a mut LayerList,
     stamps: &'a mut Stamps,
     tests: u64,
 }
@@ -122,7 +122,7 @@ impl<S: Simd, T: Structure> Visitor for Layers<'_, S, T> {
 pub(super) fn look<T: Tree>(
     cast: &Cast<'_, T>,
     tile: &mut Tile,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
     let mut stamps = cast.take_stamps();
@@ -156,7 +156,7 @@ fn look_at_block<S: Simd, T: Tree>(
     cast: &Cast<'_, T>,
     tile: &mut Tile,
     block: (usize, usize),
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
     stamps: &mut Stamps,
 ) -> [u64; 2] {
     // The pyramid round the block's samples.

@@ -15,7 +15,7 @@ use crate::trace::Step;
 use crate::visible::brute_force::size_in_picture;
 use crate::visible::facets::nearer;
 use vitral_exec::Limit;
-use vitral_raster::{Layer, NO_FACET, SUBPIXEL, TILE, TILE_PIXELS, Tile};
+use vitral_raster::{Layer, LayerList, NO_FACET, SUBPIXEL, TILE, TILE_PIXELS, Tile};
 
 /// What the ray through one sample has met.
 struct Search<'a, T> {
@@ -78,7 +78,7 @@ impl<T: Structure> Visitor for Search<'_, T> {
 pub(super) fn look<T: Structure>(
     cast: &Cast<'_, T>,
     tile: &mut Tile,
-    layers: &mut Vec<Layer>,
+    layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
     let (background, none) = ((0.0, NO_FACET), [NONE; 2]);
@@ -114,7 +114,7 @@ pub(super) fn look<T: Structure>(
                 tile.touched |= search.nearest.1 != NO_FACET;
                 let nearest = search.nearest;
                 let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
-                layers.extend(seen.map(|(depth, facet)| Layer { at: at as u32, depth, facet }));
+                seen.for_each(|(depth, facet)| layers.push(Layer { at: at as u32, depth, facet }));
             }
             let (rays, boxes) = (pattern.len() as u64, counters.box_tests - before_pixel.0);
             let facets = search.tests - before_pixel.1;

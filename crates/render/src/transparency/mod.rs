@@ -1,0 +1,133 @@
+//! How transparent surfaces are combined with what is behind them.
+//!
+//! Two choices, independent of each other and of everything else. A *model* says how much light a surface lets through:
+//! [`linear`], [`kay`], [`filtered`]. An *order* says how the surfaces in front of a pixel are laid over each other: by
+//! [`a_buffer`], [`sorted`], [`multi_pass`] exactly, by [`two_buffer`] and [`submission`] with the errors for which
+//! they are known. [`registry`] lists both.
+//!
+//! A visibility algorithm resolves the opaque surfaces and hands on every transparent facet that lies in front of them;
+//! all algorithms hand on the same ones, so each model and each order works with each of them. The facets of a pixel
+//! become [`Fragment`]s; the orders take these in the order of the scene (that in which triangles were submitted).
+
+pub mod a_buffer;
+pub mod filtered;
+pub mod kay;
+pub mod linear;
+pub mod multi_pass;
+pub mod registry;
+pub mod sorted;
+pub mod submission;
+pub mod two_buffer;
+
+use std::cmp::Ordering;
+
+/// Most samples a pixel.
+pub const MOST_SAMPLES: usize = 16;
+
+/// Lays a pixel's fragments, in the order of the scene, over the colours of its samples.
+pub type Lay = fn(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]);
+
+/// A facet in a pixel, in front of what is opaque there.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment<'a> {
+    /// The facet; of equal depths the lower one is in front.
+    pub facet: u32,
+    /// The samples that it covers, one bit each.
+    pub mask: u32,
+    /// Its depth at each of them, 1 near.
+    pub depths: &'a [f32],
+    /// Its own light, premultiplied, and its opacity.
+    pub color: [f32; 4],
+    /// The part of the light from behind that passes.
+    pub passes: [f32; 3],
+}
+
+impl Fragment<'_> {
+    /// Whether it covers a sample.
+    #[inline]
+    pub fn covers(&self, sample: usize) -> bool {
+        self.mask >> sample & 1 == 1
+    }
+
+    /// Depth at a sample that it covers.
+    #[inline]
+    pub fn depth(&self, sample: usize) -> f32 {
+        let before = self.mask & ((1u32 << sample) - 1);
+        self.depths[before.count_ones() as usize]
+    }
+
+    /// Whether nothing can be seen through it.
+    pub fn is_opaque(&self) -> bool {
+        self.color[3] >= 1.0 && self.passes == [0.0; 3]
+    }
+
+    /// Lays it over a colour: `I = I1 + t I2`, both premultiplied.
+    #[inline]
+    pub fn over(&self, below: &mut [f32; 4]) {
+        for k in 0..3 {
+            below[k] = self.color[k] + self.passes[k] * below[k];
+        }
+        below[3] = self.color[3] + (1.0 - self.color[3]) * below[3];
+    }
+
+    /// From far to near at a sample that both cover.
+    #[inline]
+    fn far_to_near(&self, other: &Self, sample: usize) -> Ordering {
+        self.depth(sample).total_cmp(&other.depth(sample)).then(other.facet.cmp(&self.facet))
+    }
+}
+
+/// The fragments that cover `sample`, in the order of the scene, without the ones that an opaque one hides (cut-outs,
+/// lines); the opaque one becomes the colour behind. For the orders that know nothing but one transparent buffer.
+fn in_front_of_opaque<'f, 'a>(
+    fragments: &'f [Fragment<'a>],
+    sample: usize,
+    below: &mut [f32; 4],
+) -> impl Iterator<Item = &'f Fragment<'a>> + use<'f, 'a> {
+    let here = move |f: &&Fragment<'_>| f.covers(sample);
+    let opaque = fragments.iter().filter(here).filter(|f| f.is_opaque());
+    let nearest = opaque.max_by(|a, b| a.far_to_near(b, sample));
+    if let Some(nearest) = nearest {
+        *below = nearest.color;
+    }
+    let hidden = move |f: &Fragment<'_>| nearest.is_some_and(|n| f.far_to_near(n, sample) != Ordering::Greater);
+    fragments.iter().filter(here).filter(move |f| !hidden(f))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A grey pane with transmission `kt` that covers one sample.
+    pub(crate) fn pane(facet: u32, depth: &[f32], grey: f32, kt: f32) -> Fragment<'_> {
+        let own = grey * (1.0 - kt);
+        Fragment { facet, mask: 1, depths: depth, color: [own, own, own, 1.0 - kt], passes: [kt; 3] }
+    }
+
+    /// What an order makes of fragments over grey in one sample.
+    pub(crate) fn laid(lay: Lay, fragments: &[Fragment<'_>], background: f32) -> f32 {
+        let mut samples = [[background, background, background, 1.0]];
+        lay(fragments, &mut samples);
+        assert!((samples[0][3] - 1.0).abs() < 1e-6, "opaque stays opaque");
+        samples[0][0]
+    }
+
+    #[test]
+    fn t6_f3_linear_transparency_mixes_exactly() {
+        // I = (1 - kt) I1 + kt I2 with I1 = 0.8 in front, I2 = 0.4 behind, in every order.
+        for (kt, expected) in [(0.0, 0.8), (1.0, 0.4), (0.25, 0.75 * 0.8 + 0.25 * 0.4)] {
+            for order in registry::ORDERS {
+                let got = laid(order.lay, &[pane(0, &[0.5], 0.8, kt)], 0.4);
+                assert!((got - expected).abs() < 1e-6, "{}, kt {kt}: {got}", order.name);
+            }
+        }
+    }
+
+    #[test]
+    fn opaque_fragments_hide_what_is_behind() {
+        let fragments = [pane(0, &[0.2], 1.0, 0.5), pane(1, &[0.5], 0.3, 0.0), pane(2, &[0.7], 1.0, 0.5)];
+        let mut below = [0.0; 4];
+        let seen: Vec<_> = in_front_of_opaque(&fragments, 0, &mut below).map(|f| f.facet).collect();
+        assert_eq!((seen, below), (vec![2], [0.3, 0.3, 0.3, 1.0]));
+    }
+}

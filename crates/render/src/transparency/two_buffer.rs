@@ -1,0 +1,60 @@
+//! The two-buffer z-buffer of the course notes: opaque surfaces in one buffer, all transparent ones together in another.
+//!
+//! First the opaque surfaces are drawn; transparent ones go to a list. Then each of these that is nearer than the
+//! z-buffer is added to a second buffer with a coefficient and an intensity, in the order of the list:
+//! `k' = 1 - (1 - k) (1 - kc)`, `I' = k I + kc Ic`, with `kc = 1 - kt` of the surface. At last the two are combined,
+//! `I + (1 - k) I_opaque`. There is no sorting, and depths of transparent surfaces are not kept. One layer is exact.
+//! Beyond that the order of the list shows, and what was there before is weighed once more with its own
+//! coefficient: two layers give `k1² I1 + k2 I2 + (1 - k1) (1 - k2) I_opaque` (COURSE.md, E3).
+//!
+//! In:   fragments of a pixel in the order of the scene. Out: its samples.
+//! Cost: linear; memory: one colour and coefficient a sample.
+//! Source: course notes F; \[Foley et al. 1990\], 16.5.1. The notes' `f` is left open; here it is that of two filters.
+
+use super::{Fragment, in_front_of_opaque};
+
+/// See the module.
+pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
+    for (s, opaque) in samples.iter_mut().enumerate() {
+        // What passes has three channels, for the sake of filters; k = 1 - passes.
+        let (mut light, mut passes, mut alpha) = ([0.0; 3], [1.0; 3], 0.0);
+        let mut below = *opaque;
+        for fragment in in_front_of_opaque(fragments, s, &mut below) {
+            for k in 0..3 {
+                light[k] = (1.0 - passes[k]) * light[k] + fragment.color[k];
+                passes[k] *= fragment.passes[k];
+            }
+            alpha = 1.0 - (1.0 - alpha) * (1.0 - fragment.color[3]);
+        }
+        for k in 0..3 {
+            opaque[k] = light[k] + passes[k] * below[k];
+        }
+        opaque[3] = alpha + (1.0 - alpha) * below[3];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{laid, pane};
+    use super::*;
+
+    #[test]
+    fn f8_e3_one_layer_is_exact_and_two_show_the_known_error() {
+        let (near, far) = (pane(1, &[0.9], 0.8, 0.25), pane(0, &[0.4], 0.6, 0.5));
+        assert!((laid(lay, &[near], 0.2) - (0.75 * 0.8 + 0.25 * 0.2)).abs() < 1e-6);
+        // Far first: k1 = 0.5, I1 = 0.6; then k2 = 0.75, I2 = 0.8.
+        let printed = 0.5 * 0.5 * 0.6 + 0.75 * 0.8 + 0.5 * 0.25 * 0.2;
+        let exact = 0.75 * 0.8 + 0.25 * (0.5 * 0.6 + 0.5 * 0.2);
+        let got = laid(lay, &[far, near], 0.2);
+        assert!((got - printed).abs() < 1e-6 && (got - exact).abs() > 0.05, "{got}, exact {exact}");
+        // The other way round it is another picture.
+        let turned = 0.75 * 0.75 * 0.8 + 0.5 * 0.6 + 0.5 * 0.25 * 0.2;
+        assert!((laid(lay, &[near, far], 0.2) - turned).abs() < 1e-6);
+    }
+
+    #[test]
+    fn f7_opaque_fragments_belong_to_the_first_buffer() {
+        let (line, pane) = (pane(0, &[0.5], 0.3, 0.0), pane(1, &[0.7], 1.0, 0.5));
+        assert!((laid(lay, &[line, pane], 0.9) - 0.65).abs() < 1e-6);
+    }
+}

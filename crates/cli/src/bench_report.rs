@@ -27,6 +27,14 @@ struct Step {
     rows: Vec<Row>,
 }
 
+fn polygons(step: &Step) -> u32 {
+    step.polygons
+}
+
+fn pixels(step: &Step) -> u32 {
+    step.pixels
+}
+
 /// Measures, and writes the report and its plots into `folder`.
 pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> Result<u8, Failure> {
     let over_polygons = POLYGONS.iter().map(|&n| step(args, execution, n, PIXELS[2]));
@@ -34,8 +42,6 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
     let over_pixels = PIXELS.iter().map(|&p| step(args, execution, POLYGONS[1], p));
     let over_pixels = over_pixels.collect::<Result<Vec<_>, _>>()?;
 
-    let polygons: fn(&Step) -> u32 = |s| s.polygons;
-    let pixels: fn(&Step) -> u32 = |s| s.pixels;
     let first = svg("A built scene, more and more polygons", "polygons", &curves(&over_polygons, polygons));
     let second = svg("The same polygons, more and more pixels", "pixels", &curves(&over_pixels, pixels));
     let write = |name: &str, text: &str| vitral::picture::write(folder.join(name), text.as_bytes());
@@ -118,7 +124,6 @@ fn memory(step: &Step) -> String {
 fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pixels: &[Step]) -> String {
     let threads = execution.workers.threads();
     let [width, height] = PIXELS[2];
-    let (polygons, pixels): (fn(&Step) -> u32, fn(&Step) -> u32) = (|s| s.polygons, |s| s.pixels);
     format!(
         "# Image precision and object precision, measured\n\n\
          Written by `vitral bench --report docs --threads {threads} --frames {frames} --time-limit {limit}`, and not by hand.\n\n\

@@ -603,8 +603,8 @@ mod tests {
     #[test]
     fn p22_the_halves_add_up() {
         let triangles = [FLAT.map(DVec3::from_array)];
-        let budget = Budget::default();
-        let mut builder = Builder::new(&triangles, &budget);
+        let execution = Execution::default();
+        let mut builder = Builder::new(&triangles, &execution);
         builder.points.extend(triangles[0]);
         let part = Part { facet: 0, cuts: NONE, first: 0, count: 3 };
         let mut parts = vec![part];

@@ -20,14 +20,19 @@ const POLYGONS: [usize; 4] = [512, 2048, 8192, 32_768];
 /// Width and height, with [`POLYGONS`] of the second size.
 const PIXELS: [[u32; 2]; 4] = [[80, 60], [160, 120], [320, 240], [640, 480]];
 
-/// A number of a step.
-type Number = fn(&Step) -> u32;
-
 /// What was measured at one size.
 struct Step {
     polygons: u32,
     pixels: u32,
     rows: Vec<Row>,
+}
+
+fn polygons(step: &Step) -> u32 {
+    step.polygons
+}
+
+fn pixels(step: &Step) -> u32 {
+    step.pixels
 }
 
 /// Measures, and writes the report and its plots into `folder`.
@@ -37,8 +42,6 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
     let over_pixels = PIXELS.iter().map(|&p| step(args, execution, POLYGONS[1], p));
     let over_pixels = over_pixels.collect::<Result<Vec<_>, _>>()?;
 
-    let polygons: fn(&Step) -> u32 = |s| s.polygons;
-    let pixels: fn(&Step) -> u32 = |s| s.pixels;
     let first = svg("A built scene, more and more polygons", "polygons", &curves(&over_polygons, polygons));
     let second = svg("The same polygons, more and more pixels", "pixels", &curves(&over_pixels, pixels));
     let write = |name: &str, text: &str| vitral::picture::write(folder.join(name), text.as_bytes());
@@ -121,7 +124,6 @@ fn memory(step: &Step) -> String {
 fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pixels: &[Step]) -> String {
     let threads = execution.workers.threads();
     let [width, height] = PIXELS[2];
-    let (polygons, pixels): (Number, Number) = (|s| s.polygons, |s| s.pixels);
     format!(
         "# Image precision and object precision, measured\n\n\
          Written by `vitral bench --report docs --threads {threads} --frames {frames} --time-limit {limit}`, and not by hand.\n\n\

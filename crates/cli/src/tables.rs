@@ -21,12 +21,16 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|a| json!({"name": a.name, "description": a.description, "source": a.source}))
             .collect();
+        let shadows: Vec<_> = registry::SHADOWS
+            .iter()
+            .map(|s| json!({"name": s.name, "description": s.description, "source": s.source}))
+            .collect();
         let illumination: Vec<_> =
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
         let shading: Vec<_> =
             Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what})).collect();
-        let all = json!({"visibility": visibility, "acceleration": acceleration, "illumination": illumination,
-            "shading": shading});
+        let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows,
+            "illumination": illumination, "shading": shading});
         return report::print_json(&all).map(|()| 0);
     }
     let mut text = String::from("Visible surfaces (--visibility)\n");
@@ -36,6 +40,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nStructures for rays (--acceleration)\n");
     for a in registry::ACCELERATION {
         let _ = writeln!(text, "  {:<14} {} ({})", a.name, a.description, a.source);
+    }
+    text.push_str("\nShadows (--shadows)\n");
+    for s in registry::SHADOWS {
+        let _ = writeln!(text, "  {:<14} {} ({})", s.name, s.description, s.source);
     }
     text.push_str("\nIllumination (--illumination)\n");
     for m in Illumination::ALL {

@@ -5,26 +5,25 @@
 const VERBS: [&str; 4] = ["draw", "lab", "batch", "bench"];
 
 /// Options to come.
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 10] = [
     "--coherence",
     "--global",
     "--iterations",
-    "--light-samples",
     "--load-radiosity",
     "--max-depth",
     "--panels",
     "--patch-size",
     "--pixel",
     "--save-radiosity",
-    "--shadows",
     "--trace",
 ];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 3] = [
+const VALUES: [(&str, &[&str]); 4] = [
     ("--transparency", &["kay"]),
     ("--transparency-order", &["a-buffer", "multi-pass", "two-buffer", "submission"]),
-    ("--channel", &["attached-shadow", "cast-shadow", "steps"]),
+    ("--shadows", &["volume", "scan-line", "object-precision"]),
+    ("--channel", &["steps"]),
 ];
 
 /// Whether this verb is to come.

@@ -21,6 +21,10 @@ pub struct Frame {
     pub material: Option<Plane<u32>>,
     /// Unit shading normal in world space, facing the viewer; zero on the background.
     pub normal: Option<Plane<[f32; 3]>>,
+    /// Share of the lights (ambient ones apart) from which the surface faces away, `0..=1`; 0 on the background.
+    pub attached_shadow: Option<Plane<f32>>,
+    /// Share of these lights that something else hides from a surface that faces them, `0..=1`.
+    pub cast_shadow: Option<Plane<f32>>,
 }
 
 impl Frame {

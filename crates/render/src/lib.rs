@@ -14,6 +14,7 @@ pub mod registry;
 mod session;
 mod settings;
 pub mod shading;
+pub mod shadow;
 pub mod stats;
 pub mod visible;
 

@@ -34,7 +34,16 @@ pub(crate) fn one(mut mesh: Mesh, material: Material) -> Scene {
 
 /// Asks for every plane.
 pub(crate) fn all_channels() -> Channels {
-    Channels { color: true, depth: true, surface: true, object: true, material: true, normal: true }
+    Channels {
+        color: true,
+        depth: true,
+        surface: true,
+        object: true,
+        material: true,
+        normal: true,
+        attached_shadow: true,
+        cast_shadow: false,
+    }
 }
 
 /// The colour picture.

@@ -145,7 +145,7 @@ fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
         let which = [attached == 1.0, cast == 1.0, n != DVec3::ZERO && attached + cast == 0.0];
         (0..3).for_each(|k| counts[k] += usize::from(which[k]));
     }
-    assert!(counts.iter().all(|&c| c > 100), "{counts:?}");
+    assert!(counts.iter().all(|&c| c > 50), "{counts:?}");
 }
 
 #[test]
@@ -430,5 +430,61 @@ fn maps_are_kept_and_change_nothing() {
         let again = render(&mut used, &shot, &settings, &Execution::default()).unwrap().frame;
         let mut fresh = Session::new(Arc::new(scene.clone())).unwrap();
         assert!(again == render(&mut fresh, &shot, &settings, &Execution::default()).unwrap().frame, "view {view}");
+    }
+}
+
+/// Places all over the facets of a scene, world space.
+fn places_on(scene: &Scene) -> Vec<Place> {
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let mut places = Vec::new();
+    for instance in &session.world().instances {
+        for (facet, t) in (instance.first_facet..).zip(&instance.mesh.triangles) {
+            let [a, b, c] = t.map(|i| {
+                let [x, y, z] = instance.mesh.positions[i as usize].map(f64::from);
+                instance.world_from_model.transform_point3(dvec3(x, y, z))
+            });
+            let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
+            // Large facets get more places.
+            let side = ((b - a).cross(c - a).length().sqrt() * 24.0).clamp(2.0, 40.0) as u32;
+            for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
+                let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
+                places.push(Place { position: a + (b - a) * u + (c - a) * v, normal, facet, seed: 0 });
+            }
+        }
+    }
+    places
+}
+
+#[test]
+fn maps_differ_from_rays_only_near_edges_of_shadows() {
+    let (size, towards) = (512, dvec3(1.0, 2.0, -0.6).normalize());
+    let (x, y) = towards.any_orthonormal_pair();
+    for name in ["cubs", "scene0", "scene1"] {
+        let scene = builtin::scene(name).unwrap();
+        // The map's side is at most the scene's diagonal, less its border.
+        let diagonal = Session::new(Arc::new(scene.clone())).unwrap().world().bounds.diagonal();
+        let texel = diagonal / f64::from(size - 8);
+        let places = places_on(&scene);
+        let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
+            let settings = Settings { shadow_map_size: size, ..settings(algorithm) };
+            with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
+        };
+        let (rays, maps) = (ask("ray", &places), ask("map", &places));
+        let different: Vec<_> = (0..places.len()).filter(|&i| rays[i] != maps[i]).collect();
+        assert!(different.len() * 50 < places.len(), "{name}: {} of {}", different.len(), places.len());
+        // Somewhere within 1.5 texels the rays themselves change their mind.
+        let around = different.iter().flat_map(|&i| {
+            let place = places[i];
+            let slant = move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
+            (0..48).map(move |k| {
+                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * 0.3927);
+                let step = texel * 0.5 * f64::from(k % 3 + 1);
+                Place { position: place.position + slant((x * cos + y * sin) * step), ..place }
+            })
+        });
+        let near = ask("ray", &around.collect::<Vec<_>>());
+        for (&i, near) in different.iter().zip(near.chunks(48)) {
+            assert!(near.iter().any(|&n| n != rays[i]), "{name}: no edge near {:?}, lit {}", places[i], rays[i]);
+        }
     }
 }

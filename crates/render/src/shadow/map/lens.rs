@@ -85,7 +85,7 @@ impl Lens {
     fn new(mut camera: Camera, extent: [f64; 2], size: u32, world: &World, perspective: bool) -> Self {
         // Square texels, as many as fit.
         let longer = extent[0].max(extent[1]).max(1e-12);
-        let side = |e: f64| ((e / longer * f64::from(size)).ceil() as u32).clamp(1.min(size), size);
+        let side = |e: f64| ((e / longer * f64::from(size)).ceil() as u32).clamp(1, size);
         let (width, height) = (side(extent[0]), side(extent[1]));
         let texel = 2.0 * longer / (f64::from(size) - 2.0 * BORDER).max(1.0);
         let extent = [f64::from(width) * texel * 0.5, f64::from(height) * texel * 0.5];

@@ -157,11 +157,11 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| [(s, "ray"), (s, "map")]) {
         let settings = Settings { channels: data, shading: shading.0, ..settings(algorithm) };
         let execution = Execution::default();
-        let shaded = picture(&scene, &[light.clone()], &settings, &execution);
-        let unlit = picture(&scene, &[dark.clone()], &settings, &execution);
+        let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
+        let unlit = picture(&scene, std::slice::from_ref(&dark), &settings, &execution);
         let plain = picture(
             &scene,
-            &[light.clone()],
+            std::slice::from_ref(&light),
             &Settings { shadows: "none".to_owned(), channels: Channels::default(), ..settings },
             &execution,
         );
@@ -477,7 +477,7 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
             let place = places[i];
             let slant = move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
             (0..48).map(move |k| {
-                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * 0.3927);
+                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
                 let step = texel * 0.5 * f64::from(k % 3 + 1);
                 Place { position: place.position + slant((x * cos + y * sin) * step), ..place }
             })

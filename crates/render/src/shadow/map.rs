@@ -66,7 +66,7 @@ enum LightMaps {
     Unhindered,
     Infinity {
         towards: DVec3,
-        map: Map,
+        map: Box<Map>,
     },
     /// Each place of a light with its maps.
     Places(Vec<(DVec3, Vec<Map>)>),
@@ -143,7 +143,9 @@ impl LightMaps {
         };
         Ok(match Source::new(light, settings.light_samples, Triangles::center_of(world)) {
             Source::Unhindered => Self::Unhindered,
-            Source::Infinity(towards) => Self::Infinity { towards, map: draw(Lens::parallel(towards, world, size))? },
+            Source::Infinity(towards) => {
+                Self::Infinity { towards, map: Box::new(draw(Lens::parallel(towards, world, size))?) }
+            }
             Source::Point(at) => {
                 let lens = match light.kind {
                     LightKind::Spot { direction, cutoff, .. } => Lens::cone(at, direction, cutoff, world, size),

@@ -17,8 +17,11 @@ struct DepthSink<'a> {
     session: &'a Session,
     occluders: &'a Occluders<'a>,
     center: DVec3,
-    tiles: Vec<Mutex<(Vec<f32>, Vec<(u32, Layer)>)>>,
+    tiles: Vec<Mutex<Found>>,
 }
+
+/// Distances of a tile's texels, and its transparent things with their facets.
+type Found = (Vec<f32>, Vec<(u32, Layer)>);
 
 impl Map {
     pub(super) fn draw(

@@ -64,6 +64,11 @@ pub(crate) fn visibility() -> PossibleValuesParser {
     registry::VISIBILITY.iter().map(|a| PossibleValue::new(a.name).help(a.description)).collect::<Vec<_>>().into()
 }
 
+/// Names of the registered shadow algorithms.
+pub(crate) fn shadows() -> PossibleValuesParser {
+    registry::SHADOWS.iter().map(|s| PossibleValue::new(s.name).help(s.description)).collect::<Vec<_>>().into()
+}
+
 pub(crate) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
     of(&ACCELERATION)
 }

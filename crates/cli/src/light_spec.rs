@@ -48,7 +48,7 @@ pub(crate) fn parse(text: &str) -> Result<Light, String> {
     light.ambient = fields.take("ambient", intensity)?.unwrap_or([if is_ambient { 0.2 } else { 0.0 }; 3]);
     light.diffuse = fields.take("diffuse", intensity)?.unwrap_or([if is_ambient { 0.0 } else { 1.0 }; 3]);
     light.specular = fields.take("specular", intensity)?.unwrap_or(light.diffuse);
-    if let Some(shadow) = fields.take("shadow", shadow)? {
+    if let Some(shadow) = fields.take("shadow", switch)? {
         light.shadow = shadow;
     }
     fields.finish()?;
@@ -174,20 +174,13 @@ fn attenuation(text: &str) -> Result<Attenuation, String> {
     }
 }
 
-fn shadow(text: &str) -> Result<bool, String> {
-    match switch(text)? {
-        true => Err("there is no shadow algorithm yet".to_owned()),
-        false => Ok(false),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_example_of_the_contract() {
-        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1").unwrap();
+        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1,shadow=on").unwrap();
         assert_eq!(light.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
         assert_eq!(light.attenuation, Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 0.1 });
         assert_eq!((light.diffuse, light.specular, light.ambient), ([1.0; 3], [1.0; 3], [0.0; 3]));
@@ -225,7 +218,7 @@ mod tests {
             ("point:position=1,2,3,position=1,2,3", "`position` is given twice"),
             ("point:position=1,2,3,cutoff=3", "a light of kind `point` has no `cutoff`"),
             ("ambient:attenuation=none", "a light of kind `ambient` has no `attenuation`"),
-            ("point:position=1,2,3,shadow=on", "shadow: there is no shadow algorithm yet"),
+            ("point:position=1,2,3,shadow=maybe", "shadow: `maybe` is not one of on, off"),
             ("point:position=1,2,3,diffuse=-1", "diffuse: intensities of at least 0 are required"),
             ("spot:position=0,0,0,direction=0,0,1,cutoff=91", "cutoff: a half angle from 0 to 90 degrees is required"),
             ("directional:direction=0,0,0", "direction: a direction of some length is required"),

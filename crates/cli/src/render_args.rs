@@ -111,6 +111,12 @@ pub(crate) struct AlgorithmArgs {
     /// In which order they are combined [default: sorted]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
+    /// How shadows are found [default: none]
+    #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
+    pub(crate) shadows: Option<String>,
+    /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) light_samples: Option<u32>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,

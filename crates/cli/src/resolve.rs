@@ -50,7 +50,6 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
     }
-    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
 
     // Outputs decide which channels are rendered.
     let outputs = Output::pair(&args.output.output, &args.output.channel)?;
@@ -62,6 +61,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
         );
     }
+    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
     if args.report.json && outputs.iter().any(Output::is_standard) {
         return Err(Failure::usage("--json and --output - both want standard output"));
     }
@@ -139,6 +139,10 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
     settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
     settings.transparency = args.transparency.unwrap_or(settings.transparency);
     settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
+    if let Some(name) = &args.shadows {
+        settings.shadows.clone_from(name);
+    }
+    settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
     let lines = [
         (args.wireframe, Lines::Wireframe),
         (args.wireframe_hidden_line, Lines::WireframeHiddenLine),

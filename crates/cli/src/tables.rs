@@ -23,6 +23,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|a| json!({"name": a.name, "description": a.description, "source": a.source}))
             .collect();
+        let shadows: Vec<_> = registry::SHADOWS
+            .iter()
+            .map(|s| json!({"name": s.name, "description": s.description, "source": s.source}))
+            .collect();
         let illumination: Vec<_> =
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
         let shading: Vec<_> =
@@ -35,7 +39,7 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact}))
             .collect();
-        let all = json!({"visibility": visibility, "acceleration": acceleration, "illumination": illumination,
+        let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows, "illumination": illumination,
             "shading": shading, "transparency": models, "transparency-order": orders});
         return report::print_json(&all).map(|()| 0);
     }
@@ -51,6 +55,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nStructures for rays (--acceleration)\n");
     for a in registry::ACCELERATION {
         let _ = writeln!(text, "  {:<14} {} ({})", a.name, a.description, a.source);
+    }
+    text.push_str("\nShadows (--shadows)\n");
+    for s in registry::SHADOWS {
+        let _ = writeln!(text, "  {:<14} {} ({})", s.name, s.description, s.source);
     }
     text.push_str("\nIllumination (--illumination)\n");
     for m in Illumination::ALL {

@@ -5,20 +5,11 @@
 const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
 /// Options to come.
-const OPTIONS: [&str; 9] = [
-    "--global",
-    "--iterations",
-    "--light-samples",
-    "--load-radiosity",
-    "--max-depth",
-    "--panels",
-    "--patch-size",
-    "--save-radiosity",
-    "--shadows",
-];
+const OPTIONS: [&str; 7] =
+    ["--global", "--iterations", "--load-radiosity", "--max-depth", "--panels", "--patch-size", "--save-radiosity"];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 1] = [("--channel", &["attached-shadow", "cast-shadow"])];
+const VALUES: [(&str, &[&str]); 1] = [("--shadows", &["volume", "scan-line", "object-precision"])];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

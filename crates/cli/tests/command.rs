@@ -155,11 +155,11 @@ fn exit_codes() {
     let cases: [(&[&str], i32, &str); 15] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
-        (&["a.obj", "-o", "x.png", "--shadows", "map"], 2, "--shadows: this option is not there yet"),
-        (&["a.obj", "-o", "x.png", "--transparency", "kay"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--global", "radiosity"], 2, "--global: this option is not there yet"),
+        (&["a.obj", "-o", "x.png", "--shadows", "scan-line"], 2, "this choice is not there yet"),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
-        (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=on"], 2, "shadow"),
+        (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=maybe"], 2, "shadow"),
         (&["missing.obj", "-o", "x.png"], 3, "missing.obj: "),
         (&["bad.obj", "-o", "x.png"], 3, "bad.obj: line 2: "),
         (&["empty.stl", "-o", "x.png"], 3, "empty file"),
@@ -188,7 +188,7 @@ fn options_that_are_not_built_are_not_in_the_help() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
-    for unbuilt in ["--shadows", "--global", "--panels", "cast-shadow", "kay", "a-buffer"] {
+    for unbuilt in ["--global", "--panels", "object-precision", "--max-depth"] {
         assert!(!help.contains(unbuilt), "{unbuilt}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");

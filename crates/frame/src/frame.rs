@@ -23,6 +23,10 @@ pub struct Frame {
     pub normal: Option<Plane<[f32; 3]>>,
     /// The steps of the visibility algorithm over the picture, display colour.
     pub steps: Option<Plane<[u8; 4]>>,
+    /// Share of the lights (ambient ones apart) from which the surface faces away, `0..=1`; 0 on the background.
+    pub attached_shadow: Option<Plane<f32>>,
+    /// Share of these lights that something else hides from a surface that faces them, `0..=1`.
+    pub cast_shadow: Option<Plane<f32>>,
 }
 
 impl Frame {

@@ -15,6 +15,7 @@ pub mod registry;
 mod session;
 mod settings;
 pub mod shading;
+pub mod shadow;
 pub mod stats;
 pub mod trace;
 pub mod transparency;

@@ -5,7 +5,7 @@ use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameCons
 use crate::stats::Stats;
 use crate::trace::{Observer, picture::Recorder};
 use crate::visible::{Nowhere, charged};
-use crate::{Coherence, Error, Execution, PreparedView, Session, Settings, registry};
+use crate::{Coherence, Error, Execution, PreparedView, Session, Settings, registry, shadow};
 use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
 use vitral_frame::{Frame, Plane};
@@ -103,7 +103,9 @@ fn render_color(
     let t0 = clock();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
-    let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
+    let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
+    let constants =
+        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
     let t1 = clock();
     let (mark_batch, mark_colors) = marks::build(&view, settings, execution);
     let t2 = clock();
@@ -117,6 +119,7 @@ fn render_color(
     stats.picture = sink.counters();
     let pictures = sink.tiles;
     drop(constants);
+    drop(shadows);
     drop(view);
     session.grid = Some(grid);
     let resolved = resolved?;
@@ -134,7 +137,7 @@ fn render_color(
     Ok(())
 }
 
-/// Depth, ids and normals at pixel centres.
+/// Depth, ids, normals and shadows at pixel centres.
 fn render_data(
     session: &mut Session,
     shot: &Shot<'_>,
@@ -149,7 +152,9 @@ fn render_data(
     stats.cull = crate::stats::CullCounters::default();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
-    let constants = FrameConstants::new(&view, settings, shot.lights, shot.ambient, &tables, execution);
+    let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
+    let constants =
+        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
@@ -172,7 +177,14 @@ fn render_data(
     if wanted.normal {
         frame.normal = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.normal, workers));
     }
+    if wanted.attached_shadow {
+        frame.attached_shadow = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.attached_shadow, workers));
+    }
+    if wanted.cast_shadow {
+        frame.cast_shadow = Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.cast_shadow, workers));
+    }
     drop(constants);
+    drop(shadows);
     drop(view);
     session.grid = Some(grid);
     Ok(())

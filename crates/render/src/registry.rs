@@ -1,5 +1,6 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
+use crate::shadow::{ShadowAlgorithm, map::MapShadows, ray::RayShadows};
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
@@ -152,3 +153,42 @@ pub static ACCELERATION: &[AccelerationStructure] = &[
         value: Acceleration::None,
     },
 ];
+
+/// A way to find shadows.
+pub struct Shadowing {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub description: &'static str,
+    /// Key into the bibliography.
+    pub source: &'static str,
+    /// The code; `None` for no shadows.
+    pub algorithm: Option<&'static dyn ShadowAlgorithm>,
+}
+
+/// All shadow algorithms, the default first.
+pub static SHADOWS: &[Shadowing] = &[
+    Shadowing {
+        name: "none",
+        description: "every light reaches what faces it",
+        source: "Foley et al. 1990",
+        algorithm: None,
+    },
+    Shadowing {
+        name: "ray",
+        description: "a ray from every point to every light: the reference of the others",
+        source: "Appel 1968",
+        algorithm: Some(&RayShadows),
+    },
+    Shadowing {
+        name: "map",
+        description: "the z-buffer from the light, kept while lights and scene stay",
+        source: "Williams 1978",
+        algorithm: Some(&MapShadows),
+    },
+];
+
+/// A shadow algorithm by its name.
+pub fn shadows(name: &str) -> Option<&'static Shadowing> {
+    SHADOWS.iter().find(|s| s.name == name)
+}

@@ -9,6 +9,7 @@ use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::FaceTable;
+use crate::shadow;
 use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -63,6 +64,7 @@ pub struct Session {
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
+    pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
 }
 
 /// What is made when it is first asked for, and then kept.
@@ -131,6 +133,7 @@ impl Session {
             bvh: Mutex::default(),
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
+            shadow_maps: Mutex::default(),
         })
     }
 

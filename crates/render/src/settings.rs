@@ -27,6 +27,12 @@ pub struct Settings {
     pub illumination: Illumination,
     /// Where illumination is computed.
     pub shading: Shading,
+    /// Name of a shadow algorithm in the [`registry`].
+    pub shadows: String,
+    /// Places on each area light that are asked for its shadows, `1..=4096`.
+    pub light_samples: u32,
+    /// Texels along the longer side of a shadow map, `16..=8192`.
+    pub shadow_map_size: u32,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
     /// How values between vertices are found.
@@ -62,6 +68,9 @@ impl Default for Settings {
             cull: Culling::default(),
             illumination: Illumination::default(),
             shading: Shading::default(),
+            shadows: "none".to_owned(),
+            light_samples: 16,
+            shadow_map_size: 2048,
             lighting: true,
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
@@ -258,18 +267,37 @@ pub struct Channels {
     pub normal: bool,
     /// The steps of the visibility algorithm over the picture.
     pub steps: bool,
+    /// Attached shadows.
+    pub attached_shadow: bool,
+    /// Cast shadows.
+    pub cast_shadow: bool,
 }
 
 impl Default for Channels {
     fn default() -> Self {
-        Self { color: true, depth: false, surface: false, object: false, material: false, normal: false, steps: false }
+        Self {
+            color: true,
+            depth: false,
+            surface: false,
+            object: false,
+            material: false,
+            normal: false,
+            attached_shadow: false,
+            cast_shadow: false,
+            steps: false,
+        }
     }
 }
 
 impl Channels {
     /// Whether any plane besides colour is wanted.
     pub fn any_data(&self) -> bool {
-        self.depth || self.surface || self.object || self.material || self.normal
+        self.depth || self.surface || self.object || self.material || self.normal || self.any_shadow()
+    }
+
+    /// Whether a plane of shadows is wanted.
+    pub fn any_shadow(&self) -> bool {
+        self.attached_shadow || self.cast_shadow
     }
 }
 
@@ -309,6 +337,23 @@ pub enum SettingsError {
         /// What it exploits.
         choices: String,
     },
+    /// The name of a shadow algorithm.
+    #[error("there is no shadow algorithm `{name}`: choose {choices}")]
+    Shadows {
+        /// Asked for.
+        name: String,
+        /// What there is.
+        choices: String,
+    },
+    /// Number of places on area lights.
+    #[error("{0} samples of a light: 1 to 4096 are possible")]
+    LightSamples(u32),
+    /// Size of shadow maps.
+    #[error("shadow maps of {0} texels a side: 16 to 8192 are possible")]
+    ShadowMapSize(u32),
+    /// Cast shadows are wanted, but none are computed.
+    #[error("the channel cast-shadow needs a shadow algorithm: choose {0}")]
+    CastShadow(String),
     /// A structure for rays, but no rays.
     #[error("an acceleration structure was chosen, but `{visibility}` casts no rays: choose {choices}")]
     Acceleration {
@@ -344,6 +389,7 @@ impl Settings {
             let choices: Vec<_> = algorithm.coherence.iter().map(|kind| kind.name()).collect();
             return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
         }
+        self.check_shadows()?;
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
     }
@@ -352,5 +398,25 @@ impl Settings {
     pub fn coherence(&self) -> CoherenceSet {
         let all = || registry::visibility(&self.visibility).map_or(&[][..], |a| a.coherence);
         CoherenceSet::of(self.coherence.as_deref().unwrap_or_else(all))
+    }
+
+    fn check_shadows(&self) -> Result<(), SettingsError> {
+        if !(1..=4096).contains(&self.light_samples) {
+            return Err(SettingsError::LightSamples(self.light_samples));
+        }
+        if !(16..=8192).contains(&self.shadow_map_size) {
+            return Err(SettingsError::ShadowMapSize(self.shadow_map_size));
+        }
+        let choices = |all: bool| {
+            let names = registry::SHADOWS.iter().filter(|s| all || s.algorithm.is_some()).map(|s| s.name);
+            names.collect::<Vec<_>>().join(", ")
+        };
+        let Some(shadows) = registry::shadows(&self.shadows) else {
+            return Err(SettingsError::Shadows { name: self.shadows.clone(), choices: choices(true) });
+        };
+        if self.channels.cast_shadow && shadows.algorithm.is_none() {
+            return Err(SettingsError::CastShadow(choices(false)));
+        }
+        Ok(())
     }
 }

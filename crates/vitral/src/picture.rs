@@ -26,11 +26,15 @@ pub enum Channel {
     Normal,
     /// The steps of the visibility algorithm, drawn over the picture.
     Steps,
+    /// Attached shadows: the share of the lights that the surface faces away from. Grey, floats in NPY.
+    AttachedShadow,
+    /// Cast shadows: the share of the lights that something hides, likewise.
+    CastShadow,
 }
 
 impl Channel {
     /// All channels with their names and a line each, the default first.
-    pub const ALL: [(Self, &'static str, &'static str); 7] = [
+    pub const ALL: [(Self, &'static str, &'static str); 9] = [
         (Self::Color, "color", "the picture"),
         (Self::Depth, "depth", "1 near, 0 far: 16-bit grey in PNG, float32 in NPY"),
         (Self::Id, "id", "surface ids: uint32 in NPY (4294967295 is background), colours in pictures"),
@@ -38,6 +42,16 @@ impl Channel {
         (Self::Material, "material", "materials, likewise"),
         (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),
         (Self::Steps, "steps", "the steps of the visibility algorithm over the picture: windows, list order or cost"),
+        (
+            Self::AttachedShadow,
+            "attached-shadow",
+            "share of lights that a surface faces away from: grey, float32 in NPY",
+        ),
+        (
+            Self::CastShadow,
+            "cast-shadow",
+            "share of lights that something hides from a surface that faces them, likewise",
+        ),
     ];
 
     /// Its name on the command line.
@@ -55,6 +69,8 @@ impl Channel {
             Self::Material => channels.material = true,
             Self::Normal => channels.normal = true,
             Self::Steps => channels.steps = true,
+            Self::AttachedShadow => channels.attached_shadow = true,
+            Self::CastShadow => channels.cast_shadow = true,
         }
     }
 }
@@ -165,6 +181,17 @@ pub fn encode_with(
             _ => picture(&plane.map(|&id| id_color(id)), format, numbers, options),
         }
     };
+    let shares = |plane: &Option<Plane<f32>>| {
+        let plane = plane.as_ref().ok_or_else(missing)?;
+        let grey = |share: f32| {
+            let byte = vitral_math::color::byte_from_unit(share);
+            [byte, byte, byte, 255]
+        };
+        match format {
+            PictureFormat::Npy => Ok(encode::npy_f32(plane)),
+            _ => picture(&plane.map(|&share| grey(share)), format, numbers, options),
+        }
+    };
     match channel {
         Channel::Color if format == PictureFormat::Npy => Err(impossible(".png, .jpg or .ppm")),
         Channel::Color => {
@@ -181,6 +208,8 @@ pub fn encode_with(
                 PictureFormat::Jpeg | PictureFormat::Ppm => Err(impossible(".png or .npy")),
             }
         }
+        Channel::AttachedShadow => shares(&frame.attached_shadow),
+        Channel::CastShadow => shares(&frame.cast_shadow),
         Channel::Id => ids(&frame.surface),
         Channel::Object => ids(&frame.object),
         Channel::Material => ids(&frame.material),
@@ -267,6 +296,8 @@ mod tests {
             material: None,
             normal: Plane::from_rows(2, 1, vec![[0.0, 0.0, 1.0], [0.0; 3]]),
             steps: Plane::from_rows(2, 1, vec![[9, 9, 9, 255]; 2]),
+            attached_shadow: None,
+            cast_shadow: Plane::from_rows(2, 1, vec![0.25, 0.0]),
         }
     }
 
@@ -282,6 +313,8 @@ mod tests {
             (C::Normal, [0, 0, 0, 0]),
             (C::Steps, [0, 0, 0, 4]),
             (C::Object, [2, 2, 2, 2]),
+            (C::CastShadow, [0, 0, 0, 0]),
+            (C::AttachedShadow, [2, 2, 2, 2]),
         ] {
             assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), codes, "{}", channel.name());
         }

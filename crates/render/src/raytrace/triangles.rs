@@ -43,7 +43,7 @@ impl Triangles {
 
     /// All triangles of the world. Those with a corner that is not finite are left out, as everywhere.
     pub fn of_world(world: &World, workers: &Workers) -> Self {
-        let center = Some(world.bounds.center()).filter(|c| c.is_finite()).unwrap_or(DVec3::ZERO);
+        let center = Self::center_of(world);
         let per_instance = workers.map(world.instances.len(), |i| placed(world, i, center));
         let count: usize = per_instance.iter().map(Vec::len).sum();
         let (mut corners, mut facets) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -53,6 +53,11 @@ impl Triangles {
         }
         let largest = corners.iter().flatten().fold(Vec3::ZERO, |m, p| m.max(p.abs()));
         Self { center, extent: largest.max_element(), corners, facets }
+    }
+
+    /// What coordinates are relative to: the middle of the world.
+    pub fn center_of(world: &World) -> DVec3 {
+        Some(world.bounds.center()).filter(|c| c.is_finite()).unwrap_or(DVec3::ZERO)
     }
 
     /// How many there are.

@@ -6,6 +6,7 @@ use super::geometry::surface;
 use super::group::{slots, subject};
 use super::phong::interpolated_normal;
 use super::points::{Points, Source};
+use super::shadowed::shadow_shares;
 use crate::Channels;
 use crate::marks::MarkColors;
 use crate::visible::TileSink;
@@ -23,6 +24,8 @@ pub(crate) struct DataPlanes {
     pub object: Vec<u32>,
     pub material: Vec<u32>,
     pub normal: Vec<[f32; 3]>,
+    pub attached_shadow: Vec<f32>,
+    pub cast_shadow: Vec<f32>,
 }
 
 /// Collects data planes; needs one sample a pixel.
@@ -48,11 +51,18 @@ impl TileSink for ChannelSink<'_> {
         if self.wanted.surface || self.wanted.object || self.wanted.material {
             self.ids(tile, &mut planes);
         }
-        if self.wanted.normal {
-            planes.normal = vec![[0.0; 3]; TILE_PIXELS];
+        if self.wanted.normal || self.wanted.any_shadow() {
             let mut points = Points::default();
             points.collect(tile, &[], self.constants, &MarkColors::default());
-            dispatch!(self.level, simd => normals(simd, &points, self.constants, &mut planes.normal));
+            if self.wanted.normal {
+                planes.normal = vec![[0.0; 3]; TILE_PIXELS];
+                dispatch!(self.level, simd => normals(simd, &points, self.constants, &mut planes.normal));
+            }
+            if self.wanted.any_shadow() {
+                planes.attached_shadow = vec![0.0; TILE_PIXELS];
+                planes.cast_shadow = vec![0.0; TILE_PIXELS];
+                dispatch!(self.level, simd => shadows(simd, &points, self.constants, &mut planes));
+            }
         }
         *self.tiles[index].lock().expect("data planes") = planes;
     }
@@ -108,6 +118,31 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
     for pixel in &points.pixels {
         if let Source::Point(point) = pixel.source {
             out[pixel.index as usize] = of_point[point as usize];
+        }
+    }
+}
+
+/// Attached and cast shadows of the points.
+#[inline(always)]
+fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, planes: &mut DataPlanes) {
+    let mut of_point = vec![[0.0; 2]; points.len()];
+    let mut facets = FacetTable::default();
+    for group in &points.groups {
+        let order = &points.order[group.start as usize..group.end as usize];
+        let (subject, _) = subject(group, constants);
+        facets.fill(simd, points, order, &subject);
+        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+            let slots = slots(points, eight, records, subject.first_facet);
+            let [attached, cast] = shadow_shares(constants, &subject, &slots, &surface(simd, &facets.records, &slots));
+            for (lane, &p) in eight.iter().enumerate() {
+                of_point[p as usize] = [attached[lane], cast[lane]];
+            }
+        }
+    }
+    for pixel in &points.pixels {
+        if let Source::Point(point) = pixel.source {
+            let at = pixel.index as usize;
+            [planes.attached_shadow[at], planes.cast_shadow[at]] = of_point[point as usize];
         }
     }
 }

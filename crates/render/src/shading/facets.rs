@@ -41,6 +41,8 @@ pub(crate) struct Subject<'a> {
     /// Facet id of the mesh's first triangle.
     pub first_facet: u32,
     pub mesh_index: u32,
+    /// Index into the world's instances.
+    pub instance_index: u32,
     pub viewing: Viewing,
 }
 

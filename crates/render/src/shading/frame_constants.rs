@@ -3,6 +3,7 @@
 use super::group::{Model, model};
 use crate::prepare::{is_solid, mirrors};
 use crate::settings::Kay;
+use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
 use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Settings, Shading, Transparency};
 use vitral_frame::Texture;
@@ -53,8 +54,8 @@ pub(crate) struct MaterialConstants<'a> {
 
 /// Decode tables of one frame.
 pub(crate) struct DecodeTables {
-    srgb: [f32; 256],
-    linear: [f32; 256],
+    pub(crate) srgb: [f32; 256],
+    pub(crate) linear: [f32; 256],
 }
 
 impl DecodeTables {
@@ -74,6 +75,10 @@ pub(crate) struct FrameConstants<'a> {
     /// The scene's materials, and the default material last.
     pub materials: Vec<MaterialConstants<'a>>,
     pub lights: Vec<PreparedLight>,
+    /// For each of these lights its number among all, as shadows count them.
+    pub light_numbers: Vec<usize>,
+    /// What says which part of a light arrives; `None` without shadows.
+    pub shadows: Option<&'a dyn Shadows>,
     /// Global ambient light.
     pub ambient: Rgb,
     pub shading: Shading,
@@ -99,6 +104,7 @@ impl<'a> FrameConstants<'a> {
         settings: &Settings,
         lights: &[Light],
         ambient: Rgb,
+        shadows: Option<&'a dyn Shadows>,
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
@@ -111,11 +117,15 @@ impl<'a> FrameConstants<'a> {
         let background = background_rows(&settings.background, settings.height, raw);
         let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
         let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
+        let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
+        let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
         Self {
             view,
             instances,
             materials,
-            lights: lights.iter().filter_map(|l| PreparedLight::new(l, &view.view.view_from_world)).collect(),
+            lights,
+            light_numbers,
+            shadows,
             ambient,
             shading: settings.shading,
             interpolation: settings.interpolation,

@@ -5,7 +5,7 @@ use super::facets::{FacetTable, Subject, Viewing};
 use super::frame_constants::{MaterialConstants, TextureConstants};
 use super::geometry::{F, Slots, Surface, blend, constant, gather, surface};
 use super::points::{Group, Points};
-use super::{flat, gouraud, phong};
+use super::{flat, gouraud, phong, shadowed};
 use crate::transparency::{filtered, kay, linear};
 use crate::{Shading, Transparency};
 use vitral_light::{
@@ -51,6 +51,8 @@ pub(crate) struct Lighting<'a> {
     ambient: Rgb,
     illumination: Illumination,
     perspective: bool,
+    /// Which part of each light arrives at each point; empty without shadows.
+    arriving: Vec<[f32; LANES]>,
 }
 
 impl Lighting<'_> {
@@ -70,7 +72,10 @@ impl Lighting<'_> {
                 let surface = vitral_light::Surface { position: *position, n: *n, v };
                 let lit = lanes::inlined(
                     #[inline(always)]
-                    |_: usize| one,
+                    |j: usize| match self.arriving.get(j) {
+                        Some(part) => F32x8::from_slice(simd, part),
+                        None => one,
+                    },
                 );
                 match coefficients {
                     Coefficients::Empirical(k) => {
@@ -147,6 +152,7 @@ pub(crate) fn subject<'a>(
         instance,
         first_facet: world_instance.first_facet,
         mesh_index: world_instance.mesh_index,
+        instance_index: group.instance,
         viewing,
     };
     (subject, material)
@@ -207,6 +213,10 @@ fn shade_eight_inlined<S: Simd>(
             _ => Illumination::Phong,
         },
         perspective: subject.viewing.perspective,
+        arriving: match material.model {
+            Model::Empirical(_) | Model::Microfacet => shadowed::arriving(constants, subject, slots, &surface),
+            _ => Vec::new(),
+        },
     };
     let reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },

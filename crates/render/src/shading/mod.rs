@@ -18,6 +18,7 @@ mod frame_constants;
 mod geometry;
 mod group;
 mod points;
+mod shadowed;
 
 pub(crate) use channels::{ChannelSink, DataPlanes};
 pub use flat::FaceTable;

@@ -71,8 +71,9 @@ mod tests {
         let depths: Vec<[f32; 1]> = (0..8).map(|i| [0.9 - 0.1 * i as f32]).collect();
         for n in 1..=8 {
             let panes: Vec<_> = (0..n).map(|i| pane(i as u32, &depths[i], 0.1 * (i + 1) as f32, 0.5)).collect();
-            let sum: f32 = (0..n).map(|i| 0.5f32.powi(i as i32 + 1) * 0.1 * (i + 1) as f32).sum();
-            let expected = sum + 0.5f32.powi(n as i32) * 0.7;
+            let halved = |times| (0..times).fold(1.0f32, |share, _| share * 0.5);
+            let sum: f32 = (0..n).map(|i| halved(i + 1) * 0.1 * (i + 1) as f32).sum();
+            let expected = sum + halved(n) * 0.7;
             assert!((laid(lay, &panes, 0.7) - expected).abs() < 1e-6, "{n} panes");
         }
     }

@@ -34,7 +34,17 @@ pub(crate) fn one(mut mesh: Mesh, material: Material) -> Scene {
 
 /// Asks for every plane.
 pub(crate) fn all_channels() -> Channels {
-    Channels { color: true, depth: true, surface: true, object: true, material: true, normal: true, steps: true }
+    Channels {
+        color: true,
+        depth: true,
+        surface: true,
+        object: true,
+        material: true,
+        normal: true,
+        attached_shadow: true,
+        cast_shadow: false,
+        steps: true,
+    }
 }
 
 /// The colour picture.

@@ -1,0 +1,235 @@
+//! Shadow maps: the z-buffer algorithm twice. First from the light, which leaves at each texel how far the nearest thing is;
+//! then from the viewer, and a visible point is lit if nothing nearer to the light is in its texel.
+//!
+//! The first pass computes depths alone, and the second asks only about points that are seen. The maps belong to the
+//! lights and the scene, not to the viewer: a session keeps them over a turntable.
+//!
+//! Texels are coarser than pixels, and a lit surface must not find itself in its own way (*acne*), nor may it be moved so far
+//! that its shadow loosens from its foot (*peter-panning*). So the depth that is compared is not the point's own but that of
+//! its facet's plane in the middle of the texel, which takes a slope exactly into account; what is left, the rounding of
+//! corners to 1/256 texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie on a neighbour
+//! that rises towards the light, the point is lifted by a texel along its normal (*normal bias*). Four texels round the point
+//! are compared one by one, and the answers are blended (*percentage-closer filtering*).
+//!
+//! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
+//! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its places. Transparent things are kept as
+//! lists at their texels, with the part of the light that passes.
+//!
+//! In:   lights, scene. Out: the part of a light that arrives at a place.
+//! Cost: a z-buffer pass for each map; a question is a constant number of texels. 4 bytes a texel.
+//! Source: [Williams 1978]; filtering after [Reeves, Salesin & Cook 1987], area lights after [Brotman & Badler 1984].
+
+mod draw;
+mod lens;
+
+use super::occluders::Occluders;
+use super::sources::Source;
+use super::{Place, ShadowAlgorithm, Shadows};
+use crate::raytrace::triangles::Triangles;
+use crate::{ColorSpace, Execution, Session, Settings, Transparency};
+use lens::Lens;
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_light::{Light, LightKind};
+use vitral_math::DVec3;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct MapShadows;
+
+/// Shortest side of an area light's maps.
+const LEAST_SIDE: u32 = 256;
+/// How far a point is lifted, in texels.
+const LIFT: f64 = 1.0;
+/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
+/// texel, and two roundings may add up.
+const SLOPE_BIAS: f64 = 1.0 / 64.0;
+/// Relative error of a depth.
+const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
+
+/// What maps depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    size: u32,
+    samples: u32,
+    transparency: Transparency,
+    color_space: ColorSpace,
+}
+
+/// The maps of all lights, in order.
+#[derive(Debug)]
+pub(crate) struct Maps(Vec<LightMaps>);
+
+#[derive(Debug)]
+enum LightMaps {
+    Unhindered,
+    Infinity {
+        towards: DVec3,
+        map: Box<Map>,
+    },
+    /// Each place of a light with its maps.
+    Places(Vec<(DVec3, Vec<Map>)>),
+}
+
+/// What the light sees through one lens.
+#[derive(Debug)]
+struct Map {
+    lens: Lens,
+    /// Distance of the nearest opaque thing along the axis, ∞ where there is none.
+    depth: Vec<f32>,
+    /// Transparent things, sorted by texel.
+    layers: Vec<Layer>,
+}
+
+/// A transparent thing at a texel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Layer {
+    texel: u32,
+    depth: f32,
+    /// The part of light that passes.
+    passing: f32,
+}
+
+impl ShadowAlgorithm for MapShadows {
+    fn prepare<'a>(
+        &self,
+        session: &'a Session,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+        let key = Key {
+            lights: lights.to_vec(),
+            size: settings.shadow_map_size,
+            samples: settings.light_samples,
+            transparency: settings.transparency,
+            color_space: settings.color_space,
+        };
+        let mut kept = session.shadow_maps.lock().expect("no thread panics while it makes shadow maps");
+        if let Some((known, maps)) = &*kept
+            && *known == key
+        {
+            return Ok(Box::new(Arc::clone(maps)));
+        }
+        // The old ones need not stay while the new ones are made.
+        *kept = None;
+        let occluders = Occluders::new(session, settings);
+        let lights: Result<_, Limit> =
+            lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution)).collect();
+        let maps = Arc::new(Maps(lights?));
+        *kept = Some((key, Arc::clone(&maps)));
+        Ok(Box::new(maps))
+    }
+}
+
+impl LightMaps {
+    fn new(
+        light: &Light,
+        session: &Session,
+        occluders: &Occluders<'_>,
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
+        let world = &session.world;
+        if world.bounds.is_empty() {
+            return Ok(Self::Unhindered);
+        }
+        let draw = |lens: Lens| Map::draw(lens, session, occluders, settings, execution);
+        let size = settings.shadow_map_size;
+        let around = |at: DVec3, size: u32| -> Result<(DVec3, Vec<Map>), Limit> {
+            let maps: Result<_, Limit> = Lens::around(at, world, size).into_iter().map(draw).collect();
+            Ok((at, maps?))
+        };
+        Ok(match Source::new(light, settings.light_samples, Triangles::center_of(world)) {
+            Source::Unhindered => Self::Unhindered,
+            Source::Infinity(towards) => {
+                Self::Infinity { towards, map: Box::new(draw(Lens::parallel(towards, world, size))?) }
+            }
+            Source::Point(at) => {
+                let lens = match light.kind {
+                    LightKind::Spot { direction, cutoff, .. } => Lens::cone(at, direction, cutoff, world, size),
+                    _ => None,
+                };
+                Self::Places(vec![match lens {
+                    Some(lens) => (at, vec![draw(lens)?]),
+                    None => around(at, size)?,
+                }])
+            }
+            Source::Area(area) => {
+                let side = (f64::from(size) / (area.count() as f64).sqrt()) as u32;
+                let side = side.max(LEAST_SIDE.min(size));
+                let places: Result<_, Limit> = (0..area.count()).map(|i| around(area.place(i, 0), side)).collect();
+                Self::Places(places?)
+            }
+        })
+    }
+}
+
+impl Shadows for Arc<Maps> {
+    fn arriving(&self, light: usize, place: &Place) -> f32 {
+        match &self.0[light] {
+            LightMaps::Unhindered => 1.0,
+            LightMaps::Infinity { towards, map } => {
+                if place.normal.dot(*towards) <= 0.0 {
+                    0.0
+                } else {
+                    map.passing(place)
+                }
+            }
+            LightMaps::Places(places) => {
+                let parts = places.iter().map(|(at, maps)| {
+                    if place.normal.dot(*at - place.position) <= 0.0 {
+                        return 0.0;
+                    }
+                    maps.iter().find(|m| m.lens.sees(place.position)).map_or(1.0, |m| m.passing(place))
+                });
+                parts.sum::<f32>() / places.len() as f32
+            }
+        }
+    }
+}
+
+impl Map {
+    /// The part of light that arrives at a place that faces it.
+    fn passing(&self, place: &Place) -> f32 {
+        let lens = &self.lens;
+        let lifted = place.position + place.normal * (LIFT * lens.texel(place.position));
+        let point = lens.view_from_world.transform_point3(lifted);
+        let normal = lens.view_from_world.transform_vector3(place.normal);
+        let Some([u, v]) = lens.texel_place(point) else { return 1.0 };
+        let (left, top) = ((u - 0.5).floor(), (v - 0.5).floor());
+        let (right, bottom) = ((u - 0.5 - left) as f32, (v - 0.5 - top) as f32);
+        let at = |dx: f64, dy: f64| self.passing_at(left + dx, top + dy, point, normal);
+        // Written so that four equal answers stay what they are.
+        let row = |dy: f64| {
+            let (a, b) = (at(0.0, dy), at(1.0, dy));
+            a + (b - a) * right
+        };
+        let (a, b) = (row(0.0), row(1.0));
+        a + (b - a) * bottom
+    }
+
+    /// The same, asking one texel.
+    fn passing_at(&self, x: f64, y: f64, point: DVec3, normal: DVec3) -> f32 {
+        let (width, height) = (f64::from(self.lens.width), f64::from(self.lens.height));
+        if x < 0.0 || y < 0.0 || x >= width || y >= height {
+            return 1.0;
+        }
+        let texel = y as usize * self.lens.width as usize + x as usize;
+        let own = -point.z;
+        let there = self.lens.plane_depth([x + 0.5, y + 0.5], point, normal);
+        // The nearer of the two: the plane may go down further than the facet does.
+        let slope = (there - own).abs();
+        let depth = there.min(own) - slope * SLOPE_BIAS - own.abs() * DEPTH_BIAS;
+        if f64::from(self.depth[texel]) < depth {
+            return 0.0;
+        }
+        if self.layers.is_empty() {
+            return 1.0;
+        }
+        let first = self.layers.partition_point(|l| (l.texel as usize) < texel);
+        let here = self.layers[first..].iter().take_while(|l| l.texel as usize == texel);
+        here.filter(|l| f64::from(l.depth) < depth).map(|l| l.passing).product()
+    }
+}

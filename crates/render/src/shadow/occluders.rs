@@ -1,0 +1,117 @@
+//! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures and vertex colours say
+//! at the point where the ray passes.
+
+use crate::shading::DecodeTables;
+use crate::{Session, Settings, Transparency};
+use vitral_frame::Encoding;
+use vitral_light::{AlphaMode, Material, TextureRef};
+use vitral_math::{DVec3, Vec3};
+use vitral_scene::{Attribute, Mesh};
+
+/// See the module.
+pub(super) struct Occluders<'a> {
+    session: &'a Session,
+    /// For each material whether it keeps all light.
+    opaque: Vec<bool>,
+    all_opaque: bool,
+    tables: DecodeTables,
+}
+
+impl<'a> Occluders<'a> {
+    pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
+        let opaque = |m: &Material| match m.alpha_mode {
+            AlphaMode::Opaque => true,
+            AlphaMode::Mask { .. } => false,
+            AlphaMode::Blend => settings.transparency == Transparency::None,
+        };
+        let opaque: Vec<bool> = session.scene.materials.iter().map(opaque).collect();
+        let all_opaque = opaque.iter().all(|&o| o);
+        Self { session, opaque, all_opaque, tables: DecodeTables::new(settings.color_space) }
+    }
+
+    /// The part of light that passes the facet with these corners at `point` of it.
+    #[inline(always)]
+    pub(super) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> f32 {
+        if self.all_opaque { 0.0 } else { self.passing_at(facet, corners, point()) }
+    }
+
+    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> f32 {
+        let world = &self.session.world;
+        let instance = &world.instances[world.instance_of_facet(facet)];
+        let mesh = &*instance.mesh;
+        let triangle = (facet - instance.first_facet) as usize;
+        let index = mesh.material_of_triangle(triangle);
+        let Some(material) = index.and_then(|m| self.session.scene.materials.get(m as usize)) else { return 0.0 };
+        if index.is_none_or(|m| self.opaque[m as usize]) {
+            return 0.0;
+        }
+
+        // Opacity as shading finds it.
+        let weights = weights(corners, point);
+        let mut alpha = material.opacity;
+        if let Some(colors) = &mesh.colors {
+            alpha *= blend(colors, mesh, triangle, weights)[3];
+        }
+        if let Some(texel) = self.sample(material.base_texture, mesh, triangle, weights) {
+            alpha *= texel[3];
+        }
+        if let Some(texel) = self.sample(material.opacity_texture, mesh, triangle, weights) {
+            alpha *= texel[0];
+        }
+        match material.alpha_mode {
+            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha.clamp(0.0, 1.0) < cutoff)),
+            _ => 1.0 - alpha.clamp(0.0, 1.0),
+        }
+    }
+
+    fn sample(
+        &self,
+        reference: Option<TextureRef>,
+        mesh: &Mesh,
+        triangle: usize,
+        weights: [f32; 3],
+    ) -> Option<[f32; 4]> {
+        let reference = reference?;
+        let texture = self.session.scene.textures.get(reference.texture as usize)?;
+        let uv = blend(mesh.uvs.get(reference.uv_set as usize)?, mesh, triangle, weights);
+        let [u, v] = reference.transform.map(|row| uv[0] * row[0] + uv[1] * row[1] + row[2]);
+        let decode = match texture.encoding {
+            Encoding::Srgb => &self.tables.srgb,
+            Encoding::Linear => &self.tables.linear,
+        };
+        Some(texture.sample(&reference.sampler, u, v, 0.0, decode))
+    }
+}
+
+/// An attribute between the corners of a triangle.
+fn blend<const N: usize>(a: &Attribute<[f32; N]>, mesh: &Mesh, triangle: usize, weights: [f32; 3]) -> [f32; N] {
+    let corners = a.at(triangle, &mesh.triangles);
+    std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
+}
+
+/// Barycentric coordinates of a point in a triangle's plane.
+fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let normal = (b - a).cross(c - a);
+    let whole = normal.length_squared();
+    if whole == 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let at = |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / whole) as f32;
+    [at(b, c), at(c, a), at(a, b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::{dvec3, vec3};
+
+    #[test]
+    fn weights_bring_the_point_back() {
+        let corners = [vec3(1.0, 0.0, 2.0), vec3(4.0, 1.0, 2.0), vec3(1.0, 3.0, 5.0)];
+        let p = corners[0] * 0.5 + corners[1] * 0.25 + corners[2] * 0.25;
+        let w = weights(&corners, p.as_dvec3());
+        assert!((w[0] - 0.5).abs() < 1e-6 && (w[1] - 0.25).abs() < 1e-6 && (w[2] - 0.25).abs() < 1e-6, "{w:?}");
+        assert_eq!(weights(&[Vec3::ONE; 3], dvec3(1.0, 1.0, 1.0)), [1.0, 0.0, 0.0]);
+    }
+}

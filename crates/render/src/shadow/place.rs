@@ -1,0 +1,63 @@
+//! From points of the picture to places in the world.
+//!
+//! A point is a facet and weights of its corners. The same weights of the corners in the world, as rays see them, give a
+//! place that lies in the facet's plane but for the last bit of a double: much nearer than the way back from the screen.
+
+use super::Place;
+use crate::PreparedView;
+use crate::prepare::mirrors;
+use crate::raytrace::triangles::Triangles;
+use vitral_math::lanes::LANES;
+use vitral_math::{DVec3, dvec3};
+use vitral_scene::Instance;
+
+/// What all points of an object have in common.
+pub(crate) struct Placing<'a> {
+    view: &'a PreparedView<'a>,
+    instance: &'a Instance,
+    /// Normals turn to the viewer.
+    turns: bool,
+    center: DVec3,
+}
+
+/// Places of up to eight points of an object: the triangles of its mesh, the corners' weights, where they are on the
+/// screen. Both sides of the object are seen if it `turns`.
+pub(crate) fn places(
+    view: &PreparedView<'_>,
+    instance: &Instance,
+    turns: bool,
+    triangles: &[u32; LANES],
+    weights: [[f32; LANES]; 3],
+    screen: [&[f32; LANES]; 2],
+) -> [Place; LANES] {
+    let center = Triangles::center_of(&view.session.world);
+    let placing = Placing { view, instance, turns, center };
+    std::array::from_fn(|lane| {
+        let weights = weights.map(|w| w[lane]);
+        let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
+        let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
+        placing.place(triangles[lane], weights, seed)
+    })
+}
+
+impl Placing<'_> {
+    fn place(&self, triangle: u32, weights: [f32; 3], seed: u32) -> Place {
+        let mesh = &self.instance.mesh;
+        let corners = mesh.triangles[triangle as usize].map(|i| {
+            let [x, y, z] = mesh.positions[i as usize].map(f64::from);
+            let p = self.instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center;
+            // The corners that the rays' triangles have.
+            p.as_vec3().as_dvec3()
+        });
+        let w = weights.map(f64::from);
+        let position = (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2]);
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        let outward = if mirrors(&self.instance.world_from_model) { -normal } else { normal };
+        let (eye, perspective) = self.view.eye();
+        let towards =
+            if perspective { eye - self.center - position } else { self.view.view.view_from_world.row(2).truncate() };
+        let behind = self.turns && outward.dot(towards) < 0.0;
+        let facet = self.instance.first_facet + triangle;
+        Place { position, normal: if behind { -outward } else { outward }, facet, seed }
+    }
+}

@@ -1,0 +1,490 @@
+//! Shadows: what the definitions say, by arithmetic where there is a formula.
+
+use std::sync::Arc;
+use vitral_exec::Workers;
+use vitral_frame::Frame;
+use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material};
+use vitral_math::lanes::available_levels;
+use vitral_math::{DMat4, DVec3, dvec3};
+use vitral_render::raytrace::triangles::Triangles;
+use vitral_render::shadow::{Place, Shadows};
+use vitral_render::{Channels, Execution, Session, Settings, Shading, Shot, registry, render};
+use vitral_scene::builtin::{self, solids};
+use vitral_scene::{Camera, Mesh, Projection, Scene};
+
+fn light(kind: LightKind) -> Light {
+    Light { kind, ..Light::default() }
+}
+
+fn sun(direction: DVec3) -> Light {
+    light(LightKind::Directional { direction })
+}
+
+fn lamp(position: DVec3) -> Light {
+    light(LightKind::Point { position })
+}
+
+fn settings(shadows: &str) -> Settings {
+    Settings { shadows: shadows.to_owned(), width: 160, height: 120, samples: 1, ..Settings::default() }
+}
+
+/// Asks the algorithm `shadows` about the first of `lights`.
+fn with_shadows<R>(
+    scene: &Scene,
+    lights: &[Light],
+    settings: &Settings,
+    ask: impl FnOnce(&dyn Fn(Place) -> f32) -> R,
+) -> R {
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
+    let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, settings, &Execution::default()).unwrap();
+    let center = Triangles::center_of(session.world());
+    ask(&|place| ready.arriving(0, &Place { position: place.position - center, ..place }))
+}
+
+/// A place in the world, on no facet.
+fn place(position: DVec3, normal: DVec3) -> Place {
+    Place { position, normal, facet: u32::MAX, seed: 1 }
+}
+
+fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, at: DVec3) {
+    let material = Some(scene.add_material(material));
+    mesh.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(mesh, DMat4::from_translation(at));
+}
+
+/// A floor of side 8 in the plane y = 0, and what is above it.
+fn above_floor(mesh: Mesh, material: Material, at: DVec3) -> Scene {
+    let mut scene = Scene::default();
+    add(&mut scene, solids::plane(8.0, 8.0, 1, 1), Material::default(), DVec3::ZERO);
+    add(&mut scene, mesh, material, at);
+    scene
+}
+
+fn camera(scene: &Scene, from: DVec3) -> Camera {
+    let bounds = Session::new(Arc::new(scene.clone())).unwrap().world().bounds;
+    Camera {
+        position: bounds.center() + from * bounds.diagonal(),
+        focal_point: bounds.center(),
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 0.8 },
+        clip: None,
+    }
+}
+
+fn picture(scene: &Scene, lights: &[Light], settings: &Settings, execution: &Execution) -> Frame {
+    let mut session = Session::new(Arc::new(scene.clone())).unwrap();
+    let camera = camera(scene, dvec3(0.6, 0.5, 0.9));
+    let shot = Shot { camera, lights, ambient: [0.2; 3] };
+    render(&mut session, &shot, settings, execution).unwrap().frame
+}
+
+#[test]
+fn a_ball_throws_a_round_shadow() {
+    // The lamp at height 4, the ball at 2: its shadow is the cone that touches it, cut by the floor.
+    let scene = above_floor(solids::sphere(0.5, 192, 96), Material::default(), dvec3(0.0, 2.0, 0.0));
+    let sine = 0.5 / 2.0f64;
+    let radius = 4.0 * sine / (1.0 - sine * sine).sqrt();
+    with_shadows(&scene, &[lamp(dvec3(0.0, 4.0, 0.0))], &settings("ray"), |arriving| {
+        for i in 0..64 {
+            let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.1);
+            let at = |r: f64| arriving(place(dvec3(cos * r, 0.0, sin * r), DVec3::Y));
+            assert_eq!((at(radius * 0.995), at(radius * 1.005)), (0.0, 1.0), "{i}");
+        }
+        assert_eq!(arriving(place(dvec3(3.0, 0.0, 0.0), DVec3::NEG_Y)), 0.0, "attached");
+    });
+}
+
+#[test]
+fn nothing_shades_itself() {
+    for offset in [0.0, 3e4] {
+        let ball = solids::sphere(1.0, 40, 20);
+        let mut scene = Scene::default();
+        scene.add_mesh(ball.clone(), DMat4::from_translation(DVec3::splat(offset)));
+        let (center, far) = (DVec3::splat(offset), dvec3(7.0, 30.0, 5.0));
+        with_shadows(&scene, &[lamp(center + far)], &settings("ray"), |arriving| {
+            let mut lit = 0;
+            for (facet, t) in (0..).zip(&ball.triangles) {
+                let [a, b, c] = t.map(|i| {
+                    let [x, y, z] = ball.positions[i as usize].map(f64::from);
+                    dvec3(x, y, z)
+                });
+                let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
+                for [u, v] in [[0.3, 0.3], [0.0, 0.5], [0.0, 0.0], [0.999, 0.001]] {
+                    let p = a + (b - a) * u + (c - a) * v;
+                    // Corners of a ball far away are rounded: ask where the light is well in front.
+                    if normal.dot((far - p).normalize()) < 0.02 {
+                        continue;
+                    }
+                    let part = arriving(Place { position: p + center, normal, facet, seed: 0 });
+                    assert_eq!(part, 1.0, "facet {facet} at {p}");
+                    lit += 1;
+                }
+            }
+            assert!(lit > 1000);
+        });
+    }
+}
+
+#[test]
+fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
+    let channels =
+        Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let settings = Settings { channels, ..settings("ray") };
+    let towards = dvec3(-1.0, 2.0, -0.5).normalize();
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let frame = picture(&scene, &[sun(-towards)], &settings, &Execution::default());
+    let (normals, attached) = (frame.normal.unwrap(), frame.attached_shadow.unwrap());
+    let cast = frame.cast_shadow.unwrap();
+    let mut counts = [0; 3];
+    for ((n, &attached), &cast) in normals.data().iter().zip(attached.data()).zip(cast.data()) {
+        let n = dvec3(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
+        let away = n != DVec3::ZERO && n.dot(towards) <= 0.0;
+        assert_eq!(attached, f32::from(u8::from(away)));
+        assert!(cast == 0.0 || (cast == 1.0 && attached == 0.0 && n.y > 0.9), "only the floor lies in a cast shadow");
+        let which = [attached == 1.0, cast == 1.0, n != DVec3::ZERO && attached + cast == 0.0];
+        (0..3).for_each(|k| counts[k] += usize::from(which[k]));
+    }
+    assert!(counts.iter().all(|&c| c > 50), "{counts:?}");
+}
+
+#[test]
+fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let light = Light { ambient: [0.1; 3], ..lamp(dvec3(2.0, 6.0, 1.0)) };
+    let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
+    let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| [(s, "ray"), (s, "map")]) {
+        let settings = Settings { channels: data, shading: shading.0, ..settings(algorithm) };
+        let execution = Execution::default();
+        let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
+        let unlit = picture(&scene, std::slice::from_ref(&dark), &settings, &execution);
+        let plain = picture(
+            &scene,
+            std::slice::from_ref(&light),
+            &Settings { shadows: "none".to_owned(), channels: Channels::default(), ..settings },
+            &execution,
+        );
+        let [shaded_color, unlit, plain] = [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
+        let cast = shaded.cast_shadow.unwrap();
+        let attached = shaded.attached_shadow.unwrap();
+        let mut counts = [0; 2];
+        for i in 0..cast.data().len() {
+            let expected = if cast.data()[i] == 1.0 {
+                counts[0] += 1;
+                unlit.data()[i]
+            } else if attached.data()[i] + cast.data()[i] == 0.0 {
+                counts[1] += 1;
+                plain.data()[i]
+            } else {
+                continue;
+            };
+            assert_eq!(shaded_color.data()[i], expected, "{}", shading.1);
+        }
+        assert!(counts[0] > 100 && counts[1] > 1000, "{counts:?}");
+    }
+}
+
+#[test]
+fn transparent_things_take_their_part() {
+    let glass = |opacity| Material { opacity, alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let mut scene = above_floor(solids::plane(2.0, 2.0, 1, 1), glass(0.25), dvec3(0.1, 1.0, 0.2));
+    add(&mut scene, solids::plane(1.0, 1.0, 1, 1), glass(0.5), dvec3(-0.3, 2.0, 0.2));
+    let mask = Material { opacity: 0.4, alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() };
+    add(&mut scene, solids::plane(1.0, 1.0, 1, 1), mask, dvec3(0.0, 3.0, 0.0));
+    let down = [sun(DVec3::NEG_Y)];
+    let at = |x: f64, settings: &Settings| {
+        with_shadows(&scene, &down, settings, |arriving| arriving(place(dvec3(x, 0.0, 0.1), DVec3::Y)))
+    };
+    for algorithm in ["ray", "map"] {
+        let filtering = settings(algorithm);
+        assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
+        let opaque = Settings { transparency: vitral_render::Transparency::None, ..filtering };
+        assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
+    }
+}
+
+/// Width of the penumbra behind an edge: the slope of the lit part along a line across it.
+fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
+    // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
+    let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
+    let settings = Settings { light_samples: samples, ..settings(algorithm) };
+    with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
+        let at = |x: f64| {
+            let parts = (0..32).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            f64::from(parts.sum::<f32>()) / 32.0
+        };
+        assert_eq!((at(-1.0), at(1.0)), (0.0, 1.0), "umbra and full light");
+        let (x, step) = (-0.1, 0.2);
+        step / (at(x + step) - at(x))
+    })
+}
+
+#[test]
+fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
+    let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]].map(|[x, z]| dvec3(x, 3.0, z)).to_vec();
+    // D = 0.8, a = 2, b = 1.
+    let square = AreaShape::Polygon { corners };
+    let width = penumbra("ray", square.clone(), 256);
+    assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
+    // The maps of 64 places are shared by all points: steps of an eighth.
+    let width = penumbra("map", square, 64);
+    assert!((width / 0.4 - 1.0).abs() < 0.15, "{width}");
+    // Through the middle of a disc the lit part rises by 4 / (π D) of its width: D = 0.8 again.
+    let disc = AreaShape::Disc { center: dvec3(0.0, 3.0, 0.0), normal: DVec3::NEG_Y, radius: 0.4 };
+    let t: f64 = 0.5;
+    let share = 2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
+    let width = penumbra("ray", disc, 256);
+    assert!((width / (0.2 / share) - 1.0).abs() < 0.02, "{width}");
+}
+
+#[test]
+fn pictures_by_rays_do_not_depend_on_threads_instructions_or_visibility() {
+    pictures_do_not_depend("ray");
+}
+
+#[test]
+fn pictures_by_maps_do_not_depend_on_threads_instructions_or_visibility() {
+    pictures_do_not_depend("map");
+}
+
+fn pictures_do_not_depend(algorithm: &str) {
+    let scene = builtin::scene("scene1").unwrap();
+    let disc = AreaShape::Disc { center: dvec3(3.0, 7.0, 2.0), normal: dvec3(-3.0, -7.0, -2.0), radius: 0.6 };
+    let lights = [sun(dvec3(1.0, -2.0, -1.0)), light(LightKind::Area { shape: disc })];
+    let channels = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let settings = Settings { channels, light_samples: 4, shadow_map_size: 512, samples: 4, ..settings(algorithm) };
+    let one = Execution { workers: Workers::single(), ..Execution::default() };
+    let first = picture(&scene, &lights, &settings, &one);
+    assert!(first.cast_shadow.as_ref().unwrap().data().iter().any(|&c| c > 0.0));
+    let many = Execution { workers: Workers::new(3), ..Execution::default() };
+    for (name, level) in available_levels() {
+        assert!(first == picture(&scene, &lights, &settings, &Execution { level, ..many.clone() }), "{name}");
+    }
+    for algorithm in registry::VISIBILITY.iter().filter(|a| a.name != "brute-force") {
+        let settings = Settings { visibility: algorithm.name.to_owned(), ..settings.clone() };
+        assert!(first == picture(&scene, &lights, &settings, &many), "{}", algorithm.name);
+    }
+}
+
+#[test]
+fn odd_lights_are_defined() {
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    ["ray", "map"].into_iter().for_each(|algorithm| odd_lights(&scene, algorithm));
+}
+
+fn odd_lights(scene: &Scene, algorithm: &str) {
+    let at = |light: Light| {
+        with_shadows(scene, &[light], &settings(algorithm), |a| a(place(dvec3(2.0, 0.0, 0.0), DVec3::Y)))
+    };
+    assert_eq!(at(lamp(dvec3(0.0, 1.5, 0.0))), 0.0, "inside the box");
+    assert_eq!(at(lamp(dvec3(2.0, 0.0, 0.0))), 0.0, "at the very place");
+    assert_eq!(at(lamp(dvec3(0.5, 1.5, 0.0))), 1.0, "on the side of the box");
+    assert_eq!(at(Light { shadow: false, ..lamp(dvec3(0.0, 1.5, 0.0)) }), 1.0, "it casts none");
+    let point = AreaShape::Disc { center: dvec3(-2.0, 4.0, 0.0), normal: DVec3::NEG_Y, radius: 0.0 };
+    assert_eq!(at(light(LightKind::Area { shape: point })), 0.0, "without size, behind the box");
+    assert_eq!(at(light(LightKind::Ambient)), 1.0);
+}
+
+#[test]
+fn settings_that_cannot_be_are_refused() {
+    let text = |settings: Settings| settings.check().unwrap_err().to_string();
+    assert!(text(settings("umbra")).contains("choose none, ray, map"));
+    assert!(text(Settings { light_samples: 0, ..settings("ray") }).contains("1 to 4096"));
+    assert!(text(Settings { shadow_map_size: 9000, ..settings("map") }).contains("16 to 8192"));
+    let channels = Channels { cast_shadow: true, ..Channels::default() };
+    assert!(text(Settings { channels, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
+}
+
+/// The part of pixels with a surface in which map and rays tell light from shadow alike.
+fn agreement(name: &str, light: &Light, from: DVec3, size: u32) -> f64 {
+    let mut scene = builtin::scene(name).unwrap();
+    let size_of_scene = Session::new(Arc::new(scene.clone())).unwrap().world().bounds;
+    if name == "sphere" || name == "teapot" || name == "cubs" {
+        let floor = solids::plane(size_of_scene.diagonal() * 1.5, size_of_scene.diagonal() * 1.5, 1, 1);
+        add(&mut scene, floor, Material::default(), dvec3(0.0, size_of_scene.min.y, 0.0));
+    }
+    let mut session = Session::new(Arc::new(scene.clone())).unwrap();
+    let camera = camera(&scene, from);
+    let mut mask = |algorithm: &str| {
+        let channels = Channels { color: false, object: true, cast_shadow: true, ..Channels::default() };
+        let settings = Settings { channels, width: 320, height: 240, shadow_map_size: size, ..settings(algorithm) };
+        let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
+        render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
+    };
+    let (rays, map) = (mask("ray"), mask("map"));
+    let object = rays.object.unwrap();
+    let (rays, map) = (rays.cast_shadow.unwrap(), map.cast_shadow.unwrap());
+    let seen: Vec<_> = (0..object.data().len()).filter(|&i| object.data()[i] != Frame::BACKGROUND).collect();
+    assert!(seen.iter().any(|&i| rays.data()[i] == 1.0), "{name}: something is in shadow");
+    let same = seen.iter().filter(|&&i| (rays.data()[i] >= 0.5) == (map.data()[i] >= 0.5)).count();
+    same as f64 / seen.len() as f64
+}
+
+#[test]
+fn f23_maps_agree_with_rays_the_better_the_larger() {
+    let lights = |name: &str| {
+        let reach = if name == "teapot" { 8.0 } else { 6.0 };
+        let spot = LightKind::Spot {
+            position: dvec3(-0.5, 1.0, 0.4) * reach,
+            direction: dvec3(0.5, -1.0, -0.4),
+            cutoff: 0.6,
+            inner: 0.6,
+            exponent: 0.0,
+        };
+        [sun(dvec3(-1.0, -2.0, 0.6)), lamp(dvec3(0.6, 1.0, -0.5) * reach), light(spot)]
+    };
+    let mut means = [0.0; 2];
+    for (name, _) in builtin::names() {
+        for light in lights(name) {
+            for from in [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)] {
+                let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, size));
+                assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
+                means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
+            }
+        }
+    }
+    assert!(means[1] > means[0] && means[1] > 0.99, "{means:?}");
+}
+
+#[test]
+fn maps_show_no_acne() {
+    let light_from = |degrees: f64| {
+        let (sin, cos) = vitral_math::func::sin_cos(degrees.to_radians());
+        dvec3(cos * 0.8, sin, cos * 0.6)
+    };
+    for degrees in [1.0, 5.0, 20.0, 50.0, 90.0] {
+        let towards = light_from(degrees);
+        let floor = above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
+        for light in [sun(-towards), lamp(towards * 20.0)] {
+            with_shadows(&floor, &[light], &Settings { shadow_map_size: 512, ..settings("map") }, |arriving| {
+                for i in 0..10_000 {
+                    let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
+                    assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
+                }
+            });
+        }
+    }
+    // A ball throws no shadow on its lit half.
+    let ball = Scene::from_mesh(solids::sphere(1.0, 96, 48));
+    let mesh = &ball.meshes[0];
+    with_shadows(
+        &ball,
+        &[sun(dvec3(-1.0, -2.0, 0.5))],
+        &Settings { shadow_map_size: 512, ..settings("map") },
+        |arriving| {
+            for (facet, t) in (0..).zip(&mesh.triangles) {
+                let [a, b, c] = t.map(|i| {
+                    let [x, y, z] = mesh.positions[i as usize].map(f64::from);
+                    dvec3(x, y, z)
+                });
+                let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
+                if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
+                    let position = (a + b + c) / 3.0;
+                    assert_eq!(arriving(Place { position, normal, facet, seed: 0 }), 1.0, "facet {facet}");
+                }
+            }
+        },
+    );
+}
+
+#[test]
+fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
+    // A box that stands on the floor, and one that the floor cuts through.
+    for (height, inside) in [(0.5, false), (0.1, true)] {
+        let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, height, 0.0));
+        let size = 512;
+        let texel = 12.0 / f64::from(size - 8);
+        for i in 0..24 {
+            let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.26);
+            let towards = dvec3(cos, 1.0, sin);
+            let settings = Settings { shadow_map_size: size, ..settings("map") };
+            for light in [sun(-towards), lamp(towards * 6.0)] {
+                let dark = with_shadows(&scene, &[light], &settings, |arriving| {
+                    let at = |p: DVec3| arriving(place(p, DVec3::Y)) == 0.0;
+                    // Behind the box, 1.5 texels (and what the slant makes of them) from its foot.
+                    let away = -dvec3(cos, 0.0, sin);
+                    let edge = 0.5 / cos.abs().max(sin.abs());
+                    let behind = at(away * (edge + 3.0 * texel));
+                    let under = (0..400).all(|k| {
+                        let p = dvec3(f64::from(k % 20) / 20.0 - 0.475, 0.0, f64::from(k / 20) / 20.0 - 0.475);
+                        at(p * 0.95)
+                    });
+                    behind && (under || !inside)
+                });
+                assert!(dark, "sun {i}, height {height}");
+            }
+        }
+    }
+}
+
+#[test]
+fn maps_are_kept_and_change_nothing() {
+    let scene = builtin::scene("scene0").unwrap();
+    let lights = [lamp(dvec3(3.0, 6.0, 2.0))];
+    let settings = Settings { shadow_map_size: 256, ..settings("map") };
+    let mut used = Session::new(Arc::new(scene.clone())).unwrap();
+    for (view, lights) in [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])] {
+        let camera = camera(&scene, [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view]);
+        let shot = Shot { camera, lights, ambient: [0.1; 3] };
+        let again = render(&mut used, &shot, &settings, &Execution::default()).unwrap().frame;
+        let mut fresh = Session::new(Arc::new(scene.clone())).unwrap();
+        assert!(again == render(&mut fresh, &shot, &settings, &Execution::default()).unwrap().frame, "view {view}");
+    }
+}
+
+/// Places all over the facets of a scene, world space.
+fn places_on(scene: &Scene) -> Vec<Place> {
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let mut places = Vec::new();
+    for instance in &session.world().instances {
+        for (facet, t) in (instance.first_facet..).zip(&instance.mesh.triangles) {
+            let [a, b, c] = t.map(|i| {
+                let [x, y, z] = instance.mesh.positions[i as usize].map(f64::from);
+                instance.world_from_model.transform_point3(dvec3(x, y, z))
+            });
+            let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
+            // Large facets get more places.
+            let side = ((b - a).cross(c - a).length().sqrt() * 24.0).clamp(2.0, 40.0) as u32;
+            for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
+                let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
+                places.push(Place { position: a + (b - a) * u + (c - a) * v, normal, facet, seed: 0 });
+            }
+        }
+    }
+    places
+}
+
+#[test]
+fn maps_differ_from_rays_only_near_edges_of_shadows() {
+    let (size, towards) = (512, dvec3(1.0, 2.0, -0.6).normalize());
+    let (x, y) = towards.any_orthonormal_pair();
+    for name in ["cubs", "scene0", "scene1"] {
+        let scene = builtin::scene(name).unwrap();
+        // The map's side is at most the scene's diagonal, less its border.
+        let diagonal = Session::new(Arc::new(scene.clone())).unwrap().world().bounds.diagonal();
+        let texel = diagonal / f64::from(size - 8);
+        let places = places_on(&scene);
+        let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
+            let settings = Settings { shadow_map_size: size, ..settings(algorithm) };
+            with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
+        };
+        let (rays, maps) = (ask("ray", &places), ask("map", &places));
+        let different: Vec<_> = (0..places.len()).filter(|&i| rays[i] != maps[i]).collect();
+        assert!(different.len() * 50 < places.len(), "{name}: {} of {}", different.len(), places.len());
+        // Somewhere within 1.5 texels the rays themselves change their mind.
+        let around = different.iter().flat_map(|&i| {
+            let place = places[i];
+            let slant = move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
+            (0..48).map(move |k| {
+                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
+                let step = texel * 0.5 * f64::from(k % 3 + 1);
+                Place { position: place.position + slant((x * cos + y * sin) * step), ..place }
+            })
+        });
+        let near = ask("ray", &around.collect::<Vec<_>>());
+        for (&i, near) in different.iter().zip(near.chunks(48)) {
+            assert!(near.iter().any(|&n| n != rays[i]), "{name}: no edge near {:?}, lit {}", places[i], rays[i]);
+        }
+    }
+}

@@ -16,6 +16,7 @@ mod plane;
 mod project;
 mod sample;
 mod shade;
+mod soft;
 mod state;
 mod texture;
 mod tile;

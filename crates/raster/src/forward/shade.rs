@@ -13,8 +13,9 @@ use super::sample::anisotropic::sample_anisotropic;
 use super::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use super::sample::packed::Packed;
 use super::sample::sample;
+use super::soft::{disc_coverage, overlap, polygon_coverage};
 use super::state::{EnvironmentMode, FragmentState, Unit};
-use super::wide::{Rgba, bits_of, clamp, max, min, saturate_rgba, splat, splat_rgba};
+use super::wide::{Rgba, bits_of, clamp, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd};
@@ -651,53 +652,4 @@ impl<'a> Shader<'a> {
             },
         )
     }
-}
-
-/// How much of the pixel's width round `at` lies between `low` and `high`.
-#[inline(always)]
-fn overlap<S: Simd>(at: F32x8<S>, low: f32, high: f32) -> F32x8<S> {
-    let simd = at.token();
-    clamp(min(at + 0.5, splat(simd, high)) - max(at - 0.5, splat(simd, low)), 0.0, 1.0)
-}
-
-/// The part of the pixel round `(x, y)` that a disc round the origin covers: the mean of its chords' overlaps.
-#[inline(always)]
-fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: f32) -> F32x8<S> {
-    const CHORDS: u32 = 16;
-    let mut sum = splat(simd, 0.0);
-    for i in 0..CHORDS {
-        let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
-        let half = max(-(at * at) + radius * radius, splat(simd, 0.0)).sqrt();
-        sum += clamp(min(y + 0.5, half) - max(y - 0.5, -half), 0.0, 1.0);
-    }
-    sum * (1.0 / CHORDS as f32)
-}
-
-/// The part of the pixel round `(x, y)` inside those of the edges that are the polygon's: the mean of its chords' parts.
-#[inline(always)]
-fn polygon_coverage<S: Simd>(
-    simd: S,
-    x: F32x8<S>,
-    y: F32x8<S>,
-    edges: &[[f32; 3]; 3],
-    boundary: [bool; 3],
-) -> F32x8<S> {
-    const CHORDS: u32 = 16;
-    let mut sum = splat(simd, 0.0);
-    for i in 0..CHORDS {
-        let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
-        let (mut low, mut high) = (y - 0.5, y + 0.5);
-        for ([a, b, c], _) in edges.iter().zip(boundary).filter(|(_, boundary)| *boundary) {
-            // Inside is b y >= -(a x + c). Nearly upright edges cut the chord far away, or all of it.
-            let steep = if b.abs() < 1e-6 { 1e-6f32.copysign(*b) } else { *b };
-            let cut = (at * *a + *c) * (-1.0 / steep);
-            if steep > 0.0 {
-                low = max(low, cut);
-            } else {
-                high = min(high, cut);
-            }
-        }
-        sum += clamp(high - low, 0.0, 1.0);
-    }
-    sum * (1.0 / CHORDS as f32)
 }

@@ -148,11 +148,13 @@ fn find(
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
-    let viewport = renderer.settings.check().unwrap();
+    // The kinds of coherence are the algorithm's own.
+    let mut settings = renderer.settings.clone();
+    algorithm.name.clone_into(&mut settings.visibility);
+    let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
     let (camera, counters) = (renderer.frame_camera(), &mut CullCounters::default());
-    let view =
-        PreparedView::new(renderer.session(), &camera, &renderer.settings, viewport, pattern, execution, counters);
+    let view = PreparedView::new(renderer.session(), &camera, &settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
     let sink = Keep { tiles: Mutex::new(vec![0; grid.tiles.len()]), layers: Mutex::default() };
     let counters = algorithm.algorithm.resolve(&view, None, &mut grid, execution, &sink)?.counters;

@@ -474,6 +474,11 @@ impl<'a> Shader<'a> {
         y: F32x8<S>,
         active: u32,
     ) -> Rgba<S> {
+        if let Some((_, packed)) = self.plain.iter().find(|(index, _)| *index == unit.index)
+            && let Some(at) = self.layout.tex[unit.index % UNITS]
+        {
+            return self.plain(simd, weights, packed, (at, unit.lod_bias), active);
+        }
         simd.vectorize(
             #[inline(always)]
             || self.texture_inlined(simd, weights, unit, x, y, active),
@@ -490,11 +495,6 @@ impl<'a> Shader<'a> {
         y: F32x8<S>,
         active: u32,
     ) -> Rgba<S> {
-        if let Some((_, packed)) = self.plain.iter().find(|(index, _)| *index == unit.index)
-            && let Some(at) = self.layout.tex[unit.index % UNITS]
-        {
-            return self.plain(simd, weights, packed, (at, unit.lod_bias), active);
-        }
         let texture = &*unit.texture;
         let mut coords = match self.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
@@ -549,7 +549,7 @@ impl<'a> Shader<'a> {
     }
 
     /// The common kind of texture: two dimensions, 8 bits a component, no border in reach, no anisotropy.
-    #[inline(always)]
+    #[inline(never)]
     fn plain<S: Simd>(
         &self,
         simd: S,
@@ -558,35 +558,40 @@ impl<'a> Shader<'a> {
         (at, bias): (usize, f32),
         active: u32,
     ) -> Rgba<S> {
-        let d = &self.scratch.differences;
-        let [mut s, mut t] = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
-        let (q_at, projected) = ((at + 3) % MOST, d.varies >> ((at + 3) % MOST) & 1 == 1);
-        let q = projected || d.base[q_at] != 1.0;
-        let inverse_q = if q { splat(simd, 1.0) / self.value(simd, weights, q_at) } else { splat(simd, 1.0) };
-        if q {
-            (s, t) = (s * inverse_q, t * inverse_q);
-        }
-        let mut level = splat(simd, bias);
-        if packed.needs_lod() {
-            let size = packed.size();
-            let mut squares = [splat(simd, 0.0); 2];
-            for axis in 0..2 {
-                let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
-                for (k, place) in [s, t].into_iter().enumerate() {
-                    let mut step = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
-                    if projected {
-                        step -= place * (db1 * d.d1[q_at] + db2 * d.d2[q_at]);
-                    }
-                    if q {
-                        step *= inverse_q;
-                    }
-                    let step = step * size[k];
-                    squares[axis] += step * step;
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let d = &self.scratch.differences;
+                let [mut s, mut t] = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
+                let (q_at, projected) = ((at + 3) % MOST, d.varies >> ((at + 3) % MOST) & 1 == 1);
+                let q = projected || d.base[q_at] != 1.0;
+                let inverse_q = if q { splat(simd, 1.0) / self.value(simd, weights, q_at) } else { splat(simd, 1.0) };
+                if q {
+                    (s, t) = (s * inverse_q, t * inverse_q);
                 }
-            }
-            level += half_log2(squares[0], squares[1]);
-        }
-        packed.at(simd, [s, t], level, active)
+                let mut level = splat(simd, bias);
+                if packed.needs_lod() {
+                    let size = packed.size();
+                    let mut squares = [splat(simd, 0.0); 2];
+                    for axis in 0..2 {
+                        let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
+                        for (k, place) in [s, t].into_iter().enumerate() {
+                            let mut step = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
+                            if projected {
+                                step -= place * (db1 * d.d1[q_at] + db2 * d.d2[q_at]);
+                            }
+                            if q {
+                                step *= inverse_q;
+                            }
+                            let step = step * size[k];
+                            squares[axis] += step * step;
+                        }
+                    }
+                    level += half_log2(squares[0], squares[1]);
+                }
+                packed.at(simd, [s, t], level, active)
+            },
+        )
     }
 
     /// Stipples and the soft borders of smooth primitives.

@@ -351,11 +351,13 @@ impl Batch {
     }
 
     /// Where the tile's entries lie among all.
+    #[cfg(feature = "forward")]
     pub(crate) fn tile_range(&self, tile: usize) -> Range<usize> {
         self.starts[tile] as usize..self.starts[tile + 1] as usize
     }
 
     /// The setup of an entry.
+    #[cfg(feature = "forward")]
     #[inline(always)]
     pub(crate) fn item(&self, at: usize) -> &Setup {
         &self.setups[self.items[at] as usize]

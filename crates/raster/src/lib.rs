@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 pub mod clip;
+#[cfg(feature = "forward")]
 pub mod forward;
 pub mod geometry;
 mod kernel;

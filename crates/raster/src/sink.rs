@@ -18,6 +18,70 @@ pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x
     lanes::Lanes::min(lanes::Lanes::max(z, F32x8::splat(simd, setup.z_min)), F32x8::splat(simd, setup.z_max))
 }
 
+/// Eight samples of a row that a facet covers, with the facet's depth there.
+struct Row<S: Simd> {
+    /// Index of the first in the tile's planes.
+    at: usize,
+    /// A bit for each that is covered.
+    covered: u64,
+    z: F32x8<S>,
+}
+
+/// Goes through the rows of a block in which `masks`, one a sample, have something; the tile starts at pixel `corner`.
+#[inline(always)]
+fn each_row<S: Simd>(
+    simd: S,
+    setup: &Setup,
+    (pattern, corner): (&SamplePattern, [usize; 2]),
+    block: &Block,
+    masks: &[u64],
+    mut visit: impl FnMut(Row<S>),
+) {
+    for (s, &mask) in masks.iter().enumerate() {
+        let [sx, sy] = pattern.position(s);
+        let x = (corner[0] + block.x) as i32 * SUBPIXEL + sx;
+        for row in block.rows.clone() {
+            let covered = (mask >> (8 * row)) & 0xff;
+            if covered == 0 {
+                continue;
+            }
+            let y = (corner[1] + block.y + row) as i32 * SUBPIXEL + sy;
+            let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+            visit(Row { at, covered, z: row_depth(simd, setup, x, y) });
+        }
+    }
+}
+
+/// The tile's first pixel.
+fn corner(tile: &Tile) -> [usize; 2] {
+    [tile.x as usize, tile.y as usize]
+}
+
+/// What a facet met at eight samples.
+struct Met<S: Simd> {
+    covered: Mask8<S>,
+    /// The facet is nearer than what was there; of equally near ones it is the lower.
+    nearer: Mask8<S>,
+    /// It is nearer and covers: it was kept.
+    wins: Mask8<S>,
+    old_z: F32x8<S>,
+    old_facet: U32x8<S>,
+}
+
+/// Keeps the nearer facet at the samples of `row`.
+#[inline(always)]
+fn keep_nearer<S: Simd>(simd: S, tile: &mut Tile, facet: U32x8<S>, row: &Row<S>) -> Met<S> {
+    let depths = &mut tile.depth[row.at..row.at + BLOCK];
+    let facets = &mut tile.facet[row.at..row.at + BLOCK];
+    let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
+    let covered = Mask8::from_bitmask(simd, row.covered);
+    let nearer = row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet));
+    let wins = nearer & covered;
+    wins.select(row.z, old_z).store_slice(depths);
+    wins.select(facet, old_facet).store_slice(facets);
+    Met { covered, nearer, wins, old_z, old_facet }
+}
+
 /// The z-buffer: each sample keeps the nearest facet, of equally near ones the lowest.
 #[derive(Debug)]
 pub struct VisibilitySink<'a> {
@@ -68,29 +132,18 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let new_facet = U32x8::splat(simd, setup.facet);
+        let facet = U32x8::splat(simd, setup.facet);
+        let place = (self.pattern, corner(self.tile));
         let mut written = 0;
-        for (s, &mask) in masks.iter().enumerate() {
-            let [sx, sy] = self.pattern.position(s);
-            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
-            for row in block.rows.clone() {
-                let covered = (mask >> (8 * row)) & 0xff;
-                if covered == 0 {
-                    continue;
-                }
-                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
-                let z = row_depth(simd, setup, x, y);
-                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
-                let depths = &mut self.tile.depth[at..at + BLOCK];
-                let facets = &mut self.tile.facet[at..at + BLOCK];
-                let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
-                let nearer = z.simd_gt(old_z) | (z.simd_eq(old_z) & new_facet.simd_lt(old_facet));
-                let wins = nearer & Mask8::from_bitmask(simd, covered);
-                wins.select(z, old_z).store_slice(depths);
-                wins.select(new_facet, old_facet).store_slice(facets);
-                written += wins.to_bitmask().count_ones();
-            }
-        }
+        each_row(
+            simd,
+            setup,
+            place,
+            block,
+            masks,
+            #[inline(always)]
+            |row| written += keep_nearer(simd, self.tile, facet, &row).wins.to_bitmask().count_ones(),
+        );
         note_writes(simd, self.tile, self.pattern.len(), block, (written, self.patience));
     }
 }
@@ -135,41 +188,32 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let new_facet = U32x8::splat(simd, setup.facet);
+        let facet = U32x8::splat(simd, setup.facet);
         let nothing = U32x8::splat(simd, NO_FACET);
+        let place = (self.pattern, corner(self.tile));
         let mut written = 0;
-        for (s, &mask) in masks.iter().enumerate() {
-            let [sx, sy] = self.pattern.position(s);
-            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
-            for row in block.rows.clone() {
-                let covered = (mask >> (8 * row)) & 0xff;
-                if covered == 0 {
-                    continue;
-                }
-                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
-                let z = row_depth(simd, setup, x, y);
-                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
-                let depths = &mut self.tile.depth[at..at + BLOCK];
-                let facets = &mut self.tile.facet[at..at + BLOCK];
-                let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
-                let covered = Mask8::from_bitmask(simd, covered);
-                let nearer = z.simd_gt(old_z) | (z.simd_eq(old_z) & new_facet.simd_lt(old_facet));
-                let wins = nearer & covered;
-                wins.select(z, old_z).store_slice(depths);
-                wins.select(new_facet, old_facet).store_slice(facets);
+        each_row(
+            simd,
+            setup,
+            place,
+            block,
+            masks,
+            #[inline(always)]
+            |row| {
+                let Met { covered, nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, &row);
                 written += wins.to_bitmask().count_ones();
                 let filled = covered & !old_facet.simd_eq(nothing);
                 let (overruled, gap) = if FRONT_FIRST {
-                    (filled & wins, z - old_z)
+                    (filled & wins, row.z - old_z)
                 } else {
-                    (covered & !nearer & !old_facet.simd_eq(new_facet), old_z - z)
+                    (covered & !nearer & !old_facet.simd_eq(facet), old_z - row.z)
                 };
                 let far = overruled & gap.simd_ge(F32x8::splat(simd, NEAR_TIE));
                 self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
                 self.counts.overruled += u64::from(overruled.to_bitmask().count_ones());
                 self.counts.overruled_far += u64::from(far.to_bitmask().count_ones());
-            }
-        }
+            },
+        );
         if FRONT_FIRST {
             let patience = (BLOCK * BLOCK * self.pattern.len()) as u32;
             note_writes(simd, self.tile, self.pattern.len(), block, (written, patience));
@@ -212,17 +256,16 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        for (s, &mask) in masks.iter().enumerate() {
-            let [sx, sy] = self.pattern.position(s);
-            let x = (self.tile.x as usize + block.x) as i32 * SUBPIXEL + sx;
-            for row in block.rows.clone() {
-                let mut covered = (mask >> (8 * row)) & 0xff;
-                if covered == 0 {
-                    continue;
-                }
-                let y = (self.tile.y as usize + block.y + row) as i32 * SUBPIXEL + sy;
-                let z = row_depth(simd, setup, x, y).to_array();
-                let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
+        let place = (self.pattern, corner(self.tile));
+        each_row(
+            simd,
+            setup,
+            place,
+            block,
+            masks,
+            #[inline(always)]
+            |row| {
+                let (z, at, mut covered) = (row.z.to_array(), row.at, row.covered);
                 while covered != 0 {
                     let lane = covered.trailing_zeros() as usize;
                     covered &= covered - 1;
@@ -231,7 +274,7 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
                         self.layers.push(Layer { at: (at + lane) as u32, depth: z[lane], facet: setup.facet });
                     }
                 }
-            }
-        }
+            },
+        );
     }
 }

@@ -160,12 +160,14 @@ impl Structure for Bvh {
 }
 
 impl Tree for Bvh {
+    fn root(&self) -> Option<[[f32; 3]; 2]> {
+        self.nodes.first().map(|root| [root.min, root.max])
+    }
+
     /// The nearer child comes first.
     #[inline(always)]
-    fn descend(&self, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
-        let Some(root) = self.nodes.first() else { return 0 };
-        let mut visited = 1;
-        let Some(near) = probe.enters(root.min, root.max) else { return visited };
+    fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        let mut visited = 0;
         let mut stack = [(0u32, 0.0f32); STACK];
         let mut top = 1;
         stack[0] = (0, near);

@@ -64,8 +64,18 @@ pub trait Structure: Sync {
 
 /// A structure of boxes within boxes, which any probe can go down.
 pub trait Tree: Structure {
+    /// The box round everything; `None` if there is nothing.
+    fn root(&self) -> Option<[[f32; 3]; 2]>;
+
+    /// [`Tree::descend`] below the root, which the probe enters at `near`; boxes looked at besides the root.
+    fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64;
+
     /// [`Structure::traverse`] with any probe.
-    fn descend(&self, probe: &impl Probe, visitor: &mut impl Visitor) -> u64;
+    #[inline(always)]
+    fn descend(&self, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        let Some([min, max]) = self.root() else { return 0 };
+        1 + probe.enters(min, max).map_or(0, |near| self.descend_from(near, probe, visitor))
+    }
 }
 
 /// What following rays took.

@@ -3,7 +3,7 @@
 use super::FrameConstants;
 use super::facets::FacetTable;
 use super::geometry::surface;
-use super::group::{slots, subject};
+use super::group::each_eight;
 use super::phong::interpolated_normal;
 use super::points::{Points, Source};
 use super::shadowed::shadow_shares;
@@ -13,7 +13,7 @@ use crate::visible::TileSink;
 use std::sync::Mutex;
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{LayerList, NO_FACET, TILE_PIXELS, Tile};
 
 /// The wanted planes of one tile, row by row; unwanted ones stay empty.
@@ -98,23 +98,23 @@ impl ChannelSink<'_> {
 fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, out: &mut [[f32; 3]]) {
     let rotation = constants.view.view.view_from_world.as_mat4();
     let mut of_point = vec![[0.0; 3]; points.len()];
-    let mut facets = FacetTable::default();
-    for group in &points.groups {
-        let order = &points.order[group.start as usize..group.end as usize];
-        let (subject, _) = subject(group, constants);
-        facets.fill(simd, points, order, &subject);
-        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
-            let slots = slots(points, eight, records, subject.first_facet);
-            let n = interpolated_normal(&surface(simd, &facets.records, &slots));
+    each_eight(
+        simd,
+        points,
+        &mut FacetTable::default(),
+        constants,
+        #[inline(always)]
+        |eight| {
+            let n = interpolated_normal(&surface(simd, &eight.facets.records, &eight.slots));
             let soa = [n.x.to_array(), n.y.to_array(), n.z.to_array()];
-            for (lane, &p) in eight.iter().enumerate() {
+            for (lane, &p) in eight.points.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
                 // The inverse of a rotation is its transpose.
                 let world = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(|a| a.truncate().dot(view));
                 of_point[p as usize] = world;
             }
-        }
-    }
+        },
+    );
     for pixel in &points.pixels {
         if let Source::Point(point) = pixel.source {
             out[pixel.index as usize] = of_point[point as usize];
@@ -126,19 +126,20 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
 #[inline(always)]
 fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, planes: &mut DataPlanes) {
     let mut of_point = vec![[0.0; 2]; points.len()];
-    let mut facets = FacetTable::default();
-    for group in &points.groups {
-        let order = &points.order[group.start as usize..group.end as usize];
-        let (subject, _) = subject(group, constants);
-        facets.fill(simd, points, order, &subject);
-        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
-            let slots = slots(points, eight, records, subject.first_facet);
-            let [attached, cast] = shadow_shares(constants, &subject, &slots, &surface(simd, &facets.records, &slots));
-            for (lane, &p) in eight.iter().enumerate() {
+    each_eight(
+        simd,
+        points,
+        &mut FacetTable::default(),
+        constants,
+        #[inline(always)]
+        |eight| {
+            let surface = surface(simd, &eight.facets.records, &eight.slots);
+            let [attached, cast] = shadow_shares(constants, eight.subject, &eight.slots, &surface);
+            for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];
             }
-        }
-    }
+        },
+    );
     for pixel in &points.pixels {
         if let Source::Point(point) = pixel.source {
             let at = pixel.index as usize;

@@ -122,13 +122,42 @@ pub(crate) fn shade_all<S: Simd>(
         }
         return;
     }
+    each_eight(
+        simd,
+        points,
+        facets,
+        constants,
+        #[inline(always)]
+        |eight| shade_eight(simd, eight, constants, lit),
+    );
+}
+
+/// Up to eight points of one object and material.
+pub(crate) struct Eight<'a> {
+    pub subject: &'a Subject<'a>,
+    pub material: &'a MaterialConstants<'a>,
+    /// Indices of the points.
+    pub points: &'a [u32],
+    pub slots: Slots,
+    pub facets: &'a FacetTable,
+}
+
+/// Goes through the points of all groups, eight at a time.
+#[inline(always)]
+pub(crate) fn each_eight<S: Simd>(
+    simd: S,
+    points: &Points,
+    facets: &mut FacetTable,
+    constants: &FrameConstants<'_>,
+    mut visit: impl FnMut(&Eight<'_>),
+) {
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
         for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
             let slots = slots(points, eight, records, subject.first_facet);
-            shade_eight(simd, &subject, material, eight, &slots, facets, constants, lit);
+            visit(&Eight { subject: &subject, material, points: eight, slots, facets });
         }
     }
 }
@@ -173,33 +202,16 @@ pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet
 }
 
 /// One instruction-set function: kept out of line, so that each level compiles it once.
-fn shade_eight<S: Simd>(
-    simd: S,
-    subject: &Subject<'_>,
-    material: &MaterialConstants<'_>,
-    eight: &[u32],
-    slots: &Slots,
-    facets: &FacetTable,
-    constants: &FrameConstants<'_>,
-    lit: &mut Lit,
-) {
+fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
     simd.vectorize(
         #[inline(always)]
-        || shade_eight_inlined(simd, subject, material, eight, slots, facets, constants, lit),
+        || illuminate(simd, eight, constants, lit),
     );
 }
 
 #[inline(always)]
-fn shade_eight_inlined<S: Simd>(
-    simd: S,
-    subject: &Subject<'_>,
-    material: &MaterialConstants<'_>,
-    eight: &[u32],
-    slots: &Slots,
-    facets: &FacetTable,
-    constants: &FrameConstants<'_>,
-    lit: &mut Lit,
-) {
+fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
+    let Eight { subject, material, points, slots, facets } = eight;
     let (mesh, instance) = (subject.mesh, subject.instance);
     let surface = surface(simd, &facets.records, slots);
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
@@ -258,15 +270,15 @@ fn shade_eight_inlined<S: Simd>(
         color = (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage);
         let passes = filtered::passes(looks.coverage, looks.kt, material.material.filter);
         let soa = [passes.x.to_array(), passes.y.to_array(), passes.z.to_array()];
-        for (lane, &p) in eight.iter().enumerate() {
+        for (lane, &p) in points.iter().enumerate() {
             lit.passes[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane]];
         }
     } else if constants.transparency == Transparency::Filtered {
         let gap = linear::opacity(looks.alpha).to_array();
-        eight.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
+        points.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
     }
     let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
-    for (lane, &p) in eight.iter().enumerate() {
+    for (lane, &p) in points.iter().enumerate() {
         lit.colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
     }
 }

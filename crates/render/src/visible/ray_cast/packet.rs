@@ -19,28 +19,65 @@ use crate::visible::brute_force::size_in_picture;
 use crate::visible::facets::extent;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
-use vitral_raster::{BLOCK, LayerList, LayerSink, SUBPIXEL, TILE, Tile, VisibilitySink, traverse_block};
+use vitral_raster::{
+    BLOCK, LayerList, LayerSink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, VisibilitySink, traverse_block,
+};
 
-/// The opaque facets of a block.
-struct Opaque<'a, S, T> {
+/// Takes what is found in a block.
+trait Taker<S> {
+    /// Whether it is facets that become layers that it takes, or the opaque ones.
+    const LAYERED: bool;
+
+    fn tile(&self) -> &Tile;
+
+    fn take(&mut self, simd: S, setup: &Setup, block: (usize, usize), pattern: &SamplePattern);
+}
+
+/// Keeps the nearest opaque facets.
+struct Opaque<'a>(&'a mut Tile);
+
+/// Collects the layers in front of the finished opaque samples.
+struct Layers<'a>(&'a Tile, &'a mut LayerList);
+
+impl<S: Simd> Taker<S> for Opaque<'_> {
+    const LAYERED: bool = false;
+
+    #[inline(always)]
+    fn tile(&self) -> &Tile {
+        self.0
+    }
+
+    #[inline(always)]
+    fn take(&mut self, simd: S, setup: &Setup, block: (usize, usize), pattern: &SamplePattern) {
+        let place = (self.0.x, self.0.y);
+        traverse_block(simd, setup, place, block, pattern, &mut VisibilitySink::eager(self.0, pattern));
+    }
+}
+
+impl<S: Simd> Taker<S> for Layers<'_> {
+    const LAYERED: bool = true;
+
+    #[inline(always)]
+    fn tile(&self) -> &Tile {
+        self.0
+    }
+
+    #[inline(always)]
+    fn take(&mut self, simd: S, setup: &Setup, block: (usize, usize), pattern: &SamplePattern) {
+        let place = (self.0.x, self.0.y);
+        traverse_block(simd, setup, place, block, pattern, &mut LayerSink::new(self.0, pattern, self.1));
+    }
+}
+
+/// The facets of a block that `taker` takes.
+struct Search<'a, S, T, K> {
     simd: S,
     cast: &'a Cast<'a, T>,
-    tile: &'a mut Tile,
+    taker: K,
     /// Top left pixel within the tile.
     block: (usize, usize),
     stamps: &'a mut Stamps,
     /// Setups tested.
-    tests: u64,
-}
-
-/// The facets of a block that are layers, in front of its finished opaque samples.
-struct Layers<'a, S, T> {
-    simd: S,
-    cast: &'a Cast<'a, T>,
-    tile: &'a Tile,
-    block: (usize, usize),
-    layers: &'a mut LayerList,
-    stamps: &'a mut Stamps,
     tests: u64,
 }
 
@@ -58,52 +95,30 @@ fn reaches(place: &Place, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool
     touches(place.columns, x) & touches(place.rows, y) & (place.nearest >= far)
 }
 
-impl<S: Simd, T: Structure> Visitor for Opaque<'_, S, T> {
+impl<S: Simd, T: Structure, K: Taker<S>> Search<'_, S, T, K> {
     #[inline(always)]
-    fn skips(&self, part: usize, near: f32) -> bool {
-        self.cast.eye.depth_behind(near) + self.cast.slack[0][part] < farthest(self.tile, self.block)
-    }
-
-    #[inline(always)]
-    fn done(&self, near: f32) -> bool {
-        self.cast.eye.depth_behind(near) + self.cast.largest_slack < farthest(self.tile, self.block)
-    }
-
-    #[inline(always)]
-    fn triangle(&mut self, place: usize) {
-        let far = farthest(self.tile, self.block);
-        let found = &self.cast.places[place];
-        if !reaches(found, self.tile, self.block, far) || self.cast.is_layered(found.setups) {
-            return;
-        }
-        if T::REPEATS && !self.stamps.first_time(place) {
-            return;
-        }
-        for setup in self.cast.setups(found.setups) {
-            self.tests += 1;
-            let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
-            let mut sink = VisibilitySink::eager(self.tile, pattern);
-            traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
-        }
+    fn is_behind(&self, near: f32, slack: f32) -> bool {
+        self.cast.eye.depth_behind(near) + slack < farthest(self.taker.tile(), self.block)
     }
 }
 
-impl<S: Simd, T: Structure> Visitor for Layers<'_, S, T> {
+impl<S: Simd, T: Structure, K: Taker<S>> Visitor for Search<'_, S, T, K> {
     #[inline(always)]
     fn skips(&self, part: usize, near: f32) -> bool {
-        self.cast.eye.depth_behind(near) + self.cast.slack[1][part] < farthest(self.tile, self.block)
+        self.is_behind(near, self.cast.slack[usize::from(K::LAYERED)][part])
     }
 
     #[inline(always)]
     fn done(&self, near: f32) -> bool {
-        self.cast.eye.depth_behind(near) + self.cast.largest_slack < farthest(self.tile, self.block)
+        self.is_behind(near, self.cast.largest_slack)
     }
 
     #[inline(always)]
     fn triangle(&mut self, place: usize) {
-        let far = farthest(self.tile, self.block);
+        let tile = self.taker.tile();
+        let far = farthest(tile, self.block);
         let found = &self.cast.places[place];
-        if !reaches(found, self.tile, self.block, far) || !self.cast.is_layered(found.setups) {
+        if !reaches(found, tile, self.block, far) || self.cast.is_layered(found.setups) != K::LAYERED {
             return;
         }
         if T::REPEATS && !self.stamps.first_time(place) {
@@ -111,9 +126,7 @@ impl<S: Simd, T: Structure> Visitor for Layers<'_, S, T> {
         }
         for setup in self.cast.setups(found.setups) {
             self.tests += 1;
-            let (place, pattern) = ((self.tile.x, self.tile.y), &self.cast.view.pattern);
-            let mut sink = LayerSink::new(self.tile, pattern, self.layers);
-            traverse_block(self.simd, setup, place, self.block, pattern, &mut sink);
+            self.taker.take(self.simd, setup, self.block, &self.cast.view.pattern);
         }
     }
 }
@@ -167,12 +180,12 @@ fn look_at_block<S: Simd, T: Tree>(
     let pyramid = cast.eye.pyramid(simd, low, high);
 
     stamps.next();
-    let mut opaque = Opaque { simd, cast, tile, block, stamps, tests: 0 };
+    let mut opaque = Search { simd, cast, taker: Opaque(tile), block, stamps, tests: 0 };
     let mut boxes = cast.structure.descend(&pyramid, &mut opaque);
     let mut tests = opaque.tests;
     if !cast.slack[1].is_empty() {
         stamps.next();
-        let mut visitor = Layers { simd, cast, tile, block, layers, stamps, tests: 0 };
+        let mut visitor = Search { simd, cast, taker: Layers(tile, layers), block, stamps, tests: 0 };
         boxes += cast.structure.descend(&pyramid, &mut visitor);
         tests += visitor.tests;
     }

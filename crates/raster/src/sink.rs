@@ -1,6 +1,6 @@
 //! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
-use crate::kernel::traverse::{Block, BlockSink};
+use crate::kernel::traverse::{Block, BlockSink, RowSink};
 use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
@@ -22,9 +22,25 @@ pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x
 struct Row<S: Simd> {
     /// Index of the first in the tile's planes.
     at: usize,
-    /// A bit for each that is covered.
-    covered: u64,
+    covered: Mask8<S>,
     z: F32x8<S>,
+}
+
+impl<S: Simd> Row<S> {
+    /// Sample `sample` of the tile's pixels from `[x, y]`.
+    #[inline(always)]
+    fn new(
+        simd: S,
+        setup: &Setup,
+        (pattern, corner): (&SamplePattern, [usize; 2]),
+        sample: usize,
+        [x, y]: [usize; 2],
+        covered: Mask8<S>,
+    ) -> Self {
+        let [sx, sy] = pattern.axes().map(|axis| axis[sample]);
+        let z = row_depth(simd, setup, (corner[0] + x) as i32 * SUBPIXEL + sx, (corner[1] + y) as i32 * SUBPIXEL + sy);
+        Self { at: sample * TILE_PIXELS + y * TILE + x, covered, z }
+    }
 }
 
 /// Goes through the rows of a block in which `masks`, one a sample, have something; the tile starts at pixel `corner`.
@@ -32,22 +48,18 @@ struct Row<S: Simd> {
 fn each_row<S: Simd>(
     simd: S,
     setup: &Setup,
-    (pattern, corner): (&SamplePattern, [usize; 2]),
+    place: (&SamplePattern, [usize; 2]),
     block: &Block,
     masks: &[u64],
     mut visit: impl FnMut(Row<S>),
 ) {
     for (s, &mask) in masks.iter().enumerate() {
-        let [sx, sy] = pattern.position(s);
-        let x = (corner[0] + block.x) as i32 * SUBPIXEL + sx;
         for row in block.rows.clone() {
             let covered = (mask >> (8 * row)) & 0xff;
-            if covered == 0 {
-                continue;
+            if covered != 0 {
+                let covered = Mask8::from_bitmask(simd, covered);
+                visit(Row::new(simd, setup, place, s, [block.x, block.y + row], covered));
             }
-            let y = (corner[1] + block.y + row) as i32 * SUBPIXEL + sy;
-            let at = s * TILE_PIXELS + (block.y + row) * TILE + block.x;
-            visit(Row { at, covered, z: row_depth(simd, setup, x, y) });
         }
     }
 }
@@ -59,7 +71,6 @@ fn corner(tile: &Tile) -> [usize; 2] {
 
 /// What a facet met at eight samples.
 struct Met<S: Simd> {
-    covered: Mask8<S>,
     /// The facet is nearer than what was there; of equally near ones it is the lower.
     nearer: Mask8<S>,
     /// It is nearer and covers: it was kept.
@@ -74,12 +85,11 @@ fn keep_nearer<S: Simd>(simd: S, tile: &mut Tile, facet: U32x8<S>, row: &Row<S>)
     let depths = &mut tile.depth[row.at..row.at + BLOCK];
     let facets = &mut tile.facet[row.at..row.at + BLOCK];
     let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
-    let covered = Mask8::from_bitmask(simd, row.covered);
     let nearer = row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet));
-    let wins = nearer & covered;
+    let wins = nearer & row.covered;
     wins.select(row.z, old_z).store_slice(depths);
     wins.select(facet, old_facet).store_slice(facets);
-    Met { covered, nearer, wins, old_z, old_facet }
+    Met { nearer, wins, old_z, old_facet }
 }
 
 /// The z-buffer: each sample keeps the nearest facet, of equally near ones the lowest.
@@ -89,18 +99,20 @@ pub struct VisibilitySink<'a> {
     pattern: &'a SamplePattern,
     /// Samples of a block that are written before its `block_far` is computed anew.
     patience: u32,
+    /// Samples of the triangle at hand that were written row by row.
+    written: u32,
 }
 
 impl<'a> VisibilitySink<'a> {
     /// Draws into `tile`.
     pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
-        Self { tile, pattern, patience: (BLOCK * BLOCK * pattern.len()) as u32 }
+        Self { tile, pattern, patience: (BLOCK * BLOCK * pattern.len()) as u32, written: 0 }
     }
 
     /// Draws into `tile`, for someone who wants to know how far a block is as soon as it is full: facets that come from
     /// front to back fill it once.
     pub fn eager(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
-        Self { tile, pattern, patience: 1 }
+        Self { tile, pattern, patience: 1, written: 0 }
     }
 }
 
@@ -145,6 +157,36 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
             |row| written += keep_nearer(simd, self.tile, facet, &row).wins.to_bitmask().count_ones(),
         );
         note_writes(simd, self.tile, self.pattern.len(), block, (written, self.patience));
+    }
+}
+
+/// Whether the blocks of a box of at most 8x8 pixels hold nothing but what is nearer than `setup`.
+#[inline(always)]
+fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    let far = |x: usize, y: usize| tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK];
+    setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
+}
+
+impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
+    #[inline(always)]
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+        hides_box(self.tile, setup, low, high)
+    }
+
+    #[inline(always)]
+    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
+        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+        let met = keep_nearer(simd, self.tile, U32x8::splat(simd, setup.facet), &row);
+        self.written += met.wins.to_bitmask().count_ones();
+    }
+
+    #[inline(always)]
+    fn end(&mut self, simd: S, [x, y]: [usize; 2]) {
+        // All count for the first block, though rows may reach into others: when far depths are computed anew does not
+        // matter to pictures.
+        let block = Block { x: x & !(BLOCK - 1), y: y & !(BLOCK - 1), rows: 0..BLOCK };
+        let written = std::mem::take(&mut self.written);
+        note_writes(simd, self.tile, self.pattern.len(), &block, (written, self.patience));
     }
 }
 
@@ -200,13 +242,13 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
             masks,
             #[inline(always)]
             |row| {
-                let Met { covered, nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, &row);
+                let Met { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, &row);
                 written += wins.to_bitmask().count_ones();
-                let filled = covered & !old_facet.simd_eq(nothing);
+                let filled = row.covered & !old_facet.simd_eq(nothing);
                 let (overruled, gap) = if FRONT_FIRST {
                     (filled & wins, row.z - old_z)
                 } else {
-                    (covered & !nearer & !old_facet.simd_eq(facet), old_z - row.z)
+                    (row.covered & !nearer & !old_facet.simd_eq(facet), old_z - row.z)
                 };
                 let far = overruled & gap.simd_ge(F32x8::splat(simd, NEAR_TIE));
                 self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
@@ -248,6 +290,37 @@ impl<'a> LayerSink<'a> {
     }
 }
 
+impl LayerSink<'_> {
+    #[inline(always)]
+    fn collect<S: Simd>(&mut self, facet: u32, row: &Row<S>) {
+        let (z, at, mut covered) = (row.z.to_array(), row.at, row.covered.to_bitmask());
+        while covered != 0 {
+            let lane = covered.trailing_zeros() as usize;
+            covered &= covered - 1;
+            let (old_z, old_facet) = (self.tile.depth[at + lane], self.tile.facet[at + lane]);
+            if z[lane] > old_z || (z[lane] == old_z && facet < old_facet) {
+                self.layers.push(Layer { at: (at + lane) as u32, depth: z[lane], facet });
+            }
+        }
+    }
+}
+
+impl<S: Simd> RowSink<S> for LayerSink<'_> {
+    #[inline(always)]
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+        hides_box(self.tile, setup, low, high)
+    }
+
+    #[inline(always)]
+    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
+        let place = (self.pattern, corner(self.tile));
+        self.collect(setup.facet, &Row::new(simd, setup, place, sample, at, covered));
+    }
+
+    #[inline(always)]
+    fn end(&mut self, _: S, _: [usize; 2]) {}
+}
+
 impl<S: Simd> BlockSink<S> for LayerSink<'_> {
     #[inline(always)]
     fn rejects(&self, setup: &Setup, block: &Block) -> bool {
@@ -264,17 +337,96 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
             block,
             masks,
             #[inline(always)]
-            |row| {
-                let (z, at, mut covered) = (row.z.to_array(), row.at, row.covered);
-                while covered != 0 {
-                    let lane = covered.trailing_zeros() as usize;
-                    covered &= covered - 1;
-                    let (old_z, old_facet) = (self.tile.depth[at + lane], self.tile.facet[at + lane]);
-                    if z[lane] > old_z || (z[lane] == old_z && setup.facet < old_facet) {
-                        self.layers.push(Layer { at: (at + lane) as u32, depth: z[lane], facet: setup.facet });
+            |row| self.collect(setup.facet, &row),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CornerPosition, TileGrid, Viewport, traverse, traverse_by_rows};
+    use vitral_math::lanes::{Level, dispatch};
+
+    /// Numbers without pattern, from a linear congruence.
+    fn random(state: &mut u32, below: i32) -> i32 {
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        ((u64::from(*state) * below as u64) >> 32) as i32
+    }
+
+    /// Triangles of all sizes and shapes all over a tile, across its borders, too.
+    fn triangles() -> Vec<Setup> {
+        let mut state = 7;
+        let mut setups = Vec::new();
+        for facet in 0..4000 {
+            let size = [300, 900, 2500, 4000, 40_000][facet as usize % 5];
+            let middle = [0, 1].map(|_| random(&mut state, 66 * SUBPIXEL) - SUBPIXEL);
+            let mut corner = || CornerPosition {
+                x: middle[0] + random(&mut state, size) - size / 2,
+                // Half of them lie flat.
+                y: middle[1] + random(&mut state, if facet % 2 == 0 { size } else { 200 }) - 100,
+                z: random(&mut state, 1000) as f32 / 1000.0,
+            };
+            let corners = [corner(), corner(), corner()];
+            let area = Setup::doubled_area(corners[0], corners[1], corners[2]);
+            if area != 0 {
+                setups.push(Setup::new(corners, area, facet));
+            }
+        }
+        setups
+    }
+
+    #[test]
+    fn rows_blocks_and_single_samples_agree() {
+        let setups = triangles();
+        for samples in [1, 4, 3] {
+            let pattern = SamplePattern::new(samples);
+            let empty = || TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
+            let [mut rows, mut blocks, mut one_by_one] = [empty(), empty(), empty()];
+            dispatch!(Level::new(), simd => {
+                let mut by_rows = VisibilitySink::new(&mut rows, &pattern);
+                setups.iter().for_each(|s| traverse_by_rows(simd, s, (0, 0), &pattern, &mut by_rows));
+                let mut by_blocks = VisibilitySink::new(&mut blocks, &pattern);
+                setups.iter().for_each(|s| traverse(simd, s, (0, 0), &pattern, &mut by_blocks));
+            });
+            for setup in &setups {
+                for at in 0..samples * TILE_PIXELS {
+                    let [sx, sy] = pattern.position(at / TILE_PIXELS);
+                    let pixel = at % TILE_PIXELS;
+                    let (x, y) = ((pixel % TILE) as i32 * SUBPIXEL + sx, (pixel / TILE) as i32 * SUBPIXEL + sy);
+                    let z = setup.depth(x, y);
+                    let (old_z, old_facet) = (one_by_one.depth[at], one_by_one.facet[at]);
+                    if setup.covers(x, y) && (z > old_z || (z == old_z && setup.facet < old_facet)) {
+                        (one_by_one.depth[at], one_by_one.facet[at]) = (z, setup.facet);
                     }
                 }
-            },
-        );
+            }
+            assert!(one_by_one.facet.iter().filter(|f| **f != NO_FACET).count() > samples * TILE_PIXELS / 2);
+            assert!(rows.facet == one_by_one.facet && rows.depth == one_by_one.depth, "{samples} samples by rows");
+            assert!(
+                blocks.facet == one_by_one.facet && blocks.depth == one_by_one.depth,
+                "{samples} samples by blocks"
+            );
+        }
+    }
+
+    #[test]
+    fn rows_give_each_layer_once() {
+        let pattern = SamplePattern::new(4);
+        let tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
+        for setup in triangles() {
+            let mut found = [LayerList::default(), LayerList::default()];
+            let [rows, blocks] = &mut found;
+            dispatch!(Level::new(), simd => {
+                traverse_by_rows(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, rows));
+                traverse(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, blocks));
+            });
+            let [rows, blocks] = found.map(|list| {
+                let mut places: Vec<_> = list.iter().map(|l| (l.at, l.depth.to_bits())).collect();
+                places.sort_unstable();
+                places
+            });
+            assert_eq!(rows, blocks);
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::setup::is_top_left;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{I32x8, Simd};
+use vitral_math::lanes::{I32x8, LANES, Mask8, Simd};
 
 /// A block of 8x8 pixels of a tile.
 #[derive(Clone, Debug)]
@@ -37,6 +37,20 @@ pub trait BlockSink<S: Simd> {
 
     /// `masks[s]` has bit `8 * row + column` set where sample `s` of the block's pixel is covered; not all are 0.
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]);
+}
+
+/// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins: what small triangles
+/// want, which are most of a fine mesh.
+pub trait RowSink<S: Simd>: BlockSink<S> {
+    /// Whether nothing of `setup` can matter at the tile's pixels from `low` to `high`, column and row, inclusive: at most
+    /// 8x8.
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
+
+    /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
+    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
+
+    /// The last row of a triangle whose box begins at pixel `at` was given.
+    fn end(&mut self, simd: S, at: [usize; 2]);
 }
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
@@ -66,6 +80,121 @@ pub fn traverse<S: Simd, K: BlockSink<S>>(
     sink: &mut K,
 ) {
     traverse_window(simd, setup, tile, &[0..TILE, 0..TILE], pattern, sink);
+}
+
+/// [`traverse`] for a sink that takes rows: small triangles are not cut into the tile's blocks.
+#[inline(always)]
+pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    let window = [0..TILE, 0..TILE];
+    let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
+    if place.columns[1] - place.columns[0] < LANES && place.is_small() {
+        match pattern.len() {
+            1 => walk_rows::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => walk_rows::<S, K, 4>(simd, setup, &place, pattern, sink),
+            _ => walk_rows::<S, K, 16>(simd, setup, &place, pattern, sink),
+        }
+    } else {
+        traverse(simd, setup, tile, pattern, sink);
+    }
+}
+
+/// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits.
+#[inline(always)]
+fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
+    simd: S,
+    setup: &Setup,
+    place: &Placed,
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+    if y1 - y0 < BLOCK && sink.rejects_box(setup, [x0, y0], [x1, y1]) {
+        return;
+    }
+    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+    // Rows must not reach beyond the tile.
+    let left = x0.min(TILE - LANES);
+    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let (edges, corners) = place.edges();
+    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
+    let zero = I32x8::splat(simd, 0);
+    let [xs, ys] = pattern.axes();
+    for s in 0..samples {
+        let mut e = across;
+        for i in 0..3 {
+            let at_sample = (corners[i] + (edges[i].b * ys[s] + edges[i].a * xs[s])) >> 8;
+            e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
+        }
+        for y in y0..=y1 {
+            let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
+            if covered.any_true() {
+                sink.cover_row(simd, setup, s, [left, y], covered);
+            }
+            for i in 0..3 {
+                e[i] += edges[i].b;
+            }
+        }
+    }
+    sink.end(simd, [x0, y0]);
+}
+
+/// A triangle in a tile's coordinates, with the pixels that its box may cover.
+struct Placed {
+    /// Corners in 1/256 pixel.
+    x: [i32; 3],
+    y: [i32; 3],
+    /// First and last column and row.
+    columns: [usize; 2],
+    rows: [usize; 2],
+}
+
+impl Placed {
+    /// `None` if no pixel of the window can be covered.
+    #[inline(always)]
+    fn new(
+        setup: &Setup,
+        (tile_x, tile_y): (u32, u32),
+        [columns, rows]: &Window,
+        pattern: &SamplePattern,
+    ) -> Option<Self> {
+        let (origin_x, origin_y) = (tile_x as i32 * SUBPIXEL, tile_y as i32 * SUBPIXEL);
+        let x = setup.x.map(|x| x - origin_x);
+        let y = setup.y.map(|y| y - origin_y);
+        let [extent_x, extent_y] = pattern.extent();
+        let first = |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
+        let last = |v: [i32; 3], e: [i32; 2]| (v[0].max(v[1]).max(v[2]) - e[0]) >> 8;
+        let (x0, x1) = (first(x, extent_x).max(columns.start as i32), last(x, extent_x).min(columns.end as i32 - 1));
+        let (y0, y1) = (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
+        let [columns, rows] = [[x0, x1], [y0, y1]].map(|range| range.map(|v| v as usize));
+        (x0 <= x1 && y0 <= y1).then_some(Self { x, y, columns, rows })
+    }
+
+    /// Whether the edge functions fit into 32 bits.
+    #[inline(always)]
+    fn is_small(&self) -> bool {
+        let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
+        largest(&self.x) < SMALL && largest(&self.y) < SMALL
+    }
+
+    /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].
+    #[inline(always)]
+    fn edges(&self) -> ([Edge; 3], [i32; 3]) {
+        let mut edges = [Edge { a: 0, b: 0 }; 3];
+        let mut corners = [0; 3];
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
+            edges[i] = Edge { a: -dy, b: dx };
+            corners[i] = dy * self.x[i] - dx * self.y[i] - i32::from(!is_top_left(dx, dy));
+        }
+        (edges, corners)
+    }
 }
 
 /// [`traverse`] for the one block whose top left pixel within the tile is `(x, y)`.
@@ -102,81 +231,71 @@ fn traverse_window<S: Simd, K: BlockSink<S>>(
 fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     simd: S,
     setup: &Setup,
-    (tile_x, tile_y): (u32, u32),
-    [columns, rows]: &Window,
+    tile: (u32, u32),
+    window: &Window,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
     let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
-    let (origin_x, origin_y) = (tile_x as i32 * SUBPIXEL, tile_y as i32 * SUBPIXEL);
-    let x = setup.x.map(|x| x - origin_x);
-    let y = setup.y.map(|y| y - origin_y);
-    let [extent_x, extent_y] = pattern.extent();
-
-    // The pixels of the window that the triangle's box may cover.
-    let first = |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
-    let last = |v: [i32; 3], e: [i32; 2]| (v[0].max(v[1]).max(v[2]) - e[0]) >> 8;
-    let (x0, x1) = (first(x, extent_x).max(columns.start as i32), last(x, extent_x).min(columns.end as i32 - 1));
-    let (y0, y1) = (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
-    if x1 < x0 || y1 < y0 {
-        return;
-    }
-    let (x0, x1, y0, y1) = (x0 as usize, x1 as usize, y0 as usize, y1 as usize);
+    let Some(place) = Placed::new(setup, tile, window, pattern) else { return };
+    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
 
     // Edge functions at the tile's origin, one constant a sample.
     let mut edges = [Edge { a: 0, b: 0 }; 3];
     let mut constants = [[0i32; MOST]; 3];
     let [xs, ys] = pattern.axes();
-    let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
-    let small = largest(&x) < SMALL && largest(&y) < SMALL;
-    for i in 0..3 {
-        let j = (i + 1) % 3;
-        let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-        edges[i] = Edge { a: -dy, b: dx };
-        let bias = if is_top_left(dx, dy) { 0 } else { -1 };
-        if small {
-            let corner = dy * x[i] - dx * y[i] + bias;
+    if place.is_small() {
+        let corners;
+        (edges, corners) = place.edges();
+        for i in 0..3 {
             for s in 0..MOST {
-                constants[i][s] = (corner + (dx * ys[s] - dy * xs[s])) >> 8;
+                constants[i][s] = (corners[i] + (edges[i].b * ys[s] + edges[i].a * xs[s])) >> 8;
             }
-            continue;
         }
-        let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) + i64::from(bias);
-        for s in 0..samples {
-            let c = corner + i64::from(dx) * i64::from(ys[s]) - i64::from(dy) * i64::from(xs[s]);
-            constants[i][s] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
+    } else {
+        for i in 0..3 {
+            let (j, [x, y]) = ((i + 1) % 3, [place.x, place.y]);
+            let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
+            edges[i] = Edge { a: -dy, b: dx };
+            let bias = i64::from(!is_top_left(dx, dy));
+            let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) - bias;
+            for s in 0..samples {
+                let c = corner + i64::from(dx) * i64::from(ys[s]) - i64::from(dy) * i64::from(xs[s]);
+                constants[i][s] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
+            }
         }
     }
 
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let extremes = Extremes::new(&edges, &constants, samples);
+    let extremes = Extremes::new(simd, &edges, &constants, samples);
+    let columns = (0xff << (x0 / BLOCK)) & (0xff >> (TILE / BLOCK - 1 - x1 / BLOCK));
     let mut masks = [0u64; MOST];
     for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
         let rows = y0.max(by) - by..(y1 + 1).min(by + BLOCK) - by;
-        for bx in (x0 & !(BLOCK - 1)..=x1).step_by(BLOCK) {
+        let [touched, full] = extremes.row(simd, &edges, by);
+        let mut rest = touched & columns;
+        while rest != 0 {
+            let bx = rest.trailing_zeros() as usize * BLOCK;
+            rest &= rest - 1;
             let block = Block { x: bx, y: by, rows: rows.clone() };
             if sink.rejects(setup, &block) {
                 continue;
             }
-            let mut offsets = [0; 3];
-            for i in 0..3 {
-                offsets[i] = edges[i].a * bx as i32 + edges[i].b * by as i32;
-            }
-            let mut any = 0;
-            match extremes.block(&offsets) {
-                Some(0) => continue,
-                Some(full) => {
-                    masks = [full; MOST];
-                    any = full;
+            let mut any = u64::MAX;
+            if full >> (bx / BLOCK) & 1 == 1 {
+                masks = [u64::MAX; MOST];
+            } else {
+                let mut offsets = [0; 3];
+                for i in 0..3 {
+                    offsets[i] = edges[i].a * bx as i32 + edges[i].b * by as i32;
                 }
-                None => {
-                    for s in 0..samples {
-                        let at_block =
-                            [constants[0][s] + offsets[0], constants[1][s] + offsets[1], constants[2][s] + offsets[2]];
-                        masks[s] = mask_rows(simd, &edges, &across, at_block, rows.clone());
-                        any |= masks[s];
-                    }
+                any = 0;
+                for s in 0..samples {
+                    let at_block =
+                        [constants[0][s] + offsets[0], constants[1][s] + offsets[1], constants[2][s] + offsets[2]];
+                    masks[s] = mask_rows(simd, &edges, &across, at_block, rows.clone());
+                    any |= masks[s];
                 }
             }
             if any != 0 {
@@ -186,41 +305,47 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     }
 }
 
-/// The least and the largest value that an edge function takes on a block's samples, less its value at the block.
-struct Extremes {
-    least: [i32; 3],
-    largest: [i32; 3],
+/// The least and the largest values that the edge functions take on the samples of the eight blocks of a tile's top row.
+struct Extremes<S: Simd> {
+    least: [I32x8<S>; 3],
+    largest: [I32x8<S>; 3],
 }
 
-impl Extremes {
+impl<S: Simd> Extremes<S> {
     #[inline(always)]
-    fn new<const MOST: usize>(edges: &[Edge; 3], constants: &[[i32; MOST]; 3], samples: usize) -> Self {
+    fn new<const MOST: usize>(simd: S, edges: &[Edge; 3], constants: &[[i32; MOST]; 3], samples: usize) -> Self {
         let side = BLOCK as i32 - 1;
-        let (mut least, mut largest) = ([0; 3], [0; 3]);
+        let blocks = I32x8::from_slice(simd, &[0, 8, 16, 24, 32, 40, 48, 56]);
+        let zero = I32x8::splat(simd, 0);
+        let (mut least, mut largest) = ([zero; 3], [zero; 3]);
         for i in 0..3 {
             let (mut low, mut high) = (constants[i][0], constants[i][0]);
             for &c in &constants[i][1..samples] {
                 (low, high) = (low.min(c), high.max(c));
             }
             let (a, b) = (edges[i].a * side, edges[i].b * side);
-            least[i] = low + a.min(0) + b.min(0);
-            largest[i] = high + a.max(0) + b.max(0);
+            let across = blocks * edges[i].a;
+            least[i] = across + (low + a.min(0) + b.min(0));
+            largest[i] = across + (high + a.max(0) + b.max(0));
         }
         Self { least, largest }
     }
 
-    /// All or nothing of a block by its extreme samples; `None` if it has to be looked at.
+    /// A bit for each block of the row of blocks at pixel row `y`: those that may hold covered samples, and those whose
+    /// samples all are.
     #[inline(always)]
-    fn block(&self, offsets: &[i32; 3]) -> Option<u64> {
-        let (mut outside, mut inside) = (false, true);
+    fn row(&self, simd: S, edges: &[Edge; 3], y: usize) -> [u32; 2] {
+        let zero = I32x8::splat(simd, 0);
+        let (mut touched, mut full) = (zero, zero);
         for i in 0..3 {
-            outside |= offsets[i] + self.largest[i] < 0;
-            inside &= offsets[i] + self.least[i] >= 0;
+            let down = edges[i].b * y as i32;
+            touched |= self.largest[i] + down;
+            full |= self.least[i] + down;
         }
-        if outside {
-            return Some(0);
-        }
-        inside.then_some(u64::MAX)
+        [touched, full].map(
+            #[inline(always)]
+            |v| v.simd_ge(zero).to_bitmask() as u32,
+        )
     }
 }
 

@@ -30,7 +30,7 @@ impl Composer {
         simd: S,
         tile: &Tile,
         points: &Points,
-        lit: &Lit,
+        lit: &mut Lit,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
         out: &mut [[u8; 4]],
@@ -41,6 +41,12 @@ impl Composer {
         }
         self.places.clear();
         self.colors.clear();
+        if points.mixed.is_empty() && points.fragments.is_empty() {
+            // One point fills each pixel, in the order of the pixels.
+            self.places.extend(points.pixels.iter().map(|p| p.index));
+            encode(simd, &self.places, &mut lit.colors, constants.raw, out);
+            return;
+        }
         self.mix(tile, points, lit, constants, marks);
         encode(simd, &self.places, &mut self.colors, constants.raw, out);
     }

@@ -118,13 +118,43 @@ impl Points {
         self.pixels.clear();
         self.mixed.clear();
         if tile.touched {
-            self.collect_opaque(tile, constants);
+            if constants.view.pattern.len() == 1 {
+                self.collect_single(tile, constants);
+            } else {
+                self.collect_opaque(tile, constants);
+            }
         }
         self.covered_pixels = self.pixels.len() as u64;
         if !layers.is_empty() {
             self.collect_layers(tile, layers, constants, marks);
         }
         self.group(constants);
+    }
+
+    /// [`Self::collect_opaque`] for one sample a pixel: no pixel is mixed.
+    fn collect_single(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
+        let (width, height) = visible_part(tile, constants);
+        self.facet.resize(TILE_PIXELS, 0);
+        self.place.resize(TILE_PIXELS, [0.0; 2]);
+        self.pixels.resize(TILE_PIXELS, Pixel { index: 0, source: Source::Point(0) });
+        let mut count = 0;
+        for y in 0..height {
+            let row = y * TILE;
+            let down = (tile.y as usize + y) as f32 + 0.5;
+            for (x, &facet) in tile.facet[row..row + width].iter().enumerate() {
+                // Written in any case, kept where something is: no branch to guess.
+                self.facet[count] = facet;
+                self.place[count] = [(tile.x as usize + x) as f32 + 0.5, down];
+                self.pixels[count] = Pixel { index: (row + x) as u32, source: Source::Point(count as u32) };
+                count += usize::from(facet != NO_FACET);
+                if count == TILE_PIXELS {
+                    return;
+                }
+            }
+        }
+        self.facet.truncate(count);
+        self.place.truncate(count);
+        self.pixels.truncate(count);
     }
 
     fn collect_opaque(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {

@@ -22,8 +22,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, BlockSink, Draw, LayerList, LayerSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid,
-    VisibilitySink, transform, traverse,
+    Batch, Draw, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink,
+    transform, traverse_by_rows,
 };
 
 /// Triangles in one piece of work.
@@ -256,7 +256,7 @@ pub(super) fn walk<'b>(
 }
 
 #[inline(always)]
-fn walk_batch<S: Simd, K: BlockSink<S>>(
+fn walk_batch<S: Simd, K: RowSink<S>>(
     simd: S,
     batch: &Batch,
     index: usize,
@@ -265,6 +265,6 @@ fn walk_batch<S: Simd, K: BlockSink<S>>(
     mut sink: K,
 ) {
     for setup in batch.tile(index) {
-        traverse(simd, setup, place, pattern, &mut sink);
+        traverse_by_rows(simd, setup, place, pattern, &mut sink);
     }
 }

@@ -1,7 +1,7 @@
 //! What may stop a computation: time, memory, or the user. Clocks come in from the faces, so that wasm works.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Seconds since some fixed moment.
 pub trait Clock: Send + Sync {
@@ -27,12 +27,14 @@ pub type Progress = dyn Fn(&str, u64, u64) + Send + Sync;
 #[non_exhaustive]
 pub enum Limit {
     /// The deadline passed.
-    #[error("the time limit of {limit} s was reached during {stage}")]
+    #[error("the time limit of {limit} s was reached during {stage}{achieved}")]
     Time {
         /// Seconds allowed.
         limit: f64,
         /// What was being done.
         stage: &'static str,
+        /// How far it had come.
+        achieved: Achieved,
     },
     /// More memory would be needed than allowed.
     #[error("{stage} needs {needed} bytes, the memory limit is {limit}")]
@@ -62,6 +64,26 @@ pub enum Limit {
     },
 }
 
+/// How much of a stage was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Achieved {
+    /// Pieces done.
+    pub done: u64,
+    /// Pieces in all; 0 if nobody counts.
+    pub whole: u64,
+    /// What the pieces are, in the plural.
+    pub pieces: &'static str,
+}
+
+impl std::fmt::Display for Achieved {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.whole == 0 {
+            return Ok(());
+        }
+        write!(f, ", after {} of {} {}", self.done, self.whole, self.pieces)
+    }
+}
+
 /// Time, memory, cancellation and progress of one computation. Clones share the counters.
 #[derive(Clone)]
 pub struct Budget {
@@ -72,6 +94,9 @@ pub struct Budget {
     memory: Arc<AtomicU64>,
     peak: Arc<AtomicU64>,
     cancelled: Arc<AtomicBool>,
+    /// What is counted, and how many of it are done.
+    counted: Arc<Mutex<Achieved>>,
+    done: Arc<AtomicU64>,
     progress: Option<Arc<Progress>>,
 }
 
@@ -99,6 +124,8 @@ impl Budget {
             memory: Arc::default(),
             peak: Arc::default(),
             cancelled: Arc::default(),
+            counted: Arc::default(),
+            done: Arc::default(),
             progress: None,
         }
     }
@@ -122,7 +149,8 @@ impl Budget {
     #[must_use]
     pub fn renewed(&self) -> Self {
         let start = self.clock.seconds();
-        Self { start, memory: Arc::default(), peak: Arc::default(), ..self.clone() }
+        let (memory, peak) = (Arc::default(), Arc::default());
+        Self { start, memory, peak, counted: Arc::default(), done: Arc::default(), ..self.clone() }
     }
 
     /// Reports progress to `progress`.
@@ -148,9 +176,26 @@ impl Budget {
             return Err(Limit::Cancelled { stage });
         }
         match self.time_limit {
-            Some(limit) if self.elapsed() > limit => Err(Limit::Time { limit, stage }),
+            Some(limit) if self.elapsed() > limit => Err(Limit::Time { limit, stage, achieved: self.achieved() }),
             _ => Ok(()),
         }
+    }
+
+    /// Begins a stage of `whole` pieces, of which [`Self::advance`] counts the finished ones: for who asks how far it came.
+    pub fn begin(&self, pieces: &'static str, whole: u64) {
+        *self.counted.lock().expect("no thread panics while it counts") = Achieved { done: 0, whole, pieces };
+        self.done.store(0, Ordering::Relaxed);
+    }
+
+    /// A piece of the stage is finished.
+    pub fn advance(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// How far the present stage came.
+    pub fn achieved(&self) -> Achieved {
+        let counted = *self.counted.lock().expect("no thread panics while it counts");
+        Achieved { done: self.done.load(Ordering::Relaxed).min(counted.whole), ..counted }
     }
 
     /// Charges `bytes` before they are allocated; give them back with [`Self::release`].
@@ -201,7 +246,11 @@ mod tests {
     fn limits_stop_the_work() {
         let budget = Budget::new(Arc::new(Tick(AtomicU64::new(0)))).with_time_limit(Some(1.5));
         assert!(budget.check("a").is_ok());
-        assert!(matches!(budget.check("b"), Err(Limit::Time { stage: "b", .. })));
+        budget.begin("tiles", 12);
+        budget.advance();
+        let late = budget.check("b").unwrap_err();
+        assert!(matches!(late, Limit::Time { stage: "b", .. }));
+        assert_eq!(late.to_string(), "the time limit of 1.5 s was reached during b, after 1 of 12 tiles");
         let budget = Budget::default().with_memory_limit(Some(100));
         assert!(budget.charge(80, "x").is_ok());
         assert!(matches!(budget.charge(30, "y"), Err(Limit::Memory { needed: 110, limit: 100, .. })));

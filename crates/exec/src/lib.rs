@@ -7,5 +7,5 @@
 mod budget;
 mod workers;
 
-pub use budget::{Budget, Clock, Limit, NoClock, Progress};
+pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};
 pub use workers::Workers;

@@ -25,7 +25,9 @@ mod tile;
 
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
 pub use kernel::transform::transform;
-pub use kernel::traverse::{Block, BlockSink, RowSink, traverse, traverse_block, traverse_by_rows};
+pub use kernel::traverse::{
+    Block, BlockSink, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,
+};
 pub use layers::LayerList;
 pub use samples::SamplePattern;
 pub use setup::{CornerPosition, Setup, snap};

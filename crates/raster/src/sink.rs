@@ -167,6 +167,12 @@ fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> b
     setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
 }
 
+/// The block for which a triangle walked by rows counts, though its rows may reach into others: when far depths are
+/// computed anew does not matter to pictures.
+fn block_of([x, y]: [usize; 2]) -> Block {
+    Block { x: x & !(BLOCK - 1), y: y & !(BLOCK - 1), rows: 0..BLOCK }
+}
+
 impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     #[inline(always)]
     fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
@@ -181,12 +187,9 @@ impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     }
 
     #[inline(always)]
-    fn end(&mut self, simd: S, [x, y]: [usize; 2]) {
-        // All count for the first block, though rows may reach into others: when far depths are computed anew does not
-        // matter to pictures.
-        let block = Block { x: x & !(BLOCK - 1), y: y & !(BLOCK - 1), rows: 0..BLOCK };
+    fn end(&mut self, simd: S, at: [usize; 2]) {
         let written = std::mem::take(&mut self.written);
-        note_writes(simd, self.tile, self.pattern.len(), &block, (written, self.patience));
+        note_writes(simd, self.tile, self.pattern.len(), &block_of(at), (written, self.patience));
     }
 }
 
@@ -213,12 +216,43 @@ pub struct PrioritySink<'a, const FRONT_FIRST: bool> {
     pattern: &'a SamplePattern,
     /// What happened so far.
     pub counts: PriorityCounts,
+    /// Samples of the triangle at hand that were written row by row.
+    written: u32,
 }
 
 impl<'a, const FRONT_FIRST: bool> PrioritySink<'a, FRONT_FIRST> {
     /// Draws into `tile`.
     pub fn new(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
-        Self { tile, pattern, counts: PriorityCounts::default() }
+        Self { tile, pattern, counts: PriorityCounts::default(), written: 0 }
+    }
+}
+
+impl<const FRONT_FIRST: bool> PrioritySink<'_, FRONT_FIRST> {
+    /// Draws a row and counts; returns how many samples were written.
+    #[inline(always)]
+    fn draw<S: Simd>(&mut self, simd: S, facet: U32x8<S>, row: &Row<S>) -> u32 {
+        let Met { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, row);
+        let filled = row.covered & !old_facet.simd_eq(U32x8::splat(simd, NO_FACET));
+        let (overruled, gap) = if FRONT_FIRST {
+            (filled & wins, row.z - old_z)
+        } else {
+            (row.covered & !nearer & !old_facet.simd_eq(facet), old_z - row.z)
+        };
+        let far = overruled & gap.simd_ge(F32x8::splat(simd, NEAR_TIE));
+        self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
+        self.counts.overruled += u64::from(overruled.to_bitmask().count_ones());
+        self.counts.overruled_far += u64::from(far.to_bitmask().count_ones());
+        wins.to_bitmask().count_ones()
+    }
+
+    /// What was written in a block.
+    #[inline(always)]
+    fn note<S: Simd>(&mut self, simd: S, block: &Block, written: u32) {
+        if FRONT_FIRST {
+            let patience = (BLOCK * BLOCK * self.pattern.len()) as u32;
+            note_writes(simd, self.tile, self.pattern.len(), block, (written, patience));
+        }
+        self.tile.touched = true;
     }
 }
 
@@ -231,7 +265,6 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         let facet = U32x8::splat(simd, setup.facet);
-        let nothing = U32x8::splat(simd, NO_FACET);
         let place = (self.pattern, corner(self.tile));
         let mut written = 0;
         each_row(
@@ -241,26 +274,28 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
             block,
             masks,
             #[inline(always)]
-            |row| {
-                let Met { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, &row);
-                written += wins.to_bitmask().count_ones();
-                let filled = row.covered & !old_facet.simd_eq(nothing);
-                let (overruled, gap) = if FRONT_FIRST {
-                    (filled & wins, row.z - old_z)
-                } else {
-                    (row.covered & !nearer & !old_facet.simd_eq(facet), old_z - row.z)
-                };
-                let far = overruled & gap.simd_ge(F32x8::splat(simd, NEAR_TIE));
-                self.counts.overdrawn += u64::from((filled & wins).to_bitmask().count_ones());
-                self.counts.overruled += u64::from(overruled.to_bitmask().count_ones());
-                self.counts.overruled_far += u64::from(far.to_bitmask().count_ones());
-            },
+            |row| written += self.draw(simd, facet, &row),
         );
-        if FRONT_FIRST {
-            let patience = (BLOCK * BLOCK * self.pattern.len()) as u32;
-            note_writes(simd, self.tile, self.pattern.len(), block, (written, patience));
-        }
-        self.tile.touched = true;
+        self.note(simd, block, written);
+    }
+}
+
+impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIRST> {
+    #[inline(always)]
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+        FRONT_FIRST && hides_box(self.tile, setup, low, high)
+    }
+
+    #[inline(always)]
+    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
+        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+        self.written += self.draw(simd, U32x8::splat(simd, setup.facet), &row);
+    }
+
+    #[inline(always)]
+    fn end(&mut self, simd: S, at: [usize; 2]) {
+        let written = std::mem::take(&mut self.written);
+        self.note(simd, &block_of(at), written);
     }
 }
 

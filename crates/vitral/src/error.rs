@@ -134,6 +134,7 @@ impl Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral_exec::Achieved;
 
     #[test]
     fn every_kind_has_the_exit_code_of_the_table() {
@@ -153,6 +154,6 @@ mod tests {
         };
         assert_eq!((size(0, 5), size(1, 99_999)), (2, 7));
         assert_eq!(Error::from(Limit::Cancelled { stage: "x" }).exit_code(), 130);
-        assert_eq!(Error::from(Limit::Time { limit: 1.0, stage: "x" }).exit_code(), 7);
+        assert_eq!(Error::from(Limit::Time { limit: 1.0, stage: "x", achieved: Achieved::default() }).exit_code(), 7);
     }
 }

@@ -68,7 +68,7 @@ const FAR_AWAY: i64 = 1 << 30;
 const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
 /// Pixels of a tile, columns and rows.
-type Window = [Range<usize>; 2];
+pub type Window = [Range<usize>; 2];
 
 /// Hands every block of the tile at pixel `(tile_x, tile_y)` that `setup` covers to `sink`.
 #[inline(always)]
@@ -210,8 +210,10 @@ pub fn traverse_block<S: Simd, K: BlockSink<S>>(
     traverse_window(simd, setup, tile, &[x..x + BLOCK, y..y + BLOCK], pattern, sink);
 }
 
+/// [`traverse`] for the blocks that hold pixels of `window`, columns and rows of the tile; above and below it no rows
+/// are covered.
 #[inline(always)]
-fn traverse_window<S: Simd, K: BlockSink<S>>(
+pub fn traverse_window<S: Simd, K: BlockSink<S>>(
     simd: S,
     setup: &Setup,
     tile: (u32, u32),

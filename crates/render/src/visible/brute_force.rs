@@ -63,6 +63,7 @@ pub(super) fn each_tile(
     look: impl Fn(&mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit> + Sync + Send,
 ) -> Result<VisibilityCounters, Limit> {
     let outcome = Mutex::new(Ok(VisibilityCounters::default()));
+    execution.budget.begin("tiles", grid.tiles.len() as u64);
     execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
         if outcome.lock().expect("counters").is_err() {
             return;
@@ -76,6 +77,7 @@ pub(super) fn each_tile(
                 }
                 layers.finish();
                 sink.tile(index, tile, &mut layers);
+                execution.budget.advance();
                 if let Ok(sum) = &mut *outcome.lock().expect("counters") {
                     sum.add(&counters);
                 }

@@ -22,7 +22,7 @@ use super::{Resolved, TileSink, VisibleSurface};
 use crate::{Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_math::{DMat4, DVec4};
+use vitral_math::DVec4;
 use vitral_raster::{Batch, SUBPIXEL, Setup, TileGrid};
 
 pub(crate) use tree::Tree;
@@ -31,6 +31,8 @@ pub(crate) use tree::Tree;
 #[derive(Clone, Copy, Debug)]
 pub struct Bsp;
 
+/// Planes in one piece of work.
+const PLANES_A_JOB: usize = 4096;
 /// Fragments in one run of the list.
 const FRAGMENTS_A_RUN: usize = 8192;
 /// The facet is not on the screen.
@@ -83,7 +85,7 @@ fn picture(
     let view = facets.view();
     let setups = facets.opaque();
     let facet_count = view.session.world.facet_count;
-    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4;
+    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + tree.node_count() * size_of::<DVec4>() as u64;
     execution.budget.charge(bytes, "BSP fragments on the screen")?;
 
     // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
@@ -97,7 +99,7 @@ fn picture(
     let (order, places) = execution.workers.join(walk, || Places::new(&setups, facet_count));
 
     // Bring the fragments to the screen, in runs.
-    let lines = Lines::new(view);
+    let lines = Lines::new(view, tree, execution);
     let raster = Raster::new(view.viewport, &view.pattern);
     let runs = execution.workers.map(order.len().div_ceil(FRAGMENTS_A_RUN), |run| {
         let (mut pieces, mut cuts) = (Pieces::default(), Vec::new());
@@ -106,7 +108,7 @@ fn picture(
             for at in places.of(tree.facet(fragment), &setups) {
                 let setup = setups[at as usize];
                 cuts.clear();
-                cuts.extend(tree.cuts(fragment).map(|(plane, positive)| lines.cut(plane, positive, setup)));
+                cuts.extend(tree.cuts(fragment).map(|(node, positive)| lines.cut(node, positive, setup)));
                 if let Some(outline) = pieces.add(at, setup, &cuts, &raster) {
                     execution.tell(|| piece_step(place, setup.facet, cuts.len(), outline));
                 }
@@ -156,23 +158,29 @@ impl Places {
 
 /// Turns planes of the world into lines on the screen.
 struct Lines {
-    /// World planes to planes in ndc.
-    ndc_from_world: DMat4,
+    /// The planes of the tree's nodes, in ndc.
+    planes: Vec<DVec4>,
     /// Screen coordinate = ndc coordinate * scale + center, in 1/256 pixel.
     scale: [f64; 2],
     center: [f64; 2],
 }
 
 impl Lines {
-    fn new(view: &PreparedView<'_>) -> Self {
-        let half = [view.viewport.width, view.viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
+    fn new(view: &PreparedView<'_>, tree: &Tree, execution: &Execution) -> Self {
+        let mut planes = vec![DVec4::ZERO; tree.node_count() as usize];
         let ndc_from_world = view.view.clip_from_world().inverse().transpose();
-        Self { ndc_from_world, scale: [half[0], -half[1]], center: half }
+        execution.workers.for_each_chunk(&mut planes, PLANES_A_JOB, |job, planes| {
+            for (plane, node) in planes.iter_mut().zip(job * PLANES_A_JOB..) {
+                *plane = ndc_from_world * tree.plane(node as u32);
+            }
+        });
+        let half = [view.viewport.width, view.viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
+        Self { planes, scale: [half[0], -half[1]], center: half }
     }
 
-    /// Where a facet meets a plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
-    fn cut(&self, plane: DVec4, positive: bool, setup: &Setup) -> Cut {
-        let p = self.ndc_from_world * plane;
+    /// Where a facet meets a node's plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
+    fn cut(&self, node: u32, positive: bool, setup: &Setup) -> Cut {
+        let p = self.planes[node as usize];
         let (gx, gy) = (p.x / self.scale[0], p.y / self.scale[1]);
         let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
         let at_zero =
@@ -189,6 +197,7 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral_math::DMat4;
 
     #[test]
     fn a_plane_becomes_the_line_where_it_meets_the_facet() {
@@ -199,8 +208,10 @@ mod tests {
             DVec4::new(0.0, 0.0, 0.5, 0.0),
             DVec4::new(0.0, 0.0, 0.5, 1.0),
         );
+        let ndc_from_world = clip_from_world.inverse().transpose();
+        let planes = [DVec4::new(0.0, 0.0, 1.0, -0.5), DVec4::new(0.0, 1.0, 0.0, 0.0)];
         let lines = Lines {
-            ndc_from_world: clip_from_world.inverse().transpose(),
+            planes: planes.map(|plane| ndc_from_world * plane).to_vec(),
             scale: [512.0, -256.0],
             center: [512.0, 256.0],
         };
@@ -209,10 +220,10 @@ mod tests {
         let [a, b, c] = [corner(0, 0, 0.0), corner(1024, 0, 1.0), corner(0, 512, 0.0)];
         let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
         // z = 1/2 is there where x = 1/2, at 768.
-        let cut = lines.cut(DVec4::new(0.0, 0.0, 1.0, -0.5), true, &setup);
+        let cut = lines.cut(0, true, &setup);
         assert!(cut.keeps([769.0, 100.0]) && !cut.keeps([767.0, 400.0]), "{cut:?}");
         // y = 0 is the middle row, y upwards.
-        let cut = lines.cut(DVec4::new(0.0, 1.0, 0.0, 0.0), true, &setup);
+        let cut = lines.cut(1, true, &setup);
         assert!(cut.keeps([5.0, 255.0]) && !cut.keeps([900.0, 257.0]), "{cut:?}");
     }
 }

@@ -156,6 +156,7 @@ pub(super) fn fill_with(
     fill: &Fill<'_>,
 ) -> Result<VisibilityCounters, Limit> {
     let outcome = Mutex::new(Ok(VisibilityCounters::default()));
+    facets.execution.budget.begin("tiles", grid.tiles.len() as u64);
     facets.execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
         // After a limit, the rest of the pieces are passed over.
         if outcome.lock().expect("no thread panics while it counts").is_err() {
@@ -167,6 +168,7 @@ pub(super) fn fill_with(
         if filled.is_ok() {
             for (i, tile) in tiles.iter_mut().enumerate() {
                 facets.finish(first + i, tile, marks, sink);
+                facets.execution.budget.advance();
             }
         }
         let mut outcome = outcome.lock().expect("no thread panics while it counts");

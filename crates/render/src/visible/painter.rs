@@ -21,7 +21,7 @@
 mod compare;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Pieces, Raster, corners, draw, piece_step};
+use super::pieces::{Cut, Pieces, Raster, bounds, corners, draw, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -198,7 +198,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Adds a polygon, if it can have samples.
     fn add(&mut self, index: u32, corners: &[[f64; 2]], cuts: Range<u32>) {
-        let Some(pixels) = self.raster.pixels(corners) else { return };
+        let Some(pixels) = self.raster.pixels(bounds(corners)) else { return };
         let setup = self.setups[index as usize];
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
@@ -218,6 +218,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Finds the order.
     fn sort(&mut self) -> Result<(), Limit> {
+        self.execution.budget.begin("polygons", self.polygons.len() as u64);
         while let Some(place) = self.waiting.pop() {
             if self.briefs[place.polygon as usize].state == State::Waiting {
                 self.mark(place.polygon);
@@ -272,6 +273,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
             let Some((other, verdict)) = self.obstacle()? else {
                 self.finish(top.polygon, State::Painted);
                 self.painted.push(top.polygon);
+                self.execution.budget.advance();
                 self.marked.pop();
                 continue;
             };

@@ -21,7 +21,7 @@ use std::ops::Range;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
     BLOCK, Block, BlockSink, PriorityCounts, PrioritySink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, Viewport,
-    traverse,
+    traverse_by_rows, traverse_window,
 };
 
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
@@ -112,7 +112,7 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
 }
 
 /// Smallest and largest corner of the box round a polygon.
-fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
+pub(super) fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
     polygon.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
         [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
     })
@@ -157,9 +157,8 @@ impl Raster {
         self.viewport
     }
 
-    /// First and last column and row of pixels that may have samples in an outline.
-    pub(super) fn pixels(&self, outline: &[[f64; 2]]) -> Option<[u16; 4]> {
-        let around = bounds(outline);
+    /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
+    pub(super) fn pixels(&self, around: [[f64; 2]; 2]) -> Option<[u16; 4]> {
         let mut ends = [[0u16; 2]; 2];
         for (axis, size) in [self.viewport.width, self.viewport.height].into_iter().enumerate() {
             let [low, high] = self.samples[axis].map(f64::from);
@@ -167,12 +166,14 @@ impl Raster {
             // Outlines are good to far less than this.
             const SLACK: f64 = 0.01;
             let pixel = f64::from(SUBPIXEL);
-            let first = ((min - SLACK - high) / pixel).ceil().max(0.0);
-            let last = ((max + SLACK - low) / pixel).floor().min(f64::from(size) - 1.0);
-            if first > last {
+            let first = ((min - SLACK - high) / pixel).max(0.0);
+            let last = ((max + SLACK - low) / pixel).min(f64::from(size) - 1.0);
+            // Neither is negative: conversion rounds down.
+            let up = first as u32 + u32::from(first > f64::from(first as u32));
+            if last < 0.0 || up > last as u32 {
                 return None;
             }
-            ends[axis] = [first as u16, last as u16];
+            ends[axis] = [up as u16, last as u16];
         }
         let [[x0, x1], [y0, y1]] = ends;
         Some([x0, y0, x1, y1])
@@ -186,7 +187,9 @@ impl Pieces {
         outline.clear();
         outline.extend(corners(setup));
         let first = self.cuts.len();
-        let mut around = bounds(outline);
+        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
+        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
+        let mut around = [[x0, y0], [x1, y1]];
         for cut in cuts {
             if !cut.holds_box(around) && !cut.holds(outline) {
                 clip_outline(outline, scratch, cut);
@@ -194,7 +197,7 @@ impl Pieces {
                 self.cuts.push(*cut);
             }
         }
-        let Some(pixels) = raster.pixels(outline) else {
+        let Some(pixels) = raster.pixels(around) else {
             self.cuts.truncate(first);
             return None;
         };
@@ -279,14 +282,23 @@ fn draw_runs<S: Simd, const FRONT_FIRST: bool>(
     counts: &mut PriorityCounts,
 ) {
     let place = (tile.x, tile.y);
-    let mut sink =
-        PieceSink::<FRONT_FIRST> { inner: PrioritySink::new(tile, pattern), place, pattern, pixels: [0; 4], cuts: &[] };
+    let mut sink = PieceSink::<FRONT_FIRST> { inner: PrioritySink::new(tile, pattern), place, pattern, cuts: &[] };
     for run in runs {
         for &item in &run.items[run.starts[index] as usize..run.starts[index + 1] as usize] {
             let piece = &run.pieces[item as usize];
+            let setup = setups[piece.setup as usize];
             sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
-            sink.pixels = piece.pixels.map(i32::from);
-            traverse(simd, setups[piece.setup as usize], place, pattern, &mut sink);
+            if sink.cuts.is_empty() {
+                traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
+            } else {
+                let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
+                let inside = |first: i32, last: i32, start: u32| {
+                    let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
+                    pixel(first)..pixel(last + 1)
+                };
+                let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
+                traverse_window(simd, setup, place, &window, pattern, &mut sink);
+            }
         }
     }
     *counts = sink.inner.counts;
@@ -298,24 +310,17 @@ struct PieceSink<'a, const FRONT_FIRST: bool> {
     /// The tile's first pixel.
     place: (u32, u32),
     pattern: &'a SamplePattern,
-    pixels: [i32; 4],
     cuts: &'a [Cut],
 }
 
 impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PieceSink<'_, FRONT_FIRST> {
     #[inline(always)]
     fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        let (x, y) = (self.place.0 as i32 + block.x as i32, self.place.1 as i32 + block.y as i32);
-        let ([x0, y0, x1, y1], last) = (self.pixels, BLOCK as i32 - 1);
-        let beside = x > x1 || y > y1 || x + last < x0 || y + last < y0;
-        beside || BlockSink::<S>::rejects(&self.inner, setup, block)
+        BlockSink::<S>::rejects(&self.inner, setup, block)
     }
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        if self.cuts.is_empty() {
-            return self.inner.cover(simd, setup, block, masks);
-        }
         let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
         let mut kept = [0; 16];
         let kept = &mut kept[..masks.len()];

@@ -68,6 +68,7 @@ impl VisibleSurface for ZBuffer {
         // How many facets cover each pixel, for who looks on.
         let watched = if execution.observer.is_some() { grid.tiles.len() } else { 0 };
         let costs: Vec<Mutex<Vec<u32>>> = (0..watched).map(|_| Mutex::default()).collect();
+        execution.budget.begin("rounds of triangles", rounds.len() as u64);
         for (number, round) in rounds.iter().enumerate() {
             execution.budget.check("visibility")?;
             let last = number + 1 == rounds.len();
@@ -104,6 +105,7 @@ impl VisibleSurface for ZBuffer {
             });
             let mut spare = view.session.spare_batches.lock().expect("spare batches");
             spare.extend(batches.into_iter().map(|(_, batch)| batch));
+            execution.budget.advance();
         }
         let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
         spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));

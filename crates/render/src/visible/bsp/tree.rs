@@ -213,11 +213,16 @@ impl Tree {
         self.fragments[fragment as usize].facet
     }
 
-    /// The planes that cut a fragment, world space, and whether it lies on the positive side of each.
-    pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (DVec4, bool)> + '_ {
+    /// A node's plane, world space.
+    pub(crate) fn plane(&self, node: u32) -> DVec4 {
+        self.nodes[node as usize].plane
+    }
+
+    /// The nodes whose planes cut a fragment, and whether it lies on the positive side of each.
+    pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (u32, bool)> + '_ {
         let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
         let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
-        cuts.iter().map(|cut| (self.nodes[cut.node as usize].plane, cut.positive))
+        cuts.iter().map(|cut| (cut.node, cut.positive))
     }
 
     /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
@@ -301,6 +306,7 @@ impl<'t> Builder<'t> {
             }
         }
         self.tree.loose = 0..self.tree.fragments.len() as u32;
+        execution.budget.begin("triangles", parts.len() as u64);
         let job_size = (parts.len() / JOBS).max(256);
         let mut tasks = vec![Task { parts, parent: NONE, front: true }];
         let mut jobs = Vec::new();
@@ -456,6 +462,7 @@ impl<'t> Builder<'t> {
         }
         let cuts = self.tree.cuts.len() as u32 - first_cut;
         self.tree.fragments.push(Fragment { facet: part.facet, first_cut, cuts });
+        self.execution.budget.advance();
     }
 
     /// Cuts a part in the halves in front of and behind a plane.

@@ -168,9 +168,13 @@ impl Raster {
             let pixel = f64::from(SUBPIXEL);
             let first = ((min - SLACK - high) / pixel).max(0.0);
             let last = ((max + SLACK - low) / pixel).min(f64::from(size) - 1.0);
-            // Neither is negative: conversion rounds down.
+            // An empty outline's box is inside out, without end.
+            if last < first {
+                return None;
+            }
+            // Not negative: conversion rounds down.
             let up = first as u32 + u32::from(first > f64::from(first as u32));
-            if last < 0.0 || up > last as u32 {
+            if up > last as u32 {
                 return None;
             }
             ends[axis] = [up as u16, last as u16];

@@ -5,7 +5,9 @@ use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
-use vitral::render::{Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
+use vitral::render::{
+    Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+};
 use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
@@ -117,6 +119,9 @@ pub(crate) struct AlgorithmArgs {
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) light_samples: Option<u32>,
+    /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
+    #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
+    pub(crate) volume_counting: Option<VolumeCounting>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,

@@ -9,7 +9,7 @@ const OPTIONS: [&str; 7] =
     ["--global", "--iterations", "--load-radiosity", "--max-depth", "--panels", "--patch-size", "--save-radiosity"];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 1] = [("--shadows", &["volume", "scan-line", "object-precision"])];
+const VALUES: [(&str, &[&str]); 1] = [("--shadows", &["scan-line", "object-precision"])];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

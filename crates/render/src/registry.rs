@@ -1,6 +1,6 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::shadow::{ShadowAlgorithm, map::MapShadows, ray::RayShadows};
+use crate::shadow::{ShadowAlgorithm, map::MapShadows, ray::RayShadows, volume::VolumeShadows};
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
@@ -185,6 +185,12 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "the z-buffer from the light, kept while lights and scene stay",
         source: "Williams 1978",
         algorithm: Some(&MapShadows),
+    },
+    Shadowing {
+        name: "volume",
+        description: "solids behind what keeps light, counted along a path (--volume-counting)",
+        source: "Crow 1977",
+        algorithm: Some(&VolumeShadows),
     },
 ];
 

@@ -65,6 +65,7 @@ pub struct Session {
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
     pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
+    pub(crate) shadow_volumes: Mutex<Option<(shadow::volume::Key, Arc<shadow::volume::Volumes>)>>,
 }
 
 /// What is made when it is first asked for, and then kept.
@@ -134,6 +135,7 @@ impl Session {
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
             shadow_maps: Mutex::default(),
+            shadow_volumes: Mutex::default(),
         })
     }
 

@@ -5,10 +5,10 @@ use vitral_exec::Workers;
 use vitral_frame::Frame;
 use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material};
 use vitral_math::lanes::available_levels;
-use vitral_math::{DMat4, DVec3, dvec3};
+use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::shadow::{Place, Shadows};
-use vitral_render::{Channels, Execution, Session, Settings, Shading, Shot, registry, render};
+use vitral_render::{Channels, Execution, Session, Settings, Shading, Shot, VolumeCounting, registry, render};
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Camera, Mesh, Projection, Scene};
 
@@ -24,9 +24,17 @@ fn lamp(position: DVec3) -> Light {
     light(LightKind::Point { position })
 }
 
+/// All that find shadows.
+fn names() -> impl Iterator<Item = &'static str> {
+    registry::SHADOWS.iter().filter(|s| s.algorithm.is_some()).map(|s| s.name)
+}
+
 fn settings(shadows: &str) -> Settings {
     Settings { shadows: shadows.to_owned(), width: 160, height: 120, samples: 1, ..Settings::default() }
 }
+
+/// Where shadows are looked at from, where that is not what a test is about.
+const VIEWER: DVec4 = DVec4::new(1.7, 5.3, 9.1, 1.0);
 
 /// Asks the algorithm `shadows` about the first of `lights`.
 fn with_shadows<R>(
@@ -37,9 +45,14 @@ fn with_shadows<R>(
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
-    let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, settings, &Execution::default()).unwrap();
+    let execution = Execution::default();
+    let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    ask(&|place| ready.arriving(0, &Place { position: place.position - center, ..place }))
+    ask(&|place| {
+        let mut part = [f32::NAN];
+        ready.arriving(0, &[Place { position: place.position - center, ..place }], &mut part);
+        part[0]
+    })
 }
 
 /// A place in the world, on no facet.
@@ -154,7 +167,7 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let light = Light { ambient: [0.1; 3], ..lamp(dvec3(2.0, 6.0, 1.0)) };
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
     let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| [(s, "ray"), (s, "map")]) {
+    for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| names().map(move |name| (s, name))) {
         let settings = Settings { channels: data, shading: shading.0, ..settings(algorithm) };
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
@@ -196,7 +209,7 @@ fn transparent_things_take_their_part() {
     let at = |x: f64, settings: &Settings| {
         with_shadows(&scene, &down, settings, |arriving| arriving(place(dvec3(x, 0.0, 0.1), DVec3::Y)))
     };
-    for algorithm in ["ray", "map"] {
+    for algorithm in names() {
         let filtering = settings(algorithm);
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
         let opaque = Settings { transparency: vitral_render::Transparency::None, ..filtering };
@@ -248,6 +261,11 @@ fn pictures_by_maps_do_not_depend_on_threads_instructions_or_visibility() {
     pictures_do_not_depend("map");
 }
 
+#[test]
+fn pictures_by_volumes_do_not_depend_on_threads_instructions_or_visibility() {
+    pictures_do_not_depend("volume");
+}
+
 fn pictures_do_not_depend(algorithm: &str) {
     let scene = builtin::scene("scene1").unwrap();
     let disc = AreaShape::Disc { center: dvec3(3.0, 7.0, 2.0), normal: dvec3(-3.0, -7.0, -2.0), radius: 0.6 };
@@ -270,7 +288,7 @@ fn pictures_do_not_depend(algorithm: &str) {
 #[test]
 fn odd_lights_are_defined() {
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
-    ["ray", "map"].into_iter().for_each(|algorithm| odd_lights(&scene, algorithm));
+    names().for_each(|algorithm| odd_lights(&scene, algorithm));
 }
 
 fn odd_lights(scene: &Scene, algorithm: &str) {
@@ -296,49 +314,83 @@ fn settings_that_cannot_be_are_refused() {
     assert!(text(Settings { channels, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
 }
 
-/// The part of pixels with a surface in which map and rays tell light from shadow alike.
-fn agreement(name: &str, light: &Light, from: DVec3, size: u32) -> f64 {
-    let mut scene = builtin::scene(name).unwrap();
-    let size_of_scene = Session::new(Arc::new(scene.clone())).unwrap().world().bounds;
-    if name == "sphere" || name == "teapot" || name == "cubs" {
-        let floor = solids::plane(size_of_scene.diagonal() * 1.5, size_of_scene.diagonal() * 1.5, 1, 1);
-        add(&mut scene, floor, Material::default(), dvec3(0.0, size_of_scene.min.y, 0.0));
-    }
+/// The part of pixels with a surface in which another algorithm and rays tell light from shadow alike.
+fn agreement(name: &str, light: &Light, from: DVec3, other: &Settings) -> f64 {
+    let scene = on_floor(name);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let camera = camera(&scene, from);
-    let mut mask = |algorithm: &str| {
+    let mut mask = |settings: &Settings| {
         let channels = Channels { color: false, object: true, cast_shadow: true, ..Channels::default() };
-        let settings = Settings { channels, width: 320, height: 240, shadow_map_size: size, ..settings(algorithm) };
+        let settings = Settings { channels, width: 320, height: 240, ..settings.clone() };
         let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
     };
-    let (rays, map) = (mask("ray"), mask("map"));
+    let (rays, other) = (mask(&settings("ray")), mask(other));
     let object = rays.object.unwrap();
-    let (rays, map) = (rays.cast_shadow.unwrap(), map.cast_shadow.unwrap());
+    let (rays, other) = (rays.cast_shadow.unwrap(), other.cast_shadow.unwrap());
     let seen: Vec<_> = (0..object.data().len()).filter(|&i| object.data()[i] != Frame::BACKGROUND).collect();
     assert!(seen.iter().any(|&i| rays.data()[i] == 1.0), "{name}: something is in shadow");
-    let same = seen.iter().filter(|&&i| (rays.data()[i] >= 0.5) == (map.data()[i] >= 0.5)).count();
+    let same = seen.iter().filter(|&&i| (rays.data()[i] >= 0.5) == (other.data()[i] >= 0.5)).count();
     same as f64 / seen.len() as f64
+}
+
+/// A built-in scene, and a floor where it has none.
+fn on_floor(name: &str) -> Scene {
+    let mut scene = builtin::scene(name).unwrap();
+    let bounds = Session::new(Arc::new(scene.clone())).unwrap().world().bounds;
+    if name == "sphere" || name == "teapot" || name == "cubs" {
+        let floor = solids::plane(bounds.diagonal() * 1.5, bounds.diagonal() * 1.5, 1, 1);
+        add(&mut scene, floor, Material::default(), dvec3(0.0, bounds.min.y, 0.0));
+    }
+    scene
+}
+
+/// Three kinds of light, far enough from a built-in scene.
+fn lights_for(name: &str) -> [Light; 3] {
+    let reach = if name == "teapot" { 8.0 } else { 6.0 };
+    let spot = LightKind::Spot {
+        position: dvec3(-0.5, 1.0, 0.4) * reach,
+        direction: dvec3(0.5, -1.0, -0.4),
+        cutoff: 0.6,
+        inner: 0.6,
+        exponent: 0.0,
+    };
+    [sun(dvec3(-1.0, -2.0, 0.6)), lamp(dvec3(0.6, 1.0, -0.5) * reach), light(spot)]
+}
+
+/// Three sides from which a scene is looked at.
+const SIDES: [DVec3; 3] = [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)];
+
+/// All built-in scenes, lights and sides: at least this part agrees with rays.
+fn agrees_with_rays(other: &Settings, least: f64) {
+    let mut mean = 0.0;
+    for (name, _) in builtin::names() {
+        for light in lights_for(name) {
+            for from in SIDES {
+                let same = agreement(name, &light, from, other);
+                assert!(same >= least, "{name}, {:?} from {from}: {same}", light.kind);
+                mean += same / (builtin::names().len() * 9) as f64;
+            }
+        }
+    }
+    println!("{}: {mean}", other.shadows);
+}
+
+#[test]
+fn f26_volumes_agree_with_rays() {
+    agrees_with_rays(&settings("volume"), 0.999);
+    let from_viewer = Settings { volume_counting: Some(VolumeCounting::ZPass), ..settings("volume") };
+    agrees_with_rays(&from_viewer, 0.999);
 }
 
 #[test]
 fn f23_maps_agree_with_rays_the_better_the_larger() {
-    let lights = |name: &str| {
-        let reach = if name == "teapot" { 8.0 } else { 6.0 };
-        let spot = LightKind::Spot {
-            position: dvec3(-0.5, 1.0, 0.4) * reach,
-            direction: dvec3(0.5, -1.0, -0.4),
-            cutoff: 0.6,
-            inner: 0.6,
-            exponent: 0.0,
-        };
-        [sun(dvec3(-1.0, -2.0, 0.6)), lamp(dvec3(0.6, 1.0, -0.5) * reach), light(spot)]
-    };
     let mut means = [0.0; 2];
     for (name, _) in builtin::names() {
-        for light in lights(name) {
-            for from in [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)] {
-                let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, size));
+        for light in lights_for(name) {
+            for from in SIDES {
+                let maps = |size| Settings { shadow_map_size: size, ..settings("map") };
+                let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
                 assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
                 means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
             }

@@ -6,7 +6,7 @@ use super::geometry::surface;
 use super::group::{slots, subject};
 use super::phong::interpolated_normal;
 use super::points::{Points, Source};
-use super::shadowed::shadow_shares;
+use super::shadowed::{arriving, shadow_shares};
 use crate::Channels;
 use crate::marks::MarkColors;
 use crate::visible::TileSink;
@@ -131,9 +131,11 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, _) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+        let arriving = arriving(simd, constants, &subject, points, order, &facets);
+        for (i, (eight, records)) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)).enumerate() {
             let slots = slots(points, eight, records, subject.first_facet);
-            let [attached, cast] = shadow_shares(constants, &subject, &slots, &surface(simd, &facets.records, &slots));
+            let surface = surface(simd, &facets.records, &slots);
+            let [attached, cast] = shadow_shares(constants, &surface, &arriving, i * LANES);
             for (lane, &p) in eight.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];
             }

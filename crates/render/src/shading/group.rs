@@ -51,8 +51,10 @@ pub(crate) struct Lighting<'a> {
     ambient: Rgb,
     illumination: Illumination,
     perspective: bool,
-    /// Which part of each light arrives at each point; empty without shadows.
-    arriving: Vec<[f32; LANES]>,
+    /// Which part of each light arrives at the group's points; empty without shadows.
+    arriving: &'a [Vec<f32>],
+    /// The first of the eight points in the group.
+    first: usize,
 }
 
 impl Lighting<'_> {
@@ -73,7 +75,7 @@ impl Lighting<'_> {
                 let lit = lanes::inlined(
                     #[inline(always)]
                     |j: usize| match self.arriving.get(j) {
-                        Some(part) => F32x8::from_slice(simd, part),
+                        Some(parts) => F32x8::from_slice(simd, &parts[self.first..self.first + LANES]),
                         None => one,
                     },
                 );
@@ -126,8 +128,15 @@ pub(crate) fn shade_all<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+        let arriving = match material.model {
+            Model::Empirical(_) | Model::Microfacet => {
+                shadowed::arriving(simd, constants, &subject, points, order, facets)
+            }
+            _ => Vec::new(),
+        };
+        for (i, (eight, records)) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)).enumerate() {
             let slots = slots(points, eight, records, subject.first_facet);
+            let eight = Eight { order: eight, first: i * LANES, arriving: &arriving };
             shade_eight(simd, &subject, material, eight, &slots, facets, constants, lit);
         }
     }
@@ -172,12 +181,23 @@ pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet
     slots
 }
 
+/// Up to eight points of a group.
+#[derive(Clone, Copy)]
+struct Eight<'a> {
+    /// Which points.
+    order: &'a [u32],
+    /// The place of the first in the group.
+    first: usize,
+    /// The part of each light at all points of the group; empty without shadows.
+    arriving: &'a [Vec<f32>],
+}
+
 /// One instruction-set function: kept out of line, so that each level compiles it once.
 fn shade_eight<S: Simd>(
     simd: S,
     subject: &Subject<'_>,
     material: &MaterialConstants<'_>,
-    eight: &[u32],
+    eight: Eight<'_>,
     slots: &Slots,
     facets: &FacetTable,
     constants: &FrameConstants<'_>,
@@ -194,7 +214,7 @@ fn shade_eight_inlined<S: Simd>(
     simd: S,
     subject: &Subject<'_>,
     material: &MaterialConstants<'_>,
-    eight: &[u32],
+    eight: Eight<'_>,
     slots: &Slots,
     facets: &FacetTable,
     constants: &FrameConstants<'_>,
@@ -213,10 +233,8 @@ fn shade_eight_inlined<S: Simd>(
             _ => Illumination::Phong,
         },
         perspective: subject.viewing.perspective,
-        arriving: match material.model {
-            Model::Empirical(_) | Model::Microfacet => shadowed::arriving(constants, subject, slots, &surface),
-            _ => Vec::new(),
-        },
+        arriving: eight.arriving,
+        first: eight.first,
     };
     let reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },
@@ -258,15 +276,15 @@ fn shade_eight_inlined<S: Simd>(
         color = (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage);
         let passes = filtered::passes(looks.coverage, looks.kt, material.material.filter);
         let soa = [passes.x.to_array(), passes.y.to_array(), passes.z.to_array()];
-        for (lane, &p) in eight.iter().enumerate() {
+        for (lane, &p) in eight.order.iter().enumerate() {
             lit.passes[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane]];
         }
     } else if constants.transparency == Transparency::Filtered {
         let gap = linear::opacity(looks.alpha).to_array();
-        eight.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
+        eight.order.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
     }
     let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
-    for (lane, &p) in eight.iter().enumerate() {
+    for (lane, &p) in eight.order.iter().enumerate() {
         lit.colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
     }
 }

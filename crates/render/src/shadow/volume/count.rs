@@ -1,0 +1,355 @@
+//! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
+
+use super::super::occluders::Occluders;
+use super::edges::{Side, away, ordered, towards, wide};
+use super::{LightVolumes, ODD};
+use crate::VolumeCounting;
+use crate::raytrace::beam::Beam;
+use crate::raytrace::bvh::Bvh;
+use crate::raytrace::intersect::Ray;
+use crate::raytrace::shaft::Shaft;
+use crate::raytrace::{Probe, Structure, Tree, Visitor};
+use std::ops::Range;
+use vitral_math::{DVec3, DVec4};
+
+/// Places that are not cut any further.
+const FEW: usize = 8;
+
+/// The volumes of one place of a light, and the triangles that cast them.
+#[derive(Clone, Copy)]
+pub(super) struct Lit<'a> {
+    pub(super) volumes: &'a LightVolumes,
+    pub(super) tree: &'a Bvh,
+    pub(super) opaque: &'a [bool],
+    pub(super) filters: &'a Bvh,
+}
+
+/// A straight path, to its end or to infinity.
+#[derive(Clone, Copy)]
+struct Path {
+    from: DVec3,
+    way: DVec3,
+    ends: bool,
+    /// Normal of the plane through the path and the light.
+    normal: DVec3,
+}
+
+impl Path {
+    fn new(from: DVec3, way: DVec3, ends: bool, light: DVec4) -> Self {
+        Self { from, way, ends, normal: (-away(light, from)).cross(way) }
+    }
+
+    /// Whether the path crosses a plane: 1 along the normal, -1 against it.
+    #[inline(always)]
+    fn crosses(&self, normal: DVec3, at: DVec3) -> i32 {
+        let start = normal.dot(self.from - at);
+        // The end's own place: two paths that end and begin there agree about its side.
+        let end = if self.ends { normal.dot(self.from + self.way - at) } else { normal.dot(self.way) };
+        i32::from(end > 0.0) - i32::from(start > 0.0)
+    }
+
+    /// The side of the line from `a` to `b` on which the path passes.
+    #[inline(always)]
+    fn left_of(&self, a: DVec3, b: DVec3) -> bool {
+        let value = |a: DVec3, b: DVec3| self.way.cross(a - self.from).dot(b - self.from) > 0.0;
+        if ordered(a, b) { value(a, b) } else { !value(b, a) }
+    }
+
+    /// What a side adds to the count.
+    #[inline(always)]
+    fn side(&self, side: &Side) -> i32 {
+        let along = self.crosses(side.normal, side.a);
+        if along == 0 {
+            return 0;
+        }
+        let [a, b] = [side.a, side.b].map(|p| self.normal.dot(p - self.from) > 0.0);
+        let enters = along > 0;
+        if a == enters || b != enters {
+            return 0;
+        }
+        let value = self.way.cross(side.a - self.from).dot(side.b - self.from) > 0.0;
+        if value == enters { 0 } else { along * side.multiplicity }
+    }
+
+    /// Whether the path meets a triangle: 1 along the normal, -1 against it, which is turned towards the light.
+    #[inline(always)]
+    fn cap(&self, corners: &[DVec3; 3], normal: DVec3, against: bool) -> i32 {
+        let along = self.crosses(normal, corners[0]);
+        if along == 0 {
+            return 0;
+        }
+        let left = (along > 0) != against;
+        let [a, b, c] = *corners;
+        let within = self.left_of(a, b) == left && self.left_of(b, c) == left && self.left_of(c, a) == left;
+        if within { along } else { 0 }
+    }
+}
+
+/// Collects what a tree shows.
+struct Collect<'a>(&'a mut Vec<u32>);
+
+impl Visitor for Collect<'_> {
+    #[inline(always)]
+    fn skips(&self, _: usize, _: f32) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn done(&self, _: f32) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, place: usize) {
+        self.0.push(place as u32);
+    }
+}
+
+fn collect(tree: &Bvh, probe: &impl Probe, list: &mut Vec<u32>) {
+    tree.descend(probe, &mut Collect(list));
+}
+
+impl Lit<'_> {
+    fn light(&self) -> DVec4 {
+        self.volumes.light
+    }
+
+    /// What the near cap of a triangle adds to the count along a path.
+    #[inline(always)]
+    fn cap(&self, path: &Path, triangle: u32) -> i32 {
+        let corners = wide(&self.tree.triangles().corners[triangle as usize]);
+        match towards(&corners, self.light(), self.volumes.near) {
+            Some((normal, against)) => -path.cap(&corners, normal, against),
+            None => 0,
+        }
+    }
+
+    /// The opaque triangles near a path.
+    fn caps_near(&self, path: &Path) -> Vec<u32> {
+        let extent = self.tree.triangles().extent;
+        let scale = path.way.abs().max_element();
+        let beam = Beam::around(&Ray::new(path.from.as_vec3(), (path.way / scale).as_vec3()), extent);
+        let mut list = Vec::new();
+        collect(self.tree, &beam, &mut list);
+        list.retain(|&t| self.opaque[t as usize]);
+        list
+    }
+
+    /// How many triangles stand between a place, or infinity in its direction, and the light.
+    pub(super) fn around(&self, place: DVec4) -> i32 {
+        let light = self.light();
+        if place.w == 0.0 && light.w == 0.0 {
+            return 0;
+        }
+        // From whichever is not at infinity to the other.
+        let (from, to) = if place.w > 0.0 { (place, light) } else { (light, place) };
+        let (from, ends) = (from.truncate(), to.w > 0.0);
+        let path = Path::new(from, to.truncate() - from * to.w, ends, light);
+        self.caps_near(&path).iter().map(|&t| self.cap(&path, t).abs()).sum()
+    }
+
+    /// What the count changes along a path of any length.
+    fn along(&self, path: &Path) -> i32 {
+        let end = if path.ends { (path.from + path.way).extend(1.0) } else { path.way.extend(0.0) };
+        let shaft = Shaft::triangle(path.from, [self.light(), end], self.tree.triangles().extent);
+        let mut sides = Vec::new();
+        collect(&self.volumes.tree, &shaft, &mut sides);
+        let of_sides: i32 = sides.iter().map(|&s| path.side(self.side(s))).sum();
+        of_sides + self.caps_near(path).iter().map(|&t| self.cap(path, t)).sum::<i32>()
+    }
+
+    /// A side, by its place in the tree.
+    #[inline(always)]
+    fn side(&self, place: u32) -> &Side {
+        &self.volumes.sides[self.volumes.tree.triangles().facets[place as usize] as usize]
+    }
+
+    /// The count at a place, from the viewer or from infinity.
+    fn at(&self, place: DVec3, counting: VolumeCounting, viewer: DVec4, around_viewer: i32) -> i32 {
+        let to_viewer = viewer.truncate() - place * viewer.w;
+        match counting {
+            VolumeCounting::ZPass => {
+                let path = Path::new(place, to_viewer, viewer.w > 0.0, self.light());
+                around_viewer - self.along(&path)
+            }
+            VolumeCounting::ZFail => {
+                let path = Path::new(place, -to_viewer, false, self.light());
+                self.around((-to_viewer).extend(0.0)) - self.along(&path)
+            }
+        }
+    }
+
+    /// The part of light that the transparent triangles of `list` let through to a place on the facet `own`.
+    pub(super) fn filtered(&self, occluders: &Occluders<'_>, own: u32, place: DVec3, list: &[u32]) -> f32 {
+        let light = self.light();
+        let triangles = self.filters.triangles();
+        let mut hits: Vec<(u32, u32)> = Vec::new();
+        let path = Path::new(place, -away(light, place), light.w > 0.0, light);
+        for &t in list {
+            let (facet, corners) = (triangles.facets[t as usize], wide(&triangles.corners[t as usize]));
+            let Some((normal, against)) = towards(&corners, light, self.volumes.near) else { continue };
+            if facet != own && path.cap(&corners, normal, against) != 0 {
+                hits.push((facet, t));
+            }
+        }
+        hits.sort_unstable();
+        let passing = |&(facet, t): &(u32, u32)| {
+            let corners = &triangles.corners[t as usize];
+            let [a, b, c] = wide(corners);
+            let normal = (b - a).cross(c - a);
+            let t = normal.dot(a - path.from) / normal.dot(path.way);
+            occluders.passing(facet, corners, || path.from + path.way * t)
+        };
+        hits.iter().map(passing).product()
+    }
+}
+
+/// Places in one batch.
+#[derive(Default)]
+pub(super) struct Batch {
+    /// Which, and where (lifted).
+    places: Vec<(u32, DVec3)>,
+    /// Lists of sides, caps and filters: those of a part are behind those of the part that it was cut from.
+    lists: [Vec<u32>; 3],
+}
+
+/// Part of a batch: what is known of it, and where its lists are.
+struct Part {
+    places: Range<usize>,
+    /// A place, and how many volumes it is in.
+    known: (DVec3, i32),
+    lists: [Range<usize>; 3],
+}
+
+/// A box by its middle and half its sides.
+fn around(places: &[(u32, DVec3)], slack: f64) -> (DVec3, DVec3) {
+    let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let [min, max] = places.iter().fold(empty, |[min, max], (_, p)| [min.min(*p), max.max(*p)]);
+    ((min + max) * 0.5, (max - min) * 0.5 + DVec3::splat(slack))
+}
+
+impl Batch {
+    pub(super) fn reset(&mut self, places: impl Iterator<Item = (u32, DVec3)>) {
+        self.places.clear();
+        self.places.extend(places);
+    }
+
+    /// Calls `found` for each place: which, where, its count, and the transparent triangles that may filter its light.
+    pub(super) fn count(
+        &mut self,
+        lit: &Lit<'_>,
+        counting: VolumeCounting,
+        viewer: DVec4,
+        around_viewer: i32,
+        mut found: impl FnMut(usize, DVec3, i32, &[u32]),
+    ) {
+        if self.places.is_empty() {
+            return;
+        }
+        // A margin, so that a place in the box is near no plane.
+        let extent = lit.tree.triangles().extent;
+        let slack = f64::from(extent) * 1e-5;
+        let (middle, half) = around(&self.places, slack);
+        let (min, max) = (middle - half, middle + half);
+        self.lists.iter_mut().for_each(Vec::clear);
+        let shaft = Shaft::between(min, max, lit.light(), extent);
+        collect(&lit.volumes.tree, &shaft, &mut self.lists[0]);
+        collect(lit.tree, &Shaft::around(min, max, extent), &mut self.lists[1]);
+        collect(lit.filters, &shaft, &mut self.lists[2]);
+        self.lists[1].retain(|&t| lit.opaque[t as usize]);
+        let from = inner(middle, half);
+        let known = (from, lit.at(from, counting, viewer, around_viewer));
+        let lists = [0, 1, 2].map(|k| 0..self.lists[k].len());
+        self.part(lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
+    }
+
+    /// The counts of a part, whose box holds the known place too.
+    fn part(&mut self, lit: &Lit<'_>, part: Part, slack: f64, found: &mut impl FnMut(usize, DVec3, i32, &[u32])) {
+        let (from, count) = part.known;
+        let [sides, caps, filters] = part.lists.clone();
+        if part.places.len() <= FEW || (sides.is_empty() && caps.is_empty() && filters.is_empty()) {
+            for &(index, place) in &self.places[part.places] {
+                let path = Path::new(from, place - from, true, lit.light());
+                let change = self.change(lit, &path, sides.clone(), caps.clone());
+                found(index as usize, place, count + change, &self.lists[2][filters.clone()]);
+            }
+            return;
+        }
+        // Cut at the median of the longest axis.
+        let places = &mut self.places[part.places.clone()];
+        let (_, half) = around(places, 0.0);
+        let axis = (1..3).fold(0, |k, other| if half[other] > half[k] { other } else { k });
+        let at = places.len() / 2;
+        places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
+        let Range { start, end } = part.places;
+        for half in [start..start + at, start + at..end] {
+            let (middle, size) = around(&self.places[half.clone()], slack);
+            let to = inner(middle, size);
+            let path = Path::new(from, to - from, true, lit.light());
+            let count = count + self.change(lit, &path, sides.clone(), caps.clone());
+            let lists = self.narrow(lit, &part.lists, middle, size);
+            let lengths = lists.clone().map(|l| l.start);
+            self.part(lit, Part { places: half, known: (to, count), lists }, slack, found);
+            for (list, length) in self.lists.iter_mut().zip(lengths) {
+                list.truncate(length);
+            }
+        }
+    }
+
+    /// What the listed sides and caps change along a path.
+    #[inline(always)]
+    fn change(&self, lit: &Lit<'_>, path: &Path, sides: Range<usize>, caps: Range<usize>) -> i32 {
+        let of_sides: i32 = self.lists[0][sides].iter().map(|&s| path.side(lit.side(s))).sum();
+        of_sides + self.lists[1][caps].iter().map(|&t| lit.cap(path, t)).sum::<i32>()
+    }
+
+    /// Appends what of the lists touches a box.
+    fn narrow(&mut self, lit: &Lit<'_>, lists: &[Range<usize>; 3], middle: DVec3, half: DVec3) -> [Range<usize>; 3] {
+        let (min, max) = (middle - half, middle + half);
+        let opaque = lit.tree.triangles();
+        let touches_cap = |t: u32| {
+            let [a, b, c] = wide(&opaque.corners[t as usize]);
+            let apart = a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min);
+            let normal = (b - a).cross(c - a);
+            !apart.any() && normal.dot(middle - a).abs() <= normal.abs().dot(half) * (1.0 + 1e-12)
+        };
+        let touches_filter = |t: u32| {
+            let corners = wide(&lit.filters.triangles().corners[t as usize]);
+            touches_volume(&corners, lit, middle, half)
+        };
+        let touches_side = |s: u32| lit.side(s).touches(middle, half);
+        [
+            append(&mut self.lists[0], lists[0].clone(), touches_side),
+            append(&mut self.lists[1], lists[1].clone(), touches_cap),
+            append(&mut self.lists[2], lists[2].clone(), touches_filter),
+        ]
+    }
+}
+
+/// Appends those of a range that `keep` keeps.
+fn append(list: &mut Vec<u32>, range: Range<usize>, keep: impl Fn(u32) -> bool) -> Range<usize> {
+    let start = list.len();
+    for i in range {
+        if keep(list[i]) {
+            list.push(list[i]);
+        }
+    }
+    start..list.len()
+}
+
+/// Whether the volume of a triangle may reach into a box.
+fn touches_volume(corners: &[DVec3; 3], lit: &Lit<'_>, middle: DVec3, half: DVec3) -> bool {
+    let light = lit.light();
+    let Some((normal, against)) = towards(corners, light, lit.volumes.near) else { return false };
+    let before = |n: DVec3, at: DVec3| n.dot(middle - at) >= -n.abs().dot(half) * (1.0 + 1e-12);
+    let [a, b, c] = *corners;
+    let sign = if against { -1.0 } else { 1.0 };
+    // The planes through its edges and the light, turned inwards.
+    let inner = |p: DVec3, q: DVec3| (-away(light, p)).cross(q - p) * sign;
+    before(-normal, a) && before(inner(a, b), a) && before(inner(b, c), b) && before(inner(c, a), c)
+}
+
+/// A place in a box that is unlikely to be in the plane of anything.
+fn inner(middle: DVec3, half: DVec3) -> DVec3 {
+    middle + half * ODD * 0.6
+}

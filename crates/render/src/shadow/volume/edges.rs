@@ -1,0 +1,164 @@
+//! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
+
+use crate::raytrace::triangles::Triangles;
+use std::collections::HashMap;
+use vitral_exec::{Budget, Limit, Workers};
+use vitral_math::{DVec3, DVec4, Vec3};
+
+/// An edge of a triangle, between corners in the order of places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Use {
+    /// The corners' numbers; corners at one place have one.
+    ends: [u32; 2],
+    /// The triangle, by its place in the list.
+    triangle: u32,
+    /// Which of its edges this is, and in the lowest bit whether the triangle runs along it backwards.
+    corner: u32,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Edges {
+    /// Sorted by their ends.
+    uses: Vec<Use>,
+}
+
+/// A side of volumes: from an edge away from the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Side {
+    /// The edge, in the order of places.
+    pub(super) a: DVec3,
+    pub(super) b: DVec3,
+    /// Normal of its plane, through `a`, `b` and the light.
+    pub(super) normal: DVec3,
+    /// How many volumes begin where the path goes along the normal.
+    pub(super) multiplicity: i32,
+    /// Normals of the planes through `a` that it lies before: beyond the edge, and beside its two rays. The last goes through `b`.
+    pub(super) borders: [DVec3; 3],
+}
+
+/// Whether `a` comes first: any order will do that is the same for all.
+#[inline(always)]
+pub(super) fn ordered(a: DVec3, b: DVec3) -> bool {
+    if a.x != b.x {
+        a.x < b.x
+    } else if a.y != b.y {
+        a.y < b.y
+    } else {
+        a.z < b.z
+    }
+}
+
+/// The corners, in double precision.
+#[inline(always)]
+pub(super) fn wide(corners: &[Vec3; 3]) -> [DVec3; 3] {
+    corners.map(|c| c.as_dvec3())
+}
+
+/// The normal of a triangle (its length is twice the area), turned towards the light; `None` if the light is no farther than `near`
+/// from its plane.
+#[inline(always)]
+pub(super) fn towards([a, b, c]: &[DVec3; 3], light: DVec4, near: f64) -> Option<(DVec3, bool)> {
+    let normal = (*b - *a).cross(*c - *a);
+    let height = normal.dot(light.truncate() - *a * light.w);
+    // For a direction, what is thinner than rounding.
+    let least = if light.w > 0.0 { near } else { 1e-9 } * normal.length();
+    if height > least {
+        Some((normal, false))
+    } else if height < -least {
+        Some((-normal, true))
+    } else {
+        None
+    }
+}
+
+/// The direction from the light through a place.
+#[inline(always)]
+pub(super) fn away(light: DVec4, p: DVec3) -> DVec3 {
+    p * light.w - light.truncate()
+}
+
+impl Edges {
+    pub(super) fn new(triangles: &Triangles, opaque: &[bool], budget: &Budget) -> Result<Self, Limit> {
+        budget.check("shadow volumes")?;
+        let bytes = triangles.count() as u64 * 3 * (size_of::<Use>() as u64 + 32);
+        budget.charge(bytes, "shadow volumes")?;
+        budget.release(bytes);
+        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut uses = Vec::with_capacity(triangles.count() * 3);
+        for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| opaque[*i]) {
+            // Adding 0 makes one zero of two.
+            let number = corners.map(|c| {
+                let next = numbers.len() as u32;
+                *numbers.entry((c + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
+            });
+            let corners = wide(corners);
+            for k in 0..3 {
+                let m = (k + 1) % 3;
+                if number[k] == number[m] {
+                    continue;
+                }
+                let backwards = !ordered(corners[k], corners[m]);
+                let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
+                uses.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+            }
+        }
+        budget.check("shadow volumes")?;
+        uses.sort_unstable();
+        Ok(Self { uses })
+    }
+
+    /// The sides for a light: edges whose multiplicity is not 0.
+    pub(super) fn sides(&self, light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<Side> {
+        // How each triangle is turned: with its winding, or against it, or not at all.
+        const CHUNK: usize = 8192;
+        let mut turned = vec![0i8; triangles.count()];
+        workers.for_each_chunk(&mut turned, CHUNK, |chunk, turned| {
+            for (i, turned) in turned.iter_mut().enumerate() {
+                let corners = wide(&triangles.corners[chunk * CHUNK + i]);
+                *turned = match towards(&corners, light, near) {
+                    Some((_, against)) => 1 - 2 * i8::from(against),
+                    None => 0,
+                };
+            }
+        });
+        let mut sides = Vec::new();
+        for run in self.uses.chunk_by(|one, two| one.ends == two.ends) {
+            // Along a triangle that looks at the light, its volume is left of its edges: against the normal of the side.
+            let sign = |u: &Use| i32::from(turned[u.triangle as usize]) * if u.corner & 1 == 1 { 1 } else { -1 };
+            let multiplicity: i32 = run.iter().map(sign).sum();
+            if multiplicity != 0 {
+                let (corners, k) = (wide(&triangles.corners[run[0].triangle as usize]), (run[0].corner >> 1) as usize);
+                let (p, q) = (corners[k], corners[(k + 1) % 3]);
+                let (a, b) = if run[0].corner & 1 == 1 { (q, p) } else { (p, q) };
+                sides.push(Side::new(a, b, light, multiplicity));
+            }
+        }
+        sides
+    }
+}
+
+impl Side {
+    fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
+        let normal = (b - a).cross(-away(light, a));
+        let turned = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };
+        let [out_a, out_b] = [a, b].map(|p| away(light, p));
+        let borders = [
+            turned(normal.cross(b - a), out_a),
+            turned(normal.cross(out_a), b - a),
+            turned(normal.cross(out_b), a - b),
+        ];
+        Self { a, b, normal, multiplicity, borders }
+    }
+
+    /// Whether it may reach into a box, given by its middle and half its sides.
+    #[inline(always)]
+    pub(super) fn touches(&self, middle: DVec3, half: DVec3) -> bool {
+        let from_a = middle - self.a;
+        let reach = |n: DVec3| n.abs().dot(half) * (1.0 + 1e-12);
+        self.normal.dot(from_a).abs() <= reach(self.normal)
+            && self.borders[0].dot(from_a) >= -reach(self.borders[0])
+            && self.borders[1].dot(from_a) >= -reach(self.borders[1])
+            && self.borders[2].dot(middle - self.b) >= -reach(self.borders[2])
+    }
+}

@@ -1,6 +1,9 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::shadow::{ShadowAlgorithm, map::MapShadows, ray::RayShadows, volume::VolumeShadows};
+use crate::shadow::{
+    ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
+    scan_line::ScanLineShadows, volume::VolumeShadows,
+};
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
@@ -191,6 +194,18 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "solids behind what keeps light, counted along a path (--volume-counting)",
         source: "Crow 1977",
         algorithm: Some(&VolumeShadows),
+    },
+    Shadowing {
+        name: "scan-line",
+        description: "each line of pixels on a facet is cut where it crosses the shadows on the facet",
+        source: "Bouknight & Kelley 1970",
+        algorithm: Some(&ScanLineShadows),
+    },
+    Shadowing {
+        name: "object-precision",
+        description: "facets are cut in lit polygons, as the light sees them, kept while lights and scene stay",
+        source: "Atherton, Weiler & Greenberg 1978",
+        algorithm: Some(&ObjectPrecisionShadows),
     },
 ];
 

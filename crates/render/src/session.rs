@@ -66,6 +66,7 @@ pub struct Session {
     uniform_grid: Kept<Grid>,
     pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
     pub(crate) shadow_volumes: Mutex<Option<(shadow::volume::Key, Arc<shadow::volume::Volumes>)>>,
+    pub(crate) lit_polygons: Mutex<Option<(shadow::object_precision::Key, Arc<shadow::object_precision::LitPolygons>)>>,
 }
 
 /// What is made when it is first asked for, and then kept.
@@ -136,6 +137,7 @@ impl Session {
             uniform_grid: Mutex::default(),
             shadow_maps: Mutex::default(),
             shadow_volumes: Mutex::default(),
+            lit_polygons: Mutex::default(),
         })
     }
 

@@ -50,14 +50,33 @@ fn with_shadows<R>(
     let center = Triangles::center_of(session.world());
     ask(&|place| {
         let mut part = [f32::NAN];
-        ready.arriving(0, &[Place { position: place.position - center, ..place }], &mut part);
+        let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
+        ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part);
         part[0]
     })
 }
 
-/// A place in the world, on no facet.
+/// The facet that a position is on.
+fn facet_at(session: &Session, position: DVec3) -> u32 {
+    for instance in &session.world().instances {
+        for (facet, t) in (instance.first_facet..).zip(&instance.mesh.triangles) {
+            let [a, b, c] = t.map(|i| {
+                let [x, y, z] = instance.mesh.positions[i as usize].map(f64::from);
+                instance.world_from_model.transform_point3(dvec3(x, y, z)) - position
+            });
+            let normal = (b - a).cross(c - a);
+            let inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| p.cross(*q).dot(normal) >= -1e-9);
+            if inside && normal.dot(a).abs() < 1e-9 {
+                return facet;
+            }
+        }
+    }
+    u32::MAX
+}
+
+/// A place in the world, on whatever facet is there.
 fn place(position: DVec3, normal: DVec3) -> Place {
-    Place { position, normal, facet: u32::MAX, seed: 1 }
+    Place { position, normal, facet: u32::MAX, seed: 1, pixel: [0.5; 2] }
 }
 
 fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, at: DVec3) {
@@ -129,7 +148,7 @@ fn nothing_shades_itself() {
                     if normal.dot((far - p).normalize()) < 0.02 {
                         continue;
                     }
-                    let part = arriving(Place { position: p + center, normal, facet, seed: 0 });
+                    let part = arriving(Place { position: p + center, normal, facet, seed: 0, pixel: [0.5; 2] });
                     assert_eq!(part, 1.0, "facet {facet} at {p}");
                     lit += 1;
                 }
@@ -262,6 +281,16 @@ fn pictures_by_maps_do_not_depend_on_threads_instructions_or_visibility() {
 }
 
 #[test]
+fn pictures_by_scan_lines_do_not_depend_on_threads_instructions_or_visibility() {
+    pictures_do_not_depend("scan-line");
+}
+
+#[test]
+fn pictures_by_lit_polygons_do_not_depend_on_threads_instructions_or_visibility() {
+    pictures_do_not_depend("object-precision");
+}
+
+#[test]
 fn pictures_by_volumes_do_not_depend_on_threads_instructions_or_visibility() {
     pictures_do_not_depend("volume");
 }
@@ -384,6 +413,16 @@ fn f26_volumes_agree_with_rays() {
 }
 
 #[test]
+fn f21_scan_line_shadows_agree_with_rays() {
+    agrees_with_rays(&settings("scan-line"), 0.999);
+}
+
+#[test]
+fn f22_lit_polygons_agree_with_rays() {
+    agrees_with_rays(&settings("object-precision"), 0.999);
+}
+
+#[test]
 fn f23_maps_agree_with_rays_the_better_the_larger() {
     let mut means = [0.0; 2];
     for (name, _) in builtin::names() {
@@ -433,7 +472,11 @@ fn maps_show_no_acne() {
                 let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
                 if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
                     let position = (a + b + c) / 3.0;
-                    assert_eq!(arriving(Place { position, normal, facet, seed: 0 }), 1.0, "facet {facet}");
+                    assert_eq!(
+                        arriving(Place { position, normal, facet, seed: 0, pixel: [0.5; 2] }),
+                        1.0,
+                        "facet {facet}"
+                    );
                 }
             }
         },
@@ -500,7 +543,7 @@ fn places_on(scene: &Scene) -> Vec<Place> {
             let side = ((b - a).cross(c - a).length().sqrt() * 24.0).clamp(2.0, 40.0) as u32;
             for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
                 let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
-                places.push(Place { position: a + (b - a) * u + (c - a) * v, normal, facet, seed: 0 });
+                places.push(Place { position: a + (b - a) * u + (c - a) * v, normal, facet, seed: 0, pixel: [0.5; 2] });
             }
         }
     }

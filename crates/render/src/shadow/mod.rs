@@ -11,10 +11,13 @@
 //! [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
 //! a cut-out one lets light through its holes.
 
+mod casters;
 pub mod map;
+pub mod object_precision;
 mod occluders;
 mod place;
 pub mod ray;
+pub mod scan_line;
 mod sources;
 pub mod volume;
 
@@ -36,6 +39,8 @@ pub struct Place {
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,
+    /// Where it is seen, in pixels of the picture; places with one `y` that are on one facet are on one line.
+    pub pixel: [f32; 2],
 }
 
 /// Shadows of one set of lights in one scene.

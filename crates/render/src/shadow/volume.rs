@@ -26,11 +26,11 @@
 mod count;
 mod edges;
 
+use super::casters::{Casters, faces, lifted, near};
+use super::casters::{wide, winding_normal};
 use super::occluders::Occluders;
-use super::ray::above;
 use super::sources::Source;
 use super::{Place, ShadowAlgorithm, Shadows};
-use crate::raytrace::Structure;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::{Execution, Session, Settings, Transparency, VolumeCounting};
@@ -56,11 +56,9 @@ pub(crate) struct Key {
 /// The volumes of all lights.
 #[derive(Debug)]
 pub(crate) struct Volumes {
-    tree: Arc<Bvh>,
-    /// For each triangle of the tree whether it keeps all light.
-    opaque: Vec<bool>,
-    /// Triangles that do not.
-    filters: Bvh,
+    casters: Casters,
+    /// For each triangle its normal by its winding.
+    normals: Vec<DVec3>,
     lights: Vec<Vec<LightVolumes>>,
 }
 
@@ -69,8 +67,8 @@ pub(crate) struct Volumes {
 struct LightVolumes {
     /// Homogeneous: `w` is 0 for a direction.
     light: DVec4,
-    /// Triangles whose plane is nearer to the light hide nothing from it.
-    near: f64,
+    /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
+    turned: Vec<i8>,
     sides: Vec<edges::Side>,
     tree: Bvh,
 }
@@ -100,7 +98,7 @@ impl ShadowAlgorithm for VolumeShadows {
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
         let volumes = kept(session, lights, &occluders, settings, execution)?;
-        let triangles = volumes.tree.triangles();
+        let triangles = volumes.casters.triangles();
         let odd = ODD * (f64::from(triangles.extent) * 1e-4);
         let viewer = if viewer.w > 0.0 {
             (viewer.truncate() - triangles.center + odd).extend(1.0)
@@ -149,45 +147,28 @@ impl Volumes {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Self, Limit> {
-        let tree = session.bvh(execution)?;
-        let triangles = tree.triangles();
-        let opaque: Vec<bool> = triangles.facets.iter().map(|&f| occluders.is_opaque(f)).collect();
-        let filters = Bvh::build(&picked(triangles, &opaque, false), &execution.workers, &execution.budget)?;
-        let edges = Edges::new(triangles, &opaque, &execution.budget)?;
+        let casters = Casters::new(session, occluders, execution)?;
+        let triangles = casters.triangles();
+        let normals = triangles.corners.iter().map(|c| winding_normal(&wide(c))).collect();
+        let edges = Edges::new(triangles, &casters.opaque, &execution.budget)?;
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
-            let at = |place: DVec4| LightVolumes::new(place, triangles, &edges, execution);
-            match Source::new(light, settings.light_samples, triangles.center) {
-                Source::Unhindered => Ok(Vec::new()),
-                Source::Infinity(towards) => Ok(vec![at(towards.extend(0.0))?]),
-                Source::Point(place) => Ok(vec![at(place.extend(1.0))?]),
-                Source::Area(area) => (0..area.count()).map(|i| at(area.place(i, 0).extend(1.0))).collect(),
-            }
+            let places = Source::new(light, settings.light_samples, triangles.center).places();
+            places.into_iter().map(|place| LightVolumes::new(place, triangles, &edges, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
-        Ok(Self { lights: lights?, opaque, filters, tree })
+        Ok(Self { lights: lights?, normals, casters })
     }
 
     fn lit<'a>(&'a self, volumes: &'a LightVolumes) -> Lit<'a> {
-        Lit { volumes, tree: &self.tree, opaque: &self.opaque, filters: &self.filters }
-    }
-}
-
-/// Those triangles of which `flag` is `value`.
-fn picked(triangles: &Triangles, flag: &[bool], value: bool) -> Triangles {
-    let chosen = || (0..triangles.count()).filter(|&i| flag[i] == value);
-    Triangles {
-        corners: chosen().map(|i| triangles.corners[i]).collect(),
-        facets: chosen().map(|i| triangles.facets[i]).collect(),
-        ..*triangles
+        Lit { volumes, casters: &self.casters, normals: &self.normals }
     }
 }
 
 impl LightVolumes {
     fn new(light: DVec4, triangles: &Triangles, edges: &Edges, execution: &Execution) -> Result<Self, Limit> {
         execution.budget.check("shadow volumes")?;
-        let at = Place { position: light.truncate() * light.w, normal: DVec3::ZERO, facet: u32::MAX, seed: 0 };
-        let near = above(&at, triangles.extent);
-        let sides = edges.sides(light, near, triangles, &execution.workers);
+        let turned = edges::turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
+        let sides = edges.sides(light, &turned, triangles);
         let ends = |s: &edges::Side| [s.a, s.b, s.b].map(|p: DVec3| -> Vec3 { p.as_vec3() });
         let lines = Triangles {
             corners: sides.iter().map(ends).collect(),
@@ -197,7 +178,7 @@ impl LightVolumes {
         let bytes = sides.len() as u64 * size_of::<edges::Side>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
-        Ok(Self { light, near, sides, tree: Bvh::build(&lines, &execution.workers, &execution.budget)? })
+        Ok(Self { light, turned, sides, tree: Bvh::build(&lines, &execution.workers, &execution.budget)? })
     }
 }
 
@@ -212,16 +193,15 @@ impl Shadows for Counting<'_> {
         let mut batch = Batch::default();
         for (place_of_light, &around_viewer) in volumes.iter().zip(&self.around_viewer[light]) {
             // Attached shadows, and a light in the facet's plane, need no count.
-            let from = place_of_light.light;
-            let faces = |p: &Place| p.normal.dot(from.truncate() - p.position * from.w) > 0.0;
-            let extent = self.volumes.tree.triangles().extent;
-            let lifted = |p: &Place| p.position + p.normal * above(p, extent);
-            let asked = places.iter().enumerate().filter(|(_, p)| faces(p)).map(|(i, p)| (i as u32, lifted(p)));
-            batch.reset(asked);
+            let (light, extent) = (place_of_light.light, self.volumes.casters.extent());
+            let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
+            batch.reset(asked.map(|(i, p)| (i as u32, lifted(p, extent))));
             let lit = self.volumes.lit(place_of_light);
             batch.count(&lit, self.counting, self.viewer, around_viewer, |index, at, count, filters| {
                 if count <= 0 {
-                    parts[index] += share * lit.filtered(&self.occluders, places[index].facet, at, filters);
+                    let own = places[index].facet;
+                    let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);
+                    parts[index] += share * passing;
                 }
             });
         }

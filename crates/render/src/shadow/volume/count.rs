@@ -1,14 +1,13 @@
 //! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
 
-use super::super::occluders::Occluders;
-use super::edges::{Side, away, ordered, towards, wide};
+use super::super::casters::{Casters, Solid, away, box_around, collect, near, ordered, wide};
+use super::edges::Side;
 use super::{LightVolumes, ODD};
 use crate::VolumeCounting;
+use crate::raytrace::Structure;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::shaft::Shaft;
-use crate::raytrace::{Probe, Structure, Tree, Visitor};
 use std::ops::Range;
 use vitral_math::{DVec3, DVec4};
 
@@ -19,9 +18,9 @@ const FEW: usize = 8;
 #[derive(Clone, Copy)]
 pub(super) struct Lit<'a> {
     pub(super) volumes: &'a LightVolumes,
-    pub(super) tree: &'a Bvh,
-    pub(super) opaque: &'a [bool],
-    pub(super) filters: &'a Bvh,
+    pub(super) casters: &'a Casters,
+    /// For each triangle its normal by its winding.
+    pub(super) normals: &'a [DVec3],
 }
 
 /// A straight path, to its end or to infinity.
@@ -71,42 +70,13 @@ impl Path {
         if value == enters { 0 } else { along * side.multiplicity }
     }
 
-    /// Whether the path meets a triangle: 1 along the normal, -1 against it, which is turned towards the light.
+    /// Whether a path that crosses a triangle's plane `along` its normal meets the triangle.
     #[inline(always)]
-    fn cap(&self, corners: &[DVec3; 3], normal: DVec3, against: bool) -> i32 {
-        let along = self.crosses(normal, corners[0]);
-        if along == 0 {
-            return 0;
-        }
-        let left = (along > 0) != against;
+    fn meets(&self, corners: &[DVec3; 3], along: i32) -> bool {
         let [a, b, c] = *corners;
-        let within = self.left_of(a, b) == left && self.left_of(b, c) == left && self.left_of(c, a) == left;
-        if within { along } else { 0 }
+        let left = along > 0;
+        self.left_of(a, b) == left && self.left_of(b, c) == left && self.left_of(c, a) == left
     }
-}
-
-/// Collects what a tree shows.
-struct Collect<'a>(&'a mut Vec<u32>);
-
-impl Visitor for Collect<'_> {
-    #[inline(always)]
-    fn skips(&self, _: usize, _: f32) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn done(&self, _: f32) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn triangle(&mut self, place: usize) {
-        self.0.push(place as u32);
-    }
-}
-
-fn collect(tree: &Bvh, probe: &impl Probe, list: &mut Vec<u32>) {
-    tree.descend(probe, &mut Collect(list));
 }
 
 impl Lit<'_> {
@@ -117,21 +87,19 @@ impl Lit<'_> {
     /// What the near cap of a triangle adds to the count along a path.
     #[inline(always)]
     fn cap(&self, path: &Path, triangle: u32) -> i32 {
-        let corners = wide(&self.tree.triangles().corners[triangle as usize]);
-        match towards(&corners, self.light(), self.volumes.near) {
-            Some((normal, against)) => -path.cap(&corners, normal, against),
-            None => 0,
-        }
+        let t = triangle as usize;
+        let corners = &self.casters.triangles().corners[t];
+        let along = path.crosses(self.normals[t], corners[0].as_dvec3());
+        if along != 0 && path.meets(&wide(corners), along) { -along * i32::from(self.volumes.turned[t]) } else { 0 }
     }
 
     /// The opaque triangles near a path.
     fn caps_near(&self, path: &Path) -> Vec<u32> {
-        let extent = self.tree.triangles().extent;
+        let extent = self.casters.extent();
         let scale = path.way.abs().max_element();
         let beam = Beam::around(&Ray::new(path.from.as_vec3(), (path.way / scale).as_vec3()), extent);
         let mut list = Vec::new();
-        collect(self.tree, &beam, &mut list);
-        list.retain(|&t| self.opaque[t as usize]);
+        self.casters.opaque_near(&beam, &mut list);
         list
     }
 
@@ -151,7 +119,7 @@ impl Lit<'_> {
     /// What the count changes along a path of any length.
     fn along(&self, path: &Path) -> i32 {
         let end = if path.ends { (path.from + path.way).extend(1.0) } else { path.way.extend(0.0) };
-        let shaft = Shaft::triangle(path.from, [self.light(), end], self.tree.triangles().extent);
+        let shaft = Shaft::triangle(path.from, [self.light(), end], self.casters.extent());
         let mut sides = Vec::new();
         collect(&self.volumes.tree, &shaft, &mut sides);
         let of_sides: i32 = sides.iter().map(|&s| path.side(self.side(s))).sum();
@@ -178,30 +146,6 @@ impl Lit<'_> {
             }
         }
     }
-
-    /// The part of light that the transparent triangles of `list` let through to a place on the facet `own`.
-    pub(super) fn filtered(&self, occluders: &Occluders<'_>, own: u32, place: DVec3, list: &[u32]) -> f32 {
-        let light = self.light();
-        let triangles = self.filters.triangles();
-        let mut hits: Vec<(u32, u32)> = Vec::new();
-        let path = Path::new(place, -away(light, place), light.w > 0.0, light);
-        for &t in list {
-            let (facet, corners) = (triangles.facets[t as usize], wide(&triangles.corners[t as usize]));
-            let Some((normal, against)) = towards(&corners, light, self.volumes.near) else { continue };
-            if facet != own && path.cap(&corners, normal, against) != 0 {
-                hits.push((facet, t));
-            }
-        }
-        hits.sort_unstable();
-        let passing = |&(facet, t): &(u32, u32)| {
-            let corners = &triangles.corners[t as usize];
-            let [a, b, c] = wide(corners);
-            let normal = (b - a).cross(c - a);
-            let t = normal.dot(a - path.from) / normal.dot(path.way);
-            occluders.passing(facet, corners, || path.from + path.way * t)
-        };
-        hits.iter().map(passing).product()
-    }
 }
 
 /// Places in one batch.
@@ -219,13 +163,6 @@ struct Part {
     /// A place, and how many volumes it is in.
     known: (DVec3, i32),
     lists: [Range<usize>; 3],
-}
-
-/// A box by its middle and half its sides.
-fn around(places: &[(u32, DVec3)], slack: f64) -> (DVec3, DVec3) {
-    let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let [min, max] = places.iter().fold(empty, |[min, max], (_, p)| [min.min(*p), max.max(*p)]);
-    ((min + max) * 0.5, (max - min) * 0.5 + DVec3::splat(slack))
 }
 
 impl Batch {
@@ -247,16 +184,15 @@ impl Batch {
             return;
         }
         // A margin, so that a place in the box is near no plane.
-        let extent = lit.tree.triangles().extent;
+        let extent = lit.casters.extent();
         let slack = f64::from(extent) * 1e-5;
-        let (middle, half) = around(&self.places, slack);
+        let (middle, half) = box_around(self.places.iter().map(|p| p.1), slack);
         let (min, max) = (middle - half, middle + half);
         self.lists.iter_mut().for_each(Vec::clear);
         let shaft = Shaft::between(min, max, lit.light(), extent);
         collect(&lit.volumes.tree, &shaft, &mut self.lists[0]);
-        collect(lit.tree, &Shaft::around(min, max, extent), &mut self.lists[1]);
-        collect(lit.filters, &shaft, &mut self.lists[2]);
-        self.lists[1].retain(|&t| lit.opaque[t as usize]);
+        lit.casters.opaque_near(&Shaft::around(min, max, extent), &mut self.lists[1]);
+        lit.casters.filters_near(&shaft, &mut self.lists[2]);
         let from = inner(middle, half);
         let known = (from, lit.at(from, counting, viewer, around_viewer));
         let lists = [0, 1, 2].map(|k| 0..self.lists[k].len());
@@ -277,13 +213,13 @@ impl Batch {
         }
         // Cut at the median of the longest axis.
         let places = &mut self.places[part.places.clone()];
-        let (_, half) = around(places, 0.0);
+        let (_, half) = box_around(places.iter().map(|p| p.1), 0.0);
         let axis = (1..3).fold(0, |k, other| if half[other] > half[k] { other } else { k });
         let at = places.len() / 2;
         places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
         let Range { start, end } = part.places;
         for half in [start..start + at, start + at..end] {
-            let (middle, size) = around(&self.places[half.clone()], slack);
+            let (middle, size) = box_around(self.places[half.clone()].iter().map(|p| p.1), slack);
             let to = inner(middle, size);
             let path = Path::new(from, to - from, true, lit.light());
             let count = count + self.change(lit, &path, sides.clone(), caps.clone());
@@ -306,17 +242,16 @@ impl Batch {
     /// Appends what of the lists touches a box.
     fn narrow(&mut self, lit: &Lit<'_>, lists: &[Range<usize>; 3], middle: DVec3, half: DVec3) -> [Range<usize>; 3] {
         let (min, max) = (middle - half, middle + half);
-        let opaque = lit.tree.triangles();
+        let opaque = lit.casters.triangles();
         let touches_cap = |t: u32| {
             let [a, b, c] = wide(&opaque.corners[t as usize]);
             let apart = a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min);
-            let normal = (b - a).cross(c - a);
+            let normal = lit.normals[t as usize];
             !apart.any() && normal.dot(middle - a).abs() <= normal.abs().dot(half) * (1.0 + 1e-12)
         };
-        let touches_filter = |t: u32| {
-            let corners = wide(&lit.filters.triangles().corners[t as usize]);
-            touches_volume(&corners, lit, middle, half)
-        };
+        let least = near(lit.light(), lit.casters.extent());
+        let touches_filter =
+            |t: u32| Solid::new(&lit.casters.filter(t), lit.light(), least).is_some_and(|s| s.touches(middle, half));
         let touches_side = |s: u32| lit.side(s).touches(middle, half);
         [
             append(&mut self.lists[0], lists[0].clone(), touches_side),
@@ -335,18 +270,6 @@ fn append(list: &mut Vec<u32>, range: Range<usize>, keep: impl Fn(u32) -> bool) 
         }
     }
     start..list.len()
-}
-
-/// Whether the volume of a triangle may reach into a box.
-fn touches_volume(corners: &[DVec3; 3], lit: &Lit<'_>, middle: DVec3, half: DVec3) -> bool {
-    let light = lit.light();
-    let Some((normal, against)) = towards(corners, light, lit.volumes.near) else { return false };
-    let before = |n: DVec3, at: DVec3| n.dot(middle - at) >= -n.abs().dot(half) * (1.0 + 1e-12);
-    let [a, b, c] = *corners;
-    let sign = if against { -1.0 } else { 1.0 };
-    // The planes through its edges and the light, turned inwards.
-    let inner = |p: DVec3, q: DVec3| (-away(light, p)).cross(q - p) * sign;
-    before(-normal, a) && before(inner(a, b), a) && before(inner(b, c), b) && before(inner(c, a), c)
 }
 
 /// A place in a box that is unlikely to be in the plane of anything.

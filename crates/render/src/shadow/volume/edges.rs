@@ -1,5 +1,6 @@
 //! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
 
+use super::super::casters::{away, ordered, side_normal, turned, wide};
 use crate::raytrace::triangles::Triangles;
 use std::collections::HashMap;
 use vitral_exec::{Budget, Limit, Workers};
@@ -37,45 +38,16 @@ pub(super) struct Side {
     pub(super) borders: [DVec3; 3],
 }
 
-/// Whether `a` comes first: any order will do that is the same for all.
-#[inline(always)]
-pub(super) fn ordered(a: DVec3, b: DVec3) -> bool {
-    if a.x != b.x {
-        a.x < b.x
-    } else if a.y != b.y {
-        a.y < b.y
-    } else {
-        a.z < b.z
-    }
-}
-
-/// The corners, in double precision.
-#[inline(always)]
-pub(super) fn wide(corners: &[Vec3; 3]) -> [DVec3; 3] {
-    corners.map(|c| c.as_dvec3())
-}
-
-/// The normal of a triangle (its length is twice the area), turned towards the light; `None` if the light is no farther than `near`
-/// from its plane.
-#[inline(always)]
-pub(super) fn towards([a, b, c]: &[DVec3; 3], light: DVec4, near: f64) -> Option<(DVec3, bool)> {
-    let normal = (*b - *a).cross(*c - *a);
-    let height = normal.dot(light.truncate() - *a * light.w);
-    // For a direction, what is thinner than rounding.
-    let least = if light.w > 0.0 { near } else { 1e-9 } * normal.length();
-    if height > least {
-        Some((normal, false))
-    } else if height < -least {
-        Some((-normal, true))
-    } else {
-        None
-    }
-}
-
-/// The direction from the light through a place.
-#[inline(always)]
-pub(super) fn away(light: DVec4, p: DVec3) -> DVec3 {
-    p * light.w - light.truncate()
+/// How each triangle is turned.
+pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<i8> {
+    const CHUNK: usize = 8192;
+    let mut all = vec![0i8; triangles.count()];
+    workers.for_each_chunk(&mut all, CHUNK, |chunk, part| {
+        for (i, sign) in part.iter_mut().enumerate() {
+            *sign = turned(&wide(&triangles.corners[chunk * CHUNK + i]), light, near);
+        }
+    });
+    all
 }
 
 impl Edges {
@@ -109,19 +81,7 @@ impl Edges {
     }
 
     /// The sides for a light: edges whose multiplicity is not 0.
-    pub(super) fn sides(&self, light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<Side> {
-        // How each triangle is turned: with its winding, or against it, or not at all.
-        const CHUNK: usize = 8192;
-        let mut turned = vec![0i8; triangles.count()];
-        workers.for_each_chunk(&mut turned, CHUNK, |chunk, turned| {
-            for (i, turned) in turned.iter_mut().enumerate() {
-                let corners = wide(&triangles.corners[chunk * CHUNK + i]);
-                *turned = match towards(&corners, light, near) {
-                    Some((_, against)) => 1 - 2 * i8::from(against),
-                    None => 0,
-                };
-            }
-        });
+    pub(super) fn sides(&self, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<Side> {
         let mut sides = Vec::new();
         for run in self.uses.chunk_by(|one, two| one.ends == two.ends) {
             // Along a triangle that looks at the light, its volume is left of its edges: against the normal of the side.
@@ -140,13 +100,13 @@ impl Edges {
 
 impl Side {
     fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
-        let normal = (b - a).cross(-away(light, a));
-        let turned = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };
+        let normal = side_normal(a, b, light);
+        let inwards = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };
         let [out_a, out_b] = [a, b].map(|p| away(light, p));
         let borders = [
-            turned(normal.cross(b - a), out_a),
-            turned(normal.cross(out_a), b - a),
-            turned(normal.cross(out_b), a - b),
+            inwards(normal.cross(b - a), out_a),
+            inwards(normal.cross(out_a), b - a),
+            inwards(normal.cross(out_b), a - b),
         ];
         Self { a, b, normal, multiplicity, borders }
     }

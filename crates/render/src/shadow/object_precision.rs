@@ -1,0 +1,216 @@
+//! Object-precision shadows: what the light sees is lit.
+//!
+//! Hidden surfaces are removed twice. Seen from the light, polygons are clipped against each other until only visible
+//! parts are left. These are brought back to the polygons that they are parts of, and stay there as *surface detail*: lit
+//! polygons. Then any visible-surface algorithm makes a picture from any side, and a place is lit if it lies in a
+//! lit polygon of its facet. The polygons do not depend on the viewer: a session keeps them over a turntable, and they can
+//! be written to a file.
+//!
+//! From each facet is taken away what lies in the solids that other triangles hide from the light. Clipping by their
+//! planes, in space, leaves convex polygons, and a light may stand anywhere: no view volume has to be cut in sectors.
+//! Where many triangles cast shadows on one facet it is first cut in two, and each half has those that reach it, until
+//! they are few or one of them covers the whole part. The cuts are kept as a tree, which leads from a place to its polygon.
+//!
+//! In:   lights and triangles, world space less the scene's middle. Out: lit polygons; the part of a light that arrives.
+//! Cost: for each facet the triangles between it and the light. 100 bytes a lit polygon.
+//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own planes, not in a picture of the
+//! light's, by one solid after another.
+
+mod clip;
+
+use super::casters::{Casters, Solid, faces, lifted, near, wide};
+use super::occluders::Occluders;
+use super::sources::Source;
+use super::{Place, ShadowAlgorithm, Shadows};
+use crate::raytrace::shaft::Shaft;
+use crate::{Execution, Session, Settings, Transparency};
+use clip::{Cutter, Detail};
+use std::sync::{Arc, Mutex};
+use vitral_exec::Limit;
+use vitral_light::Light;
+use vitral_math::{DVec3, DVec4};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectPrecisionShadows;
+
+/// What lit polygons depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    samples: u32,
+    transparency: Transparency,
+}
+
+/// The lit polygons of all lights.
+#[derive(Debug)]
+pub(crate) struct LitPolygons {
+    casters: Casters,
+    lights: Vec<Vec<OfLight>>,
+}
+
+/// The lit polygons of one place of a light.
+#[derive(Debug)]
+struct OfLight {
+    light: DVec4,
+    /// For each facet of the world where it is found.
+    places: Vec<Found>,
+    details: Vec<Details>,
+}
+
+/// Where the detail of a facet is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    piece: u32,
+    root: u32,
+    /// Transparent triangles that may filter the light on it.
+    filters: [u32; 2],
+}
+
+/// What was found for a run of triangles.
+#[derive(Debug, Default)]
+struct Details {
+    detail: Detail,
+    filters: Vec<u32>,
+    found: Vec<Found>,
+}
+
+struct Prepared<'a> {
+    polygons: Arc<LitPolygons>,
+    occluders: Occluders<'a>,
+}
+
+/// Triangles in one piece of work.
+const TRIANGLES_A_JOB: usize = 256;
+
+impl ShadowAlgorithm for ObjectPrecisionShadows {
+    fn prepare<'a>(
+        &self,
+        session: &'a Session,
+        lights: &[Light],
+        _: DVec4,
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+        let occluders = Occluders::new(session, settings);
+        let key = Key { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency };
+        let mut kept = session.lit_polygons.lock().expect("no thread panics while it makes lit polygons");
+        if let Some((known, polygons)) = &*kept
+            && *known == key
+        {
+            return Ok(Box::new(Prepared { polygons: Arc::clone(polygons), occluders }));
+        }
+        *kept = None;
+        let casters = Casters::new(session, &occluders, execution)?;
+        let facets = session.world.facet_count as usize;
+        let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
+            let places = Source::new(light, settings.light_samples, casters.triangles().center).places();
+            places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
+        };
+        let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
+        let polygons = Arc::new(LitPolygons { lights: lights?, casters });
+        *kept = Some((key, Arc::clone(&polygons)));
+        Ok(Box::new(Prepared { polygons, occluders }))
+    }
+}
+
+impl OfLight {
+    fn new(light: DVec4, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
+        let triangles = casters.triangles();
+        let jobs = triangles.count().div_ceil(TRIANGLES_A_JOB);
+        let charged = Mutex::new(0u64);
+        let budget = &execution.budget;
+        let details = execution.workers.map(jobs, |job| {
+            let first = job * TRIANGLES_A_JOB;
+            let mut details = Details::default();
+            for t in first..triangles.count().min(first + TRIANGLES_A_JOB) {
+                budget.check("object-precision shadows")?;
+                details.add(t, light, casters);
+            }
+            let bytes = details.bytes();
+            budget.charge(bytes, "object-precision shadows")?;
+            *charged.lock().expect("no thread panics while it adds") += bytes;
+            Ok(details)
+        });
+        budget.release(charged.into_inner().expect("no thread panics while it adds"));
+        let details: Vec<Details> = details.into_iter().collect::<Result<_, Limit>>()?;
+        let mut places = vec![Found { piece: u32::MAX, ..Found::default() }; facets];
+        for (piece, found) in details.iter().enumerate() {
+            for (i, found) in found.found.iter().enumerate() {
+                let facet = triangles.facets[piece * TRIANGLES_A_JOB + i];
+                places[facet as usize] = Found { piece: piece as u32, ..*found };
+            }
+        }
+        Ok(Self { light, places, details })
+    }
+
+    /// The transparent triangles that may filter the light at a place (lifted), or `None` if it is not lit.
+    fn at(&self, facet: u32, place: DVec3, slack: f64) -> Option<&[u32]> {
+        // Facets that are not finite have no place.
+        let found = self.places.get(facet as usize)?;
+        let details = self.details.get(found.piece as usize)?;
+        let [first, end] = found.filters.map(|i| i as usize);
+        details.detail.lights(found.root, place, slack).then(|| &details.filters[first..end])
+    }
+}
+
+impl Details {
+    /// Clips a triangle.
+    fn add(&mut self, triangle: usize, light: DVec4, casters: &Casters) {
+        let triangles = casters.triangles();
+        let extent = triangles.extent;
+        let (corners, near) = (wide(&triangles.corners[triangle]), near(light, extent));
+        let first = self.filters.len() as u32;
+        let root = match super::casters::turned(&corners, light, 0.0) {
+            // What the light sees edge-on, or what has no area, is not lit.
+            0 => self.detail.dark(),
+            turned => {
+                let normal = super::casters::winding_normal(&corners).normalize_or_zero() * f64::from(turned);
+                let largest = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
+                let at = Place { position: largest, normal, facet: 0, seed: 0, pixel: [0.0; 2] };
+                let corners = corners.map(|c| c + normal * super::ray::above(&at, extent));
+                let min = corners[0].min(corners[1]).min(corners[2]);
+                let max = corners[0].max(corners[1]).max(corners[2]);
+                let shaft = Shaft::between(min, max, light, extent);
+                let (mut list, mut filters) = (Vec::new(), Vec::new());
+                casters.opaque_near(&shaft, &mut list);
+                casters.filters_near(&shaft, &mut filters);
+                let own = triangles.facets[triangle];
+                let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
+                let solid = |corners: &[DVec3; 3]| Solid::new(corners, light, near).filter(|s| s.touches(middle, half));
+                let solids = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
+                let solids = solids.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+                self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
+                Cutter { detail: &mut self.detail, normal, eps: f64::from(extent) * 1e-13 }
+                    .add(corners.to_vec(), solids)
+            }
+        };
+        self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });
+    }
+
+    fn bytes(&self) -> u64 {
+        let lists = self.filters.capacity() * 4 + self.found.capacity() * size_of::<Found>();
+        self.detail.bytes() + lists as u64
+    }
+}
+
+impl Shadows for Prepared<'_> {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+        let LitPolygons { casters, lights } = &*self.polygons;
+        let lights = &lights[light];
+        if lights.is_empty() {
+            return parts.fill(1.0);
+        }
+        let (share, extent) = (1.0 / lights.len() as f32, casters.extent());
+        let slack = f64::from(extent) * 1e-9;
+        for (place, part) in places.iter().zip(parts) {
+            let facing = lights.iter().filter(|l| faces(place, l.light));
+            let passing = facing.map(|l| {
+                let at = lifted(place, extent);
+                let filters = l.at(place.facet, at, slack);
+                filters.map_or(0.0, |f| casters.filtered(&self.occluders, l.light, place.facet, at, f))
+            });
+            *part = passing.sum::<f32>() * share;
+        }
+    }
+}

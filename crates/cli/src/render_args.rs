@@ -39,7 +39,7 @@ pub(crate) struct RenderArgs {
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
     /// repeatable, one for each --channel
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel", "export_shadow_polygons"])]
     pub(crate) output: Vec<PathBuf>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
@@ -59,6 +59,9 @@ pub(crate) struct OutputArgs {
     /// Write what each stage of the pipeline hands on into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
+    /// Write the polygons that the shadow algorithm works with (volumes, or lit polygons) into this OBJ file
+    #[arg(long, value_name = "FILE", value_parser = values::obj_file)]
+    pub(crate) export_shadow_polygons: Option<PathBuf>,
 }
 
 /// Size, background, quality.

@@ -152,11 +152,14 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 15] = [
+    let cases: [(&[&str], i32, &str); 18] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--global", "radiosity"], 2, "--global: this option is not there yet"),
-        (&["a.obj", "-o", "x.png", "--shadows", "scan-line"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--shadows", "umbra"], 2, "invalid value 'umbra'"),
+        (&["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"], 2, "choose volume, object-precision"),
+        (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
+        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=maybe"], 2, "shadow"),

@@ -368,6 +368,14 @@ pub enum SettingsError {
     /// A way to count shadow volumes, but none.
     #[error("a way to count shadow volumes was chosen, but the shadows are `{0}`: choose volume")]
     VolumeCounting(String),
+    /// The polygons of a shadow algorithm are wanted, but it works with none.
+    #[error("the shadows `{shadows}` work with no polygons: choose {choices}")]
+    ShadowPolygons {
+        /// Asked for.
+        shadows: String,
+        /// Those that do.
+        choices: String,
+    },
     /// Cast shadows are wanted, but none are computed.
     #[error("the channel cast-shadow needs a shadow algorithm: choose {0}")]
     CastShadow(String),

@@ -48,6 +48,20 @@ pub trait Shadows: Sync {
     /// Which part of the light of this number reaches each of the places, `0..=1`, into as many `parts`. Other places in
     /// the same call do not change the answer.
     fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]);
+
+    /// Hands on the polygons that it works with; nothing where [`crate::registry::Shadowing::polygons`] says so.
+    fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}
+}
+
+/// A polygon that a shadow algorithm works with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn<'a> {
+    /// The light's number.
+    pub light: usize,
+    /// What it is: `lit`, or a `side`, `near-cap` or `far-cap` of a volume.
+    pub kind: &'static str,
+    /// World space.
+    pub corners: &'a [DVec3],
 }
 
 /// A way to find shadows.
@@ -62,6 +76,21 @@ pub trait ShadowAlgorithm: Sync {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+}
+
+/// Hands on the polygons that the chosen algorithm works with.
+pub fn draw(
+    session: &Session,
+    lights: &[Light],
+    settings: &Settings,
+    execution: &Execution,
+    take: &mut dyn FnMut(Drawn<'_>),
+) -> Result<(), Limit> {
+    if let Some(algorithm) = registry::shadows(&settings.shadows).and_then(|s| s.algorithm) {
+        // They are the same for every viewer.
+        algorithm.prepare(session, lights, DVec4::Z, settings, execution)?.draw(take);
+    }
+    Ok(())
 }
 
 /// The chosen algorithm, ready; `None` without shadows.

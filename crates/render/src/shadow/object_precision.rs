@@ -18,10 +18,11 @@
 
 mod clip;
 
-use super::casters::{Casters, Solid, faces, lifted, near, wide};
+use super::casters::{Casters, Solid, faces, lifted, near, turned, wide, winding_normal};
 use super::occluders::Occluders;
+use super::ray::above;
 use super::sources::Source;
-use super::{Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
 use clip::{Cutter, Detail};
@@ -80,6 +81,10 @@ struct Prepared<'a> {
     occluders: Occluders<'a>,
 }
 
+/// What is nearer to a plane than this part of the scene lies in it.
+const EPS: f64 = 1e-13;
+/// A place beside a lit polygon by no more than this part of the scene is in it: no crack between two.
+const SLACK: f64 = 1e-9;
 /// Triangles in one piece of work.
 const TRIANGLES_A_JOB: usize = 256;
 
@@ -114,6 +119,12 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
     }
 }
 
+/// How far above a facet its places are looked at, at most.
+fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
+    let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
+    above(&Place { position, normal: DVec3::ZERO, facet: 0, seed: 0, pixel: [0.0; 2] }, extent)
+}
+
 impl OfLight {
     fn new(light: DVec4, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
         let triangles = casters.triangles();
@@ -144,7 +155,7 @@ impl OfLight {
         Ok(Self { light, places, details })
     }
 
-    /// The transparent triangles that may filter the light at a place (lifted), or `None` if it is not lit.
+    /// The transparent triangles that may filter the light at a place, or `None` if it is not lit.
     fn at(&self, facet: u32, place: DVec3, slack: f64) -> Option<&[u32]> {
         // Facets that are not finite have no place.
         let found = self.places.get(facet as usize)?;
@@ -161,28 +172,31 @@ impl Details {
         let extent = triangles.extent;
         let (corners, near) = (wide(&triangles.corners[triangle]), near(light, extent));
         let first = self.filters.len() as u32;
-        let root = match super::casters::turned(&corners, light, 0.0) {
+        let root = match turned(&corners, light, 0.0) {
             // What the light sees edge-on, or what has no area, is not lit.
             0 => self.detail.dark(),
             turned => {
-                let normal = super::casters::winding_normal(&corners).normalize_or_zero() * f64::from(turned);
-                let largest = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
-                let at = Place { position: largest, normal, facet: 0, seed: 0, pixel: [0.0; 2] };
-                let corners = corners.map(|c| c + normal * super::ray::above(&at, extent));
-                let min = corners[0].min(corners[1]).min(corners[2]);
-                let max = corners[0].max(corners[1]).max(corners[2]);
+                let normal = winding_normal(&corners).normalize_or_zero() * f64::from(turned);
+                let lift = lift(&corners, extent);
+                let (min, max) =
+                    (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+                let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
                 let shaft = Shaft::between(min, max, light, extent);
                 let (mut list, mut filters) = (Vec::new(), Vec::new());
                 casters.opaque_near(&shaft, &mut list);
                 casters.filters_near(&shaft, &mut filters);
+                let solid = |corners: &[DVec3; 3]| {
+                    let mut solid = Solid::new(corners, light, near).filter(|s| s.touches(middle, half))?;
+                    // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind.
+                    let (behind, at) = &mut solid.planes[0];
+                    *at += behind.normalize_or_zero() * lift;
+                    Some(solid)
+                };
                 let own = triangles.facets[triangle];
-                let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                let solid = |corners: &[DVec3; 3]| Solid::new(corners, light, near).filter(|s| s.touches(middle, half));
-                let solids = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
-                let solids = solids.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+                let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
+                let solids = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
                 self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
-                Cutter { detail: &mut self.detail, normal, eps: f64::from(extent) * 1e-13 }
-                    .add(corners.to_vec(), solids)
+                Cutter { detail: &mut self.detail, normal, eps: f64::from(extent) * EPS }.add(corners.to_vec(), solids)
             }
         };
         self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });
@@ -202,15 +216,31 @@ impl Shadows for Prepared<'_> {
             return parts.fill(1.0);
         }
         let (share, extent) = (1.0 / lights.len() as f32, casters.extent());
-        let slack = f64::from(extent) * 1e-9;
+        let slack = f64::from(extent) * SLACK;
         for (place, part) in places.iter().zip(parts) {
             let facing = lights.iter().filter(|l| faces(place, l.light));
             let passing = facing.map(|l| {
                 let at = lifted(place, extent);
-                let filters = l.at(place.facet, at, slack);
+                let filters = l.at(place.facet, place.position, slack);
                 filters.map_or(0.0, |f| casters.filtered(&self.occluders, l.light, place.facet, at, f))
             });
             *part = passing.sum::<f32>() * share;
+        }
+    }
+
+    fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
+        let center = self.polygons.casters.triangles().center;
+        let mut corners = Vec::new();
+        for (light, places) in self.polygons.lights.iter().enumerate() {
+            for details in places.iter().flat_map(|place| &place.details) {
+                for found in &details.found {
+                    details.detail.each(found.root, &mut |polygon| {
+                        corners.clear();
+                        corners.extend(polygon.iter().map(|&c| c + center));
+                        take(Drawn { light, kind: "lit", corners: &corners });
+                    });
+                }
+            }
         }
     }
 }

@@ -26,11 +26,11 @@
 mod count;
 mod edges;
 
-use super::casters::{Casters, faces, lifted, near};
+use super::casters::{Casters, away, faces, lifted, near};
 use super::casters::{wide, winding_normal};
 use super::occluders::Occluders;
 use super::sources::Source;
-use super::{Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::{Execution, Session, Settings, Transparency, VolumeCounting};
@@ -204,6 +204,40 @@ impl Shadows for Counting<'_> {
                     parts[index] += share * passing;
                 }
             });
+        }
+    }
+    fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
+        let triangles = self.volumes.casters.triangles();
+        for (light, places) in self.volumes.lights.iter().enumerate() {
+            places.iter().for_each(|place| place.draw(light, &self.volumes.casters, triangles, take));
+        }
+    }
+}
+
+impl LightVolumes {
+    /// Hands on caps and sides, cut where the scene is well left behind.
+    fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
+        let reach = f64::from(triangles.extent) * 2.0;
+        let beyond = |p: DVec3| p + away(self.light, p).normalize_or_zero() * reach;
+        let mut hand = |kind: &'static str, corners: &[DVec3]| {
+            let corners: Vec<DVec3> = corners.iter().map(|&c| c + triangles.center).collect();
+            take(Drawn { light, kind, corners: &corners });
+        };
+        // Outwards: the near cap towards the light, the far cap away from it.
+        let casting = || (0..self.turned.len()).filter(|&i| casters.opaque[i] && self.turned[i] != 0);
+        let towards = |i: usize| {
+            let [a, b, c] = wide(&triangles.corners[i]);
+            if self.turned[i] > 0 { [a, b, c] } else { [a, c, b] }
+        };
+        casting().for_each(|i| hand("near-cap", &towards(i)));
+        for i in casting() {
+            let [a, b, c] = towards(i).map(beyond);
+            hand("far-cap", &[a, c, b]);
+        }
+        for side in &self.sides {
+            // Its normal points inwards where volumes begin. As often as volumes have it in common.
+            let (p, q) = if side.multiplicity > 0 { (side.a, side.b) } else { (side.b, side.a) };
+            (0..side.multiplicity.abs()).for_each(|_| hand("side", &[p, q, beyond(q), beyond(p)]));
         }
     }
 }

@@ -1,0 +1,45 @@
+//! The polygons that a shadow algorithm works with, as a model file: lit polygons, or shadow volumes.
+
+use crate::{Error, Renderer};
+use std::fmt::Write;
+use vitral_render::{SettingsError, registry, shadow};
+
+/// The polygons of the chosen shadow algorithm for the next picture of `renderer`, as OBJ text: a group for each light
+/// and kind of polygon, world space.
+///
+/// # Errors
+/// A shadow algorithm that works with none; settings that cannot be carried out, or a limit that was reached.
+pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
+    let settings = &renderer.settings;
+    settings.check().map_err(vitral_render::Error::from)?;
+    if registry::shadows(&settings.shadows).is_none_or(|s| s.polygons.is_none()) {
+        let choices = registry::SHADOWS.iter().filter(|s| s.polygons.is_some()).map(|s| s.name);
+        let error = SettingsError::ShadowPolygons {
+            shadows: settings.shadows.clone(),
+            choices: choices.collect::<Vec<_>>().join(", "),
+        };
+        return Err(vitral_render::Error::from(error).into());
+    }
+    let camera = renderer.frame_camera();
+    let lights = renderer.frame_lights(&camera);
+    let (mut text, mut count, mut group) = (String::new(), 0u64, None);
+    // A group at a time: its name is told once where it begins.
+    shadow::draw(renderer.session(), &lights, settings, renderer.execution(), &mut |polygon| {
+        let name = (polygon.light, polygon.kind);
+        if group != Some(name) {
+            let _ = writeln!(text, "g light{}-{}", polygon.light, polygon.kind);
+            group = Some(name);
+        }
+        for c in polygon.corners {
+            let _ = writeln!(text, "v {} {} {}", c.x, c.y, c.z);
+        }
+        text.push('f');
+        for _ in polygon.corners {
+            count += 1;
+            let _ = write!(text, " {count}");
+        }
+        text.push('\n');
+    })
+    .map_err(vitral_render::Error::from)?;
+    Ok(text)
+}

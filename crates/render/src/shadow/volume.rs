@@ -150,7 +150,7 @@ impl Volumes {
         let casters = Casters::new(session, occluders, execution)?;
         let triangles = casters.triangles();
         let normals = triangles.corners.iter().map(|c| winding_normal(&wide(c))).collect();
-        let edges = Edges::new(triangles, &casters.opaque, &execution.budget)?;
+        let edges = Edges::new(&session.world, &casters, execution)?;
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
             let places = Source::new(light, settings.light_samples, triangles.center).places();
             places.into_iter().map(|place| LightVolumes::new(place, triangles, &edges, execution)).collect()

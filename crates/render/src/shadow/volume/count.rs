@@ -23,28 +23,37 @@ pub(super) struct Lit<'a> {
     pub(super) normals: &'a [DVec3],
 }
 
+/// The side of a plane on which a place is. Two paths that end and begin there agree about it.
+#[inline(always)]
+fn before(normal: DVec3, at: DVec3, place: DVec3) -> bool {
+    normal.dot(place - at) > 0.0
+}
+
 /// A straight path, to its end or to infinity.
 #[derive(Clone, Copy)]
 struct Path {
     from: DVec3,
-    way: DVec3,
+    /// Where it ends, or the direction in which it does not.
+    to: DVec3,
     ends: bool,
+    way: DVec3,
     /// Normal of the plane through the path and the light.
     normal: DVec3,
 }
 
 impl Path {
-    fn new(from: DVec3, way: DVec3, ends: bool, light: DVec4) -> Self {
-        Self { from, way, ends, normal: (-away(light, from)).cross(way) }
+    /// To a place, or along a direction: homogeneous.
+    fn new(from: DVec3, to: DVec4, light: DVec4) -> Self {
+        let (to, ends) = (to.truncate(), to.w > 0.0);
+        let way = if ends { to - from } else { to };
+        Self { from, to, ends, way, normal: (-away(light, from)).cross(way) }
     }
 
     /// Whether the path crosses a plane: 1 along the normal, -1 against it.
     #[inline(always)]
     fn crosses(&self, normal: DVec3, at: DVec3) -> i32 {
-        let start = normal.dot(self.from - at);
-        // The end's own place: two paths that end and begin there agree about its side.
-        let end = if self.ends { normal.dot(self.from + self.way - at) } else { normal.dot(self.way) };
-        i32::from(end > 0.0) - i32::from(start > 0.0)
+        let end = if self.ends { before(normal, at, self.to) } else { normal.dot(self.to) > 0.0 };
+        i32::from(end) - i32::from(before(normal, at, self.from))
     }
 
     /// The side of the line from `a` to `b` on which the path passes.
@@ -54,10 +63,9 @@ impl Path {
         if ordered(a, b) { value(a, b) } else { !value(b, a) }
     }
 
-    /// What a side adds to the count.
+    /// What a side adds to the count, if the path crosses its plane `along` the normal.
     #[inline(always)]
-    fn side(&self, side: &Side) -> i32 {
-        let along = self.crosses(side.normal, side.a);
+    fn side(&self, side: &Side, along: i32) -> i32 {
         if along == 0 {
             return 0;
         }
@@ -84,13 +92,59 @@ impl Lit<'_> {
         self.volumes.light
     }
 
-    /// What the near cap of a triangle adds to the count along a path.
+    /// The plane of a triangle: its normal by its winding, and a place on it.
     #[inline(always)]
-    fn cap(&self, path: &Path, triangle: u32) -> i32 {
+    fn plane(&self, triangle: u32) -> (DVec3, DVec3) {
+        let t = triangle as usize;
+        (self.normals[t], self.casters.triangles().corners[t][0].as_dvec3())
+    }
+
+    /// What the near cap of a triangle adds to the count along a path that crosses its plane `along` its normal.
+    #[inline(always)]
+    fn cap(&self, path: &Path, triangle: u32, along: i32) -> i32 {
         let t = triangle as usize;
         let corners = &self.casters.triangles().corners[t];
-        let along = path.crosses(self.normals[t], corners[0].as_dvec3());
         if along != 0 && path.meets(&wide(corners), along) { -along * i32::from(self.volumes.turned[t]) } else { 0 }
+    }
+
+    /// What the listed sides and caps add to the count along a path.
+    fn change(&self, path: &Path, sides: &[u32], caps: &[u32]) -> i32 {
+        let of_side = |&s: &u32| {
+            let side = self.side(s);
+            path.side(side, path.crosses(side.normal, side.a))
+        };
+        let of_cap = |&t: &u32| {
+            let (normal, at) = self.plane(t);
+            self.cap(path, t, path.crosses(normal, at))
+        };
+        sides.iter().map(of_side).sum::<i32>() + caps.iter().map(of_cap).sum::<i32>()
+    }
+
+    /// The same along paths from one place to a few others: each side and cap is looked at once.
+    fn changes(&self, paths: &[Path], sides: &[u32], caps: &[u32]) -> [i32; FEW] {
+        let mut changes = [0; FEW];
+        let Some(first) = paths.first() else { return changes };
+        for &s in sides {
+            let side = self.side(s);
+            let start = before(side.normal, side.a, first.from);
+            for (path, change) in paths.iter().zip(&mut changes) {
+                let end = before(side.normal, side.a, path.to);
+                if end != start {
+                    *change += path.side(side, i32::from(end) - i32::from(start));
+                }
+            }
+        }
+        for &t in caps {
+            let (normal, at) = self.plane(t);
+            let start = before(normal, at, first.from);
+            for (path, change) in paths.iter().zip(&mut changes) {
+                let end = before(normal, at, path.to);
+                if end != start {
+                    *change += self.cap(path, t, i32::from(end) - i32::from(start));
+                }
+            }
+        }
+        changes
     }
 
     /// The opaque triangles near a path.
@@ -111,19 +165,21 @@ impl Lit<'_> {
         }
         // From whichever is not at infinity to the other.
         let (from, to) = if place.w > 0.0 { (place, light) } else { (light, place) };
-        let (from, ends) = (from.truncate(), to.w > 0.0);
-        let path = Path::new(from, to.truncate() - from * to.w, ends, light);
-        self.caps_near(&path).iter().map(|&t| self.cap(&path, t).abs()).sum()
+        let path = Path::new(from.truncate(), to, light);
+        let met = |&t: &u32| {
+            let (normal, at) = self.plane(t);
+            self.cap(&path, t, path.crosses(normal, at)).abs()
+        };
+        self.caps_near(&path).iter().map(met).sum()
     }
 
     /// What the count changes along a path of any length.
     fn along(&self, path: &Path) -> i32 {
-        let end = if path.ends { (path.from + path.way).extend(1.0) } else { path.way.extend(0.0) };
+        let end = path.to.extend(f64::from(u8::from(path.ends)));
         let shaft = Shaft::triangle(path.from, [self.light(), end], self.casters.extent());
         let mut sides = Vec::new();
         collect(&self.volumes.tree, &shaft, &mut sides);
-        let of_sides: i32 = sides.iter().map(|&s| path.side(self.side(s))).sum();
-        of_sides + self.caps_near(path).iter().map(|&t| self.cap(path, t)).sum::<i32>()
+        self.change(path, &sides, &self.caps_near(path))
     }
 
     /// A side, by its place in the tree.
@@ -134,15 +190,11 @@ impl Lit<'_> {
 
     /// The count at a place, from the viewer or from infinity.
     fn at(&self, place: DVec3, counting: VolumeCounting, viewer: DVec4, around_viewer: i32) -> i32 {
-        let to_viewer = viewer.truncate() - place * viewer.w;
         match counting {
-            VolumeCounting::ZPass => {
-                let path = Path::new(place, to_viewer, viewer.w > 0.0, self.light());
-                around_viewer - self.along(&path)
-            }
+            VolumeCounting::ZPass => around_viewer - self.along(&Path::new(place, viewer, self.light())),
             VolumeCounting::ZFail => {
-                let path = Path::new(place, -to_viewer, false, self.light());
-                self.around((-to_viewer).extend(0.0)) - self.along(&path)
+                let from_viewer = (place * viewer.w - viewer.truncate()).extend(0.0);
+                self.around(from_viewer) - self.along(&Path::new(place, from_viewer, self.light()))
             }
         }
     }
@@ -204,10 +256,15 @@ impl Batch {
         let (from, count) = part.known;
         let [sides, caps, filters] = part.lists.clone();
         if part.places.len() <= FEW || (sides.is_empty() && caps.is_empty() && filters.is_empty()) {
-            for &(index, place) in &self.places[part.places] {
-                let path = Path::new(from, place - from, true, lit.light());
-                let change = self.change(lit, &path, sides.clone(), caps.clone());
-                found(index as usize, place, count + change, &self.lists[2][filters.clone()]);
+            let [sides, caps, filters] = [(0, sides), (1, caps), (2, filters)].map(|(k, r)| &self.lists[k][r]);
+            for places in self.places[part.places].chunks(FEW) {
+                // Places that are not there repeat the last.
+                let path = |k: usize| Path::new(from, places[k.min(places.len() - 1)].1.extend(1.0), lit.light());
+                let paths: [Path; FEW] = std::array::from_fn(path);
+                let changes = lit.changes(&paths[..places.len()], sides, caps);
+                for (&(index, place), change) in places.iter().zip(changes) {
+                    found(index as usize, place, count + change, filters);
+                }
             }
             return;
         }
@@ -221,8 +278,8 @@ impl Batch {
         for half in [start..start + at, start + at..end] {
             let (middle, size) = box_around(self.places[half.clone()].iter().map(|p| p.1), slack);
             let to = inner(middle, size);
-            let path = Path::new(from, to - from, true, lit.light());
-            let count = count + self.change(lit, &path, sides.clone(), caps.clone());
+            let path = Path::new(from, to.extend(1.0), lit.light());
+            let count = count + lit.change(&path, &self.lists[0][sides.clone()], &self.lists[1][caps.clone()]);
             let lists = self.narrow(lit, &part.lists, middle, size);
             let lengths = lists.clone().map(|l| l.start);
             self.part(lit, Part { places: half, known: (to, count), lists }, slack, found);
@@ -230,13 +287,6 @@ impl Batch {
                 list.truncate(length);
             }
         }
-    }
-
-    /// What the listed sides and caps change along a path.
-    #[inline(always)]
-    fn change(&self, lit: &Lit<'_>, path: &Path, sides: Range<usize>, caps: Range<usize>) -> i32 {
-        let of_sides: i32 = self.lists[0][sides].iter().map(|&s| path.side(lit.side(s))).sum();
-        of_sides + self.lists[1][caps].iter().map(|&t| lit.cap(path, t)).sum::<i32>()
     }
 
     /// Appends what of the lists touches a box.

@@ -1,15 +1,17 @@
 //! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
 
-use super::super::casters::{away, ordered, side_normal, turned, wide};
+use super::super::casters::{Casters, away, ordered, side_normal, turned, wide};
+use crate::Execution;
 use crate::raytrace::triangles::Triangles;
-use std::collections::HashMap;
-use vitral_exec::{Budget, Limit, Workers};
-use vitral_math::{DVec3, DVec4, Vec3};
+use vitral_exec::{Limit, Workers};
+use vitral_math::{DVec3, DVec4};
+use vitral_scene::weld::Weld;
+use vitral_scene::{Instance, World};
 
 /// An edge of a triangle, between corners in the order of places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Use {
-    /// The corners' numbers; corners at one place have one.
+    /// The corners' numbers; corners of a mesh at one place have one.
     ends: [u32; 2],
     /// The triangle, by its place in the list.
     triangle: u32,
@@ -51,32 +53,57 @@ pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers
 }
 
 impl Edges {
-    pub(super) fn new(triangles: &Triangles, opaque: &[bool], budget: &Budget) -> Result<Self, Limit> {
+    /// Of the opaque ones among the world's triangles.
+    pub(super) fn new(world: &World, casters: &Casters, execution: &Execution) -> Result<Self, Limit> {
+        let (triangles, budget) = (casters.triangles(), &execution.budget);
         budget.check("shadow volumes")?;
-        let bytes = triangles.count() as u64 * 3 * (size_of::<Use>() as u64 + 32);
+        let bytes = triangles.count() as u64 * 3 * (2 * size_of::<Use>() as u64 + 4);
         budget.charge(bytes, "shadow volumes")?;
         budget.release(bytes);
-        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
-        let mut uses = Vec::with_capacity(triangles.count() * 3);
-        for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| opaque[*i]) {
-            // Adding 0 makes one zero of two.
-            let number = corners.map(|c| {
-                let next = numbers.len() as u32;
-                *numbers.entry((c + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
-            });
+
+        // Number the corners, mesh by mesh.
+        let mut count = 0u32;
+        let weld = |instance: &Instance| {
+            let first = count;
+            count += instance.mesh.positions.len() as u32;
+            (first, Weld::new(&instance.mesh.positions, &execution.workers))
+        };
+        let welds: Vec<_> = world.instances.iter().map(weld).collect();
+        let mut found = Vec::with_capacity(triangles.count() * 3);
+        // Where the edges of each corner begin, shifted by one, so that filling the table leaves the final places.
+        let mut starts = vec![0u32; count as usize + 2];
+        for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| casters.opaque[*i]) {
+            let instance = world.instance_of_facet(triangles.facets[i]);
+            let (first, weld) = &welds[instance];
+            let instance = &world.instances[instance];
+            let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
+            let number = triangle.map(|v| first + weld.representative[v as usize]);
             let corners = wide(corners);
             for k in 0..3 {
                 let m = (k + 1) % 3;
-                if number[k] == number[m] {
+                if number[k] == number[m] || corners[k] == corners[m] {
                     continue;
                 }
                 let backwards = !ordered(corners[k], corners[m]);
                 let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
-                uses.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+                found.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+                starts[ends[0] as usize + 2] += 1;
             }
         }
+
+        // Sort them by their first corner, then those of each corner.
         budget.check("shadow volumes")?;
-        uses.sort_unstable();
+        for v in 2..starts.len() {
+            starts[v] += starts[v - 1];
+        }
+        let nothing = Use { ends: [0; 2], triangle: 0, corner: 0 };
+        let mut uses = vec![nothing; found.len()];
+        for edge in found {
+            let place = &mut starts[edge.ends[0] as usize + 1];
+            uses[*place as usize] = edge;
+            *place += 1;
+        }
+        uses.chunk_by_mut(|one, two| one.ends[0] == two.ends[0]).for_each(<[Use]>::sort_unstable);
         Ok(Self { uses })
     }
 

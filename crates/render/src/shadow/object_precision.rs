@@ -18,7 +18,7 @@
 
 mod clip;
 
-use super::casters::{Casters, Solid, faces, lifted, near, turned, wide, winding_normal};
+use super::casters::{Casters, Solid, away, faces, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
 use super::ray::above;
 use super::sources::Source;
@@ -26,6 +26,7 @@ use super::{Drawn, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
 use clip::{Cutter, Detail};
+use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
 use vitral_exec::Limit;
 use vitral_light::Light;
@@ -83,6 +84,8 @@ struct Prepared<'a> {
 
 /// What is nearer to a plane than this part of the scene lies in it.
 const EPS: f64 = 1e-13;
+/// Light that meets a facet with a smaller cosine grazes it.
+const GRAZING: f64 = 0.02;
 /// A place beside a lit polygon by no more than this part of the scene is in it: no crack between two.
 const SLACK: f64 = 1e-9;
 /// Triangles in one piece of work.
@@ -172,12 +175,20 @@ impl Details {
         let extent = triangles.extent;
         let (corners, near) = (wide(&triangles.corners[triangle]), near(light, extent));
         let first = self.filters.len() as u32;
-        let root = match turned(&corners, light, 0.0) {
+        let winding = winding_normal(&corners).normalize_or_zero();
+        let height = -winding.dot(away(light, corners[0]));
+        let root = match height.partial_cmp(&0.0) {
             // What the light sees edge-on, or what has no area, is not lit.
-            0 => self.detail.dark(),
-            turned => {
-                let normal = winding_normal(&corners).normalize_or_zero() * f64::from(turned);
+            None | Some(Ordering::Equal) => self.detail.dark(),
+            Some(_) => {
+                let normal = winding * height.signum();
                 let lift = lift(&corners, extent);
+                // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind. A facet
+                // that light grazes lies along their sides, too: it is looked at from a little above.
+                let cosine = |c: &DVec3| -normal.dot(away(light, *c).normalize_or_zero());
+                let grazed = corners.iter().any(|c| cosine(c) < GRAZING);
+                let (above, behind) = if grazed { (lift, 0.0) } else { (0.0, lift) };
+                let corners = corners.map(|c| c + normal * above);
                 let (min, max) =
                     (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
                 let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
@@ -187,16 +198,17 @@ impl Details {
                 casters.filters_near(&shaft, &mut filters);
                 let solid = |corners: &[DVec3; 3]| {
                     let mut solid = Solid::new(corners, light, near).filter(|s| s.touches(middle, half))?;
-                    // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind.
-                    let (behind, at) = &mut solid.planes[0];
-                    *at += behind.normalize_or_zero() * lift;
+                    solid.planes = solid.planes.map(|(normal, at)| (normal.normalize_or_zero(), at));
+                    let (normal, at) = &mut solid.planes[0];
+                    *at += *normal * behind;
                     Some(solid)
                 };
                 let own = triangles.facets[triangle];
                 let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
-                let solids = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+                let solids: Vec<_> = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
                 self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
-                Cutter { detail: &mut self.detail, normal, eps: f64::from(extent) * EPS }.add(corners.to_vec(), solids)
+                let eps = f64::from(extent) * EPS;
+                Cutter { detail: &mut self.detail, normal, eps, solids: &solids }.add(corners.to_vec())
             }
         };
         self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });

@@ -91,6 +91,8 @@ pub(super) struct Cutter<'a> {
     pub(super) normal: DVec3,
     /// What is nearer to a plane than this lies in it.
     pub(super) eps: f64,
+    /// What is taken away; their normals have unit length.
+    pub(super) solids: &'a [Solid],
 }
 
 /// What a solid leaves of a polygon.
@@ -105,22 +107,30 @@ enum Left {
 
 impl Cutter<'_> {
     /// Adds the facet with these corners, less the solids; gives its root.
-    pub(super) fn add(&mut self, mut corners: Vec<DVec3>, solids: Vec<Solid>) -> u32 {
+    pub(super) fn add(&mut self, mut corners: Vec<DVec3>) -> u32 {
         let winding = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         if winding.dot(self.normal) < 0.0 {
             corners.reverse();
         }
-        self.part(corners, solids, 0)
+        self.part(corners, &(0..self.solids.len() as u32).collect::<Vec<_>>(), 0)
     }
 
-    fn part(&mut self, polygon: Vec<DVec3>, mut solids: Vec<Solid>, depth: u32) -> u32 {
+    /// Adds a part of it, which these solids may reach.
+    fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], depth: u32) -> u32 {
         // Keep the solids that reach it; one that covers it decides.
+        let mut reaching = Vec::with_capacity(solids.len());
         let mut covered = false;
-        solids.retain(|solid| {
-            let reach = if covered { Reach::None } else { reach(&polygon, solid, self.eps) };
-            covered |= reach == Reach::Covers;
-            reach == Reach::Some
-        });
+        for &solid in solids {
+            match reach(&polygon, &self.solids[solid as usize], self.eps) {
+                Reach::None => {}
+                Reach::Some => reaching.push(solid),
+                Reach::Covers => {
+                    covered = true;
+                    break;
+                }
+            }
+        }
+        let solids = reaching;
         if covered {
             return self.detail.dark();
         }
@@ -135,8 +145,8 @@ impl Cutter<'_> {
         if below.len() < 3 || above.len() < 3 {
             return self.clip(polygon, &solids);
         }
-        let lower = self.part(below, solids.clone(), depth + 1);
-        let upper = self.part(above, solids, depth + 1);
+        let lower = self.part(below, &solids, depth + 1);
+        let upper = self.part(above, &solids, depth + 1);
         // Nothing to tell apart: two dark halves are a dark whole.
         let empty = |node: &Node| matches!(node, Node::Lit([first, end]) if first == end);
         if [lower, upper].iter().all(|&n| empty(&self.detail.nodes[n as usize])) {
@@ -147,12 +157,12 @@ impl Cutter<'_> {
     }
 
     /// Takes the solids away one by one.
-    fn clip(&mut self, polygon: Vec<DVec3>, solids: &[Solid]) -> u32 {
+    fn clip(&mut self, polygon: Vec<DVec3>, solids: &[u32]) -> u32 {
         let mut left = vec![polygon];
-        for solid in solids {
+        for &solid in solids {
             let mut next = Vec::with_capacity(left.len());
             for polygon in left {
-                match less(&polygon, solid, self.eps) {
+                match less(&polygon, &self.solids[solid as usize], self.eps) {
                     Left::All => next.push(polygon),
                     Left::Nothing => {}
                     Left::Parts(parts) => next.extend(parts),
@@ -181,11 +191,10 @@ fn reach(polygon: &[DVec3], solid: &Solid, eps: f64) -> Reach {
     let mut covers = true;
     for plane in &solid.planes {
         let (mut some, mut all) = (false, true);
-        let thick = eps * plane.0.length();
         for &p in polygon {
             let d = inside(plane, p);
-            some |= d > thick;
-            all &= d >= -thick;
+            some |= d > eps;
+            all &= d >= -eps;
         }
         if !some {
             return Reach::None;
@@ -229,7 +238,7 @@ fn less(polygon: &[DVec3], solid: &Solid, eps: f64) -> Left {
     let mut inner = polygon.to_vec();
     let mut outer = Vec::new();
     for plane in &solid.planes {
-        let [within, beyond] = split(&inner, |p| inside(plane, p), eps * plane.0.length());
+        let [within, beyond] = split(&inner, |p| inside(plane, p), eps);
         if within.len() < 3 {
             return Left::All;
         }
@@ -269,12 +278,12 @@ mod tests {
             let corners = [corner(), corner(), corner()];
             if let Some(solid) = Solid::new(&corners, DVec4::new(0.0, 2.0, 0.0, 1.0), 1e-9) {
                 shadow += area(&corners) * 4.0;
-                solids.push(solid);
+                solids.push(Solid { planes: solid.planes.map(|(n, at)| (n.normalize(), at)) });
             }
         }
         let mut detail = Detail::default();
         let floor = vec![dvec3(-3.0, 0.0, -3.0), dvec3(-3.0, 0.0, 3.0), dvec3(3.0, 0.0, 3.0), dvec3(3.0, 0.0, -3.0)];
-        let root = Cutter { detail: &mut detail, normal: DVec3::Y, eps: 1e-13 }.add(floor, solids.clone());
+        let root = Cutter { detail: &mut detail, normal: DVec3::Y, eps: 1e-13, solids: &solids }.add(floor);
         let mut lit = 0.0;
         detail.each(root, &mut |corners| lit += area(corners));
         assert!((lit + shadow - 36.0).abs() < 1e-9, "{lit} and {shadow}");

@@ -146,6 +146,31 @@ fn a_model_becomes_a_picture() {
 }
 
 #[test]
+fn shadow_polygons_are_models_again() {
+    let folder = Folder::new("shadow-polygons");
+    for (algorithm, groups) in [("object-precision", &["lit"][..]), ("volume", &["near-cap", "far-cap", "side"])] {
+        let file = format!("{algorithm}.obj");
+        let light = "point:position=3,6,2";
+        let exported = folder.run(&[
+            "render",
+            "builtin:scene0",
+            "--shadows",
+            algorithm,
+            "--light",
+            light,
+            "--export-shadow-polygons",
+            &file,
+        ]);
+        assert_eq!(code(&exported), 0, "{}", errors(&exported));
+        let text = String::from_utf8(folder.read(&file)).unwrap();
+        for group in groups {
+            assert!(text.lines().any(|l| l == format!("g light0-{group}")), "{group}");
+        }
+        assert_eq!(code(&render(&folder, &[&file, "-o", "x.png"])), 0);
+    }
+}
+
+#[test]
 fn exit_codes() {
     let folder = Folder::new("codes");
     folder.file("a.obj", TRIANGLE);
@@ -191,7 +216,7 @@ fn options_that_are_not_built_are_not_in_the_help() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
-    for unbuilt in ["--global", "--panels", "object-precision", "--max-depth"] {
+    for unbuilt in ["--global", "--panels", "--max-depth"] {
         assert!(!help.contains(unbuilt), "{unbuilt}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");

@@ -192,16 +192,20 @@ impl Session {
         self.bvh = Mutex::default();
         self.octree = Mutex::default();
         self.uniform_grid = Mutex::default();
+        self.shadow_maps = Mutex::default();
+        self.shadow_volumes = Mutex::default();
+        self.lit_polygons = Mutex::default();
     }
 
-    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays.
+    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays, shadows.
     pub(crate) fn known(&self) -> u64 {
-        fn kept<T>(known: &Kept<T>) -> usize {
+        fn kept<T>(known: &Mutex<Option<T>>) -> usize {
             usize::from(known.lock().is_ok_and(|known| known.is_some()))
         }
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
         let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.uniform_grid) + kept(&self.triangles);
-        (of_meshes + of_rays + kept(&self.bsp)) as u64
+        let of_shadows = kept(&self.shadow_maps) + kept(&self.shadow_volumes) + kept(&self.lit_polygons);
+        (of_meshes + of_rays + of_shadows + kept(&self.bsp)) as u64
     }
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {

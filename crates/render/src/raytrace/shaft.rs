@@ -22,22 +22,35 @@ pub struct Shaft {
     planes: Vec<[f32; 4]>,
 }
 
+/// The places within a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    min: [f32; 3],
+    max: [f32; 3],
+}
+
+impl Block {
+    /// From the smallest coordinates to the largest.
+    pub fn new(min: DVec3, max: DVec3) -> Self {
+        // Narrowing must not make it smaller.
+        let wider = |c: f64, sign: f64| (c + sign * c.abs() * ROUNDING) as f32;
+        Self { min: min.to_array().map(|c| wider(c, -1.0)), max: max.to_array().map(|c| wider(c, 1.0)) }
+    }
+}
+
+impl Probe for Block {
+    #[inline(always)]
+    fn enters(&self, min: [f32; 3], max: [f32; 3]) -> Option<f32> {
+        (0..3).all(|k| min[k] <= self.max[k] && self.min[k] <= max[k]).then_some(0.0)
+    }
+}
+
 /// From a place to another, or along the direction.
 fn way(from: DVec3, to: DVec4) -> DVec3 {
     to.truncate() - from * to.w
 }
 
 impl Shaft {
-    /// The places within a box.
-    pub fn around(min: DVec3, max: DVec3, extent: f32) -> Self {
-        let mut shaft = Self { planes: Vec::with_capacity(12) };
-        for axis in DVec3::AXES {
-            shaft.push(axis, min, extent);
-            shaft.push(-axis, max, extent);
-        }
-        shaft
-    }
-
     /// The places between a box and `light`. No coordinate that is asked about is larger than `extent`.
     pub fn between(min: DVec3, max: DVec3, light: DVec4, extent: f32) -> Self {
         let mut shaft = Self { planes: Vec::with_capacity(12) };
@@ -137,6 +150,13 @@ mod tests {
         // The light in the box: nothing but the box.
         let inside = Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(0.1, 0.2, 0.3, 1.0), 20.0);
         assert!(meets(&inside, [0.9, 0.9, 0.9]) && !meets(&inside, [1.3, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_block_meets_what_it_touches() {
+        let block = Block::new(-DVec3::ONE, dvec3(1.0, 2.0, 3.0));
+        assert!(block.enters([1.0, -9.0, 0.0], [2.0, 9.0, 1.0]).is_some());
+        assert!(block.enters([1.1, -9.0, 0.0], [2.0, 9.0, 1.0]).is_none());
     }
 
     #[test]

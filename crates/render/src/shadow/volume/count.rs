@@ -7,12 +7,14 @@ use crate::VolumeCounting;
 use crate::raytrace::Structure;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::intersect::Ray;
-use crate::raytrace::shaft::Shaft;
+use crate::raytrace::shaft::{Block, Shaft};
 use std::ops::Range;
 use vitral_math::{DVec3, DVec4};
 
-/// Places that are not cut any further.
+/// As many places are counted together.
 const FEW: usize = 8;
+/// Pairs of a place and a polygon that are sooner looked at than thinned out.
+const FEW_PAIRS: usize = 320;
 
 /// The volumes of one place of a light, and the triangles that cast them.
 #[derive(Clone, Copy)]
@@ -243,7 +245,7 @@ impl Batch {
         self.lists.iter_mut().for_each(Vec::clear);
         let shaft = Shaft::between(min, max, lit.light(), extent);
         collect(&lit.volumes.tree, &shaft, &mut self.lists[0]);
-        lit.casters.opaque_near(&Shaft::around(min, max, extent), &mut self.lists[1]);
+        lit.casters.opaque_near(&Block::new(min, max), &mut self.lists[1]);
         lit.casters.filters_near(&shaft, &mut self.lists[2]);
         let from = inner(middle, half);
         let known = (from, lit.at(from, counting, viewer, around_viewer));
@@ -255,7 +257,8 @@ impl Batch {
     fn part(&mut self, lit: &Lit<'_>, part: Part, slack: f64, found: &mut impl FnMut(usize, DVec3, i32, &[u32])) {
         let (from, count) = part.known;
         let [sides, caps, filters] = part.lists.clone();
-        if part.places.len() <= FEW || (sides.is_empty() && caps.is_empty() && filters.is_empty()) {
+        let pairs = part.places.len() * (sides.len() + caps.len() + filters.len());
+        if part.places.len() <= FEW || pairs <= FEW_PAIRS {
             let [sides, caps, filters] = [(0, sides), (1, caps), (2, filters)].map(|(k, r)| &self.lists[k][r]);
             for places in self.places[part.places].chunks(FEW) {
                 // Places that are not there repeat the last.

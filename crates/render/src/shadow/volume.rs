@@ -57,8 +57,8 @@ pub(crate) struct Key {
 #[derive(Debug)]
 pub(crate) struct Volumes {
     casters: Casters,
-    /// For each triangle its normal by its winding.
-    normals: Vec<DVec3>,
+    /// For each triangle its plane: the normal by its winding, and what makes the height of its corners 0.
+    planes: Vec<DVec4>,
     lights: Vec<Vec<LightVolumes>>,
 }
 
@@ -149,18 +149,22 @@ impl Volumes {
     ) -> Result<Self, Limit> {
         let casters = Casters::new(session, occluders, execution)?;
         let triangles = casters.triangles();
-        let normals = triangles.corners.iter().map(|c| winding_normal(&wide(c))).collect();
+        let plane = |corners: &[Vec3; 3]| {
+            let (normal, at) = (winding_normal(&wide(corners)), corners[0].as_dvec3());
+            normal.extend(-normal.dot(at))
+        };
+        let planes = triangles.corners.iter().map(plane).collect();
         let edges = Edges::new(&session.world, &casters, execution)?;
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
             let places = Source::new(light, settings.light_samples, triangles.center).places();
             places.into_iter().map(|place| LightVolumes::new(place, triangles, &edges, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
-        Ok(Self { lights: lights?, normals, casters })
+        Ok(Self { lights: lights?, planes, casters })
     }
 
     fn lit<'a>(&'a self, volumes: &'a LightVolumes) -> Lit<'a> {
-        Lit { volumes, casters: &self.casters, normals: &self.normals }
+        Lit { volumes, casters: &self.casters, planes: &self.planes }
     }
 }
 

@@ -21,14 +21,20 @@ const FEW_PAIRS: usize = 320;
 pub(super) struct Lit<'a> {
     pub(super) volumes: &'a LightVolumes,
     pub(super) casters: &'a Casters,
-    /// For each triangle its normal by its winding.
-    pub(super) normals: &'a [DVec3],
+    /// For each triangle its plane by its winding.
+    pub(super) planes: &'a [DVec4],
+}
+
+/// `n · p + w`: twice the area, or more, times the height above a plane.
+#[inline(always)]
+pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
+    (plane.x * place.x + plane.y * place.y) + (plane.z * place.z + plane.w)
 }
 
 /// The side of a plane on which a place is. Two paths that end and begin there agree about it.
 #[inline(always)]
-fn before(normal: DVec3, at: DVec3, place: DVec3) -> bool {
-    normal.dot(place - at) > 0.0
+fn before(plane: DVec4, place: DVec3) -> bool {
+    height(plane, place) > 0.0
 }
 
 /// A straight path, to its end or to infinity.
@@ -53,9 +59,9 @@ impl Path {
 
     /// Whether the path crosses a plane: 1 along the normal, -1 against it.
     #[inline(always)]
-    fn crosses(&self, normal: DVec3, at: DVec3) -> i32 {
-        let end = if self.ends { before(normal, at, self.to) } else { normal.dot(self.to) > 0.0 };
-        i32::from(end) - i32::from(before(normal, at, self.from))
+    fn crosses(&self, plane: DVec4) -> i32 {
+        let end = if self.ends { before(plane, self.to) } else { plane.truncate().dot(self.to) > 0.0 };
+        i32::from(end) - i32::from(before(plane, self.from))
     }
 
     /// The side of the line from `a` to `b` on which the path passes.
@@ -94,13 +100,6 @@ impl Lit<'_> {
         self.volumes.light
     }
 
-    /// The plane of a triangle: its normal by its winding, and a place on it.
-    #[inline(always)]
-    fn plane(&self, triangle: u32) -> (DVec3, DVec3) {
-        let t = triangle as usize;
-        (self.normals[t], self.casters.triangles().corners[t][0].as_dvec3())
-    }
-
     /// What the near cap of a triangle adds to the count along a path that crosses its plane `along` its normal.
     #[inline(always)]
     fn cap(&self, path: &Path, triangle: u32, along: i32) -> i32 {
@@ -113,12 +112,9 @@ impl Lit<'_> {
     fn change(&self, path: &Path, sides: &[u32], caps: &[u32]) -> i32 {
         let of_side = |&s: &u32| {
             let side = self.side(s);
-            path.side(side, path.crosses(side.normal, side.a))
+            path.side(side, path.crosses(side.plane))
         };
-        let of_cap = |&t: &u32| {
-            let (normal, at) = self.plane(t);
-            self.cap(path, t, path.crosses(normal, at))
-        };
+        let of_cap = |&t: &u32| self.cap(path, t, path.crosses(self.planes[t as usize]));
         sides.iter().map(of_side).sum::<i32>() + caps.iter().map(of_cap).sum::<i32>()
     }
 
@@ -128,19 +124,19 @@ impl Lit<'_> {
         let Some(first) = paths.first() else { return changes };
         for &s in sides {
             let side = self.side(s);
-            let start = before(side.normal, side.a, first.from);
+            let start = before(side.plane, first.from);
             for (path, change) in paths.iter().zip(&mut changes) {
-                let end = before(side.normal, side.a, path.to);
+                let end = before(side.plane, path.to);
                 if end != start {
                     *change += path.side(side, i32::from(end) - i32::from(start));
                 }
             }
         }
         for &t in caps {
-            let (normal, at) = self.plane(t);
-            let start = before(normal, at, first.from);
+            let plane = self.planes[t as usize];
+            let start = before(plane, first.from);
             for (path, change) in paths.iter().zip(&mut changes) {
-                let end = before(normal, at, path.to);
+                let end = before(plane, path.to);
                 if end != start {
                     *change += self.cap(path, t, i32::from(end) - i32::from(start));
                 }
@@ -168,10 +164,7 @@ impl Lit<'_> {
         // From whichever is not at infinity to the other.
         let (from, to) = if place.w > 0.0 { (place, light) } else { (light, place) };
         let path = Path::new(from.truncate(), to, light);
-        let met = |&t: &u32| {
-            let (normal, at) = self.plane(t);
-            self.cap(&path, t, path.crosses(normal, at)).abs()
-        };
+        let met = |&t: &u32| self.cap(&path, t, path.crosses(self.planes[t as usize])).abs();
         self.caps_near(&path).iter().map(met).sum()
     }
 
@@ -297,10 +290,11 @@ impl Batch {
         let (min, max) = (middle - half, middle + half);
         let opaque = lit.casters.triangles();
         let touches_cap = |t: u32| {
+            let plane = lit.planes[t as usize];
+            // Room for the rounding of a height.
+            let reach = plane.truncate().abs().dot(half) * (1.0 + 1e-9);
             let [a, b, c] = wide(&opaque.corners[t as usize]);
-            let apart = a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min);
-            let normal = lit.normals[t as usize];
-            !apart.any() && normal.dot(middle - a).abs() <= normal.abs().dot(half) * (1.0 + 1e-12)
+            height(plane, middle).abs() <= reach && !(a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min)).any()
         };
         let least = near(lit.light(), lit.casters.extent());
         let touches_filter =

@@ -1,6 +1,7 @@
 //! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
 
 use super::super::casters::{Casters, away, ordered, side_normal, turned, wide};
+use super::count::height;
 use crate::Execution;
 use crate::raytrace::triangles::Triangles;
 use vitral_exec::{Limit, Workers};
@@ -32,8 +33,8 @@ pub(super) struct Side {
     /// The edge, in the order of places.
     pub(super) a: DVec3,
     pub(super) b: DVec3,
-    /// Normal of its plane, through `a`, `b` and the light.
-    pub(super) normal: DVec3,
+    /// Its plane, through `a`, `b` and the light: a normal, and what makes the height of `a` 0.
+    pub(super) plane: DVec4,
     /// How many volumes begin where the path goes along the normal.
     pub(super) multiplicity: i32,
     /// Normals of the planes through `a` that it lies before: beyond the edge, and beside its two rays. The last goes through `b`.
@@ -135,7 +136,7 @@ impl Side {
             inwards(normal.cross(out_a), b - a),
             inwards(normal.cross(out_b), a - b),
         ];
-        Self { a, b, normal, multiplicity, borders }
+        Self { a, b, plane: normal.extend(-normal.dot(a)), multiplicity, borders }
     }
 
     /// Whether it may reach into a box, given by its middle and half its sides.
@@ -143,7 +144,8 @@ impl Side {
     pub(super) fn touches(&self, middle: DVec3, half: DVec3) -> bool {
         let from_a = middle - self.a;
         let reach = |n: DVec3| n.abs().dot(half) * (1.0 + 1e-12);
-        self.normal.dot(from_a).abs() <= reach(self.normal)
+        // Room for the rounding of a height.
+        height(self.plane, middle).abs() <= reach(self.plane.truncate()) * (1.0 + 1e-9)
             && self.borders[0].dot(from_a) >= -reach(self.borders[0])
             && self.borders[1].dot(from_a) >= -reach(self.borders[1])
             && self.borders[2].dot(middle - self.b) >= -reach(self.borders[2])

@@ -1,7 +1,7 @@
 //! What keeps light: the triangles of the scene, and the solid without end that each hides from a light.
 //!
-//! Opaque triangles are found in the session's tree of boxes, transparent ones in a tree of their own. A light is a homogeneous
-//! point: `w` is 1, or 0 for a direction. Whatever two triangles share, an edge or a corner, gives both the same
+//! Opaque triangles are found in the session's tree of boxes, transparent ones in a tree of their own. A light is a
+//! homogeneous point: `w` is 1, or 0 for a direction. Whatever two triangles share, an edge or a corner, gives both the same
 //! numbers, so that their solids leave no gap.
 
 use super::Place;

@@ -13,8 +13,8 @@
 //!
 //! In:   lights and triangles, world space less the scene's middle. Out: lit polygons; the part of a light that arrives.
 //! Cost: for each facet the triangles between it and the light. 100 bytes a lit polygon.
-//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own planes, not in a picture of the
-//! light's, by one solid after another.
+//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own planes, not in a
+//! picture of the light's, by one solid after another.
 
 mod clip;
 

@@ -1,12 +1,12 @@
 //! Scan-line shadows: while a scan line crosses a polygon, it crosses the shadows that lie on the polygon too.
 //!
-//! Seen from a light, a polygon that stands before another one casts its projection on it: a *shadow polygon* in the plane of the
-//! other. Which polygons can do that is found beforehand: what touches the shaft between the visible part and the
+//! Seen from a light, a polygon that stands before another one casts its projection on it: a *shadow polygon* in the plane
+//! of the other. Which polygons can do that is found beforehand: what touches the shaft between the visible part and the
 //! light. Then the visible part is taken line by line. A line of pixels is a straight line on the polygon; it enters and
 //! leaves each shadow polygon at an edge, and what lies on the span between is in shadow.
 //!
-//! A shadow polygon is where the plane meets the solid that a triangle hides from the light. So it needs no corners, and a light
-//! amidst the scene no projection on a sphere round it: the line is cut by the four planes of the solid. Two triangles
+//! A shadow polygon is where the plane meets the solid that a triangle hides from the light. So it needs no corners, and a
+//! light amidst the scene no projection on a sphere round it: the line is cut by the four planes of the solid. Two triangles
 //! that share an edge cut the line in one place.
 //!
 //! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a light that arrives.

@@ -67,7 +67,8 @@ impl Source {
 }
 
 impl Source {
-    /// The places that light comes from, the same for all points, homogeneous: `w` is 0 for a direction. Empty if it casts no shadows.
+    /// The places that light comes from, the same for all points, homogeneous: `w` is 0 for a direction. None if it
+    /// casts no shadows.
     pub(super) fn places(&self) -> Vec<DVec4> {
         match self {
             Self::Unhindered => Vec::new(),

@@ -8,8 +8,8 @@
 //! *silhouette edge*. If not, one leaves where the other enters, and both are dropped. The sum is the edge's *multiplicity*;
 //! it is ±1 along an open border, and any number where more than two triangles meet, so no mesh has to be closed.
 //!
-//! *Z-pass* counts from the viewer to what is seen, beginning with the number of volumes that the viewer is in. *Z-fail* counts from
-//! infinity beyond it, beginning with the far caps. Both give the number at any place, and need it only once for a
+//! *Z-pass* counts from the viewer to what is seen, beginning with the number of volumes that the viewer is in. *Z-fail*
+//! counts from infinity beyond it, beginning with the far caps. Both give the number at any place, and need it only once for a
 //! batch of neighbours: from there on, the path goes to the others. The batch is cut in two again and again, and each half
 //! keeps the polygons that touch the box round its places; where none is left, all have the same number. Polygons are
 //! homogeneous (the sides end at points with `w = 0`) and nothing is clipped, so no near plane can cut a volume open.
@@ -26,7 +26,7 @@
 mod count;
 mod edges;
 
-use super::casters::{Casters, away, faces, lifted, near};
+use super::casters::{Casters, away, box_around, faces, lifted, near};
 use super::casters::{wide, winding_normal};
 use super::occluders::Occluders;
 use super::sources::Source;
@@ -70,6 +70,7 @@ struct LightVolumes {
     /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
     turned: Vec<i8>,
     sides: Vec<edges::Side>,
+    /// Over runs of sides.
     tree: Bvh,
 }
 
@@ -84,6 +85,8 @@ struct Counting<'a> {
     around_viewer: Vec<Vec<i32>>,
 }
 
+/// Sides in one leaf of a tree.
+const RUN: usize = 4;
 /// No plane of a model is likely to run along it.
 const ODD: DVec3 = DVec3::new(0.7312, -0.3917, 0.5589);
 
@@ -173,16 +176,22 @@ impl LightVolumes {
         execution.budget.check("shadow volumes")?;
         let turned = edges::turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
         let sides = edges.sides(light, &turned, triangles);
-        let ends = |s: &edges::Side| [s.a, s.b, s.b].map(|p: DVec3| -> Vec3 { p.as_vec3() });
-        let lines = Triangles {
-            corners: sides.iter().map(ends).collect(),
-            facets: (0..sides.len() as u32).collect(),
+        // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
+        let runs = || sides.chunks(RUN);
+        let around = |run: &[edges::Side]| {
+            let (middle, half) = box_around(run.iter().flat_map(|s| [s.a, s.b]), 0.0);
+            let [min, max] = [middle - half, middle + half].map(|p: DVec3| -> Vec3 { p.as_vec3() });
+            [min, max, max]
+        };
+        let boxes = Triangles {
+            corners: runs().map(around).collect(),
+            facets: (0..runs().len() as u32).collect(),
             ..*triangles
         };
         let bytes = sides.len() as u64 * size_of::<edges::Side>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
-        Ok(Self { light, turned, sides, tree: Bvh::build(&lines, &execution.workers, &execution.budget)? })
+        Ok(Self { light, turned, sides, tree: Bvh::build(&boxes, &execution.workers, &execution.budget)? })
     }
 }
 

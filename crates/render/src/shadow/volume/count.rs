@@ -2,12 +2,12 @@
 
 use super::super::casters::{Casters, Solid, away, box_around, collect, near, ordered, wide};
 use super::edges::Side;
-use super::{LightVolumes, ODD};
+use super::{LightVolumes, ODD, RUN};
 use crate::VolumeCounting;
-use crate::raytrace::Structure;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::shaft::{Block, Shaft};
+use crate::raytrace::{Probe, Structure};
 use std::ops::Range;
 use vitral_math::{DVec3, DVec4};
 
@@ -173,14 +173,25 @@ impl Lit<'_> {
         let end = path.to.extend(f64::from(u8::from(path.ends)));
         let shaft = Shaft::triangle(path.from, [self.light(), end], self.casters.extent());
         let mut sides = Vec::new();
-        collect(&self.volumes.tree, &shaft, &mut sides);
+        self.sides_near(&shaft, &mut sides);
         self.change(path, &sides, &self.caps_near(path))
     }
 
-    /// A side, by its place in the tree.
+    /// Appends the sides near a probe.
+    fn sides_near(&self, probe: &impl Probe, list: &mut Vec<u32>) {
+        let mut runs = Vec::new();
+        collect(&self.volumes.tree, probe, &mut runs);
+        let (of_place, count) = (&self.volumes.tree.triangles().facets, self.volumes.sides.len());
+        let run = |&place: &u32| {
+            let first = of_place[place as usize] as usize * RUN;
+            (first..count.min(first + RUN)).map(|s| s as u32)
+        };
+        list.extend(runs.iter().flat_map(run));
+    }
+
     #[inline(always)]
-    fn side(&self, place: u32) -> &Side {
-        &self.volumes.sides[self.volumes.tree.triangles().facets[place as usize] as usize]
+    fn side(&self, number: u32) -> &Side {
+        &self.volumes.sides[number as usize]
     }
 
     /// The count at a place, from the viewer or from infinity.
@@ -237,7 +248,7 @@ impl Batch {
         let (min, max) = (middle - half, middle + half);
         self.lists.iter_mut().for_each(Vec::clear);
         let shaft = Shaft::between(min, max, lit.light(), extent);
-        collect(&lit.volumes.tree, &shaft, &mut self.lists[0]);
+        lit.sides_near(&shaft, &mut self.lists[0]);
         lit.casters.opaque_near(&Block::new(min, max), &mut self.lists[1]);
         lit.casters.filters_near(&shaft, &mut self.lists[2]);
         let from = inner(middle, half);

@@ -37,7 +37,7 @@ pub(super) struct Side {
     pub(super) plane: DVec4,
     /// How many volumes begin where the path goes along the normal.
     pub(super) multiplicity: i32,
-    /// Normals of the planes through `a` that it lies before: beyond the edge, and beside its two rays. The last goes through `b`.
+    /// Normals of the planes that it lies before: beyond the edge, beside its ray through `a`, beside that through `b`.
     pub(super) borders: [DVec3; 3],
 }
 

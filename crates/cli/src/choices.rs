@@ -4,7 +4,9 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::sync::LazyLock;
 use vitral::render::transparency::registry as transparency;
-use vitral::render::{Acceleration, ColorSpace, Interpolation, Transparency, TransparencyOrder, registry};
+use vitral::render::{
+    Acceleration, ColorSpace, Interpolation, Transparency, TransparencyOrder, VolumeCounting, registry,
+};
 use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
 /// A name, one line that explains it (may be empty), what it stands for.
@@ -40,6 +42,11 @@ const COLOR_SPACE: [Choice<ColorSpace>; 2] = [
 const INTERPOLATION: [Choice<Interpolation>; 2] = [
     ("perspective", "as on the surface in space", Interpolation::Perspective),
     ("linear", "on the screen: shows the classical defect", Interpolation::Linear),
+];
+
+const VOLUME_COUNTING: [Choice<VolumeCounting>; 2] = [
+    ("z-fail", "at infinity, behind what is seen", VolumeCounting::ZFail),
+    ("z-pass", "at the viewer", VolumeCounting::ZPass),
 ];
 
 const NORMALS: [Choice<Normals>; 2] = [
@@ -107,4 +114,8 @@ pub(crate) fn interpolation() -> impl TypedValueParser<Value = Interpolation> {
 
 pub(crate) fn normals() -> impl TypedValueParser<Value = Normals> {
     of(&NORMALS)
+}
+
+pub(crate) fn volume_counting() -> impl TypedValueParser<Value = VolumeCounting> {
+    of(&VOLUME_COUNTING)
 }

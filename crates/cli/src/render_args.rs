@@ -5,7 +5,9 @@ use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
-use vitral::render::{Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
+use vitral::render::{
+    Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+};
 use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
@@ -37,7 +39,7 @@ pub(crate) struct RenderArgs {
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
     /// repeatable, one for each --channel
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel", "export_shadow_polygons"])]
     pub(crate) output: Vec<PathBuf>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
@@ -57,6 +59,9 @@ pub(crate) struct OutputArgs {
     /// Write what each stage of the pipeline hands on into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
+    /// Write the polygons that the shadow algorithm works with (volumes, or lit polygons) into this OBJ file
+    #[arg(long, value_name = "FILE", value_parser = values::obj_file)]
+    pub(crate) export_shadow_polygons: Option<PathBuf>,
 }
 
 /// Size, background, quality.
@@ -117,6 +122,9 @@ pub(crate) struct AlgorithmArgs {
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) light_samples: Option<u32>,
+    /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
+    #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
+    pub(crate) volume_counting: Option<VolumeCounting>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,

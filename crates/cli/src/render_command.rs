@@ -57,6 +57,9 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     if let Some(folder) = &args.output.dump {
         dump::dump_to_folder(&mut renderer, folder)?;
     }
+    if let Some(file) = &args.output.export_shadow_polygons {
+        vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes())?;
+    }
     let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
     renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
     let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {

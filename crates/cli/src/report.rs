@@ -86,7 +86,6 @@ impl From<clap::Error> for Failure {
             _ => "",
         };
         let option = context(ContextKind::InvalidArg).split([' ', '=']).next().unwrap_or_default();
-        let value = context(ContextKind::InvalidValue);
         match error.kind() {
             ErrorKind::UnknownArgument if crate::unbuilt::option(option) => {
                 return Self::usage(format!("{option}: this option is not there yet"));
@@ -94,14 +93,6 @@ impl From<clap::Error> for Failure {
             ErrorKind::InvalidSubcommand if crate::unbuilt::verb(context(ContextKind::InvalidSubcommand)) => {
                 let verb = context(ContextKind::InvalidSubcommand);
                 return Self::usage(format!("{verb}: this verb is not there yet"));
-            }
-            ErrorKind::InvalidValue if crate::unbuilt::value(option, value) => {
-                let there = match error.get(ContextKind::ValidValue) {
-                    Some(ContextValue::Strings(names)) => names.join(", "),
-                    _ => String::new(),
-                };
-                return Self::usage(format!("{option} {value}: this choice is not there yet"))
-                    .with_hint(format!("choose {there}"));
             }
             _ => {}
         }

@@ -143,6 +143,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
         settings.shadows.clone_from(name);
     }
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
+    settings.volume_counting = args.volume_counting.or(settings.volume_counting);
     let lines = [
         (args.wireframe, Lines::Wireframe),
         (args.wireframe_hidden_line, Lines::WireframeHiddenLine),

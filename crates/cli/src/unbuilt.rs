@@ -8,9 +8,6 @@ const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 const OPTIONS: [&str; 7] =
     ["--global", "--iterations", "--load-radiosity", "--max-depth", "--panels", "--patch-size", "--save-radiosity"];
 
-/// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 1] = [("--shadows", &["volume", "scan-line", "object-precision"])];
-
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {
     VERBS.contains(&name)
@@ -19,11 +16,6 @@ pub(crate) fn verb(name: &str) -> bool {
 /// Whether this option is to come.
 pub(crate) fn option(name: &str) -> bool {
     OPTIONS.contains(&name)
-}
-
-/// Whether this value of `option` is to come.
-pub(crate) fn value(option: &str, value: &str) -> bool {
-    VALUES.iter().any(|(name, values)| *name == option && values.contains(&value))
 }
 
 #[cfg(test)]
@@ -41,9 +33,6 @@ mod tests {
                 let Some(long) = argument.get_long() else { continue };
                 let name = format!("--{long}");
                 assert!(!option(&name), "{name}");
-                for possible in argument.get_possible_values() {
-                    assert!(!value(&name, possible.get_name()), "{name} {}", possible.get_name());
-                }
             }
         }
     }

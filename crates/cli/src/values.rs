@@ -1,5 +1,6 @@
 //! Values as users type them: sizes, colours, vectors, numbers with a range. Each parser says what it requires.
 
+use std::path::PathBuf;
 use vitral::MaterialOverride;
 use vitral::math::DVec3;
 use vitral::render::{Coherence, Culling};
@@ -192,6 +193,13 @@ pub(crate) fn material(text: &str) -> Result<MaterialOverride, String> {
         Some(hint) => format!("{e}; {hint}"),
         None => e.to_string(),
     })
+}
+
+/// The name of an OBJ file.
+pub(crate) fn obj_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
+    if is_obj { Ok(path) } else { Err("only .obj files are written".to_owned()) }
 }
 
 #[cfg(test)]

@@ -146,17 +146,45 @@ fn a_model_becomes_a_picture() {
 }
 
 #[test]
+fn shadow_polygons_are_models_again() {
+    let folder = Folder::new("shadow-polygons");
+    for (algorithm, groups) in [("object-precision", &["lit"][..]), ("volume", &["near-cap", "far-cap", "side"])] {
+        let file = format!("{algorithm}.obj");
+        let light = "point:position=3,6,2";
+        let exported = folder.run(&[
+            "render",
+            "builtin:scene0",
+            "--shadows",
+            algorithm,
+            "--light",
+            light,
+            "--export-shadow-polygons",
+            &file,
+        ]);
+        assert_eq!(code(&exported), 0, "{}", errors(&exported));
+        let text = String::from_utf8(folder.read(&file)).unwrap();
+        for group in groups {
+            assert!(text.lines().any(|l| l == format!("g light0-{group}")), "{group}");
+        }
+        assert_eq!(code(&render(&folder, &[&file, "-o", "x.png"])), 0);
+    }
+}
+
+#[test]
 fn exit_codes() {
     let folder = Folder::new("codes");
     folder.file("a.obj", TRIANGLE);
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 15] = [
+    let cases: [(&[&str], i32, &str); 18] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--global", "radiosity"], 2, "--global: this option is not there yet"),
-        (&["a.obj", "-o", "x.png", "--shadows", "scan-line"], 2, "this choice is not there yet"),
+        (&["a.obj", "-o", "x.png", "--shadows", "umbra"], 2, "invalid value 'umbra'"),
+        (&["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"], 2, "choose volume, object-precision"),
+        (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
+        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=maybe"], 2, "shadow"),
@@ -188,7 +216,7 @@ fn options_that_are_not_built_are_not_in_the_help() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
-    for unbuilt in ["--global", "--panels", "object-precision", "--max-depth"] {
+    for unbuilt in ["--global", "--panels", "--max-depth"] {
         assert!(!help.contains(unbuilt), "{unbuilt}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");

@@ -27,7 +27,7 @@ pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
     Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Kay, Lines, Settings, SettingsError,
-    Shading, Transparency, TransparencyOrder,
+    Shading, Transparency, TransparencyOrder, VolumeCounting,
 };
 pub use stats::Stats;
 

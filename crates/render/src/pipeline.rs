@@ -103,7 +103,7 @@ fn render_color(
     let t0 = clock();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
-    let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
+    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
     let t1 = clock();
@@ -152,7 +152,7 @@ fn render_data(
     stats.cull = crate::stats::CullCounters::default();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
-    let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
+    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());

@@ -9,7 +9,7 @@ use crate::stats::CullCounters;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
-use vitral_math::{DMat4, DVec3};
+use vitral_math::{DMat4, DVec3, DVec4};
 use vitral_raster::geometry::Screen;
 use vitral_raster::{Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
 use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
@@ -116,6 +116,12 @@ impl<'a> PreparedView<'a> {
     /// The viewer in world space, and whether projectors meet there.
     pub fn eye(&self) -> (DVec3, bool) {
         (self.camera.position, self.view.perspective)
+    }
+
+    /// The same as one homogeneous point: `w` is 0 in a parallel view, the rest points towards the viewer.
+    pub fn viewer(&self) -> DVec4 {
+        let (eye, perspective) = self.eye();
+        if perspective { eye.extend(1.0) } else { self.view.view_from_world.row(2).truncate().extend(0.0) }
     }
 
     /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports

@@ -1,6 +1,9 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 
-use crate::shadow::{ShadowAlgorithm, map::MapShadows, ray::RayShadows};
+use crate::shadow::{
+    ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
+    scan_line::ScanLineShadows, volume::VolumeShadows,
+};
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
@@ -162,6 +165,8 @@ pub struct Shadowing {
     pub description: &'static str,
     /// Key into the bibliography.
     pub source: &'static str,
+    /// What polygons it works with, if it does, which can be drawn.
+    pub polygons: Option<&'static str>,
     /// The code; `None` for no shadows.
     pub algorithm: Option<&'static dyn ShadowAlgorithm>,
 }
@@ -172,19 +177,43 @@ pub static SHADOWS: &[Shadowing] = &[
         name: "none",
         description: "every light reaches what faces it",
         source: "Foley et al. 1990",
+        polygons: None,
         algorithm: None,
     },
     Shadowing {
         name: "ray",
         description: "a ray from every point to every light: the reference of the others",
         source: "Appel 1968",
+        polygons: None,
         algorithm: Some(&RayShadows),
     },
     Shadowing {
         name: "map",
         description: "the z-buffer from the light, kept while lights and scene stay",
         source: "Williams 1978",
+        polygons: None,
         algorithm: Some(&MapShadows),
+    },
+    Shadowing {
+        name: "volume",
+        description: "solids behind what keeps light, counted along a path (--volume-counting)",
+        source: "Crow 1977",
+        polygons: Some("caps and sides of the volumes, as far as the scene is large"),
+        algorithm: Some(&VolumeShadows),
+    },
+    Shadowing {
+        name: "scan-line",
+        description: "each line of pixels on a facet is cut where it crosses the shadows on the facet",
+        source: "Bouknight & Kelley 1970",
+        polygons: None,
+        algorithm: Some(&ScanLineShadows),
+    },
+    Shadowing {
+        name: "object-precision",
+        description: "facets are cut in lit polygons, as the light sees them, kept while lights and scene stay",
+        source: "Atherton, Weiler & Greenberg 1978",
+        polygons: Some("lit polygons"),
+        algorithm: Some(&ObjectPrecisionShadows),
     },
 ];
 

@@ -65,6 +65,8 @@ pub struct Session {
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
     pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
+    pub(crate) shadow_volumes: Mutex<Option<(shadow::volume::Key, Arc<shadow::volume::Volumes>)>>,
+    pub(crate) lit_polygons: Mutex<Option<(shadow::object_precision::Key, Arc<shadow::object_precision::LitPolygons>)>>,
 }
 
 /// What is made when it is first asked for, and then kept.
@@ -134,6 +136,8 @@ impl Session {
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
             shadow_maps: Mutex::default(),
+            shadow_volumes: Mutex::default(),
+            lit_polygons: Mutex::default(),
         })
     }
 
@@ -188,16 +192,20 @@ impl Session {
         self.bvh = Mutex::default();
         self.octree = Mutex::default();
         self.uniform_grid = Mutex::default();
+        self.shadow_maps = Mutex::default();
+        self.shadow_volumes = Mutex::default();
+        self.lit_polygons = Mutex::default();
     }
 
-    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays.
+    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays, shadows.
     pub(crate) fn known(&self) -> u64 {
-        fn kept<T>(known: &Kept<T>) -> usize {
+        fn kept<T>(known: &Mutex<Option<T>>) -> usize {
             usize::from(known.lock().is_ok_and(|known| known.is_some()))
         }
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
         let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.uniform_grid) + kept(&self.triangles);
-        (of_meshes + of_rays + kept(&self.bsp)) as u64
+        let of_shadows = kept(&self.shadow_maps) + kept(&self.shadow_volumes) + kept(&self.lit_polygons);
+        (of_meshes + of_rays + of_shadows + kept(&self.bsp)) as u64
     }
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {

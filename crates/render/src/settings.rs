@@ -33,6 +33,8 @@ pub struct Settings {
     pub light_samples: u32,
     /// Texels along the longer side of a shadow map, `16..=8192`.
     pub shadow_map_size: u32,
+    /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
+    pub volume_counting: Option<VolumeCounting>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
     /// How values between vertices are found.
@@ -71,6 +73,7 @@ impl Default for Settings {
             shadows: "none".to_owned(),
             light_samples: 16,
             shadow_map_size: 2048,
+            volume_counting: None,
             lighting: true,
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
@@ -114,6 +117,17 @@ pub enum Acceleration {
     Grid,
     /// Every triangle is asked.
     None,
+}
+
+/// Where the count of shadow volumes begins. It does not change the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VolumeCounting {
+    /// At infinity, behind what is seen.
+    #[default]
+    ZFail,
+    /// At the viewer.
+    ZPass,
 }
 
 /// Where illumination is computed.
@@ -351,6 +365,17 @@ pub enum SettingsError {
     /// Size of shadow maps.
     #[error("shadow maps of {0} texels a side: 16 to 8192 are possible")]
     ShadowMapSize(u32),
+    /// A way to count shadow volumes, but none.
+    #[error("a way to count shadow volumes was chosen, but the shadows are `{0}`: choose volume")]
+    VolumeCounting(String),
+    /// The polygons of a shadow algorithm are wanted, but it works with none.
+    #[error("the shadows `{shadows}` work with no polygons: choose {choices}")]
+    ShadowPolygons {
+        /// Asked for.
+        shadows: String,
+        /// Those that do.
+        choices: String,
+    },
     /// Cast shadows are wanted, but none are computed.
     #[error("the channel cast-shadow needs a shadow algorithm: choose {0}")]
     CastShadow(String),
@@ -414,6 +439,9 @@ impl Settings {
         let Some(shadows) = registry::shadows(&self.shadows) else {
             return Err(SettingsError::Shadows { name: self.shadows.clone(), choices: choices(true) });
         };
+        if self.volume_counting.is_some() && shadows.name != "volume" {
+            return Err(SettingsError::VolumeCounting(self.shadows.clone()));
+        }
         if self.channels.cast_shadow && shadows.algorithm.is_none() {
             return Err(SettingsError::CastShadow(choices(false)));
         }

@@ -37,6 +37,7 @@ mod material_override;
 pub mod names;
 pub mod picture;
 mod renderer;
+mod shadow_polygons;
 pub mod state;
 mod system_clock;
 mod viewpoint;
@@ -47,6 +48,7 @@ pub use load::{LoadOptions, Normals, default_up, load, load_builtin, load_bytes}
 pub use material_override::{MaterialOverride, override_material};
 pub use picture::{Channel, PictureFormat};
 pub use renderer::{Renderer, execution};
+pub use shadow_polygons::shadow_polygons;
 pub use state::State;
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;

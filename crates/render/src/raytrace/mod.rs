@@ -11,6 +11,7 @@ pub mod grid;
 pub mod intersect;
 pub mod octree;
 pub mod pyramid;
+pub mod shaft;
 pub mod triangles;
 
 use beam::Beam;

@@ -103,6 +103,7 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
         points,
         &mut FacetTable::default(),
         constants,
+        |_| false,
         #[inline(always)]
         |eight| {
             let n = interpolated_normal(&surface(simd, &eight.facets.records, &eight.slots));
@@ -131,10 +132,11 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         points,
         &mut FacetTable::default(),
         constants,
+        |_| true,
         #[inline(always)]
         |eight| {
             let surface = surface(simd, &eight.facets.records, &eight.slots);
-            let [attached, cast] = shadow_shares(constants, eight.subject, &eight.slots, &surface);
+            let [attached, cast] = shadow_shares(constants, &surface, eight.arriving, eight.first);
             for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];
             }

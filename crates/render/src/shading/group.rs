@@ -51,8 +51,10 @@ pub(crate) struct Lighting<'a> {
     ambient: Rgb,
     illumination: Illumination,
     perspective: bool,
-    /// Which part of each light arrives at each point; empty without shadows.
-    arriving: Vec<[f32; LANES]>,
+    /// Which part of each light arrives at the group's points; empty without shadows.
+    arriving: &'a [Vec<f32>],
+    /// The first of the eight points in the group.
+    first: usize,
 }
 
 impl Lighting<'_> {
@@ -73,7 +75,7 @@ impl Lighting<'_> {
                 let lit = lanes::inlined(
                     #[inline(always)]
                     |j: usize| match self.arriving.get(j) {
-                        Some(part) => F32x8::from_slice(simd, part),
+                        Some(parts) => F32x8::from_slice(simd, &parts[self.first..self.first + LANES]),
                         None => one,
                     },
                 );
@@ -127,6 +129,7 @@ pub(crate) fn shade_all<S: Simd>(
         points,
         facets,
         constants,
+        |material| matches!(material.model, Model::Empirical(_) | Model::Microfacet),
         #[inline(always)]
         |eight| shade_eight(simd, eight, constants, lit),
     );
@@ -140,24 +143,35 @@ pub(crate) struct Eight<'a> {
     pub points: &'a [u32],
     pub slots: Slots,
     pub facets: &'a FacetTable,
+    /// The part of each light at all points of the group; empty without shadows, or if nobody asks.
+    pub arriving: &'a [Vec<f32>],
+    /// The place of the first point in the group.
+    pub first: usize,
 }
 
-/// Goes through the points of all groups, eight at a time.
+/// Goes through the points of all groups, eight at a time. `asks` says for which materials light's ways are looked at.
 #[inline(always)]
 pub(crate) fn each_eight<S: Simd>(
     simd: S,
     points: &Points,
     facets: &mut FacetTable,
     constants: &FrameConstants<'_>,
+    asks: impl Fn(&MaterialConstants<'_>) -> bool,
     mut visit: impl FnMut(&Eight<'_>),
 ) {
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
+        let arriving = if asks(material) {
+            shadowed::arriving(simd, constants, &subject, points, order, facets)
+        } else {
+            Vec::new()
+        };
+        for (i, (eight, records)) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)).enumerate() {
             let slots = slots(points, eight, records, subject.first_facet);
-            visit(&Eight { subject: &subject, material, points: eight, slots, facets });
+            let (subject, arriving, first) = (&subject, &arriving, i * LANES);
+            visit(&Eight { subject, material, points: eight, slots, facets, arriving, first });
         }
     }
 }
@@ -211,7 +225,7 @@ fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'
 
 #[inline(always)]
 fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
-    let Eight { subject, material, points, slots, facets } = eight;
+    let Eight { subject, material, points, slots, facets, arriving, first } = eight;
     let (mesh, instance) = (subject.mesh, subject.instance);
     let surface = surface(simd, &facets.records, slots);
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
@@ -225,10 +239,8 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
             _ => Illumination::Phong,
         },
         perspective: subject.viewing.perspective,
-        arriving: match material.model {
-            Model::Empirical(_) | Model::Microfacet => shadowed::arriving(constants, subject, slots, &surface),
-            _ => Vec::new(),
-        },
+        arriving,
+        first: *first,
     };
     let reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },

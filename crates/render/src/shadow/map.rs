@@ -31,7 +31,7 @@ use lens::Lens;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, LightKind};
-use vitral_math::DVec3;
+use vitral_math::{DVec3, DVec4};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -96,6 +96,7 @@ impl ShadowAlgorithm for MapShadows {
         &self,
         session: &'a Session,
         lights: &[Light],
+        _: DVec4,
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
@@ -167,17 +168,23 @@ impl LightMaps {
 }
 
 impl Shadows for Arc<Maps> {
-    fn arriving(&self, light: usize, place: &Place) -> f32 {
-        match &self.0[light] {
-            LightMaps::Unhindered => 1.0,
-            LightMaps::Infinity { towards, map } => {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+        places.iter().zip(parts).for_each(|(place, part)| *part = self.0[light].arriving(place));
+    }
+}
+
+impl LightMaps {
+    fn arriving(&self, place: &Place) -> f32 {
+        match self {
+            Self::Unhindered => 1.0,
+            Self::Infinity { towards, map } => {
                 if place.normal.dot(*towards) <= 0.0 {
                     0.0
                 } else {
                     map.passing(place)
                 }
             }
-            LightMaps::Places(places) => {
+            Self::Places(places) => {
                 let parts = places.iter().map(|(at, maps)| {
                     if place.normal.dot(*at - place.position) <= 0.0 {
                         return 0.0;

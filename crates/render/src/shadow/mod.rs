@@ -6,22 +6,27 @@
 //! in a *cast* shadow. Attached means that the facet or the shading normal faces away: a facet behind its own plane gets
 //! no light, whatever its interpolated normal says. Ambient light is not touched.
 //!
-//! Shadows belong to the world, not to a viewer: an algorithm is asked about points, after visibility was decided by
-//! whatever algorithm. [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
+//! An algorithm is asked about points that are seen, after visibility was decided by whatever algorithm, and about many
+//! neighbours at once: those of one object and material in a tile. What it finds out for one may serve the next.
+//! [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
 //! a cut-out one lets light through its holes.
 
+mod casters;
 pub mod map;
+pub mod object_precision;
 mod occluders;
 mod place;
 pub mod ray;
+pub mod scan_line;
 mod sources;
+pub mod volume;
 
 pub(crate) use place::places;
 
-use crate::{Execution, Session, Settings, registry};
+use crate::{Execution, PreparedView, Session, Settings, registry};
 use vitral_exec::Limit;
 use vitral_light::Light;
-use vitral_math::DVec3;
+use vitral_math::{DVec3, DVec4};
 
 /// A point of a surface that asks for light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,29 +39,63 @@ pub struct Place {
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,
+    /// Where it is seen, in pixels of the picture; places with one `y` that are on one facet are on one line.
+    pub pixel: [f32; 2],
 }
 
 /// Shadows of one set of lights in one scene.
 pub trait Shadows: Sync {
-    /// Which part of the light of this number reaches the place, `0..=1`.
-    fn arriving(&self, light: usize, place: &Place) -> f32;
+    /// Which part of the light of this number reaches each of the places, `0..=1`, into as many `parts`. Other places in
+    /// the same call do not change the answer.
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]);
+
+    /// Hands on the polygons that it works with; nothing where [`crate::registry::Shadowing::polygons`] says so.
+    fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}
+}
+
+/// A polygon that a shadow algorithm works with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn<'a> {
+    /// The light's number.
+    pub light: usize,
+    /// What it is: `lit`, or a `side`, `near-cap` or `far-cap` of a volume.
+    pub kind: &'static str,
+    /// World space.
+    pub corners: &'a [DVec3],
 }
 
 /// A way to find shadows.
 pub trait ShadowAlgorithm: Sync {
-    /// Makes ready for questions about these lights (world space).
+    /// Makes ready for questions about these lights (world space). `viewer` is where projectors meet, homogeneous (world
+    /// space; `w` is 0 in a parallel view), for algorithms that begin there; the answers do not depend on it.
     fn prepare<'a>(
         &self,
         session: &'a Session,
         lights: &[Light],
+        viewer: DVec4,
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
 }
 
+/// Hands on the polygons that the chosen algorithm works with.
+pub fn draw(
+    session: &Session,
+    lights: &[Light],
+    settings: &Settings,
+    execution: &Execution,
+    take: &mut dyn FnMut(Drawn<'_>),
+) -> Result<(), Limit> {
+    if let Some(algorithm) = registry::shadows(&settings.shadows).and_then(|s| s.algorithm) {
+        // They are the same for every viewer.
+        algorithm.prepare(session, lights, DVec4::Z, settings, execution)?.draw(take);
+    }
+    Ok(())
+}
+
 /// The chosen algorithm, ready; `None` without shadows.
 pub(crate) fn prepare<'a>(
-    session: &'a Session,
+    view: &PreparedView<'a>,
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
@@ -65,5 +104,6 @@ pub(crate) fn prepare<'a>(
     if !settings.lighting && !settings.channels.cast_shadow {
         return Ok(None);
     }
-    algorithm.map(|a| a.prepare(session, lights, settings, execution)).transpose()
+    let viewer = view.viewer();
+    algorithm.map(|a| a.prepare(view.session, lights, viewer, settings, execution)).transpose()
 }

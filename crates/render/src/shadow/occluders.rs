@@ -29,6 +29,17 @@ impl<'a> Occluders<'a> {
         Self { session, opaque, all_opaque, tables: DecodeTables::new(settings.color_space) }
     }
 
+    /// Whether a facet keeps all light.
+    pub(super) fn is_opaque(&self, facet: u32) -> bool {
+        if self.all_opaque {
+            return true;
+        }
+        let world = &self.session.world;
+        let instance = &world.instances[world.instance_of_facet(facet)];
+        let material = instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
+        material.and_then(|m| self.opaque.get(m as usize)).is_none_or(|&opaque| opaque)
+    }
+
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
     pub(super) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> f32 {

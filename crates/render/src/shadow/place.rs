@@ -36,12 +36,12 @@ pub(crate) fn places(
         let weights = weights.map(|w| w[lane]);
         let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
         let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
-        placing.place(triangles[lane], weights, seed)
+        placing.place(triangles[lane], weights, seed, screen.map(|s| s[lane]))
     })
 }
 
 impl Placing<'_> {
-    fn place(&self, triangle: u32, weights: [f32; 3], seed: u32) -> Place {
+    fn place(&self, triangle: u32, weights: [f32; 3], seed: u32, pixel: [f32; 2]) -> Place {
         let mesh = &self.instance.mesh;
         let corners = mesh.triangles[triangle as usize].map(|i| {
             let [x, y, z] = mesh.positions[i as usize].map(f64::from);
@@ -58,6 +58,6 @@ impl Placing<'_> {
             if perspective { eye - self.center - position } else { self.view.view.view_from_world.row(2).truncate() };
         let behind = self.turns && outward.dot(towards) < 0.0;
         let facet = self.instance.first_facet + triangle;
-        Place { position, normal: if behind { -outward } else { outward }, facet, seed }
+        Place { position, normal: if behind { -outward } else { outward }, facet, seed, pixel }
     }
 }

@@ -25,7 +25,7 @@ use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
-use vitral_math::{DVec3, Vec3};
+use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,11 @@ pub struct RayShadows;
 
 /// Rounding of one operation.
 const UNIT: f64 = 1.0 / (1u32 << 24) as f64;
+
+/// How far above its facet a place is looked at.
+pub(super) fn above(place: &Place, extent: f32) -> f64 {
+    16.0 * UNIT * (place.position.abs().max_element() + f64::from(extent))
+}
 
 struct Prepared<'a> {
     tree: Arc<Bvh>,
@@ -45,6 +50,7 @@ impl ShadowAlgorithm for RayShadows {
         &self,
         session: &'a Session,
         lights: &[Light],
+        _: DVec4,
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
@@ -56,16 +62,18 @@ impl ShadowAlgorithm for RayShadows {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, place: &Place) -> f32 {
-        match &self.sources[light] {
-            Source::Unhindered => 1.0,
-            Source::Infinity(towards) => self.passing(place, *towards, false),
-            Source::Point(at) => self.passing(place, *at - place.position, true),
-            Source::Area(area) => {
-                let seed = hash(place.seed ^ hash(light as u32));
-                let samples = (0..area.count()).map(|i| area.place(i, seed) - place.position);
-                samples.map(|way| self.passing(place, way, true)).sum::<f32>() / area.count() as f32
-            }
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+        for (place, part) in places.iter().zip(parts) {
+            *part = match &self.sources[light] {
+                Source::Unhindered => 1.0,
+                Source::Infinity(towards) => self.passing(place, *towards, false),
+                Source::Point(at) => self.passing(place, *at - place.position, true),
+                Source::Area(area) => {
+                    let seed = hash(place.seed ^ hash(light as u32));
+                    let samples = (0..area.count()).map(|i| area.place(i, seed) - place.position);
+                    samples.map(|way| self.passing(place, way, true)).sum::<f32>() / area.count() as f32
+                }
+            };
         }
     }
 }
@@ -78,8 +86,7 @@ impl Prepared<'_> {
             return 0.0;
         }
         let triangles = self.tree.triangles();
-        let extent = f64::from(triangles.extent);
-        let above = 16.0 * UNIT * (place.position.abs().max_element() + extent);
+        let above = above(place, triangles.extent);
         let origin = place.position + place.normal * above;
         let way = if ends { way - place.normal * above } else { way };
         let length = way.abs().max_element();

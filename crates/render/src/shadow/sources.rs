@@ -14,7 +14,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind};
-use vitral_math::{DVec2, DVec3, dvec2, func};
+use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +62,19 @@ impl Source {
             }
             LightKind::Point { position } | LightKind::Spot { position, .. } => Self::Point(*position - center),
             LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unhindered, Self::Area),
+        }
+    }
+}
+
+impl Source {
+    /// The places that light comes from, the same for all points, homogeneous: `w` is 0 for a direction. None if it
+    /// casts no shadows.
+    pub(super) fn places(&self) -> Vec<DVec4> {
+        match self {
+            Self::Unhindered => Vec::new(),
+            Self::Infinity(towards) => vec![towards.extend(0.0)],
+            Self::Point(at) => vec![at.extend(1.0)],
+            Self::Area(area) => (0..area.count()).map(|i| area.place(i, 0).extend(1.0)).collect(),
         }
     }
 }

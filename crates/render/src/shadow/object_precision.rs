@@ -1,0 +1,258 @@
+//! Object-precision shadows: what the light sees is lit.
+//!
+//! Hidden surfaces are removed twice. Seen from the light, polygons are clipped against each other until only visible
+//! parts are left. These are brought back to the polygons that they are parts of, and stay there as *surface detail*: lit
+//! polygons. Then any visible-surface algorithm makes a picture from any side, and a place is lit if it lies in a
+//! lit polygon of its facet. The polygons do not depend on the viewer: a session keeps them over a turntable, and they can
+//! be written to a file.
+//!
+//! From each facet is taken away what lies in the solids that other triangles hide from the light. Clipping by their
+//! planes, in space, leaves convex polygons, and a light may stand anywhere: no view volume has to be cut in sectors.
+//! Where many triangles cast shadows on one facet it is first cut in two, and each half has those that reach it, until
+//! they are few or one of them covers the whole part. The cuts are kept as a tree, which leads from a place to its polygon.
+//!
+//! In:   lights and triangles, world space less the scene's middle. Out: lit polygons; the part of a light that arrives.
+//! Cost: for each facet the triangles between it and the light. 100 bytes a lit polygon.
+//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own planes, not in a
+//! picture of the light's, by one solid after another.
+
+mod clip;
+
+use super::casters::{Casters, Solid, away, faces, lifted, near, wide, winding_normal};
+use super::occluders::Occluders;
+use super::ray::above;
+use super::sources::Source;
+use super::{Drawn, Place, ShadowAlgorithm, Shadows};
+use crate::raytrace::shaft::Shaft;
+use crate::{Execution, Session, Settings, Transparency};
+use clip::{Cutter, Detail};
+use std::cmp::Ordering;
+use std::sync::{Arc, Mutex};
+use vitral_exec::Limit;
+use vitral_light::Light;
+use vitral_math::{DVec3, DVec4};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectPrecisionShadows;
+
+/// What lit polygons depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    samples: u32,
+    transparency: Transparency,
+}
+
+/// The lit polygons of all lights.
+#[derive(Debug)]
+pub(crate) struct LitPolygons {
+    casters: Casters,
+    lights: Vec<Vec<OfLight>>,
+}
+
+/// The lit polygons of one place of a light.
+#[derive(Debug)]
+struct OfLight {
+    light: DVec4,
+    /// For each facet of the world where it is found.
+    places: Vec<Found>,
+    details: Vec<Details>,
+}
+
+/// Where the detail of a facet is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    piece: u32,
+    root: u32,
+    /// Transparent triangles that may filter the light on it.
+    filters: [u32; 2],
+}
+
+/// What was found for a run of triangles.
+#[derive(Debug, Default)]
+struct Details {
+    detail: Detail,
+    filters: Vec<u32>,
+    found: Vec<Found>,
+}
+
+struct Prepared<'a> {
+    polygons: Arc<LitPolygons>,
+    occluders: Occluders<'a>,
+}
+
+/// What is nearer to a plane than this part of the scene lies in it.
+const EPS: f64 = 1e-13;
+/// Light that meets a facet with a smaller cosine grazes it.
+const GRAZING: f64 = 0.02;
+/// A place beside a lit polygon by no more than this part of the scene is in it: no crack between two.
+const SLACK: f64 = 1e-9;
+/// Triangles in one piece of work.
+const TRIANGLES_A_JOB: usize = 256;
+
+impl ShadowAlgorithm for ObjectPrecisionShadows {
+    fn prepare<'a>(
+        &self,
+        session: &'a Session,
+        lights: &[Light],
+        _: DVec4,
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+        let occluders = Occluders::new(session, settings);
+        let key = Key { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency };
+        let mut kept = session.lit_polygons.lock().expect("no thread panics while it makes lit polygons");
+        if let Some((known, polygons)) = &*kept
+            && *known == key
+        {
+            return Ok(Box::new(Prepared { polygons: Arc::clone(polygons), occluders }));
+        }
+        *kept = None;
+        let casters = Casters::new(session, &occluders, execution)?;
+        let facets = session.world.facet_count as usize;
+        let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
+            let places = Source::new(light, settings.light_samples, casters.triangles().center).places();
+            places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
+        };
+        let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
+        let polygons = Arc::new(LitPolygons { lights: lights?, casters });
+        *kept = Some((key, Arc::clone(&polygons)));
+        Ok(Box::new(Prepared { polygons, occluders }))
+    }
+}
+
+/// How far above a facet its places are looked at, at most.
+fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
+    let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
+    above(&Place { position, normal: DVec3::ZERO, facet: 0, seed: 0, pixel: [0.0; 2] }, extent)
+}
+
+impl OfLight {
+    fn new(light: DVec4, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
+        let triangles = casters.triangles();
+        let jobs = triangles.count().div_ceil(TRIANGLES_A_JOB);
+        let charged = Mutex::new(0u64);
+        let budget = &execution.budget;
+        let details = execution.workers.map(jobs, |job| {
+            let first = job * TRIANGLES_A_JOB;
+            let mut details = Details::default();
+            for t in first..triangles.count().min(first + TRIANGLES_A_JOB) {
+                budget.check("object-precision shadows")?;
+                details.add(t, light, casters);
+            }
+            let bytes = details.bytes();
+            budget.charge(bytes, "object-precision shadows")?;
+            *charged.lock().expect("no thread panics while it adds") += bytes;
+            Ok(details)
+        });
+        budget.release(charged.into_inner().expect("no thread panics while it adds"));
+        let details: Vec<Details> = details.into_iter().collect::<Result<_, Limit>>()?;
+        let mut places = vec![Found { piece: u32::MAX, ..Found::default() }; facets];
+        for (piece, found) in details.iter().enumerate() {
+            for (i, found) in found.found.iter().enumerate() {
+                let facet = triangles.facets[piece * TRIANGLES_A_JOB + i];
+                places[facet as usize] = Found { piece: piece as u32, ..*found };
+            }
+        }
+        Ok(Self { light, places, details })
+    }
+
+    /// The transparent triangles that may filter the light at a place, or `None` if it is not lit.
+    fn at(&self, facet: u32, place: DVec3, slack: f64) -> Option<&[u32]> {
+        // Facets that are not finite have no place.
+        let found = self.places.get(facet as usize)?;
+        let details = self.details.get(found.piece as usize)?;
+        let [first, end] = found.filters.map(|i| i as usize);
+        details.detail.lights(found.root, place, slack).then(|| &details.filters[first..end])
+    }
+}
+
+impl Details {
+    /// Clips a triangle.
+    fn add(&mut self, triangle: usize, light: DVec4, casters: &Casters) {
+        let triangles = casters.triangles();
+        let extent = triangles.extent;
+        let (corners, near) = (wide(&triangles.corners[triangle]), near(light, extent));
+        let first = self.filters.len() as u32;
+        let winding = winding_normal(&corners).normalize_or_zero();
+        let height = -winding.dot(away(light, corners[0]));
+        let root = match height.partial_cmp(&0.0) {
+            // What the light sees edge-on, or what has no area, is not lit.
+            None | Some(Ordering::Equal) => self.detail.dark(),
+            Some(_) => {
+                let normal = winding * height.signum();
+                let lift = lift(&corners, extent);
+                // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind. A facet
+                // that light grazes lies along their sides, too: it is looked at from a little above.
+                let cosine = |c: &DVec3| -normal.dot(away(light, *c).normalize_or_zero());
+                let grazed = corners.iter().any(|c| cosine(c) < GRAZING);
+                let (above, behind) = if grazed { (lift, 0.0) } else { (0.0, lift) };
+                let corners = corners.map(|c| c + normal * above);
+                let (min, max) =
+                    (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+                let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
+                let shaft = Shaft::between(min, max, light, extent);
+                let (mut list, mut filters) = (Vec::new(), Vec::new());
+                casters.opaque_near(&shaft, &mut list);
+                casters.filters_near(&shaft, &mut filters);
+                let solid = |corners: &[DVec3; 3]| {
+                    let mut solid = Solid::new(corners, light, near).filter(|s| s.touches(middle, half))?;
+                    solid.planes = solid.planes.map(|(normal, at)| (normal.normalize_or_zero(), at));
+                    let (normal, at) = &mut solid.planes[0];
+                    *at += *normal * behind;
+                    Some(solid)
+                };
+                let own = triangles.facets[triangle];
+                let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
+                let solids: Vec<_> = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+                self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
+                let eps = f64::from(extent) * EPS;
+                Cutter { detail: &mut self.detail, normal, eps, solids: &solids }.add(corners.to_vec())
+            }
+        };
+        self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });
+    }
+
+    fn bytes(&self) -> u64 {
+        let lists = self.filters.capacity() * 4 + self.found.capacity() * size_of::<Found>();
+        self.detail.bytes() + lists as u64
+    }
+}
+
+impl Shadows for Prepared<'_> {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+        let LitPolygons { casters, lights } = &*self.polygons;
+        let lights = &lights[light];
+        if lights.is_empty() {
+            return parts.fill(1.0);
+        }
+        let (share, extent) = (1.0 / lights.len() as f32, casters.extent());
+        let slack = f64::from(extent) * SLACK;
+        for (place, part) in places.iter().zip(parts) {
+            let facing = lights.iter().filter(|l| faces(place, l.light));
+            let passing = facing.map(|l| {
+                let at = lifted(place, extent);
+                let filters = l.at(place.facet, place.position, slack);
+                filters.map_or(0.0, |f| casters.filtered(&self.occluders, l.light, place.facet, at, f))
+            });
+            *part = passing.sum::<f32>() * share;
+        }
+    }
+
+    fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
+        let center = self.polygons.casters.triangles().center;
+        let mut corners = Vec::new();
+        for (light, places) in self.polygons.lights.iter().enumerate() {
+            for details in places.iter().flat_map(|place| &place.details) {
+                for found in &details.found {
+                    details.detail.each(found.root, &mut |polygon| {
+                        corners.clear();
+                        corners.extend(polygon.iter().map(|&c| c + center));
+                        take(Drawn { light, kind: "lit", corners: &corners });
+                    });
+                }
+            }
+        }
+    }
+}

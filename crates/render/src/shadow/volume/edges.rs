@@ -1,0 +1,153 @@
+//! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
+
+use super::super::casters::{Casters, away, ordered, side_normal, turned, wide};
+use super::count::height;
+use crate::Execution;
+use crate::raytrace::triangles::Triangles;
+use vitral_exec::{Limit, Workers};
+use vitral_math::{DVec3, DVec4};
+use vitral_scene::weld::Weld;
+use vitral_scene::{Instance, World};
+
+/// An edge of a triangle, between corners in the order of places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Use {
+    /// The corners' numbers; corners of a mesh at one place have one.
+    ends: [u32; 2],
+    /// The triangle, by its place in the list.
+    triangle: u32,
+    /// Which of its edges this is, and in the lowest bit whether the triangle runs along it backwards.
+    corner: u32,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Edges {
+    /// Sorted by their ends.
+    uses: Vec<Use>,
+}
+
+/// A side of volumes: from an edge away from the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Side {
+    /// The edge, in the order of places.
+    pub(super) a: DVec3,
+    pub(super) b: DVec3,
+    /// Its plane, through `a`, `b` and the light: a normal, and what makes the height of `a` 0.
+    pub(super) plane: DVec4,
+    /// How many volumes begin where the path goes along the normal.
+    pub(super) multiplicity: i32,
+    /// Normals of the planes that it lies before: beyond the edge, beside its ray through `a`, beside that through `b`.
+    pub(super) borders: [DVec3; 3],
+}
+
+/// How each triangle is turned.
+pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<i8> {
+    const CHUNK: usize = 8192;
+    let mut all = vec![0i8; triangles.count()];
+    workers.for_each_chunk(&mut all, CHUNK, |chunk, part| {
+        for (i, sign) in part.iter_mut().enumerate() {
+            *sign = turned(&wide(&triangles.corners[chunk * CHUNK + i]), light, near);
+        }
+    });
+    all
+}
+
+impl Edges {
+    /// Of the opaque ones among the world's triangles.
+    pub(super) fn new(world: &World, casters: &Casters, execution: &Execution) -> Result<Self, Limit> {
+        let (triangles, budget) = (casters.triangles(), &execution.budget);
+        budget.check("shadow volumes")?;
+        let bytes = triangles.count() as u64 * 3 * (2 * size_of::<Use>() as u64 + 4);
+        budget.charge(bytes, "shadow volumes")?;
+        budget.release(bytes);
+
+        // Number the corners, mesh by mesh.
+        let mut count = 0u32;
+        let weld = |instance: &Instance| {
+            let first = count;
+            count += instance.mesh.positions.len() as u32;
+            (first, Weld::new(&instance.mesh.positions, &execution.workers))
+        };
+        let welds: Vec<_> = world.instances.iter().map(weld).collect();
+        let mut found = Vec::with_capacity(triangles.count() * 3);
+        // Where the edges of each corner begin, shifted by one, so that filling the table leaves the final places.
+        let mut starts = vec![0u32; count as usize + 2];
+        for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| casters.opaque[*i]) {
+            let instance = world.instance_of_facet(triangles.facets[i]);
+            let (first, weld) = &welds[instance];
+            let instance = &world.instances[instance];
+            let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
+            let number = triangle.map(|v| first + weld.representative[v as usize]);
+            let corners = wide(corners);
+            for k in 0..3 {
+                let m = (k + 1) % 3;
+                if number[k] == number[m] || corners[k] == corners[m] {
+                    continue;
+                }
+                let backwards = !ordered(corners[k], corners[m]);
+                let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
+                found.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+                starts[ends[0] as usize + 2] += 1;
+            }
+        }
+
+        // Sort them by their first corner, then those of each corner.
+        budget.check("shadow volumes")?;
+        for v in 2..starts.len() {
+            starts[v] += starts[v - 1];
+        }
+        let nothing = Use { ends: [0; 2], triangle: 0, corner: 0 };
+        let mut uses = vec![nothing; found.len()];
+        for edge in found {
+            let place = &mut starts[edge.ends[0] as usize + 1];
+            uses[*place as usize] = edge;
+            *place += 1;
+        }
+        uses.chunk_by_mut(|one, two| one.ends[0] == two.ends[0]).for_each(<[Use]>::sort_unstable);
+        Ok(Self { uses })
+    }
+
+    /// The sides for a light: edges whose multiplicity is not 0.
+    pub(super) fn sides(&self, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<Side> {
+        let mut sides = Vec::new();
+        for run in self.uses.chunk_by(|one, two| one.ends == two.ends) {
+            // Along a triangle that looks at the light, its volume is left of its edges: against the normal of the side.
+            let sign = |u: &Use| i32::from(turned[u.triangle as usize]) * if u.corner & 1 == 1 { 1 } else { -1 };
+            let multiplicity: i32 = run.iter().map(sign).sum();
+            if multiplicity != 0 {
+                let (corners, k) = (wide(&triangles.corners[run[0].triangle as usize]), (run[0].corner >> 1) as usize);
+                let (p, q) = (corners[k], corners[(k + 1) % 3]);
+                let (a, b) = if run[0].corner & 1 == 1 { (q, p) } else { (p, q) };
+                sides.push(Side::new(a, b, light, multiplicity));
+            }
+        }
+        sides
+    }
+}
+
+impl Side {
+    fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
+        let normal = side_normal(a, b, light);
+        let inwards = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };
+        let [out_a, out_b] = [a, b].map(|p| away(light, p));
+        let borders = [
+            inwards(normal.cross(b - a), out_a),
+            inwards(normal.cross(out_a), b - a),
+            inwards(normal.cross(out_b), a - b),
+        ];
+        Self { a, b, plane: normal.extend(-normal.dot(a)), multiplicity, borders }
+    }
+
+    /// Whether it may reach into a box, given by its middle and half its sides.
+    #[inline(always)]
+    pub(super) fn touches(&self, middle: DVec3, half: DVec3) -> bool {
+        let from_a = middle - self.a;
+        let reach = |n: DVec3| n.abs().dot(half) * (1.0 + 1e-12);
+        // Room for the rounding of a height.
+        height(self.plane, middle).abs() <= reach(self.plane.truncate()) * (1.0 + 1e-9)
+            && self.borders[0].dot(from_a) >= -reach(self.borders[0])
+            && self.borders[1].dot(from_a) >= -reach(self.borders[1])
+            && self.borders[2].dot(middle - self.b) >= -reach(self.borders[2])
+    }
+}

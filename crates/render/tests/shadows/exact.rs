@@ -1,0 +1,223 @@
+//! Algorithms that find the shadows that rays find: volumes, scan lines, lit polygons.
+
+use super::*;
+
+/// All built-in scenes, lights and sides: at least this part agrees with rays.
+fn agrees_with_rays(other: &Settings, least: f64) {
+    let mut mean = 0.0;
+    for (name, _) in builtin::names() {
+        for light in lights_for(name) {
+            for from in SIDES {
+                let same = agreement(name, &light, from, other);
+                assert!(same >= least, "{name}, {:?} from {from}: {same}", light.kind);
+                mean += same / (builtin::names().len() * 9) as f64;
+            }
+        }
+    }
+    println!("{}: {mean}", other.shadows);
+}
+
+#[test]
+fn f26_volumes_agree_with_rays() {
+    agrees_with_rays(&settings("volume"), 0.999);
+    let from_viewer = Settings { volume_counting: Some(VolumeCounting::ZPass), ..settings("volume") };
+    agrees_with_rays(&from_viewer, 0.999);
+}
+
+#[test]
+fn f21_scan_line_shadows_agree_with_rays() {
+    agrees_with_rays(&settings("scan-line"), 0.999);
+}
+
+#[test]
+fn f22_lit_polygons_agree_with_rays() {
+    agrees_with_rays(&settings("object-precision"), 0.999);
+}
+
+/// Algorithms that give what rays give, everywhere.
+const EXACT: [&str; 3] = ["volume", "scan-line", "object-precision"];
+
+/// What an algorithm says about places, all asked at once, as seen by a viewer.
+fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, places: &[Place]) -> Vec<f32> {
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
+    let lights = std::slice::from_ref(light);
+    let execution = Execution::default();
+    let ready = algorithm.prepare(&session, lights, viewer.extend(1.0), settings, &execution).unwrap();
+    let center = Triangles::center_of(session.world());
+    let moved: Vec<_> = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
+    let mut parts = vec![f32::NAN; places.len()];
+    ready.arriving(0, &moved, &mut parts);
+    parts
+}
+
+/// Sheets that share an edge, a bent quadrangle, a sheet wound the wrong way, one that is there twice.
+fn torn() -> Scene {
+    let p = |x: f32, y: f32, z: f32| [x, y, z];
+    let positions = vec![
+        p(0.0, 1.0, -1.0),
+        p(0.0, 1.0, 1.0),
+        p(-1.0, 1.5, 0.1),
+        p(1.0, 1.4, 0.2),
+        p(0.3, 2.2, 0.0),
+        p(2.0, 0.5, -1.0),
+        p(3.0, 1.0, -1.0),
+        p(3.0, 0.4, 0.5),
+        p(2.0, 1.2, 0.4),
+    ];
+    let triangles =
+        vec![[0, 1, 2], [0, 1, 3], [1, 0, 4], [5, 6, 7], [5, 7, 8], [7, 6, 5], [0, 3, 4], [0, 3, 4], [2, 2, 3]];
+    let parts = vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
+    let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
+    above_floor(mesh, Material::default(), DVec3::ZERO)
+}
+
+#[test]
+fn f26_torn_and_branching_meshes_cast_the_shadows_that_rays_find() {
+    let scene = torn();
+    let places = places_on(&scene);
+    assert!(places.len() > 1000);
+    let towards = dvec3(0.3, 1.0, 0.4);
+    // From far, from amidst the sheets, from below, from behind the viewer, from in a sheet's plane.
+    let lamps =
+        [towards * 9.0, dvec3(0.1, 1.3, 0.0), dvec3(0.5, -2.0, 0.3), dvec3(1.7, 8.0, 12.0), dvec3(0.0, 4.0, 0.0)];
+    for light in lamps.map(lamp).into_iter().chain([sun(-towards)]) {
+        let rays = ask_all(&scene, &light, &settings("ray"), VIEWER.truncate(), &places);
+        assert!(rays.contains(&0.0));
+        for algorithm in EXACT {
+            let found = ask_all(&scene, &light, &settings(algorithm), VIEWER.truncate(), &places);
+            let same = rays.iter().zip(&found).filter(|(a, b)| a == b).count();
+            assert!(
+                same as f64 >= 0.999 * rays.len() as f64,
+                "{algorithm}, {:?}: {same} of {}",
+                light.kind,
+                rays.len()
+            );
+        }
+    }
+}
+
+#[test]
+fn f26_nothing_pops_when_the_viewer_walks_into_a_shadow() {
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let light = lamp(dvec3(2.0, 5.0, 1.0));
+    let places = places_on(&scene);
+    let rays = ask_all(&scene, &light, &settings("ray"), DVec3::ZERO, &places);
+    for counting in [VolumeCounting::ZFail, VolumeCounting::ZPass] {
+        let settings = Settings { volume_counting: Some(counting), ..settings("volume") };
+        // Along the floor through the shadow's border, through the box, up to the light and beyond.
+        let walk = (0..40).map(|i| dvec3(4.0 - f64::from(i) * 0.2, 0.3, 0.1));
+        let climb = (0..20).map(|i| dvec3(2.0, 5.0, 1.0) * (f64::from(i) * 0.1));
+        for viewer in walk.chain(climb) {
+            let found = ask_all(&scene, &light, &settings, viewer, &places);
+            let different = rays.iter().zip(&found).filter(|(a, b)| a != b).count();
+            assert!(different * 1000 <= rays.len(), "{counting:?} from {viewer}: {different} of {}", rays.len());
+        }
+    }
+}
+
+#[test]
+fn f26_pictures_from_within_a_shadow_are_those_of_rays() {
+    // The near plane is so near, or so far, that it cuts the box and its shadow open.
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let light = [lamp(dvec3(2.0, 5.0, 1.0))];
+    for (position, clip) in [
+        (dvec3(-0.9, 0.4, -0.3), None),
+        (dvec3(-0.9, 0.4, -0.3), Some((1.0, 20.0))),
+        (dvec3(0.2, 1.6, 0.1), Some((0.01, 20.0))),
+    ] {
+        let projection = Projection::Perspective { view_angle: 1.4 };
+        for focal_point in [dvec3(3.0, 0.2, 2.0), dvec3(-3.0, -0.3, -2.0)] {
+            let camera = Camera { position, focal_point, view_up: DVec3::Y, projection, clip };
+            let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+            let mask = |settings: Settings| {
+                let mut session = Session::new(Arc::new(scene.clone())).unwrap();
+                let shot = Shot { camera, lights: &light, ambient: [0.0; 3] };
+                let settings = Settings { channels, ..settings };
+                render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame.cast_shadow.unwrap()
+            };
+            let rays = mask(settings("ray"));
+            for counting in [VolumeCounting::ZFail, VolumeCounting::ZPass] {
+                assert!(rays == mask(Settings { volume_counting: Some(counting), ..settings("volume") }), "{position}");
+            }
+        }
+    }
+}
+
+/// All polygons that an algorithm works with.
+fn drawn(scene: &Scene, light: &Light, settings: &Settings) -> Vec<(&'static str, Vec<DVec3>)> {
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let (mut all, lights) = (Vec::new(), std::slice::from_ref(light));
+    let mut take = |polygon: Drawn<'_>| all.push((polygon.kind, polygon.corners.to_vec()));
+    shadow::draw(&session, lights, settings, &Execution::default(), &mut take).unwrap();
+    all
+}
+
+/// Area of a polygon along its normal.
+fn area(corners: &[DVec3]) -> DVec3 {
+    (2..corners.len()).map(|i| (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]) * 0.5).sum()
+}
+
+#[test]
+fn f22_the_lit_area_of_a_square_under_a_square() {
+    // The lamp at height 2, the plate at 1: its shadow is twice as wide.
+    let scene = above_floor(solids::plane(1.0, 1.0, 1, 1), Material::default(), dvec3(0.25, 1.0, -0.5));
+    let lit = drawn(&scene, &lamp(dvec3(0.25, 2.0, -0.5)), &settings("object-precision"));
+    let of = |height: f64| -> f64 {
+        let at_height = lit.iter().filter(|(_, corners)| corners.iter().all(|c| (c.y - height).abs() < 1e-9));
+        at_height.map(|(_, corners)| area(corners).length()).sum()
+    };
+    assert!((of(0.0) - 60.0).abs() < 1e-9 && (of(1.0) - 1.0).abs() < 1e-9, "{} and {}", of(0.0), of(1.0));
+    assert!(lit.iter().all(|(kind, _)| *kind == "lit"));
+}
+
+#[test]
+fn f19_two_viewers_share_the_lit_polygons() {
+    let scene = builtin::scene("scene1").unwrap();
+    let light = lamp(dvec3(3.0, 6.0, 2.0));
+    let settings = settings("object-precision");
+    let alone = drawn(&scene, &light, &settings);
+    let mut session = Session::new(Arc::new(scene.clone())).unwrap();
+    let lights = std::slice::from_ref(&light);
+    for from in SIDES {
+        let shot = Shot { camera: camera(&scene, from), lights, ambient: [0.0; 3] };
+        render(&mut session, &shot, &settings, &Execution::default()).unwrap();
+    }
+    let mut after = Vec::new();
+    let mut take = |polygon: Drawn<'_>| after.push((polygon.kind, polygon.corners.to_vec()));
+    shadow::draw(&session, lights, &settings, &Execution::default(), &mut take).unwrap();
+    assert!(!after.is_empty() && after == alone);
+}
+
+#[test]
+fn drawn_volumes_are_closed() {
+    for scene in [torn(), builtin::scene("scene0").unwrap()] {
+        for light in [lamp(dvec3(0.7, 6.0, 2.0)), sun(dvec3(-1.0, -2.0, 0.6)), lamp(dvec3(0.1, 1.3, 0.0))] {
+            let polygons = drawn(&scene, &light, &settings("volume"));
+            let kinds = ["near-cap", "far-cap", "side"];
+            assert!(kinds.iter().all(|kind| polygons.iter().any(|(k, _)| k == kind)));
+            let sum: DVec3 = polygons.iter().map(|(_, corners)| area(corners)).sum();
+            let whole: f64 = polygons.iter().map(|(_, corners)| area(corners).length()).sum();
+            assert!(sum.length() < 1e-9 * whole, "{sum} of {whole}");
+        }
+    }
+}
+
+#[test]
+fn limits_hold_while_shadows_are_made_ready() {
+    let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
+    let lights = [lamp(dvec3(3.0, 6.0, 2.0))];
+    for algorithm in ["map", "volume", "object-precision"] {
+        let ready = |budget: Budget| {
+            let execution = Execution { budget, ..Execution::default() };
+            let algorithm_ = registry::shadows(algorithm).unwrap().algorithm.unwrap();
+            algorithm_.prepare(&session, &lights, VIEWER, &settings(algorithm), &execution).map(|_| ())
+        };
+        let little = ready(Budget::default().with_memory_limit(Some(20_000)));
+        assert!(matches!(little, Err(Limit::Memory { .. })), "{algorithm}: {little:?}");
+        let stopped = Budget::default();
+        stopped.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(matches!(ready(stopped), Err(Limit::Cancelled { .. })), "{algorithm}");
+        assert!(ready(Budget::default()).is_ok());
+    }
+}

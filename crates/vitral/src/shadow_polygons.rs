@@ -1,0 +1,59 @@
+//! The polygons that a shadow algorithm works with, as a model file: lit polygons, or shadow volumes.
+
+use crate::{Error, Renderer};
+use std::fmt::Write;
+use vitral_render::{SettingsError, registry, shadow};
+
+/// Bytes of text that are charged to the budget together.
+const CHARGED_AHEAD: u64 = 1 << 20;
+
+/// The polygons of the chosen shadow algorithm for the next picture of `renderer`, as OBJ text: a group for each light
+/// and kind of polygon, world space.
+///
+/// # Errors
+/// A shadow algorithm that works with none; settings that cannot be carried out, or a limit that was reached.
+pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
+    let settings = &renderer.settings;
+    settings.check().map_err(vitral_render::Error::from)?;
+    if registry::shadows(&settings.shadows).is_none_or(|s| s.polygons.is_none()) {
+        let choices = registry::SHADOWS.iter().filter(|s| s.polygons.is_some()).map(|s| s.name);
+        let error = SettingsError::ShadowPolygons {
+            shadows: settings.shadows.clone(),
+            choices: choices.collect::<Vec<_>>().join(", "),
+        };
+        return Err(vitral_render::Error::from(error).into());
+    }
+    let camera = renderer.frame_camera();
+    let lights = renderer.frame_lights(&camera);
+    let execution = renderer.execution();
+    let budget = &execution.budget;
+    let (mut text, mut count, mut group) = (String::new(), 0u64, None);
+    let (mut charged, mut within) = (0, Ok(()));
+    let drawn = shadow::draw(renderer.session(), &lights, settings, execution, &mut |polygon| {
+        if within.is_err() {
+            return;
+        }
+        if text.len() as u64 + CHARGED_AHEAD / 2 > charged {
+            within = budget.check("shadow polygons").and_then(|()| budget.charge(CHARGED_AHEAD, "shadow polygons"));
+            charged += if within.is_ok() { CHARGED_AHEAD } else { 0 };
+        }
+        // A group is named where it begins.
+        let name = (polygon.light, polygon.kind);
+        if group != Some(name) {
+            let _ = writeln!(text, "g light{}-{}", polygon.light, polygon.kind);
+            group = Some(name);
+        }
+        for c in polygon.corners {
+            let _ = writeln!(text, "v {} {} {}", c.x, c.y, c.z);
+        }
+        text.push('f');
+        for _ in polygon.corners {
+            count += 1;
+            let _ = write!(text, " {count}");
+        }
+        text.push('\n');
+    });
+    budget.release(charged);
+    drawn.and(within).map_err(vitral_render::Error::from)?;
+    Ok(text)
+}

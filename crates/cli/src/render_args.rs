@@ -5,7 +5,7 @@ use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
-use vitral::render::{Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder};
+use vitral::render::{Acceleration, ColorSpace, Culling, Global, Interpolation, Transparency, TransparencyOrder};
 use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
@@ -111,12 +111,18 @@ pub(crate) struct AlgorithmArgs {
     /// In which order they are combined [default: sorted]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
-    /// How shadows are found [default: none]
+    /// How shadows are found [default: none; with --global ray-trace: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
     pub(crate) shadows: Option<String>,
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) light_samples: Option<u32>,
+    /// Light from other surfaces [default: none]
+    #[arg(long, value_name = "NAME", value_parser = choices::global())]
+    pub(crate) global: Option<Global>,
+    /// How often a ray may be mirrored or bent, 1 to 64; with --global ray-trace [default: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) max_depth: Option<u32>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,

@@ -6,7 +6,7 @@ use crate::report::Failure;
 use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use vitral::render::{Background, Channels, Lines};
+use vitral::render::{Background, Channels, Global, Lines, registry};
 use vitral::{State, Viewpoint};
 
 /// Largest configuration or state file, in bytes.
@@ -38,7 +38,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }
     set_picture(&mut state, &args.picture);
-    set_algorithms(&mut state, &args.algorithms);
+    set_algorithms(&mut state, &args.algorithms)?;
     set_lights(&mut state, &args.light);
     set_viewpoint(&mut state.viewpoint, &args.camera);
     state.load.allow_external |= args.process.allow_external;
@@ -124,7 +124,7 @@ fn set_picture(state: &mut State, args: &PictureArgs) {
     }
 }
 
-fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
+fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure> {
     let settings = &mut state.settings;
     if let Some(name) = &args.visibility {
         settings.visibility.clone_from(name);
@@ -142,6 +142,20 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
     if let Some(name) = &args.shadows {
         settings.shadows.clone_from(name);
     }
+    if let Some(global) = args.global {
+        // Each model comes with its own shadows, unless others are chosen.
+        let row = registry::GLOBALS.iter().find(|row| row.value == global);
+        if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global) {
+            row.shadows.clone_into(&mut settings.shadows);
+        }
+        settings.global = global;
+    }
+    if let Some(depth) = args.max_depth {
+        if settings.global != Global::RayTrace {
+            return Err(Failure::usage("--max-depth: no rays are traced").with_hint("add --global ray-trace"));
+        }
+        settings.max_depth = depth;
+    }
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
     let lines = [
         (args.wireframe, Lines::Wireframe),
@@ -152,6 +166,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
         settings.lines = chosen;
     }
     state.load.normals = args.normals.unwrap_or(state.load.normals);
+    Ok(())
 }
 
 fn set_lights(state: &mut State, args: &LightArgs) {

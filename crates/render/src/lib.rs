@@ -7,6 +7,7 @@
 
 pub mod coherence;
 pub mod cull;
+pub mod global;
 pub mod marks;
 pub mod pipeline;
 pub mod prepare;
@@ -26,8 +27,8 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Kay, Lines, Settings, SettingsError,
-    Shading, Transparency, TransparencyOrder,
+    Acceleration, Background, Channels, ColorSpace, Culling, Global, Interpolation, Kay, Lines, Settings,
+    SettingsError, Shading, Transparency, TransparencyOrder,
 };
 pub use stats::Stats;
 

@@ -33,6 +33,10 @@ pub struct Settings {
     pub light_samples: u32,
     /// Texels along the longer side of a shadow map, `16..=8192`.
     pub shadow_map_size: u32,
+    /// Light from other surfaces.
+    pub global: Global,
+    /// How often a ray may be mirrored or bent, `1..=64`.
+    pub max_depth: u32,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
     /// How values between vertices are found.
@@ -71,6 +75,8 @@ impl Default for Settings {
             shadows: "none".to_owned(),
             light_samples: 16,
             shadow_map_size: 2048,
+            global: Global::default(),
+            max_depth: 8,
             lighting: true,
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
@@ -136,6 +142,17 @@ impl Shading {
         (Self::Gouraud, "gouraud", "vertices are illuminated, intensities are interpolated"),
         (Self::Flat, "flat", "one colour for each face"),
     ];
+}
+
+/// Light that comes from other surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Global {
+    /// None: surfaces are lit by lights alone.
+    #[default]
+    None,
+    /// Mirror images and refraction; shadows are those of [`Settings::shadows`].
+    RayTrace,
 }
 
 /// How values between vertices are found.
@@ -345,6 +362,12 @@ pub enum SettingsError {
         /// What there is.
         choices: String,
     },
+    /// Turns of a ray.
+    #[error("{0} turns of a ray: 1 to 64 are possible")]
+    MaxDepth(u32),
+    /// Light from other surfaces, but no surfaces.
+    #[error("without surfaces there is no global illumination")]
+    GlobalLines,
     /// Number of places on area lights.
     #[error("{0} samples of a light: 1 to 4096 are possible")]
     LightSamples(u32),
@@ -390,6 +413,12 @@ impl Settings {
             return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
         }
         self.check_shadows()?;
+        if !(1..=64).contains(&self.max_depth) {
+            return Err(SettingsError::MaxDepth(self.max_depth));
+        }
+        if self.global != Global::None && matches!(self.lines, Lines::Wireframe | Lines::WireframeHiddenLine) {
+            return Err(SettingsError::GlobalLines);
+        }
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
     }

@@ -39,7 +39,7 @@ fn with_shadows<R>(
     let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
     let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, settings, &Execution::default()).unwrap();
     let center = Triangles::center_of(session.world());
-    ask(&|place| ready.arriving(0, &Place { position: place.position - center, ..place }))
+    ask(&|place| ready.arriving(0, &Place { position: place.position - center, ..place }, &mut 0)[0])
 }
 
 /// A place in the world, on no facet.

@@ -1,17 +1,20 @@
 //! Illuminating points of one object and material, eight at a time.
 
 use super::FrameConstants;
-use super::facets::{FacetTable, Subject, Viewing};
+use super::facets::{FacetTable, Record, Subject, Viewing};
 use super::frame_constants::{MaterialConstants, TextureConstants};
 use super::geometry::{F, Slots, Surface, blend, constant, gather, surface};
+use super::hits::{Along, Hit};
 use super::points::{Group, Points};
-use super::{flat, gouraud, phong, shadowed};
+use super::{flat, gouraud, hits, phong, shadowed};
+use crate::shadow::Place;
 use crate::transparency::{filtered, kay, linear};
 use crate::{Shading, Transparency};
 use vitral_light::{
-    Illumination, Material, Microfacet, Phong, PreparedLight, Reflectance, Reflected, Rgb, constant_color,
-    cook_torrance, microfacet_from_phong, phong_from_microfacet,
+    DIELECTRIC_F0, Illumination, Material, Microfacet, Phong, PreparedLight, Reflectance, Reflected, Rgb,
+    constant_color, cook_torrance, microfacet_from_phong, phong_from_microfacet,
 };
+use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
 use vitral_scene::{Attribute, Mesh};
@@ -51,8 +54,10 @@ pub(crate) struct Lighting<'a> {
     ambient: Rgb,
     illumination: Illumination,
     perspective: bool,
-    /// Which part of each light arrives at each point; empty without shadows.
-    arriving: Vec<[f32; LANES]>,
+    /// The rays that see the points, if it is not the eye.
+    along: Option<&'a Along>,
+    /// Which part of each colour of each light arrives at each point; empty without shadows.
+    arriving: Vec<[[f32; LANES]; 3]>,
 }
 
 impl Lighting<'_> {
@@ -68,13 +73,20 @@ impl Lighting<'_> {
             #[inline(always)]
             || {
                 let one = constant(simd, 1.0);
-                let v = if self.perspective { (-*position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
+                let v = match self.along {
+                    Some(along) => (along.origin(simd) - *position).normalize(),
+                    None if self.perspective => (-*position).normalize(),
+                    None => V3::splat(one, [0.0, 0.0, 1.0]),
+                };
                 let surface = vitral_light::Surface { position: *position, n: *n, v };
                 let lit = lanes::inlined(
                     #[inline(always)]
                     |j: usize| match self.arriving.get(j) {
-                        Some(part) => F32x8::from_slice(simd, part),
-                        None => one,
+                        Some([r, g, b]) => {
+                            let lanes = |part| F32x8::from_slice(simd, part);
+                            V3::new(lanes(r), lanes(g), lanes(b))
+                        }
+                        None => V3::new(one, one, one),
                     },
                 );
                 match coefficients {
@@ -95,15 +107,41 @@ pub(crate) struct Lit {
     pub colors: Vec<[f32; 4]>,
     /// What passes of the light from behind; empty where that is `1 - A` in all channels.
     pub passes: Vec<[f32; 3]>,
+    /// How rays go on from there; kept for materials that let them, and empty where none are followed.
+    pub bounces: Vec<Bounce>,
+    /// Rays that were followed to lights.
+    pub shadow_rays: u64,
+}
+
+/// How rays go on from a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounce {
+    /// Unit shading normal, view space.
+    pub normal: [f32; 3],
+    /// What the mirror image is weighed with.
+    pub mirror: Rgb,
+    /// The point in the world.
+    pub place: Place,
+}
+
+impl Default for Bounce {
+    fn default() -> Self {
+        let place = Place { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0 };
+        Self { normal: [0.0; 3], mirror: [0.0; 3], place }
+    }
 }
 
 impl Lit {
     /// Makes room for `count` points.
-    pub(crate) fn reset(&mut self, count: usize, filtered: bool) {
+    pub(crate) fn reset(&mut self, count: usize, constants: &FrameConstants<'_>) {
+        let filtered = constants.transparency == Transparency::Filtered;
         self.colors.clear();
         self.colors.resize(count, [0.0; 4]);
         self.passes.clear();
         self.passes.resize(if filtered { count } else { 0 }, [0.0; 3]);
+        self.bounces.clear();
+        self.bounces.resize(if constants.follows_rays() { count } else { 0 }, Bounce::default());
+        self.shadow_rays = 0;
     }
 }
 
@@ -128,7 +166,30 @@ pub(crate) fn shade_all<S: Simd>(
         facets.fill(simd, points, order, &subject);
         for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
             let slots = slots(points, eight, records, subject.first_facet);
-            shade_eight(simd, &subject, material, eight, &slots, facets, constants, lit);
+            shade_eight(simd, &subject, material, eight, &slots, &facets.records, constants, None, lit);
+        }
+    }
+}
+
+/// Illuminates what rays hit; `points` holds the facets in groups, `hits` the same in the same order.
+#[inline(always)]
+pub(crate) fn shade_hits<S: Simd>(
+    simd: S,
+    points: &Points,
+    hits: &[Hit],
+    constants: &FrameConstants<'_>,
+    lit: &mut Lit,
+) {
+    let mut records = [Record([0.0; 32]); LANES];
+    let mut together = Vec::with_capacity(LANES);
+    for group in &points.groups {
+        let order = &points.order[group.start as usize..group.end as usize];
+        let (subject, material) = subject(group, constants);
+        for eight in order.chunks(LANES) {
+            together.clear();
+            together.extend(eight.iter().map(|&p| hits[p as usize]));
+            let (slots, along) = hits::prepare(simd, &subject, &together, &mut records);
+            shade_eight(simd, &subject, material, eight, &slots, &records, constants, Some(&along), lit);
         }
     }
 }
@@ -179,13 +240,14 @@ fn shade_eight<S: Simd>(
     material: &MaterialConstants<'_>,
     eight: &[u32],
     slots: &Slots,
-    facets: &FacetTable,
+    records: &[Record],
     constants: &FrameConstants<'_>,
+    along: Option<&Along>,
     lit: &mut Lit,
 ) {
     simd.vectorize(
         #[inline(always)]
-        || shade_eight_inlined(simd, subject, material, eight, slots, facets, constants, lit),
+        || shade_eight_inlined(simd, subject, material, eight, slots, records, constants, along, lit),
     );
 }
 
@@ -196,14 +258,15 @@ fn shade_eight_inlined<S: Simd>(
     material: &MaterialConstants<'_>,
     eight: &[u32],
     slots: &Slots,
-    facets: &FacetTable,
+    records: &[Record],
     constants: &FrameConstants<'_>,
+    along: Option<&Along>,
     lit: &mut Lit,
 ) {
     let (mesh, instance) = (subject.mesh, subject.instance);
-    let surface = surface(simd, &facets.records, slots);
+    let surface = surface(simd, records, slots);
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
-    looks.let_through(simd, &surface, material, constants);
+    looks.let_through(simd, &surface, material, constants, along);
 
     let lighting = Lighting {
         lights: &constants.lights,
@@ -213,8 +276,11 @@ fn shade_eight_inlined<S: Simd>(
             _ => Illumination::Phong,
         },
         perspective: subject.viewing.perspective,
+        along,
         arriving: match material.model {
-            Model::Empirical(_) | Model::Microfacet => shadowed::arriving(constants, subject, slots, &surface),
+            Model::Empirical(_) | Model::Microfacet => {
+                shadowed::arriving(constants, subject, slots, &surface, along, &mut lit.shadow_rays)
+            }
             _ => Vec::new(),
         },
     };
@@ -264,6 +330,24 @@ fn shade_eight_inlined<S: Simd>(
     } else if constants.transparency == Transparency::Filtered {
         let gap = linear::opacity(looks.alpha).to_array();
         eight.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
+    }
+    if material.follows && !lit.bounces.is_empty() {
+        let normal = match constants.shading {
+            Shading::Flat => surface.facet_normal,
+            _ => looks
+                .mapped_normal(simd, mesh, slots, &surface, material)
+                .unwrap_or_else(|| phong::interpolated_normal(&surface)),
+        };
+        let mirror = looks.mirror(simd, material).scale(looks.coverage);
+        let places = match along {
+            Some(along) => along.places,
+            None => shadowed::world_places(constants, subject, slots, shadowed::weights(&surface)),
+        };
+        let soa = [normal, mirror].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]);
+        for (lane, &p) in eight.iter().enumerate() {
+            let [normal, mirror] = soa.map(|v| v.map(|channel| channel[lane]));
+            lit.bounces[p as usize] = Bounce { normal, mirror, place: places[lane] };
+        }
     }
     let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
     for (lane, &p) in eight.iter().enumerate() {
@@ -390,15 +474,23 @@ impl<S: Simd> Looks<S> {
         surface: &Surface<S>,
         material: &MaterialConstants<'_>,
         constants: &FrameConstants<'_>,
+        along: Option<&Along>,
     ) {
         if constants.transparency != Transparency::Kay || !material.blend {
             return;
         }
         let flat = constants.shading == Shading::Flat;
         let n = if flat { surface.facet_normal } else { phong::interpolated_normal(surface) };
+        let facing = match along {
+            Some(along) => {
+                let position = super::geometry::blend3(&surface.weights, &surface.positions);
+                n.dot((along.origin(simd) - position).normalize())
+            }
+            None => n.z,
+        };
         let least = constant(simd, constants.kay.least);
         let least = lanes::Lanes::min(least, self.kt);
-        self.kt = kay::transmission(least, self.kt, n.z, constant(simd, constants.kay.exponent));
+        self.kt = kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent));
         self.alpha = self.coverage * linear::opacity(self.kt);
     }
 
@@ -410,6 +502,24 @@ impl<S: Simd> Looks<S> {
             Reflectance::MetallicRoughness { base_color, .. } => base_color,
         };
         V3::splat(constant(simd, 1.0), color).times(self.base)
+    }
+
+    /// What the mirror image is weighed with: the specular coefficient of mirrors.
+    #[inline(always)]
+    fn mirror(&self, simd: S, material: &MaterialConstants<'_>) -> V3<F<S>> {
+        let one = constant(simd, 1.0);
+        if !material.material.mirror {
+            return V3::splat(one, [0.0; 3]);
+        }
+        match material.material.reflectance {
+            Reflectance::Phong { ks, .. } => V3::splat(one, ks).times(self.specular),
+            Reflectance::MetallicRoughness { base_color, metallic, .. } => {
+                let metallic = lanes::Lanes::saturate(self.metallic_factor * metallic);
+                let metal = V3::splat(one, base_color).times(self.base).scale(metallic);
+                let dielectric = (one - metallic) * DIELECTRIC_F0;
+                metal + V3::new(dielectric, dielectric, dielectric)
+            }
+        }
     }
 
     /// Coefficients for the material's model, with `color` multiplying the diffuse or base colour.

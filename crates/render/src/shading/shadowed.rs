@@ -6,42 +6,50 @@
 use super::FrameConstants;
 use super::facets::Subject;
 use super::geometry::{Slots, Surface, blend3};
+use super::hits::Along;
 use super::phong::interpolated_normal;
-use crate::shadow::{Place, places};
+use crate::shadow::{Place, grey, places};
+use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
 
-/// The part of each light at each point; empty without shadows.
+/// The part of each colour of each light at each point; empty without shadows. Adds the rays that it took.
 #[inline(always)]
 pub(crate) fn arriving<S: Simd>(
     constants: &FrameConstants<'_>,
     subject: &Subject<'_>,
     slots: &Slots,
     surface: &Surface<S>,
-) -> Vec<[f32; LANES]> {
+    along: Option<&Along>,
+    rays: &mut u64,
+) -> Vec<[[f32; LANES]; 3]> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
-    let places = world_places(constants, subject, slots, weights(surface));
+    let places = match along {
+        Some(along) => along.places,
+        None => world_places(constants, subject, slots, weights(surface)),
+    };
     let numbers = constants.light_numbers.iter();
-    numbers.map(|&light| each(&places, |place| shadows.arriving(light, place))).collect()
+    numbers.map(|&light| each(&places, |place| shadows.arriving(light, place, rays))).collect()
 }
 
 /// An answer for each place. Unused lanes repeat the last: they are not asked again.
-fn each(places: &[Place; LANES], answer: impl Fn(&Place) -> f32) -> [f32; LANES] {
-    let mut answers = [0.0; LANES];
+fn each(places: &[Place; LANES], mut answer: impl FnMut(&Place) -> Rgb) -> [[f32; LANES]; 3] {
+    let mut answers = [[0.0; LANES]; 3];
     for lane in 0..LANES {
         let repeated = lane > 0 && places[lane] == places[lane - 1];
-        answers[lane] = if repeated { answers[lane - 1] } else { answer(&places[lane]) };
+        let part = if repeated { answers.map(|channel| channel[lane - 1]) } else { answer(&places[lane]) };
+        (0..3).for_each(|k| answers[k][lane] = part[k]);
     }
     answers
 }
 
 #[inline(always)]
-fn weights<S: Simd>(surface: &Surface<S>) -> [[f32; LANES]; 3] {
+pub(super) fn weights<S: Simd>(surface: &Surface<S>) -> [[f32; LANES]; 3] {
     let [a, b, c] = surface.weights;
     [a.to_array(), b.to_array(), c.to_array()]
 }
 
-fn world_places(
+pub(super) fn world_places(
     constants: &FrameConstants<'_>,
     subject: &Subject<'_>,
     slots: &Slots,
@@ -87,7 +95,7 @@ fn shares_at(constants: &FrameConstants<'_>, position: V3<f32>, normals: [V3<f32
         if normals.iter().any(|n| n.dot(l) <= 0.0) {
             attached += 1.0;
         } else if let Some(shadows) = constants.shadows {
-            cast += 1.0 - shadows.arriving(number, place);
+            cast += 1.0 - grey(shadows.arriving(number, place, &mut 0));
         }
     }
     if count == 0.0 { [0.0; 2] } else { [attached / count, cast / count] }

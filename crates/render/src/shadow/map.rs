@@ -30,7 +30,7 @@ use crate::{ColorSpace, Execution, Session, Settings, Transparency};
 use lens::Lens;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{Light, LightKind};
+use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::DVec3;
 
 /// See the module.
@@ -167,8 +167,8 @@ impl LightMaps {
 }
 
 impl Shadows for Arc<Maps> {
-    fn arriving(&self, light: usize, place: &Place) -> f32 {
-        match &self.0[light] {
+    fn arriving(&self, light: usize, place: &Place, _: &mut u64) -> Rgb {
+        let part = match &self.0[light] {
             LightMaps::Unhindered => 1.0,
             LightMaps::Infinity { towards, map } => {
                 if place.normal.dot(*towards) <= 0.0 {
@@ -186,7 +186,8 @@ impl Shadows for Arc<Maps> {
                 });
                 parts.sum::<f32>() / places.len() as f32
             }
-        }
+        };
+        [part; 3]
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! Shadows belong to the world, not to a viewer: an algorithm is asked about points, after visibility was decided by
 //! whatever algorithm. [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
-//! a cut-out one lets light through its holes.
+//! coloured by its filter where transparency is filtered; a cut-out one lets light through its holes.
 
 pub mod map;
 mod occluders;
@@ -16,11 +16,13 @@ mod place;
 pub mod ray;
 mod sources;
 
-pub(crate) use place::places;
+pub(crate) use occluders::weights;
+pub(crate) use place::{facet, places, weighted};
+pub(crate) use ray::clearance;
 
 use crate::{Execution, Session, Settings, registry};
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::DVec3;
 
 /// A point of a surface that asks for light.
@@ -38,8 +40,8 @@ pub struct Place {
 
 /// Shadows of one set of lights in one scene.
 pub trait Shadows: Sync {
-    /// Which part of the light of this number reaches the place, `0..=1`.
-    fn arriving(&self, light: usize, place: &Place) -> f32;
+    /// Which part of each colour of the light of this number reaches the place, `0..=1`. Adds the rays that it took.
+    fn arriving(&self, light: usize, place: &Place, rays: &mut u64) -> Rgb;
 }
 
 /// A way to find shadows.
@@ -52,6 +54,11 @@ pub trait ShadowAlgorithm: Sync {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+}
+
+/// The mean of three channels, written so that grey stays as it is.
+pub(crate) fn grey([r, g, b]: Rgb) -> f32 {
+    r + ((g - r) + (b - r)) / 3.0
 }
 
 /// The chosen algorithm, ready; `None` without shadows.

@@ -11,6 +11,25 @@ use vitral_math::lanes::LANES;
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
+/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
+/// on the side from which they run counter-clockwise in the model; zero without area.
+pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
+    let mesh = &instance.mesh;
+    let corners = mesh.triangles[triangle as usize].map(|i| {
+        let [x, y, z] = mesh.positions[i as usize].map(f64::from);
+        let p = instance.world_from_model.transform_point3(dvec3(x, y, z)) - center;
+        p.as_vec3().as_dvec3()
+    });
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+    (corners, if mirrors(&instance.world_from_model) { -normal } else { normal })
+}
+
+/// The point with these weights of the corners.
+pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
+    let w = weights.map(f64::from);
+    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
+}
+
 /// What all points of an object have in common.
 pub(crate) struct Placing<'a> {
     view: &'a PreparedView<'a>,
@@ -42,17 +61,8 @@ pub(crate) fn places(
 
 impl Placing<'_> {
     fn place(&self, triangle: u32, weights: [f32; 3], seed: u32) -> Place {
-        let mesh = &self.instance.mesh;
-        let corners = mesh.triangles[triangle as usize].map(|i| {
-            let [x, y, z] = mesh.positions[i as usize].map(f64::from);
-            let p = self.instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center;
-            // The corners that the rays' triangles have.
-            p.as_vec3().as_dvec3()
-        });
-        let w = weights.map(f64::from);
-        let position = (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2]);
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        let outward = if mirrors(&self.instance.world_from_model) { -normal } else { normal };
+        let (corners, outward) = facet(self.instance, triangle, self.center);
+        let position = weighted(&corners, weights);
         let (eye, perspective) = self.view.eye();
         let towards =
             if perspective { eye - self.center - position } else { self.view.view.view_from_world.row(2).truncate() };

@@ -39,6 +39,13 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     }
     set_picture(&mut state, &args.picture);
     set_algorithms(&mut state, &args.algorithms)?;
+    let output = &args.output;
+    let files = [("--save-radiosity", &output.save_radiosity), ("--load-radiosity", &output.load_radiosity)];
+    if let Some((option, _)) = files.iter().find(|(_, file)| file.is_some())
+        && state.settings.global != Global::Radiosity
+    {
+        return Err(no_radiosity(option));
+    }
     set_lights(&mut state, &args.light);
     set_viewpoint(&mut state.viewpoint, &args.camera);
     state.load.allow_external |= args.process.allow_external;
@@ -60,6 +67,9 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
         );
+    }
+    if output.save_radiosity.is_some() && !state.settings.channels.color {
+        return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
     if args.report.json && outputs.iter().any(Output::is_standard) {
@@ -156,6 +166,14 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
         }
         settings.max_depth = depth;
     }
+    let radiosity = settings.global == Global::Radiosity;
+    for (option, given) in [("--patch-size", args.patch_size.is_some()), ("--iterations", args.iterations.is_some())] {
+        if given && !radiosity {
+            return Err(no_radiosity(option));
+        }
+    }
+    settings.patch_size = args.patch_size.or(settings.patch_size);
+    settings.iterations = args.iterations.or(settings.iterations);
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
     let lines = [
         (args.wireframe, Lines::Wireframe),
@@ -167,6 +185,11 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     }
     state.load.normals = args.normals.unwrap_or(state.load.normals);
     Ok(())
+}
+
+/// An option of radiosity without radiosity.
+fn no_radiosity(option: &str) -> Failure {
+    Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
 }
 
 fn set_lights(state: &mut State, args: &LightArgs) {

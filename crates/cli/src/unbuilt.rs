@@ -5,11 +5,10 @@
 const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
 /// Options to come.
-const OPTIONS: [&str; 5] = ["--iterations", "--load-radiosity", "--panels", "--patch-size", "--save-radiosity"];
+const OPTIONS: [&str; 1] = ["--panels"];
 
 /// Values to come, of options that are there.
-const VALUES: [(&str, &[&str]); 2] =
-    [("--shadows", &["volume", "scan-line", "object-precision"]), ("--global", &["radiosity"])];
+const VALUES: [(&str, &[&str]); 1] = [("--shadows", &["volume", "scan-line", "object-precision"])];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

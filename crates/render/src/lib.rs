@@ -11,6 +11,7 @@ pub mod global;
 pub mod marks;
 pub mod pipeline;
 pub mod prepare;
+pub mod radiosity;
 pub mod raytrace;
 pub mod registry;
 mod session;
@@ -45,6 +46,9 @@ pub enum Error {
     /// The scene's parts do not fit together.
     #[error("{0}")]
     Scene(String),
+    /// Stored radiosity that cannot be used.
+    #[error("{0}")]
+    Radiosity(String),
     /// A limit was reached.
     #[error(transparent)]
     Limit(#[from] vitral_exec::Limit),

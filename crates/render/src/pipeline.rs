@@ -2,6 +2,7 @@
 
 use crate::global::Whitted;
 use crate::marks;
+use crate::radiosity::{enclosure::direct_lights, solution};
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameConstants};
 use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
@@ -47,6 +48,10 @@ pub fn render(
     execution: &Execution,
 ) -> Result<Rendered, Error> {
     let viewport = settings.check()?;
+    let direct = (settings.global == Global::Radiosity).then(|| direct_lights(session.scene(), shot.lights));
+    // What the ambient terms guess at is computed then.
+    let solved = direct.as_deref().map(|lights| Shot { lights, ambient: [0.0; 3], ..shot.clone() });
+    let shot = solved.as_ref().unwrap_or(shot);
     if settings.global == Global::RayTrace {
         check_indices(session.scene())?;
     }
@@ -121,9 +126,21 @@ fn render_color(
     let t0 = clock();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
+    let radiosity = match settings.global {
+        Global::Radiosity => Some(solution(view.session, shot.lights, settings, execution, &mut stats.radiosity)?),
+        Global::None | Global::RayTrace => None,
+    };
     let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
-    let constants =
-        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
+    let constants = FrameConstants::new(
+        &view,
+        settings,
+        shot.lights,
+        shot.ambient,
+        shadows.as_deref(),
+        radiosity.as_deref(),
+        &tables,
+        execution,
+    );
     let t1 = clock();
     let (mark_batch, mark_colors) = marks::build(&view, settings, execution);
     let t2 = clock();
@@ -131,7 +148,7 @@ fn render_color(
     // Find what is visible, and shade each tile as it is finished.
     let tracer = match settings.global {
         Global::RayTrace => Some(Whitted::new(&constants, settings, grid.tiles.len() as u64, execution)?),
-        Global::None => None,
+        Global::None | Global::Radiosity => None,
     };
     let sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
@@ -179,7 +196,7 @@ fn render_data(
     let tables = DecodeTables::new(settings.color_space);
     let shadows = shadow::prepare(view.session, shot.lights, settings, execution)?;
     let constants =
-        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
+        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), None, &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;

@@ -219,6 +219,13 @@ pub static GLOBALS: &[GlobalIllumination] = &[
         value: Global::RayTrace,
         shadows: "ray",
     },
+    GlobalIllumination {
+        name: "radiosity",
+        description: "matt surfaces light each other; solved once for all cameras",
+        source: "Cohen et al. 1988",
+        value: Global::Radiosity,
+        shadows: "ray",
+    },
 ];
 
 /// A shadow algorithm by its name.

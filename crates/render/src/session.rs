@@ -4,6 +4,7 @@
 
 use crate::Error;
 use crate::cull::bounds_tree::BoundsTree;
+use crate::radiosity;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
@@ -66,6 +67,7 @@ pub struct Session {
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
+    pub(crate) radiosity: Mutex<Option<(radiosity::Key, Arc<radiosity::Solution>)>>,
     pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
 }
 
@@ -137,6 +139,7 @@ impl Session {
             bvh: Mutex::default(),
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
+            radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
         })
     }

@@ -37,6 +37,10 @@ pub struct Settings {
     pub global: Global,
     /// How often a ray may be mirrored or bent, `1..=64`.
     pub max_depth: u32,
+    /// Longest edge of a patch, in the world's unit, above 0; `None`: a sixteenth of the scene's diagonal.
+    pub patch_size: Option<f64>,
+    /// Patches that may send light, at least 1; `None`: until a hundredth of it is left.
+    pub iterations: Option<u64>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
     /// How values between vertices are found.
@@ -77,6 +81,8 @@ impl Default for Settings {
             shadow_map_size: 2048,
             global: Global::default(),
             max_depth: 8,
+            patch_size: None,
+            iterations: None,
             lighting: true,
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
@@ -153,6 +159,8 @@ pub enum Global {
     None,
     /// Mirror images and refraction; shadows are those of [`Settings::shadows`].
     RayTrace,
+    /// What matt surfaces send to each other.
+    Radiosity,
 }
 
 /// How values between vertices are found.
@@ -365,6 +373,12 @@ pub enum SettingsError {
     /// Turns of a ray.
     #[error("{0} turns of a ray: 1 to 64 are possible")]
     MaxDepth(u32),
+    /// Length of a patch's edge.
+    #[error("patches of {0}: a length above 0 is required")]
+    PatchSize(f64),
+    /// Number of shots.
+    #[error("0 iterations: at least 1 is required")]
+    Iterations,
     /// Light from other surfaces, but no surfaces.
     #[error("without surfaces there is no global illumination")]
     GlobalLines,
@@ -415,6 +429,12 @@ impl Settings {
         self.check_shadows()?;
         if !(1..=64).contains(&self.max_depth) {
             return Err(SettingsError::MaxDepth(self.max_depth));
+        }
+        if let Some(size) = self.patch_size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+            return Err(SettingsError::PatchSize(size));
+        }
+        if self.iterations == Some(0) {
+            return Err(SettingsError::Iterations);
         }
         if self.global != Global::None && matches!(self.lines, Lines::Wireframe | Lines::WireframeHiddenLine) {
             return Err(SettingsError::GlobalLines);

@@ -17,6 +17,8 @@ pub struct Stats {
     pub reused: u64,
     /// Rays that were followed on from what is seen.
     pub tracing: TracingCounters,
+    /// Light from surface to surface; zeros where a known solution was used.
+    pub radiosity: RadiosityCounters,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -250,6 +252,28 @@ impl TracingCounters {
     pub(crate) fn rate(&self, seconds: f64) -> f64 {
         if seconds > 0.0 { (self.rays + self.shadow_rays) as f64 / seconds } else { 0.0 }
     }
+}
+
+/// What solving for radiosity took. Light is in units of intensity times area, all colours together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct RadiosityCounters {
+    /// Triangles that send light.
+    pub patches: u64,
+    /// Triangles that receive it.
+    pub elements: u64,
+    /// Patches that sent light, some of them several times.
+    pub shots: u64,
+    /// Light not yet sent on, as a part of what was emitted.
+    pub residual: f64,
+    /// Light that was there in the beginning.
+    pub emitted: f64,
+    /// Light that surfaces kept.
+    pub absorbed: f64,
+    /// Light that left the scene.
+    pub escaped: f64,
+    /// Time.
+    pub seconds: f64,
 }
 
 /// Samples and pixels.

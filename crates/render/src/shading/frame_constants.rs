@@ -2,6 +2,7 @@
 
 use super::group::{Model, model};
 use crate::prepare::{is_solid, mirrors};
+use crate::radiosity::Solution;
 use crate::settings::Kay;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
@@ -81,6 +82,8 @@ pub(crate) struct FrameConstants<'a> {
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
     pub shadows: Option<&'a dyn Shadows>,
+    /// Light from other surfaces; `None` without radiosity.
+    pub radiosity: Option<&'a Solution>,
     /// For each facet whether rays that meet it are followed on; empty without ray tracing.
     follows: Vec<bool>,
     /// Global ambient light.
@@ -109,6 +112,7 @@ impl<'a> FrameConstants<'a> {
         lights: &[Light],
         ambient: Rgb,
         shadows: Option<&'a dyn Shadows>,
+        radiosity: Option<&'a Solution>,
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
@@ -134,6 +138,7 @@ impl<'a> FrameConstants<'a> {
             lights,
             light_numbers,
             shadows,
+            radiosity,
             follows,
             ambient,
             shading: settings.shading,

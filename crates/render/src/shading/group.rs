@@ -7,6 +7,7 @@ use super::geometry::{F, Slots, Surface, blend, constant, gather, surface};
 use super::hits::{Along, Hit};
 use super::points::{Group, Points};
 use super::{flat, gouraud, hits, phong, shadowed};
+use crate::radiosity::Solution;
 use crate::shadow::Place;
 use crate::transparency::{filtered, kay, linear};
 use crate::{Shading, Transparency};
@@ -284,7 +285,7 @@ fn shade_eight_inlined<S: Simd>(
             _ => Vec::new(),
         },
     };
-    let reflected = match material.model {
+    let mut reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },
         Model::Constant(color) => {
             let color = V3::splat(looks.alpha, color);
@@ -313,6 +314,15 @@ fn shade_eight_inlined<S: Simd>(
             }
         },
     };
+
+    // Light from other surfaces.
+    if let (Some(solution), Model::Empirical(_) | Model::Microfacet) = (constants.radiosity, material.model) {
+        let kd = match looks.coefficients(simd, material, looks.base) {
+            Coefficients::Empirical(k) => k.kd,
+            Coefficients::Microfacet(m) => m.base_color.scale(-m.metallic + 1.0),
+        };
+        reflected.diffuse = reflected.diffuse + kd.times(irradiance(simd, solution, subject, slots, &surface));
+    }
 
     // Premultiply and hand on.
     let emitted = match material.model {
@@ -353,6 +363,29 @@ fn shade_eight_inlined<S: Simd>(
     for (lane, &p) in eight.iter().enumerate() {
         lit.colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
     }
+}
+
+/// What arrives at eight points from other surfaces.
+#[inline(always)]
+fn irradiance<S: Simd>(
+    simd: S,
+    solution: &Solution,
+    subject: &Subject<'_>,
+    slots: &Slots,
+    surface: &Surface<S>,
+) -> V3<F<S>> {
+    // Which side is seen? The facet's normal was turned to it.
+    let [a, b, c] = surface.positions;
+    let turned = (b - a).cross(c - a).dot(surface.facet_normal).to_array();
+    let weights = shadowed::weights(surface);
+    let mut soa = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        let front = (turned[lane] >= 0.0) != subject.instance.mirrored;
+        let facet = subject.first_facet + slots.triangle[lane];
+        let light = solution.irradiance(facet, weights.map(|w| w[lane]), front);
+        (0..3).for_each(|k| soa[k][lane] = light[k]);
+    }
+    V3::new(F32x8::from_slice(simd, &soa[0]), F32x8::from_slice(simd, &soa[1]), F32x8::from_slice(simd, &soa[2]))
 }
 
 /// What textures and vertex colours make of a material at eight points.

@@ -16,7 +16,7 @@ mod place;
 pub mod ray;
 mod sources;
 
-pub(crate) use occluders::weights;
+pub(crate) use occluders::{texel, weights};
 pub(crate) use place::{facet, places, weighted};
 pub(crate) use ray::clearance;
 

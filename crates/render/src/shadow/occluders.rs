@@ -80,16 +80,29 @@ impl<'a> Occluders<'a> {
         triangle: usize,
         weights: [f32; 3],
     ) -> Option<[f32; 4]> {
-        let reference = reference?;
-        let texture = self.session.scene.textures.get(reference.texture as usize)?;
-        let uv = blend(mesh.uvs.get(reference.uv_set as usize)?, mesh, triangle, weights);
-        let [u, v] = reference.transform.map(|row| uv[0] * row[0] + uv[1] * row[1] + row[2]);
-        let decode = match texture.encoding {
-            Encoding::Srgb => &self.tables.srgb,
-            Encoding::Linear => &self.tables.linear,
-        };
-        Some(texture.sample(&reference.sampler, u, v, 0.0, decode))
+        texel(self.session, &self.tables, reference, mesh, triangle, weights, 0.0)
     }
+}
+
+/// A texture at a point of a triangle, at a level of detail (0: the finest); `None` where there is none.
+pub(crate) fn texel(
+    session: &Session,
+    tables: &DecodeTables,
+    reference: Option<TextureRef>,
+    mesh: &Mesh,
+    triangle: usize,
+    weights: [f32; 3],
+    level: f32,
+) -> Option<[f32; 4]> {
+    let reference = reference?;
+    let texture = session.scene.textures.get(reference.texture as usize)?;
+    let uv = blend(mesh.uvs.get(reference.uv_set as usize)?, mesh, triangle, weights);
+    let [u, v] = reference.transform.map(|row| uv[0] * row[0] + uv[1] * row[1] + row[2]);
+    let decode = match texture.encoding {
+        Encoding::Srgb => &tables.srgb,
+        Encoding::Linear => &tables.linear,
+    };
+    Some(texture.sample(&reference.sampler, u, v, level, decode))
 }
 
 /// An attribute between the corners of a triangle.

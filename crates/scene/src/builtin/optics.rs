@@ -97,7 +97,8 @@ pub(super) fn rod() -> Scene {
     place_floor(&mut scene, 9.0, 12);
     let mut water = clear("water", 0.93, 1.333);
     water.filter = [0.85, 0.95, 1.0];
-    place(&mut scene, solids::cuboid(dvec3(4.0, 1.6, 2.4)), water, dvec3(0.0, 0.81, 0.0));
+    // The floor is the bottom of the basin: the water goes on a little below it.
+    place(&mut scene, solids::cuboid(dvec3(4.0, 1.7, 2.4)), water, dvec3(0.0, 0.75, 0.0));
     let stick = plastic("stick", [0.8, 0.35, 0.1], 30.0);
     let at = DMat4::from_translation(dvec3(0.3, 1.55, 0.0)) * DMat4::from_rotation_z(0.7);
     place_as(&mut scene, solids::cylinder(0.09, 3.6, 32), stick, at);

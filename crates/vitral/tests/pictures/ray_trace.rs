@@ -188,7 +188,10 @@ fn backgrounds_are_seen_through_glass_as_they_are() {
 #[test]
 fn shadows_of_coloured_glass_have_its_colour() {
     let mut scene = Scene::default();
-    let white = Material { reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 }, ..Material::default() };
+    let white = Material {
+        reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        ..Material::default()
+    };
     add(&mut scene, solids::plane(8.0, 8.0, 1, 1), white, DMat4::IDENTITY);
     let red = Material { filter: [1.0, 0.25, 0.0], ..glass(0.8, 1.0) };
     add(&mut scene, solids::plane(2.0, 2.0, 1, 1), red, at(0.0, 1.0, 0.0));
@@ -236,7 +239,8 @@ fn total_internal_reflection_and_the_most_turns() {
     add(&mut scene, solids::cuboid(DVec3::splat(4.0)), glass(1.0, 1.5), DMat4::IDENTITY);
     let mut r = traced(exact(scene, 16, 16));
     r.settings.background = Background::Color { color: [1.0; 3] };
-    r.camera = Some(Camera { position: DVec3::new(0.0, 0.0, 1.0), focal_point: DVec3::new(1.0, 1.0, 0.0), ..on_z(1.0, 0.1) });
+    r.camera =
+        Some(Camera { position: DVec3::new(0.0, 0.0, 1.0), focal_point: DVec3::new(1.0, 1.0, 0.0), ..on_z(1.0, 0.1) });
     let tracing = r.render().unwrap().stats.tracing;
     // The diagonal meets all sides beyond the critical angle of 41.8 degrees: 54.7.
     assert_eq!((tracing.refracted, tracing.stopped_by_depth), (0, 256));

@@ -22,6 +22,7 @@
 
 use super::media::{Border, Media};
 use crate::marks::MarkColors;
+use crate::prepare::mirrors;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
@@ -86,13 +87,21 @@ struct Branch {
     seed: u32,
 }
 
+/// A surface that a ray met: its light and properties, by number.
+struct Met<'a> {
+    lit: &'a Lit,
+    at: usize,
+    /// Whether the ray came from the side from which the facet's corners run clockwise.
+    from_behind: bool,
+}
+
 /// Memory of one tile's work, used again for the next.
 #[derive(Default)]
 pub(crate) struct Forest {
     rays: Vec<Branch>,
     next: Vec<Branch>,
-    /// Rays that hit, and what.
-    hitting: Vec<Branch>,
+    /// Rays that hit, and whether they came from behind the facet.
+    hitting: Vec<(Branch, bool)>,
     hits: Vec<Hit>,
     points: Points,
     lit: Lit,
@@ -173,7 +182,9 @@ impl<'a> Whitted<'a> {
                     row: Some(points.place[target as usize][1] as u32),
                     seed: bounce.place.seed,
                 };
-                self.branch(&eye_ray, travelled, target as usize, lit, &mut forest.rays, &mut counters);
+                let met =
+                    Met { lit, at: target as usize, from_behind: self.comes_from_behind(&eye_ray, bounce.place.facet) };
+                self.branch(&eye_ray, travelled, &met, &mut forest.rays, &mut counters);
             }
             while !forest.rays.is_empty() {
                 if !self.may_go_on() {
@@ -206,8 +217,8 @@ impl<'a> Whitted<'a> {
         let mut searched = Counters::default();
         for ray in rays.iter() {
             match self.meet(ray, &mut searched) {
-                Some(hit) => {
-                    hitting.push(*ray);
+                Some((hit, from_behind)) => {
+                    hitting.push((*ray, from_behind));
                     hits.push(hit);
                 }
                 None => add(&mut lit.colors[ray.target as usize], ray.weight, self.background(ray)),
@@ -225,11 +236,12 @@ impl<'a> Whitted<'a> {
         counters.hits += hits.len() as u64;
 
         next.clear();
-        for (i, (ray, hit)) in hitting.iter().zip(hits.iter()).enumerate() {
+        for (i, ((ray, from_behind), hit)) in hitting.iter().zip(hits.iter()).enumerate() {
             add(&mut lit.colors[ray.target as usize], ray.weight, met.colors[i]);
             if self.constants.follows(hit.place.facet) {
                 let travelled = ray.travelled + ray.origin.distance(hit.place.position);
-                self.branch(ray, travelled, i, met, next, counters);
+                let met = Met { lit: met, at: i, from_behind: *from_behind };
+                self.branch(ray, travelled, &met, next, counters);
             }
         }
         std::mem::swap(rays, next);
@@ -246,9 +258,17 @@ impl<'a> Whitted<'a> {
         (way / distance, distance)
     }
 
-    /// What a ray meets first.
+    /// Whether a ray comes from the side from which the facet's corners run clockwise, in the world.
+    fn comes_from_behind(&self, ray: &Branch, number: u32) -> bool {
+        let world = &self.constants.view.session.world;
+        let instance = &world.instances[world.instance_of_facet(number)];
+        let (_, outward) = facet(instance, number - instance.first_facet, self.tree.triangles().center);
+        (outward.dot(ray.direction) > 0.0) != mirrors(&instance.world_from_model)
+    }
+
+    /// What a ray meets first, and whether it comes from behind.
     #[inline]
-    fn meet(&self, branch: &Branch, searched: &mut Counters) -> Option<Hit> {
+    fn meet(&self, branch: &Branch, searched: &mut Counters) -> Option<(Hit, bool)> {
         let ray = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
         let (place, t) = self.tree.closest_hit_from(&ray, branch.own, searched)?;
         let triangles = self.tree.triangles();
@@ -262,7 +282,8 @@ impl<'a> Whitted<'a> {
         let position = weighted(&corners, weights);
         let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let normal = across.normalize_or_zero();
-        let normal = if normal.dot(branch.direction) > 0.0 { -normal } else { normal };
+        let from_behind = normal.dot(branch.direction) > 0.0;
+        let normal = if from_behind { -normal } else { normal };
 
         // The footprint of the pixel: round the ray, stretched by the slant of the facet.
         let perspective = self.constants.view.view.perspective;
@@ -279,22 +300,23 @@ impl<'a> Whitted<'a> {
         let weights = [0, 1, 2].map(|k| [weights[k], slope(k, ways[0]), slope(k, ways[1])]);
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
-        Some(Hit { weights, origin: origin.as_vec3().to_array(), place: Place { position, normal, facet, seed } })
+        let place = Place { position, normal, facet, seed };
+        Some((Hit { weights, origin: origin.as_vec3().to_array(), place }, from_behind))
     }
 
-    /// The rays that go on where `ray` meets the surface whose light and properties are number `at` in `met`.
+    /// The rays that go on where `ray` meets a surface.
     fn branch(
         &self,
         ray: &Branch,
         travelled: f64,
-        at: usize,
-        met: &Lit,
+        met: &Met<'_>,
         rays: &mut Vec<Branch>,
         counters: &mut TracingCounters,
     ) {
-        let Bounce { normal, mirror, place } = met.bounces[at];
-        let alpha = met.colors[at][3];
-        let passes = met.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
+        let Met { lit, at, from_behind } = *met;
+        let Bounce { normal, mirror, place } = lit.bounces[at];
+        let alpha = lit.colors[at][3];
+        let passes = lit.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
         let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0]);
@@ -303,7 +325,7 @@ impl<'a> Whitted<'a> {
         let next = |towards: DVec3| place.position + towards * self.clearance(place.position);
 
         if counts(passing) {
-            match self.through(ray, &surface, place.facet) {
+            match self.through(ray, &surface, place.facet, from_behind) {
                 Way::Straight(media) => {
                     counters.passed += 1;
                     rays.push(Branch { weight: passing, origin: next(-surface.facet), media, ..go_on });
@@ -353,7 +375,7 @@ impl<'a> Whitted<'a> {
     }
 
     /// How the ray goes on behind the surface.
-    fn through(&self, ray: &Branch, surface: &Surface, number: u32) -> Way {
+    fn through(&self, ray: &Branch, surface: &Surface, number: u32, from_behind: bool) -> Way {
         let session = self.constants.view.session;
         let instance = &session.world.instances[session.world.instance_of_facet(number)];
         let triangle = number - instance.first_facet;
@@ -366,8 +388,8 @@ impl<'a> Whitted<'a> {
         }
 
         // Which media meet here?
-        let (_, outward) = facet(instance, triangle, self.tree.triangles().center);
-        let entering = (outward.dot(ray.direction) < 0.0) == (side == Side::Behind);
+        let from_outside = from_behind == mirrors(&instance.world_from_model);
+        let entering = from_outside == (side == Side::Behind);
         let Border { before, behind, then } =
             if entering { ray.media.enter(material) } else { ray.media.leave(material) };
         let index = |m: Option<u32>| m.map_or(1.0, |m| f64::from(self.constants.material(Some(m)).material.ior));

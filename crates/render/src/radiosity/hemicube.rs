@@ -23,7 +23,7 @@ use vitral_scene::{Camera, Projection};
 #[derive(Debug)]
 pub struct Hemicube {
     settings: Settings,
-    /// Form factors of the pixels of the top, and of a side whose upper edge is the first row.
+    /// Form factors of the pixels of the top, and of the upper half of a side.
     factors: [Vec<f64>; 2],
     /// Distances of the near and far planes.
     clip: (f64, f64),
@@ -41,7 +41,9 @@ impl Hemicube {
                 let square = x * x + y * y + 1.0;
                 let factor = step * step / (PI * square * square);
                 top.push(factor);
-                wall.push(if row < side / 2 { y * factor } else { 0.0 });
+                if row < side / 2 {
+                    wall.push(y * factor);
+                }
             }
         }
         let whole = top.iter().sum::<f64>() + 4.0 * wall.iter().sum::<f64>();
@@ -61,7 +63,7 @@ impl Hemicube {
         let (u, v) = normal.any_orthonormal_pair();
         // Points look from different threads: each draws alone.
         let execution = Execution { workers: Workers::single(), observer: None, ..execution.clone() };
-        let mut seen = Vec::new();
+        let mut seen = vec![0.0; session.world.facet_count as usize];
         for (face, [towards, up]) in
             [[normal, u], [u, normal], [-u, normal], [v, normal], [-v, normal]].into_iter().enumerate()
         {
@@ -74,15 +76,7 @@ impl Hemicube {
             };
             self.face(session, &camera, &self.factors[usize::from(face > 0)], &execution, &mut seen)?;
         }
-        seen.sort_by_key(|&(facet, _)| facet);
-        let mut factors: Vec<(u32, f64)> = Vec::new();
-        for (facet, factor) in seen {
-            match factors.last_mut() {
-                Some(last) if last.0 == facet => last.1 += factor,
-                _ => factors.push((facet, factor)),
-            }
-        }
-        Ok(factors)
+        Ok((0..).zip(seen).filter(|(_, factor)| *factor > 0.0).collect())
     }
 
     fn face(
@@ -91,49 +85,51 @@ impl Hemicube {
         camera: &Camera,
         factors: &[f64],
         execution: &Execution,
-        seen: &mut Vec<(u32, f64)>,
+        seen: &mut Vec<f64>,
     ) -> Result<(), Limit> {
         let side = self.settings.width;
         let viewport = Viewport { width: side, height: side };
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
         let view = PreparedView::new(session, camera, &self.settings, viewport, pattern, execution, counters);
         let mut grid = TileGrid::new(viewport, 1);
-        let sink = Collector { factors, side: side as usize, seen: Mutex::default() };
+        let sink = Collector { factors, side: side as usize, seen: Mutex::new(std::mem::take(seen)) };
         ZBuffer.resolve(&view, None, &mut grid, execution, &sink)?;
-        seen.append(&mut sink.seen.into_inner().expect("no thread panics while it collects"));
+        *seen = sink.seen.into_inner().expect("no thread panics while it collects");
         Ok(())
     }
 }
 
-/// Adds up the factors of runs of pixels that show the same facet.
+/// Adds up the factors of the pixels that show each facet.
 struct Collector<'a> {
     factors: &'a [f64],
     side: usize,
-    seen: Mutex<Vec<(u32, f64)>>,
+    /// A sum for each facet.
+    seen: Mutex<Vec<f64>>,
 }
 
 impl TileSink for Collector<'_> {
     fn tile(&self, _: usize, tile: &Tile, _: &mut LayerList) {
         let mut seen = self.seen.lock().expect("no thread panics while it collects");
+        let mut put = |(facet, sum): (u32, f64)| {
+            if facet != NO_FACET {
+                seen[facet as usize] += sum;
+            }
+        };
         let (left, top) = (tile.x as usize, tile.y as usize);
-        let columns = TILE.min(self.side - left);
+        let (columns, rows) = (TILE.min(self.side - left), TILE.min(self.side - top));
+        // Pixels of one facet mostly come in runs.
         let mut run = (NO_FACET, 0.0);
-        for row in 0..TILE.min(self.side - top) {
+        for row in 0..rows {
             let at = (top + row) * self.side + left;
-            let factors = &self.factors[at..at + columns];
+            let Some(factors) = self.factors.get(at..at + columns) else { break };
             for (&facet, &factor) in tile.facet[row * TILE..].iter().zip(factors) {
                 if facet != run.0 {
-                    if run.0 != NO_FACET && run.1 > 0.0 {
-                        seen.push(run);
-                    }
-                    run = (facet, 0.0);
+                    put(std::mem::replace(&mut run, (facet, 0.0)));
                 }
                 run.1 += factor;
             }
         }
-        if run.0 != NO_FACET && run.1 > 0.0 {
-            seen.push(run);
-        }
+        put(run);
     }
 }
 

@@ -133,7 +133,7 @@ fn enclosed(
     execution: &Execution,
 ) -> Result<Enclosure, Limit> {
     // A node, a vertex, an element with two sides, its triangle, and what the solution keeps of it.
-    let bytes = trees.nodes.len() as u64 * 600;
+    let bytes = trees.nodes.len() as u64 * 600 + progressive::MOST_BYTES.min(trees.nodes.len().pow(2) as u64 * 16);
     execution.budget.charge(bytes, "radiosity")?;
     execution.budget.release(bytes);
     Enclosure::new(trees, session, lights, settings, execution)

@@ -10,15 +10,22 @@
 //! light is added in their order: so the result does not depend on threads.
 //!
 //! In:   an enclosure. Out: irradiance of each side of each element.
-//! Cost: a hemicube a shot, and a few multiplications for each element that it shows.
+//! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
+//! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\].
 
 use super::enclosure::{Color, Enclosure};
+use super::gather::Row;
 use super::hemicube::Hemicube;
 use crate::Execution;
+use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_math::DVec3;
 
+/// Form factors that are kept for a patch's next shot: 256 MiB.
+const MOST_KNOWN: usize = 16 << 20;
+/// Bytes that they take.
+pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f64)>()) as u64;
 /// Patches that shoot in one step.
 const VOLLEY: usize = 16;
 
@@ -59,6 +66,7 @@ pub fn solve(
         (0..3).for_each(|k| to[k] += emission[k] * element.area);
     }
     progress.emitted = unsent.iter().map(power).sum();
+    let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
     loop {
         let left: f64 = unsent.iter().map(power).sum();
         progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
@@ -71,13 +79,17 @@ pub fn solve(
         // Choose the patches with the most light, and see whom they see.
         let shooters = strongest(&unsent, VOLLEY.min((most - progress.shots) as usize));
         let seen = execution.workers.map(shooters.len(), |i| {
+            if let Some(row) = &known.rows[shooters[i]] {
+                return Ok(Arc::clone(row));
+            }
             let (patch, turned) = (&enclosure.patches[shooters[i] / 2], if shooters[i] % 2 == 0 { 1.0 } else { -1.0 });
-            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned, execution)
+            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned, execution).map(Arc::new)
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
-            let mut arrived = 0.0;
-            for (number, factor) in seen? {
+            let (mut arrived, seen) = (0.0, seen?);
+            known.keep(*shooter, &seen);
+            for &(number, factor) in &*seen {
                 let at = enclosure.patches[shooter / 2].center;
                 receive(enclosure, number, at, factor, sent, &mut unsent, &mut progress);
                 arrived += factor;
@@ -88,6 +100,22 @@ pub fn solve(
     }
     progress.ambient = ambient(enclosure, &unsent);
     Ok(progress)
+}
+
+/// What patches were found to see, for as long as there is room.
+struct Known {
+    rows: Vec<Option<Arc<Row>>>,
+    /// Factors that may still be kept.
+    room: usize,
+}
+
+impl Known {
+    fn keep(&mut self, shooter: usize, row: &Arc<Row>) {
+        if self.rows[shooter].is_none() && row.len() <= self.room {
+            self.room -= row.len();
+            self.rows[shooter] = Some(Arc::clone(row));
+        }
+    }
 }
 
 /// An element takes its part of what is sent from `at`.

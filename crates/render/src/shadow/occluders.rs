@@ -113,7 +113,7 @@ fn blend<const N: usize>(a: &Attribute<[f32; N]>, mesh: &Mesh, triangle: usize, 
 
 /// Barycentric coordinates of a point in a triangle's plane.
 pub(crate) fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let (a, b, c) = (corners[0].as_dvec3(), corners[1].as_dvec3(), corners[2].as_dvec3());
     let normal = (b - a).cross(c - a);
     let whole = normal.length_squared();
     if whole == 0.0 {

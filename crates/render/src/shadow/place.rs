@@ -15,11 +15,13 @@ use vitral_scene::Instance;
 /// on the side from which they run counter-clockwise in the model; zero without area.
 pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
     let mesh = &instance.mesh;
-    let corners = mesh.triangles[triangle as usize].map(|i| {
-        let [x, y, z] = mesh.positions[i as usize].map(f64::from);
-        let p = instance.world_from_model.transform_point3(dvec3(x, y, z)) - center;
-        p.as_vec3().as_dvec3()
-    });
+    let corner = |i: u32| {
+        let [x, y, z] = mesh.positions[i as usize];
+        let p = dvec3(f64::from(x), f64::from(y), f64::from(z));
+        (instance.world_from_model.transform_point3(p) - center).as_vec3().as_dvec3()
+    };
+    let [a, b, c] = mesh.triangles[triangle as usize];
+    let corners = [corner(a), corner(b), corner(c)];
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
     (corners, if mirrors(&instance.world_from_model) { -normal } else { normal })
 }

@@ -60,7 +60,7 @@ fn a_furnace_is_the_same_everywhere() {
     }
     let radiosity = gather::solve(&room, &rows, 1e-12);
     assert!(radiosity.iter().step_by(2).flatten().all(|b| (b - 2.0).abs() < 1e-9));
-    let progress = progressive::solve(&room, &hemicube(), 1e-6, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-6, u64::MAX, &Execution::default()).unwrap();
     let mean = |k: usize| {
         let area: f64 = room.elements.iter().map(|e| e.area).sum();
         room.elements.iter().zip(progress.irradiance.iter().step_by(2)).map(|(e, i)| i[k] * e.area).sum::<f64>() / area
@@ -71,7 +71,7 @@ fn a_furnace_is_the_same_everywhere() {
 #[test]
 fn light_is_neither_made_nor_lost() {
     let room = enclosure(room(dvec3(1.0, 0.8, 1.2), 0.6, [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]), 0.3);
-    let progress = progressive::solve(&room, &hemicube(), 1e-5, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-5, u64::MAX, &Execution::default()).unwrap();
     assert!(
         (progress.absorbed + progress.emitted * progress.residual - progress.emitted).abs() < 1e-9 * progress.emitted
     );
@@ -114,7 +114,7 @@ fn shooting_and_gathering_agree() {
     let (hemicube, execution) = (hemicube(), Execution::default());
     let rows = gather::rows(&room, &hemicube, &execution).unwrap();
     let gathered = gather::solve(&room, &rows, 1e-12);
-    let shot = progressive::solve(&room, &hemicube, 1e-6, u64::MAX, &execution).unwrap();
+    let shot = progressive::solve(&room, [&hemicube; 2], 1e-6, u64::MAX, &execution).unwrap();
     let mut difference = 0.0;
     for (side, radiosity) in gathered.iter().enumerate().step_by(2) {
         let own = room.emission[side][0] + 0.5 * shot.irradiance[side][0];
@@ -128,7 +128,7 @@ fn shooting_and_gathering_agree() {
 #[test]
 fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     let room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.7, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), 0.4);
-    let solve = |most| progressive::solve(&room, &hemicube(), 1e-6, most, &Execution::default()).unwrap();
+    let solve = |most| progressive::solve(&room, [&hemicube(); 2], 1e-6, most, &Execution::default()).unwrap();
     let mean = |p: &progressive::Progress| {
         let sum: f64 =
             room.elements.iter().zip(p.irradiance.iter().step_by(2)).map(|(e, i)| (i[0] + p.ambient[0]) * e.area).sum();
@@ -138,6 +138,51 @@ fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     assert_eq!(few.shots, 40);
     assert!(few.residual > 0.1 && few.ambient[0] > 0.0);
     assert!((mean(&few) / mean(&all) - 1.0).abs() < 0.03, "{} {}", mean(&few), mean(&all));
+}
+
+/// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
+/// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
+/// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.
+const PATH_TRACED: [[f64; 3]; 5] = [
+    [0.11264, 0.07485, 0.02033],
+    [0.09560, 0.05733, 0.013453],
+    [0.16736, 0.11010, 0.02970],
+    [0.13820, 0.009244, 0.002123],
+    [0.03521, 0.07665, 0.004621],
+];
+
+#[test]
+fn the_cornell_box_is_as_bright_as_by_path_tracing() {
+    let scene = builtin::scene("cornell").unwrap();
+    let triangles = |i: usize| scene.meshes[i].triangles.len() as u32;
+    let walls: Vec<u32> = (0..5).map(triangles).collect();
+    assert_eq!(walls, [2; 5], "the walls come first");
+    let session = Session::new(Arc::new(scene.clone())).unwrap();
+    let all = Triangles::of_world(session.world(), &Workers::single());
+    let corners = |f: u32| Some(all.corners[f as usize].map(|c| c.as_dvec3()));
+    let trees = Trees::new(session.world().facet_count, corners, 0.06, 1 << 20).unwrap();
+    let execution = Execution::default();
+    let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
+    let [coarse, fine] = [128, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let progress = progressive::solve(&room, [&coarse, &fine], 0.002, u64::MAX, &execution).unwrap();
+    for (wall, expected) in PATH_TRACED.iter().enumerate() {
+        let (mut sum, mut area) = ([0.0; 3], 0.0);
+        for (e, element) in room.elements.iter().enumerate() {
+            if room.trees.nodes[element.node as usize].facet as usize / 2 == wall {
+                let light = progress.irradiance[2 * e];
+                (0..3).for_each(|k| sum[k] += light[k] * element.reflectance[k] * element.area);
+                area += element.area;
+            }
+        }
+        for k in 0..3 {
+            let own = sum[k] / area;
+            assert!(
+                (own / expected[k] - 1.0).abs() < 0.03,
+                "wall {wall}, channel {k}: {own}, expected {}",
+                expected[k]
+            );
+        }
+    }
 }
 
 fn look_in(scene: &Scene) -> (Session, Camera) {
@@ -241,7 +286,7 @@ fn interpolated_light_has_no_steps_at_hanging_vertices() {
     let session =
         Session::new(Arc::new(self::room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))).unwrap();
     let room = Enclosure::new(room.trees, &session, &[], &Settings::default(), &Execution::default()).unwrap();
-    let progress = progressive::solve(&room, &hemicube(), 0.05, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, [&hemicube(); 2], 0.05, u64::MAX, &Execution::default()).unwrap();
     let solution = Solution::new(&room, &progress);
     let light = |w: [f32; 3]| solution.irradiance(6, w, true)[0];
     let mut hanging = 0;

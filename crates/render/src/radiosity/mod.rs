@@ -29,8 +29,8 @@ use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
 
-/// Pixels along an edge of hemicubes.
-const HEMICUBE: u32 = 128;
+/// Pixels along an edge of hemicubes, and of those of strong patches.
+const HEMICUBE: [u32; 2] = [128, 512];
 /// The part of the light that may be left.
 pub const RESIDUAL: f64 = 0.01;
 /// The part that may be left before elements are cut again.
@@ -92,12 +92,13 @@ fn solve(
 ) -> Result<Solution, Limit> {
     let start = execution.budget.elapsed();
     let diagonal = session.world.bounds.diagonal();
-    let hemicube = Hemicube::new(HEMICUBE, diagonal);
+    let [coarse, fine] = HEMICUBE.map(|side| Hemicube::new(side, diagonal));
+    let hemicubes = [&coarse, &fine];
     let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
     let most = settings.iterations.unwrap_or(u64::MAX);
     let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
     for _ in 0..ROUNDS {
-        let rough = progressive::solve(&enclosure, &hemicube, ROUGH, most, execution)?;
+        let rough = progressive::solve(&enclosure, hemicubes, ROUGH, most, execution)?;
         let contrasts = Solution::new(&enclosure, &rough).contrasts();
         let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
@@ -109,7 +110,7 @@ fn solve(
         trees.balance();
         enclosure = enclosed(trees, session, lights, settings, execution)?;
     }
-    let progress = progressive::solve(&enclosure, &hemicube, RESIDUAL, most, execution)?;
+    let progress = progressive::solve(&enclosure, hemicubes, RESIDUAL, most, execution)?;
     let solution = Solution::new(&enclosure, &progress);
     *counters = RadiosityCounters {
         patches: enclosure.patches.len() as u64,

@@ -48,10 +48,14 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Shoots until at most `residual` of the light is left, or `most` shots were made.
+/// Patches that send at least this part of all light use the finer hemicube.
+const STRONG: f64 = 1.0 / 512.0;
+
+/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the two hemicubes the second, finer
+/// one is for the patches with the most light, whose errors show the most.
 pub fn solve(
     enclosure: &Enclosure,
-    hemicube: &Hemicube,
+    hemicubes: [&Hemicube; 2],
     residual: f64,
     most: u64,
     execution: &Execution,
@@ -83,6 +87,8 @@ pub fn solve(
                 return Ok(Arc::clone(row));
             }
             let (patch, turned) = (&enclosure.patches[shooters[i] / 2], if shooters[i] % 2 == 0 { 1.0 } else { -1.0 });
+            let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
+            let hemicube = hemicubes[usize::from(strong)];
             hemicube.look(&enclosure.scene, patch.center, patch.normal * turned, execution).map(Arc::new)
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();

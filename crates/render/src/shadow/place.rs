@@ -11,9 +11,12 @@ use vitral_math::lanes::LANES;
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
+/// Corners and unit normal of a facet.
+pub(crate) type Facet = ([DVec3; 3], DVec3);
+
 /// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
 /// on the side from which they run counter-clockwise in the model; zero without area.
-pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
+pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet {
     let mesh = &instance.mesh;
     let corner = |i: u32| {
         let [x, y, z] = mesh.positions[i as usize];
@@ -28,7 +31,7 @@ pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec
 
 /// The point with these weights of the corners.
 pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
-    let w = weights.map(f64::from);
+    let w = [f64::from(weights[0]), f64::from(weights[1]), f64::from(weights[2])];
     (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
 }
 
@@ -53,17 +56,21 @@ pub(crate) fn places(
 ) -> [Place; LANES] {
     let center = Triangles::center_of(&view.session.world);
     let placing = Placing { view, instance, turns, center };
+    // Neighbours mostly lie on one facet.
+    let mut last = (triangles[0], facet(instance, triangles[0], center));
     std::array::from_fn(|lane| {
-        let weights = weights.map(|w| w[lane]);
+        if last.0 != triangles[lane] {
+            last = (triangles[lane], facet(instance, triangles[lane], center));
+        }
+        let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
         let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
         let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
-        placing.place(triangles[lane], weights, seed)
+        placing.place(&last, weights, seed)
     })
 }
 
 impl Placing<'_> {
-    fn place(&self, triangle: u32, weights: [f32; 3], seed: u32) -> Place {
-        let (corners, outward) = facet(self.instance, triangle, self.center);
+    fn place(&self, &(triangle, (corners, outward)): &(u32, Facet), weights: [f32; 3], seed: u32) -> Place {
         let position = weighted(&corners, weights);
         let (eye, perspective) = self.view.eye();
         let towards =

@@ -39,6 +39,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let mut execution = execution(args.process.threads)?;
     execution.budget =
         execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
+    let one_frame = plan.frames.end() == plan.frames.start();
+    let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
+    if let Some(listener) = listener.filter(|_| one_frame) {
+        execution.budget = execution.budget.with_progress(listener);
+    }
     let cancelled = execution.budget.cancel_flag();
     interrupt::listen(cancelled.clone());
 

@@ -98,7 +98,7 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
     let mut warnings = Vec::new();
     if settings.global == Global::RayTrace {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
-            format!("material `{name}` bends light, but some of its surfaces are not closed: rays pass straight through them")
+            format!("rays pass straight through the surfaces of material `{name}` that are not closed, whatever its index of refraction")
         }));
     }
     if stats.picture.lost_layers > 0 {

@@ -169,7 +169,7 @@ impl<'a> Whitted<'a> {
             forest.rays.clear();
             for &target in together {
                 let bounce = lit.bounces[target as usize];
-                let (direction, travelled) = self.from_eye(bounce.place.position);
+                let (direction, travelled) = self.eye_ray(bounce.place.position);
                 let eye_ray = Branch {
                     target,
                     weight: [1.0; 4],
@@ -213,7 +213,8 @@ impl<'a> Whitted<'a> {
     #[inline(always)]
     fn generation<S: Simd>(&self, simd: S, forest: &mut Forest, lit: &mut Lit, counters: &mut TracingCounters) {
         let Forest { rays, next, hitting, hits, points, lit: met } = forest;
-        (hitting.clear(), hits.clear());
+        hitting.clear();
+        hits.clear();
         let mut searched = Counters::default();
         for ray in rays.iter() {
             match self.meet(ray, &mut searched) {
@@ -248,7 +249,7 @@ impl<'a> Whitted<'a> {
     }
 
     /// The direction in which the eye sees a place, and how far away it is.
-    fn from_eye(&self, position: DVec3) -> (DVec3, f64) {
+    fn eye_ray(&self, position: DVec3) -> (DVec3, f64) {
         let (eye, perspective) = self.constants.view.eye();
         if !perspective {
             return (-self.view_from_world.row(2), 1.0);

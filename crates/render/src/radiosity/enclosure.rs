@@ -56,6 +56,11 @@ pub struct Patch {
     pub normal: DVec3,
 }
 
+/// 1 for the front of an element or a patch, -1 for its back, by the number of the side.
+pub(super) fn turned(side: usize) -> f64 {
+    1.0 - 2.0 * (side & 1) as f64
+}
+
 /// See the module.
 #[derive(Debug)]
 pub struct Enclosure {
@@ -147,9 +152,9 @@ impl Enclosure {
         }
         let shadows = RayShadows.prepare(session, lights, settings, execution)?;
         let direct = execution.workers.map(self.emission.len(), |i| {
-            let (element, turned) = (&self.elements[i / 2], if i % 2 == 0 { 1.0 } else { -1.0 });
+            let element = &self.elements[i / 2];
             let facet = self.trees.nodes[element.node as usize].facet;
-            let place = Place { position: element.center, normal: element.normal * turned, facet, seed: i as u32 };
+            let place = Place { position: element.center, normal: element.normal * turned(i), facet, seed: i as u32 };
             arriving(&prepared, &*shadows, &place)
         });
         for (i, arriving) in direct.into_iter().enumerate() {

@@ -7,7 +7,7 @@
 //! Cost: a hemicube for each side, memory for all form factors, and some ten passes over them.
 //! Source: \[Goral et al. 1984\], \[Cohen & Greenberg 1985\].
 
-use super::enclosure::{Color, Enclosure};
+use super::enclosure::{Color, Enclosure, turned};
 use super::hemicube::Hemicube;
 use crate::Execution;
 use vitral_exec::Limit;
@@ -21,8 +21,8 @@ const MOST_PASSES: usize = 1000;
 /// The rows of all sides: what each sees.
 pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -> Result<Vec<Row>, Limit> {
     let row = |side: usize| {
-        let (element, turned) = (&enclosure.elements[side / 2], if side % 2 == 0 { 1.0 } else { -1.0 });
-        let seen = hemicube.look(&enclosure.scene, element.center, element.normal * turned, execution)?;
+        let element = &enclosure.elements[side / 2];
+        let seen = hemicube.look(&enclosure.scene, element.center, element.normal * turned(side), execution)?;
         let sides = seen.into_iter().map(|(number, factor)| {
             let other = &enclosure.elements[number as usize];
             let back = u32::from(other.normal.dot(element.center - other.center) < 0.0);

@@ -14,7 +14,7 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\].
 
-use super::enclosure::{Color, Enclosure};
+use super::enclosure::{Color, Enclosure, turned};
 use super::gather::Row;
 use super::hemicube::Hemicube;
 use crate::Execution;
@@ -86,10 +86,10 @@ pub fn solve(
             if let Some(row) = &known.rows[shooters[i]] {
                 return Ok(Arc::clone(row));
             }
-            let (patch, turned) = (&enclosure.patches[shooters[i] / 2], if shooters[i] % 2 == 0 { 1.0 } else { -1.0 });
+            let patch = &enclosure.patches[shooters[i] / 2];
             let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
             let hemicube = hemicubes[usize::from(strong)];
-            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned, execution).map(Arc::new)
+            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned(shooters[i]), execution).map(Arc::new)
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {

@@ -43,7 +43,9 @@ impl Ray {
         // Bring the corners into the ray's space.
         let [x, y, z] = self.axes;
         let place = |p: Vec3| {
-            let p = (p - self.origin).to_array();
+            // Four numbers and two bits of an index: nothing needs to be checked.
+            let p = (p - self.origin).extend(0.0).to_array();
+            let (x, y, z) = (x & 3, y & 3, z & 3);
             [p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], self.shear.z * p[z]]
         };
         let (a, b, c) = (place(corners[0]), place(corners[1]), place(corners[2]));

@@ -18,6 +18,7 @@ mod frame_constants;
 mod geometry;
 mod group;
 pub(crate) mod hits;
+mod looks;
 mod points;
 mod shadowed;
 

@@ -98,7 +98,7 @@ mod tests {
             prop_assert!(t.dot(n) <= 1e-12, "on the other side");
             // And back again, with the media swapped.
             if t.dot(n) < -1e-3 {
-                let back = transmitted(-n, -t, 1.0 / eta_r).unwrap();
+                let back = transmitted(-n, t, 1.0 / eta_r).unwrap();
                 prop_assert!(back.abs_diff_eq(l, 1e-9));
             }
         }

@@ -335,7 +335,12 @@ fn f23_maps_agree_with_rays_the_better_the_larger() {
         [sun(dvec3(-1.0, -2.0, 0.6)), lamp(dvec3(0.6, 1.0, -0.5) * reach), light(spot)]
     };
     let mut means = [0.0; 2];
-    for (name, _) in builtin::names() {
+    // Scenes of opaque things; glass keeps only a part of the light, and the Cornell box is lit from within.
+    let opaque = |name: &str| {
+        let scene = builtin::scene(name).unwrap();
+        scene.materials.iter().all(|m| !m.is_layered() && m.emission == [0.0; 3])
+    };
+    for (name, _) in builtin::names().iter().filter(|(name, _)| opaque(name)) {
         for light in lights(name) {
             for from in [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)] {
                 let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, size));

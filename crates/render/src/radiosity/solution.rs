@@ -124,7 +124,7 @@ impl Solution {
             return Err(bad("the solution belongs to another scene, or to other materials"));
         }
         let (words, extra) = rest.as_chunks::<4>();
-        if words.len() < 3 || !extra.is_empty() {
+        if words.len() < 6 || !extra.is_empty() {
             return Err(bad("the file is cut off"));
         }
         let word = |i: usize| u32::from_le_bytes(words[i]);

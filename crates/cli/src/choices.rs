@@ -5,7 +5,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::sync::LazyLock;
 use vitral::render::transparency::registry as transparency;
 use vitral::render::{
-    Acceleration, ColorSpace, Interpolation, Transparency, TransparencyOrder, VolumeCounting, registry,
+    Acceleration, ColorSpace, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting, registry,
 };
 use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
@@ -18,6 +18,9 @@ static ILLUMINATION: LazyLock<Vec<Choice<Illumination>>> =
 
 static ACCELERATION: LazyLock<Vec<Choice<Acceleration>>> =
     LazyLock::new(|| registry::ACCELERATION.iter().map(|a| (a.name, a.description, a.value)).collect());
+
+static GLOBAL: LazyLock<Vec<Choice<Global>>> =
+    LazyLock::new(|| registry::GLOBALS.iter().map(|g| (g.name, g.description, g.value)).collect());
 
 static SHADING: LazyLock<Vec<Choice<Shading>>> =
     LazyLock::new(|| Shading::ALL.iter().map(|&(value, name, description)| (name, description, value)).collect());
@@ -78,6 +81,10 @@ pub(crate) fn shadows() -> PossibleValuesParser {
 
 pub(crate) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
     of(&ACCELERATION)
+}
+
+pub(crate) fn global() -> impl TypedValueParser<Value = Global> {
+    of(&GLOBAL)
 }
 
 pub(crate) fn illumination() -> impl TypedValueParser<Value = Illumination> {

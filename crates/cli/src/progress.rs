@@ -3,6 +3,8 @@
 use crate::render_args::ProgressWhen;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Tells how many frames are done.
 pub(crate) enum Progress {
@@ -32,6 +34,36 @@ impl Progress {
                 Self::Bar(ProgressBar::new(total).with_style(style.expect("the template is fixed and sound")))
             }
         }
+    }
+
+    /// What tells how far the long stages of a single frame are.
+    pub(crate) fn stages(when: ProgressWhen, quiet: bool) -> Option<Arc<vitral::exec::Progress>> {
+        let terminal = std::io::stderr().is_terminal();
+        match when {
+            ProgressWhen::Never => return None,
+            ProgressWhen::Auto if quiet || !terminal => return None,
+            ProgressWhen::Auto | ProgressWhen::Always => {}
+        }
+        if !terminal {
+            // A line for each tenth.
+            let last = AtomicU64::new(0);
+            return Some(Arc::new(move |stage, done, total| {
+                let tenth = done * 10 / total.max(1);
+                if last.swap(tenth, Ordering::Relaxed) != tenth {
+                    crate::report::line(&format!("{stage}: {} %", tenth * 10));
+                }
+            }));
+        }
+        let style = ProgressStyle::with_template("{bar:40} {msg}").expect("the template is fixed and sound");
+        let bar = ProgressBar::new(1).with_style(style);
+        Some(Arc::new(move |stage, done, total| {
+            bar.set_length(total);
+            bar.set_message(stage.to_owned());
+            bar.set_position(done);
+            if done >= total {
+                bar.finish_and_clear();
+            }
+        }))
     }
 
     /// One more frame is done.

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
 use vitral::render::{
-    Acceleration, ColorSpace, Culling, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+    Acceleration, ColorSpace, Culling, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
 };
 use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
 
@@ -56,6 +56,12 @@ pub(crate) struct OutputArgs {
     /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
     #[arg(long, value_name = "F", value_parser = values::share, requires = "reference")]
     pub(crate) reference_threshold: Option<f64>,
+    /// Write the solution of radiosity into this file, for pictures from other cameras
+    #[arg(long, value_name = "FILE")]
+    pub(crate) save_radiosity: Option<PathBuf>,
+    /// Use a solution of radiosity from this file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["patch_size", "iterations"])]
+    pub(crate) load_radiosity: Option<PathBuf>,
     /// Write what each stage of the pipeline hands on into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
@@ -116,7 +122,7 @@ pub(crate) struct AlgorithmArgs {
     /// In which order they are combined [default: sorted]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
-    /// How shadows are found [default: none]
+    /// How shadows are found [default: none; with --global: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
     pub(crate) shadows: Option<String>,
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
@@ -125,6 +131,18 @@ pub(crate) struct AlgorithmArgs {
     /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
     #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
     pub(crate) volume_counting: Option<VolumeCounting>,
+    /// Light from other surfaces [default: none]
+    #[arg(long, value_name = "NAME", value_parser = choices::global())]
+    pub(crate) global: Option<Global>,
+    /// How often a ray may be mirrored or bent, 1 to 64; with --global ray-trace [default: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) max_depth: Option<u32>,
+    /// Longest edge of a patch, with --global radiosity [default: 1/16 of the scene's diagonal]
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    pub(crate) patch_size: Option<f64>,
+    /// Patches that may send light, with --global radiosity [default: until 1 % of it is left]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) iterations: Option<u64>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,

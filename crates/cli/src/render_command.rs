@@ -23,6 +23,12 @@ use vitral::{Frame, Renderer, dump, execution};
 /// What each algorithm may take for `--pixel`, if nothing else is said.
 const SECONDS_TO_EXPLAIN: f64 = 20.0;
 
+/// Largest stored radiosity, in bytes.
+const MOST_RADIOSITY_BYTES: u64 = 4 << 30;
+
+/// Exit code for input that is not what it should be.
+const MALFORMED: u8 = 3;
+
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let start = Instant::now();
@@ -33,6 +39,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let mut execution = execution(args.process.threads)?;
     execution.budget =
         execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
+    let one_frame = plan.frames.end() == plan.frames.start();
+    let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
+    if let Some(listener) = listener.filter(|_| one_frame) {
+        execution.budget = execution.budget.with_progress(listener);
+    }
     let cancelled = execution.budget.cancel_flag();
     interrupt::listen(cancelled.clone());
 
@@ -49,6 +60,11 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     execution.budget.check("loading")?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     plan.state.apply(&mut renderer)?;
+    if let Some(file) = &args.output.load_radiosity {
+        let bytes = vitral::read(file, MOST_RADIOSITY_BYTES)?;
+        let loaded = renderer.session().load_radiosity(&bytes);
+        loaded.map_err(|e| Failure::with_code(MALFORMED, format!("{}: {e}", file.display())))?;
+    }
     let load_seconds = start.elapsed().as_secs_f64();
     if args.report.verbose {
         let triangles = renderer.world().facet_count;
@@ -68,6 +84,11 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
         draw(args, plan, &mut renderer)?
     };
 
+    if let Some(file) = &args.output.save_radiosity
+        && let Some(bytes) = renderer.session().save_radiosity()
+    {
+        vitral::picture::write(file, &bytes)?;
+    }
     renderer.execution_mut().observer = None;
     if let Some(file) = tracing {
         file.finish()?;

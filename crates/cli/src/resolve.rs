@@ -6,7 +6,7 @@ use crate::report::Failure;
 use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use vitral::render::{Background, Channels, Lines};
+use vitral::render::{Background, Channels, Global, Lines, registry};
 use vitral::{State, Viewpoint};
 
 /// Largest configuration or state file, in bytes.
@@ -38,7 +38,14 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }
     set_picture(&mut state, &args.picture);
-    set_algorithms(&mut state, &args.algorithms);
+    set_algorithms(&mut state, &args.algorithms)?;
+    let output = &args.output;
+    let files = [("--save-radiosity", &output.save_radiosity), ("--load-radiosity", &output.load_radiosity)];
+    if let Some((option, _)) = files.iter().find(|(_, file)| file.is_some())
+        && state.settings.global != Global::Radiosity
+    {
+        return Err(no_radiosity(option));
+    }
     set_lights(&mut state, &args.light);
     set_viewpoint(&mut state.viewpoint, &args.camera);
     state.load.allow_external |= args.process.allow_external;
@@ -60,6 +67,9 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
         );
+    }
+    if output.save_radiosity.is_some() && !state.settings.channels.color {
+        return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
     if args.report.json && outputs.iter().any(Output::is_standard) {
@@ -124,7 +134,7 @@ fn set_picture(state: &mut State, args: &PictureArgs) {
     }
 }
 
-fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
+fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure> {
     let settings = &mut state.settings;
     if let Some(name) = &args.visibility {
         settings.visibility.clone_from(name);
@@ -142,6 +152,28 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
     if let Some(name) = &args.shadows {
         settings.shadows.clone_from(name);
     }
+    if let Some(global) = args.global {
+        // Each model comes with its own shadows, unless others are chosen.
+        let row = registry::GLOBALS.iter().find(|row| row.value == global);
+        if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global) {
+            row.shadows.clone_into(&mut settings.shadows);
+        }
+        settings.global = global;
+    }
+    if let Some(depth) = args.max_depth {
+        if settings.global != Global::RayTrace {
+            return Err(Failure::usage("--max-depth: no rays are traced").with_hint("add --global ray-trace"));
+        }
+        settings.max_depth = depth;
+    }
+    let radiosity = settings.global == Global::Radiosity;
+    for (option, given) in [("--patch-size", args.patch_size.is_some()), ("--iterations", args.iterations.is_some())] {
+        if given && !radiosity {
+            return Err(no_radiosity(option));
+        }
+    }
+    settings.patch_size = args.patch_size.or(settings.patch_size);
+    settings.iterations = args.iterations.or(settings.iterations);
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
     settings.volume_counting = args.volume_counting.or(settings.volume_counting);
     let lines = [
@@ -153,6 +185,12 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) {
         settings.lines = chosen;
     }
     state.load.normals = args.normals.unwrap_or(state.load.normals);
+    Ok(())
+}
+
+/// An option of radiosity without radiosity.
+fn no_radiosity(option: &str) -> Failure {
+    Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
 }
 
 fn set_lights(state: &mut State, args: &LightArgs) {

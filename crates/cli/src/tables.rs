@@ -27,6 +27,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|s| json!({"name": s.name, "description": s.description, "source": s.source}))
             .collect();
+        let global: Vec<_> = registry::GLOBALS
+            .iter()
+            .map(|g| json!({"name": g.name, "description": g.description, "source": g.source}))
+            .collect();
         let illumination: Vec<_> =
             Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
         let shading: Vec<_> =
@@ -39,7 +43,7 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact}))
             .collect();
-        let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows, "illumination": illumination,
+        let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows, "global": global, "illumination": illumination,
             "shading": shading, "transparency": models, "transparency-order": orders});
         return report::print_json(&all).map(|()| 0);
     }
@@ -59,6 +63,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nShadows (--shadows)\n");
     for s in registry::SHADOWS {
         let _ = writeln!(text, "  {:<14} {} ({})", s.name, s.description, s.source);
+    }
+    text.push_str("\nGlobal illumination (--global)\n");
+    for g in registry::GLOBALS {
+        let _ = writeln!(text, "  {:<14} {} ({})", g.name, g.description, g.source);
     }
     text.push_str("\nIllumination (--illumination)\n");
     for m in Illumination::ALL {

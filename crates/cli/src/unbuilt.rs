@@ -5,8 +5,7 @@
 const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
 /// Options to come.
-const OPTIONS: [&str; 7] =
-    ["--global", "--iterations", "--load-radiosity", "--max-depth", "--panels", "--patch-size", "--save-radiosity"];
+const OPTIONS: [&str; 1] = ["--panels"];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

@@ -177,10 +177,15 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 18] = [
+    let cases: [(&[&str], i32, &str); 23] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
-        (&["a.obj", "-o", "x.png", "--global", "radiosity"], 2, "--global: this option is not there yet"),
+        (&["a.obj", "-o", "x.png", "--panels"], 2, "--panels: this option is not there yet"),
+        (&["a.obj", "-o", "x.png", "--max-depth", "3"], 2, "--max-depth: no rays are traced"),
+        (&["a.obj", "-o", "x.png", "--global", "ray-trace", "--patch-size", "1"], 2, "radiosity is not computed"),
+        (&["a.obj", "-o", "x.png", "--global", "radiosity", "--load-radiosity", "a.obj"], 3, "no stored solution"),
+        (&["a.obj", "--dump", "d", "--global", "radiosity", "--save-radiosity", "r"], 2, "no colour picture is made"),
+        (&["a.obj", "-o", "x.png", "--global", "ray-trace", "--max-depth", "3"], 0, ""),
         (&["a.obj", "-o", "x.png", "--shadows", "umbra"], 2, "invalid value 'umbra'"),
         (&["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"], 2, "choose volume, object-precision"),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
@@ -216,7 +221,7 @@ fn options_that_are_not_built_are_not_in_the_help() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
-    for unbuilt in ["--global", "--panels", "--max-depth"] {
+    for unbuilt in ["--panels"] {
         assert!(!help.contains(unbuilt), "{unbuilt}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");

@@ -2,7 +2,7 @@
 //!
 //! A library is a list of `newmtl NAME` blocks of statements. The illumination number (`illum`) says which of them
 //! count: 0 is the constant colour `Kd` without light, 1 has no highlights, 2 and above have them (their reflections
-//! and refractions belong to ray tracing and are left to `Ks`, `d` and `Ni`). Without `illum`, a `Ks` gives highlights.
+//! and refractions belong to ray tracing: from 3 to 7 the surface is a mirror, in the proportion `Ks`; `Ni` bends light). Without `illum`, a `Ks` gives highlights.
 //!
 //! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni` 1; `Ns` below 1
 //! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are taken as linear
@@ -158,6 +158,8 @@ impl MtlMaterial {
             filter,
             alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
             ior: self.ni.filter(|&n| n >= 0.001).unwrap_or(1.0),
+            // The models with ray-traced reflection.
+            mirror: matches!(self.illum, Some(3..=7)),
             unlit: !lit,
             base_texture: texture(&self.map_kd, kd_usage),
             specular_texture: texture(&map_ks.cloned(), Usage::Data),

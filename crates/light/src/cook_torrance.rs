@@ -55,7 +55,7 @@ pub fn cook_torrance<T: Lanes>(
     global_ambient: Rgb,
     s: &Surface<T>,
     m: &Microfacet<T>,
-    visibility: impl Fn(usize) -> T,
+    visibility: impl Fn(usize) -> V3<T>,
 ) -> Reflected<T> {
     let zero = s.n.x.splat(0.0);
     let metallic = m.metallic.saturate();
@@ -76,9 +76,9 @@ pub fn cook_torrance<T: Lanes>(
         let incident = light.incident(s.position);
         sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
         let n_l = s.n.dot(incident.l).saturate();
-        let arriving = incident.intensity * visibility(j);
+        let arriving = visibility(j).scale(incident.intensity);
         let entering = n_l * (-schlick(zero.splat(DIELECTRIC_F0), n_l) + 1.0);
-        sum.diffuse = sum.diffuse + tint(albedo, light.diffuse).scale(arriving * entering);
+        sum.diffuse = sum.diffuse + tint(albedo, light.diffuse).times(arriving.scale(entering));
 
         let in_front = zero.lt(n_l);
         if !T::any(in_front) {
@@ -91,7 +91,7 @@ pub fn cook_torrance<T: Lanes>(
             #[inline(always)]
             |channel| schlick(channel, v_h),
         );
-        sum.specular = sum.specular + tint(fresnel, light.specular).scale(arriving * mirrored);
+        sum.specular = sum.specular + tint(fresnel, light.specular).times(arriving.scale(mirrored));
     }
     sum
 }
@@ -164,7 +164,7 @@ mod tests {
             v: V3::splat(0.0, v.as_vec3().to_array()),
         };
         let m = Microfacet { base_color: V3::splat(0.0, [base; 3]), metallic, roughness, occlusion: 1.0 };
-        cook_torrance(&[sun(l)], [0.0; 3], &s, &m, |_| 1.0)
+        cook_torrance(&[sun(l)], [0.0; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0))
     }
 
     #[test]
@@ -182,7 +182,7 @@ mod tests {
         let z = V3::new(0.0f32, 0.0, 1.0);
         let s = Surface { position: z, n: z, v: z };
         let m = Microfacet { base_color: V3::new(1.0f32, 0.5, 0.25), metallic: 1.0, roughness: 0.3, occlusion: 1.0 };
-        let r = cook_torrance(&[], [0.5; 3], &s, &m, |_| 1.0);
+        let r = cook_torrance(&[], [0.5; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0));
         assert_eq!((r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x), (0.5, 0.25, 0.125, 0.0));
     }
 

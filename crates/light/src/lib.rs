@@ -14,6 +14,7 @@ mod mapping;
 mod material;
 mod phong;
 mod prepared;
+mod refraction;
 mod surface;
 
 pub use cook_torrance::{DIELECTRIC_F0, LEAST_SLOPE, Microfacet, cook_torrance};
@@ -23,6 +24,7 @@ pub use mapping::{microfacet_from_phong, phong_from_microfacet};
 pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, constant_color};
 pub use phong::{Phong, phong};
 pub use prepared::{Incident, PreparedLight};
+pub use refraction::transmitted;
 pub use surface::{Reflected, Surface, reflect};
 
 /// Linear RGB, each component usually in `0..=1`.

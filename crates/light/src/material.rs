@@ -22,8 +22,10 @@ pub struct Material {
     pub transmission: Transmission,
     /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
     pub filter: Rgb,
-    /// Index of refraction.
+    /// Index of refraction, above 0; 1 bends no light.
     pub ior: f32,
+    /// Shows mirror images, in the proportion of its specular coefficient, where rays are traced.
+    pub mirror: bool,
     /// Both sides are visible and lit, whatever the mesh's closedness.
     pub double_sided: bool,
     /// Shown with its base colour alone, without any light.
@@ -59,6 +61,7 @@ impl Default for Material {
             transmission: Transmission::Transparent,
             filter: [1.0; 3],
             ior: 1.5,
+            mirror: false,
             double_sided: false,
             unlit: false,
             base_texture: None,

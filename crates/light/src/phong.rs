@@ -36,7 +36,7 @@ pub struct Phong<T> {
 ///
 /// `illumination` chooses the terms: [`Illumination::Ambient`], [`Illumination::Lambert`], [`Illumination::Phong`] or
 /// [`Illumination::BlinnPhong`]. [`Illumination::Constant`] reflects nothing (see [`crate::constant_color`]); the others
-/// count as Phong. `visibility(j)` says how much of light `j` is not in shadow, `0..=1`; it does not touch ambient light.
+/// count as Phong. `visibility(j)` says how much of each colour of light `j` is not in shadow, `0..=1`; it does not touch ambient light.
 #[inline(always)]
 pub fn phong<T: Lanes>(
     illumination: Illumination,
@@ -44,7 +44,7 @@ pub fn phong<T: Lanes>(
     global_ambient: Rgb,
     s: &Surface<T>,
     k: &Phong<T>,
-    visibility: impl Fn(usize) -> T,
+    visibility: impl Fn(usize) -> V3<T>,
 ) -> Reflected<T> {
     let zero = s.n.x.splat(0.0);
     let mut sum = Reflected { diffuse: tint(k.ka, global_ambient), specular: V3::new(zero, zero, zero) };
@@ -61,8 +61,8 @@ pub fn phong<T: Lanes>(
 
         // Diffuse: the beam spreads over 1/cos of its width, and not over the back.
         let n_l = s.n.dot(incident.l).positive();
-        let arriving = incident.intensity * visibility(j);
-        sum.diffuse = sum.diffuse + tint(k.kd, light.diffuse).scale(arriving * n_l);
+        let arriving = visibility(j).scale(incident.intensity);
+        sum.diffuse = sum.diffuse + tint(k.kd, light.diffuse).times(arriving.scale(n_l));
 
         // Specular: only where the light is in front of the surface.
         let in_front = zero.lt(n_l);
@@ -80,7 +80,7 @@ pub fn phong<T: Lanes>(
             continue;
         }
         let lobe = T::select(shining, cos.saturate().pow(shininess), zero);
-        sum.specular = sum.specular + tint(k.ks, light.specular).scale(arriving * lobe);
+        sum.specular = sum.specular + tint(k.ks, light.specular).times(arriving.scale(lobe));
     }
     sum
 }
@@ -107,7 +107,7 @@ mod tests {
             ks: V3::splat(0.0, [1.0; 3]),
             shininess,
         };
-        let r = phong(illumination, &[sun(from)], [0.2; 3], &s, &k, |_| 1.0);
+        let r = phong(illumination, &[sun(from)], [0.2; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0));
         (r.diffuse.x, r.specular.x)
     }
 

@@ -40,7 +40,7 @@ fn material(ka: f32, kd: f32, ks: f32, shininess: f32) -> Phong<f32> {
 }
 
 fn lit(model: Illumination, lights: &[Light], ambient: Rgb, s: &Point, k: &Phong<f32>) -> Reflected<f32> {
-    phong(model, &prepared(lights), ambient, s, k, |_| 1.0)
+    phong(model, &prepared(lights), ambient, s, k, |_| V3::new(1.0, 1.0, 1.0))
 }
 
 #[test]
@@ -145,7 +145,9 @@ fn p35_a_highlight_has_the_colour_of_the_light_except_on_metals() {
     let base_color = V3::new(0.8f32, 0.05, 0.05);
     let shown = |metallic: f32, lamp: &Light| {
         let m = Microfacet { base_color, metallic, roughness: 0.2, occlusion: 1.0 };
-        let r = cook_torrance(&prepared(std::slice::from_ref(lamp)), [0.0; 3], &point(DVec3::Z), &m, |_| 1.0);
+        let r = cook_torrance(&prepared(std::slice::from_ref(lamp)), [0.0; 3], &point(DVec3::Z), &m, |_| {
+            V3::new(1.0, 1.0, 1.0)
+        });
         (rgb(r.specular), rgb(r.diffuse + r.specular))
     };
     let (specular, total) = shown(0.0, &lamp);
@@ -208,7 +210,7 @@ fn p39_lights_add_up_channel_by_channel() {
     let m = microfacet_from_phong(&k);
     let shine = |lights: &[Light]| {
         let p = lit(Illumination::Phong, lights, [0.0; 3], &s, &k);
-        let c = cook_torrance(&prepared(lights), [0.0; 3], &s, &m, |_| 1.0);
+        let c = cook_torrance(&prepared(lights), [0.0; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0));
         [rgb(p.diffuse), rgb(p.specular), rgb(c.diffuse), rgb(c.specular)].concat()
     };
     let mut sum = vec![0.0; 12];
@@ -256,7 +258,7 @@ fn e12_reflectance_is_reflected_over_incident() {
 fn f20_shadow_takes_all_but_ambient_light() {
     let lights = prepared(&[Light { ambient: [0.5; 3], ..sun(DVec3::Z) }]);
     let k = material(0.4, 0.6, 0.5, 20.0);
-    let r = phong(Illumination::Phong, &lights, [0.25; 3], &point(DVec3::Z), &k, |_| 0.0);
+    let r = phong(Illumination::Phong, &lights, [0.25; 3], &point(DVec3::Z), &k, |_| V3::new(0.0, 0.0, 0.0));
     assert!((r.diffuse.x - 0.3).abs() < 1e-7 && r.specular.x == 0.0);
 }
 
@@ -334,11 +336,11 @@ proptest! {
         let m = Microfacet { base_color: k.ks, metallic, roughness, occlusion: 1.0 };
         let mut results = vec![];
         for model in Illumination::ALL {
-            results.push(phong(model, &lights, [0.1; 3], &s, &k, |_| 1.0));
-            results.push(phong(model, &lights, [0.1; 3], &s, &phong_from_microfacet(&m), |_| 1.0));
+            results.push(phong(model, &lights, [0.1; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0)));
+            results.push(phong(model, &lights, [0.1; 3], &s, &phong_from_microfacet(&m), |_| V3::new(1.0, 1.0, 1.0)));
         }
-        results.push(cook_torrance(&lights, [0.1; 3], &s, &m, |_| 1.0));
-        results.push(cook_torrance(&lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| 1.0));
+        results.push(cook_torrance(&lights, [0.1; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0)));
+        results.push(cook_torrance(&lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| V3::new(1.0, 1.0, 1.0)));
         for r in results {
             for channel in [rgb(r.diffuse), rgb(r.specular)].concat() {
                 prop_assert!(channel.is_finite() && channel >= 0.0, "{r:?}");

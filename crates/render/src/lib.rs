@@ -7,9 +7,11 @@
 
 pub mod coherence;
 pub mod cull;
+pub mod global;
 pub mod marks;
 pub mod pipeline;
 pub mod prepare;
+pub mod radiosity;
 pub mod raytrace;
 pub mod registry;
 mod session;
@@ -26,8 +28,8 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, Interpolation, Kay, Lines, Settings, SettingsError,
-    Shading, Transparency, TransparencyOrder, VolumeCounting,
+    Acceleration, Background, Channels, ColorSpace, Culling, Global, Interpolation, Kay, Lines, Settings,
+    SettingsError, Shading, Transparency, TransparencyOrder, VolumeCounting,
 };
 pub use stats::Stats;
 
@@ -44,6 +46,9 @@ pub enum Error {
     /// The scene's parts do not fit together.
     #[error("{0}")]
     Scene(String),
+    /// Stored radiosity that cannot be used.
+    #[error("{0}")]
+    Radiosity(String),
     /// A limit was reached.
     #[error(transparent)]
     Limit(#[from] vitral_exec::Limit),

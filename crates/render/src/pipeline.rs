@@ -1,17 +1,19 @@
 //! The spine: scene → cull → prepare → visible → shade → frame.
 
+use crate::global::Whitted;
 use crate::marks;
+use crate::radiosity::{enclosure::direct_lights, solution};
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameConstants};
-use crate::stats::Stats;
+use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::visible::{Nowhere, charged};
-use crate::{Coherence, Error, Execution, PreparedView, Session, Settings, registry, shadow};
+use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry, shadow};
 use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
 use vitral_frame::{Frame, Plane};
 use vitral_light::{Light, Rgb};
 use vitral_raster::{SamplePattern, TILE, TileGrid, Viewport};
-use vitral_scene::Camera;
+use vitral_scene::{Camera, Scene};
 
 /// A picture and how it came about.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +48,13 @@ pub fn render(
     execution: &Execution,
 ) -> Result<Rendered, Error> {
     let viewport = settings.check()?;
+    let direct = (settings.global == Global::Radiosity).then(|| direct_lights(session.scene(), shot.lights));
+    // What the ambient terms guess at is computed then.
+    let solved = direct.as_deref().map(|lights| Shot { lights, ambient: [0.0; 3], ..shot.clone() });
+    let shot = solved.as_ref().unwrap_or(shot);
+    if settings.global == Global::RayTrace {
+        check_indices(session.scene())?;
+    }
     let start = execution.budget.elapsed();
     let mut stats = Stats::default();
     let mut frame = Frame { width: viewport.width, height: viewport.height, ..Frame::default() };
@@ -71,13 +80,27 @@ pub fn render(
     }
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
-    let warnings = warnings(&stats, settings);
+    let warnings = warnings(&stats, session, settings, &execution.workers);
     Ok(Rendered { frame, stats, warnings })
 }
 
+/// Indices of refraction must be ones.
+fn check_indices(scene: &Scene) -> Result<(), Error> {
+    let bad = scene.materials.iter().find(|m| !(m.ior > 0.0 && m.ior.is_finite()));
+    bad.map_or(Ok(()), |m| {
+        let name = &m.name;
+        Err(Error::Scene(format!("material `{name}`: index of refraction {}: above 0 is required", m.ior)))
+    })
+}
+
 /// What the user has to know about the picture.
-fn warnings(stats: &Stats, settings: &Settings) -> Vec<String> {
+fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
     let mut warnings = Vec::new();
+    if settings.global == Global::RayTrace {
+        warnings.extend(session.sheets(workers).into_iter().map(|name| {
+            format!("rays pass straight through the surfaces of material `{name}` that are not closed, whatever its index of refraction")
+        }));
+    }
     if stats.picture.lost_layers > 0 {
         let allowed = settings.layer_memory >> 20;
         warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
@@ -103,26 +126,44 @@ fn render_color(
     let t0 = clock();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
     let tables = DecodeTables::new(settings.color_space);
+    let radiosity = match settings.global {
+        Global::Radiosity => Some(solution(view.session, shot.lights, settings, execution, &mut stats.radiosity)?),
+        Global::None | Global::RayTrace => None,
+    };
     let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
-    let constants =
-        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
+    let constants = FrameConstants::new(
+        &view,
+        settings,
+        shot.lights,
+        shot.ambient,
+        shadows.as_deref(),
+        radiosity.as_deref(),
+        &tables,
+        execution,
+    );
     let t1 = clock();
     let (mark_batch, mark_colors) = marks::build(&view, settings, execution);
     let t2 = clock();
 
     // Find what is visible, and shade each tile as it is finished.
-    let sink = ColorSink::new(&constants, &mark_colors, execution.level, grid.tiles.len());
+    let tracer = match settings.global {
+        Global::RayTrace => Some(Whitted::new(&constants, settings, grid.tiles.len() as u64, execution)?),
+        Global::None | Global::Radiosity => None,
+    };
+    let sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let marks = (!mark_colors.is_empty()).then_some(&mark_batch);
     let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
     let t3 = clock();
     stats.picture = sink.counters();
     let pictures = sink.tiles;
+    let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
     drop(constants);
     drop(shadows);
     drop(view);
     session.grid = Some(grid);
     let resolved = resolved?;
+    stats.tracing = traced?;
     (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
 
     // Put the tiles together.
@@ -133,6 +174,7 @@ fn render_color(
     stats.seconds.marks = t2 - t1;
     stats.seconds.geometry = resolved.geometry_seconds;
     stats.seconds.tiles = t3 - t2 - resolved.geometry_seconds;
+    stats.tracing.rays_per_second = stats.tracing.rate(stats.seconds.tiles);
     stats.seconds.assemble = t4 - t3;
     Ok(())
 }
@@ -154,7 +196,7 @@ fn render_data(
     let tables = DecodeTables::new(settings.color_space);
     let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
     let constants =
-        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), &tables, execution);
+        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), None, &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;

@@ -8,7 +8,7 @@ use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
-use crate::{Acceleration, Coherence};
+use crate::{Acceleration, Coherence, Global};
 
 /// An algorithm that finds the visible surface at each sample.
 pub struct VisibilityAlgorithm {
@@ -214,6 +214,46 @@ pub static SHADOWS: &[Shadowing] = &[
         source: "Atherton, Weiler & Greenberg 1978",
         polygons: Some("lit polygons"),
         algorithm: Some(&ObjectPrecisionShadows),
+    },
+];
+
+/// A way to find light that comes from other surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct GlobalIllumination {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub description: &'static str,
+    /// Key into the bibliography.
+    pub source: &'static str,
+    /// As a setting.
+    pub value: Global,
+    /// Name of the shadow algorithm that belongs to it, for faces that choose one if the user does not.
+    pub shadows: &'static str,
+}
+
+/// All global illumination models, the default first.
+pub static GLOBALS: &[GlobalIllumination] = &[
+    GlobalIllumination {
+        name: "none",
+        description: "surfaces are lit by lights alone",
+        source: "Foley et al. 1990",
+        value: Global::None,
+        shadows: "none",
+    },
+    GlobalIllumination {
+        name: "ray-trace",
+        description: "rays go on where they are mirrored and bent; with ray-traced shadows",
+        source: "Whitted 1980",
+        value: Global::RayTrace,
+        shadows: "ray",
+    },
+    GlobalIllumination {
+        name: "radiosity",
+        description: "matt surfaces light each other; solved once for all cameras",
+        source: "Cohen et al. 1988",
+        value: Global::Radiosity,
+        shadows: "ray",
     },
 ];
 

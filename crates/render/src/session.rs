@@ -4,6 +4,7 @@
 
 use crate::Error;
 use crate::cull::bounds_tree::BoundsTree;
+use crate::radiosity;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
@@ -14,8 +15,10 @@ use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
+use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
+use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
 use vitral_scene::topology::Solidity;
 use vitral_scene::{Scene, World};
@@ -64,6 +67,7 @@ pub struct Session {
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
+    pub(crate) radiosity: Mutex<Option<(radiosity::Key, Arc<radiosity::Solution>)>>,
     pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
     pub(crate) shadow_volumes: Mutex<Option<(shadow::volume::Key, Arc<shadow::volume::Volumes>)>>,
     pub(crate) lit_polygons: Mutex<Option<(shadow::object_precision::Key, Arc<shadow::object_precision::LitPolygons>)>>,
@@ -88,6 +92,7 @@ struct MeshKnowledge {
     tree: OnceLock<BoundsTree>,
     faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
+    sides: OnceLock<Vec<Side>>,
 }
 
 impl MeshKnowledge {
@@ -97,6 +102,7 @@ impl MeshKnowledge {
             self.tree.get().is_some(),
             self.faces.get().is_some(),
             self.edges.get().is_some(),
+            self.sides.get().is_some(),
         ];
         known.into_iter().filter(|known| *known).count()
     }
@@ -135,6 +141,7 @@ impl Session {
             bvh: Mutex::default(),
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
+            radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
             shadow_volumes: Mutex::default(),
             lit_polygons: Mutex::default(),
@@ -216,6 +223,31 @@ impl Session {
     pub(crate) fn faces(&self, mesh: u32) -> &FaceTable {
         let known = &self.meshes[mesh as usize].faces;
         known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
+    }
+
+    /// For each triangle where its body is; asked of transparent materials that bend light.
+    pub(crate) fn sides(&self, mesh: u32, workers: &Workers) -> &[Side] {
+        let known = &self.meshes[mesh as usize].sides;
+        known.get_or_init(|| bodies::sides(&self.scene.meshes[mesh as usize], |m| self.bends(m), workers))
+    }
+
+    fn bends(&self, material: Option<u32>) -> bool {
+        let material = material.and_then(|m| self.scene.materials.get(m as usize));
+        material.is_some_and(|m| m.alpha_mode == AlphaMode::Blend && m.ior != 1.0)
+    }
+
+    /// Names of the materials that bend light, some of whose surfaces are not closed.
+    pub(crate) fn sheets(&self, workers: &Workers) -> Vec<String> {
+        let mut sheets = vec![false; self.scene.materials.len()];
+        for instance in &self.world.instances {
+            for part in instance.mesh.parts.iter().filter(|p| self.bends(p.material)) {
+                let range = part.triangles.start as usize..part.triangles.end as usize;
+                let sides = &self.sides(instance.mesh_index, workers)[range];
+                sheets[part.material.unwrap_or_default() as usize] |= sides.contains(&Side::None);
+            }
+        }
+        let named = self.scene.materials.iter().zip(sheets).filter(|(_, sheet)| *sheet);
+        named.map(|(m, _)| m.name.clone()).collect()
     }
 
     pub(crate) fn edges(&self, mesh: u32, workers: &Workers) -> &[Edge] {

@@ -35,6 +35,14 @@ pub struct Settings {
     pub shadow_map_size: u32,
     /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
     pub volume_counting: Option<VolumeCounting>,
+    /// Light from other surfaces.
+    pub global: Global,
+    /// How often a ray may be mirrored or bent, `1..=64`.
+    pub max_depth: u32,
+    /// Longest edge of a patch, in the world's unit, above 0; `None`: a sixteenth of the scene's diagonal.
+    pub patch_size: Option<f64>,
+    /// Patches that may send light, at least 1; `None`: until a hundredth of it is left.
+    pub iterations: Option<u64>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
     /// How values between vertices are found.
@@ -74,6 +82,10 @@ impl Default for Settings {
             light_samples: 16,
             shadow_map_size: 2048,
             volume_counting: None,
+            global: Global::default(),
+            max_depth: 8,
+            patch_size: None,
+            iterations: None,
             lighting: true,
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
@@ -150,6 +162,19 @@ impl Shading {
         (Self::Gouraud, "gouraud", "vertices are illuminated, intensities are interpolated"),
         (Self::Flat, "flat", "one colour for each face"),
     ];
+}
+
+/// Light that comes from other surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Global {
+    /// None: surfaces are lit by lights alone.
+    #[default]
+    None,
+    /// Mirror images and refraction; shadows are those of [`Settings::shadows`].
+    RayTrace,
+    /// What matt surfaces send to each other.
+    Radiosity,
 }
 
 /// How values between vertices are found.
@@ -359,6 +384,18 @@ pub enum SettingsError {
         /// What there is.
         choices: String,
     },
+    /// Turns of a ray.
+    #[error("{0} turns of a ray: 1 to 64 are possible")]
+    MaxDepth(u32),
+    /// Length of a patch's edge.
+    #[error("patches of {0}: a length above 0 is required")]
+    PatchSize(f64),
+    /// Number of shots.
+    #[error("0 iterations: at least 1 is required")]
+    Iterations,
+    /// Light from other surfaces, but no surfaces.
+    #[error("without surfaces there is no global illumination")]
+    GlobalLines,
     /// Number of places on area lights.
     #[error("{0} samples of a light: 1 to 4096 are possible")]
     LightSamples(u32),
@@ -415,6 +452,18 @@ impl Settings {
             return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
         }
         self.check_shadows()?;
+        if !(1..=64).contains(&self.max_depth) {
+            return Err(SettingsError::MaxDepth(self.max_depth));
+        }
+        if let Some(size) = self.patch_size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+            return Err(SettingsError::PatchSize(size));
+        }
+        if self.iterations == Some(0) {
+            return Err(SettingsError::Iterations);
+        }
+        if self.global != Global::None && matches!(self.lines, Lines::Wireframe | Lines::WireframeHiddenLine) {
+            return Err(SettingsError::GlobalLines);
+        }
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
     }

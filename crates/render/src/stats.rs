@@ -15,6 +15,10 @@ pub struct Stats {
     pub visibility: VisibilityCounters,
     /// Saved by frame coherence: what earlier pictures found out (properties of meshes, trees, structures for rays).
     pub reused: u64,
+    /// Rays that were followed on from what is seen.
+    pub tracing: TracingCounters,
+    /// Light from surface to surface; zeros where a known solution was used.
+    pub radiosity: RadiosityCounters,
     /// Samples and pixels.
     pub picture: PictureCounters,
     /// Seconds a stage.
@@ -197,6 +201,79 @@ impl VisibilityCounters {
         self.overruled += o.overruled;
         self.overruled_far += o.overruled_far;
     }
+}
+
+/// Rays that were followed on from what is seen: to mirror images, through transparent surfaces, to lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct TracingCounters {
+    /// Rays that look for the first thing they meet.
+    pub rays: u64,
+    /// Rays to lights, which end at the first opaque thing; from what is seen and from what rays meet.
+    pub shadow_rays: u64,
+    /// Rays that met something.
+    pub hits: u64,
+    /// Rays that a mirror sent back.
+    pub mirrored: u64,
+    /// Rays that were bent.
+    pub refracted: u64,
+    /// Rays that passed straight through something transparent.
+    pub passed: u64,
+    /// Rays that could not leave a denser medium.
+    pub total_reflections: u64,
+    /// Branches that ended after the most turns.
+    pub stopped_by_depth: u64,
+    /// Branches that ended because their light would not be seen.
+    pub stopped_by_weight: u64,
+    /// Boxes that were tested against rays; not those to lights.
+    pub box_tests: u64,
+    /// Triangles that were tested against rays; not those to lights.
+    pub triangle_tests: u64,
+    /// Both kinds of rays for each second of the tiles, with all that was computed there.
+    pub rays_per_second: f64,
+}
+
+impl TracingCounters {
+    pub(crate) fn add(&mut self, o: &Self) {
+        self.rays += o.rays;
+        self.shadow_rays += o.shadow_rays;
+        self.hits += o.hits;
+        self.mirrored += o.mirrored;
+        self.refracted += o.refracted;
+        self.passed += o.passed;
+        self.total_reflections += o.total_reflections;
+        self.stopped_by_depth += o.stopped_by_depth;
+        self.stopped_by_weight += o.stopped_by_weight;
+        self.box_tests += o.box_tests;
+        self.triangle_tests += o.triangle_tests;
+    }
+
+    /// Rays of both kinds a second; 0 without a clock.
+    pub(crate) fn rate(&self, seconds: f64) -> f64 {
+        if seconds > 0.0 { (self.rays + self.shadow_rays) as f64 / seconds } else { 0.0 }
+    }
+}
+
+/// What solving for radiosity took. Light is in units of intensity times area, all colours together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct RadiosityCounters {
+    /// Triangles that send light.
+    pub patches: u64,
+    /// Triangles that receive it.
+    pub elements: u64,
+    /// Patches that sent light, some of them several times.
+    pub shots: u64,
+    /// Light not yet sent on, as a part of what was emitted.
+    pub residual: f64,
+    /// Light that was there in the beginning.
+    pub emitted: f64,
+    /// Light that surfaces kept.
+    pub absorbed: f64,
+    /// Light that left the scene.
+    pub escaped: f64,
+    /// Time.
+    pub seconds: f64,
 }
 
 /// Samples and pixels.

@@ -1,6 +1,7 @@
 //! Floor 1: what there is to see. Meshes (model space), nodes and instances (world space), cameras (view and clip space).
 #![forbid(unsafe_code)]
 
+pub mod bodies;
 mod buckets;
 pub mod builtin;
 mod camera;

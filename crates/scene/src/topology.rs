@@ -239,22 +239,22 @@ fn has_no_area(mesh: &Mesh, t: usize) -> bool {
     normal == DVec3::ZERO
 }
 
-fn position(mesh: &Mesh, i: u32) -> DVec3 {
+pub(crate) fn position(mesh: &Mesh, i: u32) -> DVec3 {
     let [x, y, z] = mesh.positions[i as usize].map(f64::from);
     DVec3::new(x, y, z)
 }
 
 /// Union-find; the root of a set is its lowest member, so that results do not depend on the order of joining.
-struct DisjointSets {
+pub(crate) struct DisjointSets {
     parent: Vec<u32>,
 }
 
 impl DisjointSets {
-    fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
     }
 
-    fn find(&mut self, mut x: u32) -> u32 {
+    pub(crate) fn find(&mut self, mut x: u32) -> u32 {
         while self.parent[x as usize] != x {
             // Halve the path on the way.
             let grandparent = self.parent[self.parent[x as usize] as usize];
@@ -264,7 +264,7 @@ impl DisjointSets {
         x
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);
     }

@@ -54,7 +54,7 @@ enum Failure {
 }
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 20] = [
+const PROPERTIES: [(&str, &str, Setter); 21] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -70,6 +70,7 @@ const PROPERTIES: [(&str, &str, Setter); 20] = [
     ("transmission", "transparent, translucent", set_transmission),
     ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, color(v))),
     ("ior", "index of refraction, 1 or more", set_ior),
+    ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| put(&mut m.mirror, boolean(v))),
     ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
     ("occlusion-strength", "how much the occlusion texture counts, 0 to 1", |m, v| {

@@ -271,7 +271,7 @@ fn lit<S: Simd>(
             let surface = Surface { position, n, v };
             let visible = lanes::inlined(
                 #[inline(always)]
-                |_: usize| one,
+                |_: usize| V3::new(one, one, one),
             );
             // Without a specular colour the halfway vectors need not be computed.
             let dull = !tracked.specular && m.specular[0] == 0.0 && m.specular[1] == 0.0 && m.specular[2] == 0.0;

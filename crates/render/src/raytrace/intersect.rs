@@ -38,11 +38,17 @@ impl Ray {
     }
 
     /// The parameter, not negative, at which the ray meets the triangle.
+    #[inline]
     pub fn hit(&self, corners: &[Vec3; 3]) -> Option<f32> {
         // Bring the corners into the ray's space.
         let [x, y, z] = self.axes;
-        let moved = corners.map(|p| p - self.origin);
-        let [a, b, c] = moved.map(|p| [p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], self.shear.z * p[z]]);
+        let place = |p: Vec3| {
+            // Four numbers and two bits of an index: nothing needs to be checked.
+            let p = (p - self.origin).extend(0.0).to_array();
+            let (x, y, z) = (x & 3, y & 3, z & 3);
+            [p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], self.shear.z * p[z]]
+        };
+        let (a, b, c) = (place(corners[0]), place(corners[1]), place(corners[2]));
 
         // Ask each edge on which side the origin lies; a zero deserves a closer look.
         let mut sides = [edge(c, b), edge(a, c), edge(b, a)];

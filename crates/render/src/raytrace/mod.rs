@@ -52,11 +52,17 @@ pub trait Structure: Sync {
     /// The first triangle that the ray (less [`Triangles::center`]) meets: facet and parameter; the lower facet of two
     /// at the same place. Adds what it took to `counters`.
     fn closest_hit(&self, ray: &Ray, counters: &mut Counters) -> Option<(u32, f32)> {
+        self.closest_hit_from(ray, u32::MAX, counters).map(|(place, t)| (self.triangles().facets[place], t))
+    }
+
+    /// [`Self::closest_hit`] of a ray that leaves the facet `own`, which it cannot meet again: the triangle's place in
+    /// [`Self::triangles`] and the parameter.
+    fn closest_hit_from(&self, ray: &Ray, own: u32, counters: &mut Counters) -> Option<(usize, f32)> {
         let triangles = self.triangles();
         let length = ray.direction.abs().max_element();
         let reach = ray.origin.abs().max_element() + triangles.extent;
         let slack = reach / length * (1.0 / (1 << 19) as f32);
-        let mut closest = Closest { triangles, ray, slack, best: None, tests: 0 };
+        let mut closest = Closest { triangles, ray, own, slack, best: None, tests: 0 };
         counters.boxes += self.traverse(&Beam::around(ray, triangles.extent), &mut closest);
         counters.triangles += closest.tests;
         closest.best
@@ -92,9 +98,11 @@ pub struct Counters {
 struct Closest<'a> {
     triangles: &'a Triangles,
     ray: &'a Ray,
+    /// The facet that the ray leaves.
+    own: u32,
     /// Rounding of a hit's parameter.
     slack: f32,
-    best: Option<(u32, f32)>,
+    best: Option<(usize, f32)>,
     tests: u64,
 }
 
@@ -113,9 +121,10 @@ impl Visitor for Closest<'_> {
     fn triangle(&mut self, place: usize) {
         self.tests += 1;
         let Some(t) = self.ray.hit(&self.triangles.corners[place]) else { return };
-        let facet = self.triangles.facets[place];
-        if self.best.is_none_or(|(f, best)| t < best || (t == best && facet < f)) {
-            self.best = Some((facet, t));
+        let facets = &self.triangles.facets;
+        let first = |(p, best): (usize, f32)| t < best || (t == best && facets[place] < facets[p]);
+        if facets[place] != self.own && self.best.is_none_or(first) {
+            self.best = Some((place, t));
         }
     }
 }

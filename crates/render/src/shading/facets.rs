@@ -93,18 +93,25 @@ impl FacetTable {
     }
 }
 
+/// The corners of each lane's triangle, model space.
 #[inline(always)]
-fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subject: &Subject<'_>, out: &mut [Record]) {
-    let (mesh, instance, viewing) = (subject.mesh, subject.instance, subject.viewing);
+pub(super) fn model_corners<S: Simd>(simd: S, triangles: &[u32], mesh: &Mesh) -> [[F<S>; 3]; 3] {
     let last = triangles.len() - 1;
-    let model = gather(
+    gather(
         simd,
         #[inline(always)]
         |lane| {
             let [a, b, c] = mesh.triangles[triangles[lane.min(last)] as usize];
             [mesh.positions[a as usize], mesh.positions[b as usize], mesh.positions[c as usize]]
         },
-    );
+    )
+}
+
+#[inline(always)]
+fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subject: &Subject<'_>, out: &mut [Record]) {
+    let (instance, viewing) = (subject.instance, subject.viewing);
+    let last = triangles.len() - 1;
+    let model = model_corners(simd, triangles, subject.mesh);
     let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
     for lane in 0..LANES {
         [x[lane], y[lane]] = anchors[lane.min(last)];
@@ -126,16 +133,31 @@ fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subj
         }
     }
 
-    // Corners and normals in view space.
+    write_records(simd, triangles, subject, &model, None, edges, [x0, y0], out);
+}
+
+/// Corners and normals in view space, and with the weights into records; seen from `origin` (view space) if not by the eye.
+#[inline(always)]
+pub(super) fn write_records<S: Simd>(
+    simd: S,
+    triangles: &[u32],
+    subject: &Subject<'_>,
+    model: &[[F<S>; 3]; 3],
+    origin: Option<V3<F<S>>>,
+    weights: [[F<S>; 3]; 3],
+    [x0, y0]: [F<S>; 2],
+    out: &mut [Record],
+) {
+    let instance = subject.instance;
     let to_view = &instance.view_from_model;
     let positions = [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
     let geometric = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
     let geometric = if instance.mirrored { -geometric } else { geometric };
     let normals = corner_normals(simd, triangles, subject, geometric);
-    let (facet_normal, normals) = facing(simd, subject, &positions, geometric, normals);
+    let (facet_normal, normals) = facing(simd, subject, &positions, origin, geometric, normals);
 
     let mut columns = [[0.0f32; LANES]; 32];
-    let (e, n, p, m) = (edges, facet_normal, positions, normals);
+    let (e, n, p, m) = (weights, facet_normal, positions, normals);
     let numbers: [F<S>; 32] = [
         e[0][0], e[0][1], e[0][2], e[1][0], e[1][1], e[1][2], e[2][0], e[2][1], e[2][2], x0, y0, n.x, n.y, n.z, p[0].x,
         p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z, m[0].x, m[0].y, m[0].z, m[1].x, m[1].y, m[1].z,
@@ -181,14 +203,18 @@ fn facing<S: Simd>(
     simd: S,
     subject: &Subject<'_>,
     positions: &[V3<F<S>>; 3],
+    origin: Option<V3<F<S>>>,
     geometric: V3<F<S>>,
     mut normals: [V3<F<S>>; 3],
 ) -> (V3<F<S>>, [V3<F<S>>; 3]) {
-    if !(subject.instance.two_sided || subject.viewing.double_sided) {
+    // A ray inside a body sees the back of its surface.
+    if origin.is_none() && !(subject.instance.two_sided || subject.viewing.double_sided) {
         return (geometric, normals);
     }
     // Every point of the facet is on the same side of the eye.
-    let towards = if subject.viewing.perspective {
+    let towards = if let Some(origin) = origin {
+        geometric.dot(origin - positions[0])
+    } else if subject.viewing.perspective {
         let middle = positions[0] + positions[1] + positions[2];
         geometric.dot(-middle)
     } else {

@@ -2,10 +2,11 @@
 
 use super::group::{Model, model};
 use crate::prepare::{is_solid, mirrors};
+use crate::radiosity::Solution;
 use crate::settings::Kay;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
-use crate::{Background, ColorSpace, Execution, Interpolation, PreparedView, Settings, Shading, Transparency};
+use crate::{Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency};
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
 use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef};
@@ -50,6 +51,8 @@ pub(crate) struct MaterialConstants<'a> {
     pub cutoff: Option<f32>,
     /// Alpha matters.
     pub blend: bool,
+    /// Rays that meet it are followed on.
+    pub follows: bool,
 }
 
 /// Decode tables of one frame.
@@ -79,6 +82,10 @@ pub(crate) struct FrameConstants<'a> {
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
     pub shadows: Option<&'a dyn Shadows>,
+    /// Light from other surfaces; `None` without radiosity.
+    pub radiosity: Option<&'a Solution>,
+    /// For each facet whether rays that meet it are followed on; empty without ray tracing.
+    follows: Vec<bool>,
     /// Global ambient light.
     pub ambient: Rgb,
     pub shading: Shading,
@@ -105,6 +112,7 @@ impl<'a> FrameConstants<'a> {
         lights: &[Light],
         ambient: Rgb,
         shadows: Option<&'a dyn Shadows>,
+        radiosity: Option<&'a Solution>,
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
@@ -113,7 +121,11 @@ impl<'a> FrameConstants<'a> {
         let instances = (0..session.world.instances.len()).map(|i| instance_constants(view, i, execution)).collect();
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
-        let materials = materials.map(|m| material_constants(m, view, settings, tables)).collect();
+        let materials: Vec<_> = materials.map(|m| material_constants(m, view, settings, tables)).collect();
+        let follows = match settings.global {
+            Global::RayTrace => facets_that_follow(view, &materials),
+            _ => Vec::new(),
+        };
         let background = background_rows(&settings.background, settings.height, raw);
         let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
         let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
@@ -126,6 +138,8 @@ impl<'a> FrameConstants<'a> {
             lights,
             light_numbers,
             shadows,
+            radiosity,
+            follows,
             ambient,
             shading: settings.shading,
             interpolation: settings.interpolation,
@@ -139,11 +153,36 @@ impl<'a> FrameConstants<'a> {
         }
     }
 
+    /// Whether rays are followed at all.
+    pub(crate) fn follows_rays(&self) -> bool {
+        !self.follows.is_empty()
+    }
+
+    /// Whether rays that meet the facet are followed on.
+    #[inline(always)]
+    pub(crate) fn follows(&self, facet: u32) -> bool {
+        self.follows.get(facet as usize).copied().unwrap_or(false)
+    }
+
     /// The material of a part of a mesh.
     pub(crate) fn material(&self, index: Option<u32>) -> &MaterialConstants<'a> {
         let last = self.materials.len() - 1;
         &self.materials[index.map_or(last, |m| (m as usize).min(last))]
     }
+}
+
+/// For each facet whether its material lets rays on.
+fn facets_that_follow(view: &PreparedView<'_>, materials: &[MaterialConstants<'_>]) -> Vec<bool> {
+    let world = &view.session.world;
+    let mut follows = vec![false; world.facet_count as usize];
+    for instance in &world.instances {
+        for part in &instance.mesh.parts {
+            let index = part.material.map_or(materials.len() - 1, |m| m as usize);
+            let range = part.triangles.start + instance.first_facet..part.triangles.end + instance.first_facet;
+            follows[range.start as usize..range.end as usize].fill(materials[index].follows);
+        }
+    }
+    follows
 }
 
 fn rows(m: &DMat4) -> [[f32; 4]; 3] {
@@ -206,6 +245,7 @@ fn material_constants<'a>(
         normal: texture(material.normal_texture),
         cutoff,
         blend,
+        follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
         material: material.clone(),
     }
 }

@@ -17,6 +17,8 @@ mod facets;
 mod frame_constants;
 mod geometry;
 mod group;
+pub(crate) mod hits;
+mod looks;
 mod points;
 mod shadowed;
 
@@ -25,13 +27,15 @@ pub use flat::FaceTable;
 pub(crate) use frame_constants::{DecodeTables, FrameConstants};
 
 use composite::Composer;
+pub(crate) use group::{Bounce, Lit, shade_hits};
+pub(crate) use points::Points;
+
 use facets::FacetTable;
-use points::Points;
 use std::sync::Mutex;
 use vitral_math::lanes::{Level, dispatch};
 use vitral_raster::{LayerList, TILE_PIXELS, Tile};
 
-use crate::Transparency;
+use crate::global::{Whitted, whitted::Forest};
 use crate::marks::MarkColors;
 use crate::stats::PictureCounters;
 use crate::visible::TileSink;
@@ -40,6 +44,7 @@ use crate::visible::TileSink;
 pub(crate) struct ColorSink<'a> {
     constants: &'a FrameConstants<'a>,
     marks: &'a MarkColors,
+    tracer: Option<&'a Whitted<'a>>,
     level: Level,
     /// One picture for each tile, row by row within the tile.
     pub tiles: Vec<Mutex<Vec<[u8; 4]>>>,
@@ -52,7 +57,8 @@ pub(crate) struct ColorSink<'a> {
 struct Scratch {
     points: Points,
     facets: FacetTable,
-    lit: group::Lit,
+    lit: Lit,
+    forest: Forest,
     composer: Composer,
 }
 
@@ -60,12 +66,14 @@ impl<'a> ColorSink<'a> {
     pub(crate) fn new(
         constants: &'a FrameConstants<'a>,
         marks: &'a MarkColors,
+        tracer: Option<&'a Whitted<'a>>,
         level: Level,
         tile_count: usize,
     ) -> Self {
         Self {
             constants,
             marks,
+            tracer,
             level,
             tiles: (0..tile_count).map(|_| Mutex::default()).collect(),
             spare: Mutex::default(),
@@ -81,11 +89,16 @@ impl<'a> ColorSink<'a> {
 impl TileSink for ColorSink<'_> {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
-        let Scratch { points, facets, lit, composer } = &mut scratch;
+        let Scratch { points, facets, lit, forest, composer } = &mut scratch;
         let constants = self.constants;
-        points.collect(tile, layers, constants, self.marks);
-        lit.reset(points.len(), constants.transparency == Transparency::Filtered);
+        let front = self.tracer.map(|tracer| tracer.frontmost(tile, layers, self.marks));
+        let (tile, seen) = front.as_ref().map_or((tile, &layers[..]), |(tile, marked)| (tile, marked));
+        points.collect(tile, seen, constants, self.marks);
+        lit.reset(points.len(), constants);
         dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
+        if let Some(tracer) = self.tracer {
+            tracer.follow(points, lit, forest);
+        }
         let mut picture = vec![[0; 4]; TILE_PIXELS];
         dispatch!(self.level, simd => composer.compose(simd, tile, points, lit, constants, self.marks, &mut picture));
         *self.tiles[index].lock().expect("tile picture") = picture;

@@ -15,6 +15,8 @@ pub(crate) struct Points {
     pub pixels: Vec<Pixel>,
     /// The points of the samples of mixed pixels, or [`NO_POINT`].
     pub mixed: Vec<u32>,
+    /// The points that rays are followed on from, one for each sample.
+    pub followed: Vec<u32>,
     /// Layers, facet by facet in each pixel, in the order of the scene.
     pub fragments: Vec<FragmentPoint>,
     /// Their depths, sample by sample.
@@ -117,6 +119,7 @@ impl Points {
         self.depths.clear();
         self.pixels.clear();
         self.mixed.clear();
+        self.followed.clear();
         if tile.touched {
             if constants.view.pattern.len() == 1 {
                 self.collect_single(tile, constants);
@@ -167,7 +170,7 @@ impl Points {
                 let first = tile.facet[pixel];
                 let facet_of = |s: usize| tile.facet[s * TILE_PIXELS + pixel];
                 let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                let source = if (1..samples).all(|s| facet_of(s) == first) {
+                let source = if !constants.follows(first) && (1..samples).all(|s| facet_of(s) == first) {
                     // The common case: one facet, or none, fills the pixel.
                     if first == NO_FACET {
                         continue;
@@ -194,6 +197,13 @@ impl Points {
         for s in 0..samples {
             let facet = facet_of(s);
             if facet == NO_FACET || self.mixed[start + s] != NO_POINT {
+                continue;
+            }
+            if constants.follows(facet) {
+                // Rays go their own way from every sample.
+                let point = self.push(facet, middle(place, 1 << s, constants));
+                self.mixed[start + s] = point;
+                self.followed.push(point);
                 continue;
             }
             let mask = (s..samples).filter(|&t| facet_of(t) == facet).fold(0, |m, t| m | 1 << t);
@@ -270,6 +280,13 @@ impl Points {
             }
             start = end;
         }
+    }
+
+    /// Takes facets as points that are nowhere on the screen, and sorts them into groups.
+    pub(crate) fn collect_facets(&mut self, facets: impl Iterator<Item = u32>, constants: &FrameConstants<'_>) {
+        self.facet.clear();
+        self.facet.extend(facets);
+        self.group(constants);
     }
 
     fn push(&mut self, facet: u32, place: [f32; 2]) -> u32 {

@@ -1,19 +1,51 @@
-//! Which part of each light arrives at the points of a group, and the shadows as pictures of their own.
+//! What of each light arrives at the points of a group, and the shadows as pictures of their own.
 //!
 //! Shadows are found where the surface is, once for each point, whatever the shading model: flat and Gouraud shading
 //! illuminate centres and corners, but a shadow's edge runs across facets.
 
 use super::FrameConstants;
 use super::facets::{FacetTable, Subject};
-use super::geometry::{Surface, blend3, surface};
+use super::geometry::{F, Slots, Surface, blend3, surface};
 use super::group::slots;
 use super::phong::interpolated_normal;
 use super::points::Points;
-use crate::shadow::places;
+use crate::shadow::{Place, grey, places};
+use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{LANES, Simd, V3};
+use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
 
-/// The part of each light at each point of a group, filled up to whole eights; empty without shadows.
+/// The part of each colour of a light at the points of a group, filled up to whole eights.
+pub(crate) struct Arriving([Vec<f32>; 3]);
+
+impl Arriving {
+    fn new(parts: &[Rgb]) -> Self {
+        let count = parts.len().next_multiple_of(LANES);
+        let channel = |k: usize| {
+            let mut channel: Vec<_> = parts.iter().map(|part| part[k]).collect();
+            channel.resize(count, 0.0);
+            channel
+        };
+        Self([channel(0), channel(1), channel(2)])
+    }
+
+    /// At eight points from the `first` of the group.
+    #[inline(always)]
+    pub(crate) fn eight<S: Simd>(&self, simd: S, first: usize) -> V3<F<S>> {
+        let [r, g, b] = &self.0;
+        let lanes = lanes::inlined(
+            #[inline(always)]
+            |channel: &Vec<f32>| F32x8::from_slice(simd, &channel[first..first + LANES]),
+        );
+        V3::new(lanes(r), lanes(g), lanes(b))
+    }
+
+    fn grey(&self, point: usize) -> f32 {
+        grey([self.0[0][point], self.0[1][point], self.0[2][point]])
+    }
+}
+
+/// What of each light arrives at the points of a group that the eye sees; empty without shadows. Adds the rays that it
+/// took.
 pub(crate) fn arriving<S: Simd>(
     simd: S,
     constants: &FrameConstants<'_>,
@@ -21,29 +53,50 @@ pub(crate) fn arriving<S: Simd>(
     points: &Points,
     order: &[u32],
     facets: &FacetTable,
-) -> Vec<Vec<f32>> {
-    let Some(shadows) = constants.shadows else { return Vec::new() };
-    let instance = &constants.view.session.world.instances[subject.instance_index as usize];
-    let turns = subject.instance.two_sided || subject.viewing.double_sided;
+    rays: &mut u64,
+) -> Vec<Arriving> {
+    if constants.shadows.is_none() {
+        return Vec::new();
+    }
     let mut all = Vec::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
         let slots = slots(points, eight, records, subject.first_facet);
         let weights = simd.vectorize(
             #[inline(always)]
-            || {
-                let [a, b, c] = surface(simd, &facets.records, &slots).weights;
-                [a.to_array(), b.to_array(), c.to_array()]
-            },
+            || weights(&surface(simd, &facets.records, &slots)),
         );
-        let eight_places = places(constants.view, instance, turns, &slots.triangle, weights, [&slots.x, &slots.y]);
-        all.extend_from_slice(&eight_places[..eight.len()]);
+        all.extend_from_slice(&world_places(constants, subject, &slots, weights)[..eight.len()]);
     }
-    let part = |&light: &usize| {
-        let mut parts = vec![0.0; all.len().next_multiple_of(LANES)];
-        shadows.arriving(light, &all, &mut parts[..all.len()]);
-        parts
+    arriving_at(constants, &all, rays)
+}
+
+/// What of each light arrives at these places; empty without shadows. Adds the rays that it took.
+pub(crate) fn arriving_at(constants: &FrameConstants<'_>, places: &[Place], rays: &mut u64) -> Vec<Arriving> {
+    let Some(shadows) = constants.shadows else { return Vec::new() };
+    let mut parts = vec![[0.0; 3]; places.len()];
+    let of_light = |&light: &usize| {
+        shadows.arriving(light, places, &mut parts, rays);
+        Arriving::new(&parts)
     };
-    constants.light_numbers.iter().map(part).collect()
+    constants.light_numbers.iter().map(of_light).collect()
+}
+
+#[inline(always)]
+pub(super) fn weights<S: Simd>(surface: &Surface<S>) -> [[f32; LANES]; 3] {
+    let [a, b, c] = surface.weights;
+    [a.to_array(), b.to_array(), c.to_array()]
+}
+
+/// Where eight points are in the world.
+pub(super) fn world_places(
+    constants: &FrameConstants<'_>,
+    subject: &Subject<'_>,
+    slots: &Slots,
+    weights: [[f32; LANES]; 3],
+) -> [Place; LANES] {
+    let instance = &constants.view.session.world.instances[subject.instance_index as usize];
+    let turns = subject.instance.two_sided || subject.viewing.double_sided;
+    places(constants.view, instance, turns, &slots.triangle, weights, [&slots.x, &slots.y])
 }
 
 /// Attached and cast shadow of eight points, the first the `first` of its group: shares of the lights that have a place
@@ -52,19 +105,19 @@ pub(crate) fn arriving<S: Simd>(
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
     surface: &Surface<S>,
-    arriving: &[Vec<f32>],
+    arriving: &[Arriving],
     first: usize,
 ) -> [[f32; LANES]; 2] {
     let (position, normal) = (blend3(&surface.weights, &surface.positions), interpolated_normal(surface));
     let soa = |v: V3<_>| {
-        let V3 { x, y, z }: V3<vitral_math::lanes::F32x8<S>> = v;
+        let V3 { x, y, z }: V3<F<S>> = v;
         [x.to_array(), y.to_array(), z.to_array()]
     };
     let (position, normal, facet) = (soa(position), soa(normal), soa(surface.facet_normal));
     let mut shares = [[0.0; LANES]; 2];
     for lane in 0..LANES {
         let at = |v: &[[f32; LANES]; 3]| V3::new(v[0][lane], v[1][lane], v[2][lane]);
-        let part = |light: usize| arriving.get(light).map_or(1.0, |parts| parts[first + lane]);
+        let part = |light: usize| arriving.get(light).map_or(1.0, |parts| parts.grey(first + lane));
         let [attached, cast] = shares_at(constants, at(&position), [at(&normal), at(&facet)], part);
         (shares[0][lane], shares[1][lane]) = (attached, cast);
     }

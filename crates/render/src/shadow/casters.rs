@@ -6,13 +6,14 @@
 
 use super::Place;
 use super::occluders::Occluders;
-use super::ray::above;
+use super::ray::clearance;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Probe, Structure, Tree, Visitor};
 use crate::{Execution, Session};
 use std::sync::Arc;
 use vitral_exec::Limit;
+use vitral_light::Rgb;
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -83,12 +84,12 @@ pub(super) fn side_normal(a: DVec3, b: DVec3, light: DVec4) -> DVec3 {
 /// Triangles nearer to a light than this hide nothing from it: what it is fixed to does not.
 pub(super) fn near(light: DVec4, extent: f32) -> f64 {
     let position = light.truncate() * light.w;
-    above(&Place { position, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: [0.0; 2] }, extent)
+    clearance(position, f64::from(extent))
 }
 
 /// Where a place is looked at: a little above its facet.
 pub(super) fn lifted(place: &Place, extent: f32) -> DVec3 {
-    place.position + place.normal * above(place, extent)
+    place.position + place.normal * clearance(place.position, f64::from(extent))
 }
 
 /// Whether a place looks at the light. If not it is in its own shadow.
@@ -203,7 +204,7 @@ impl Casters {
         wide(&self.filters.triangles().corners[triangle as usize])
     }
 
-    /// The part of light that the transparent triangles of `list` let through to a place (lifted) on the facet `own`.
+    /// The part of each colour that the transparent triangles of `list` let through to a place (lifted) on the facet `own`.
     pub(super) fn filtered(
         &self,
         occluders: &Occluders<'_>,
@@ -211,7 +212,7 @@ impl Casters {
         own: u32,
         place: DVec3,
         list: &[u32],
-    ) -> f32 {
+    ) -> Rgb {
         let triangles = self.filters.triangles();
         let near = near(light, triangles.extent);
         let hides = |t: &&u32| {
@@ -227,7 +228,7 @@ impl Casters {
             let along = normal.dot(corners[0] - place) / normal.dot(way);
             occluders.passing(facet, &triangles.corners[t as usize], || place + way * along)
         };
-        hits.iter().map(passing).product()
+        hits.iter().map(passing).fold([1.0; 3], |left, part| [0, 1, 2].map(|k| left[k] * part[k]))
     }
 }
 

@@ -30,7 +30,7 @@ use crate::{ColorSpace, Execution, Session, Settings, Transparency};
 use lens::Lens;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{Light, LightKind};
+use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// See the module.
@@ -168,8 +168,8 @@ impl LightMaps {
 }
 
 impl Shadows for Arc<Maps> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
-        places.iter().zip(parts).for_each(|(place, part)| *part = self.0[light].arriving(place));
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
+        places.iter().zip(parts).for_each(|(place, part)| *part = [self.0[light].arriving(place); 3]);
     }
 }
 

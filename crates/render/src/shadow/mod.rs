@@ -9,7 +9,7 @@
 //! An algorithm is asked about points that are seen, after visibility was decided by whatever algorithm, and about many
 //! neighbours at once: those of one object and material in a tile. What it finds out for one may serve the next.
 //! [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
-//! a cut-out one lets light through its holes.
+//! coloured by its filter where transparency is filtered; a cut-out one lets light through its holes.
 
 mod casters;
 pub mod map;
@@ -21,11 +21,13 @@ pub mod scan_line;
 mod sources;
 pub mod volume;
 
-pub(crate) use place::places;
+pub(crate) use occluders::{texel, weights};
+pub(crate) use place::{facet, places, weighted};
+pub(crate) use ray::clearance;
 
 use crate::{Execution, PreparedView, Session, Settings, registry};
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// A point of a surface that asks for light.
@@ -45,9 +47,9 @@ pub struct Place {
 
 /// Shadows of one set of lights in one scene.
 pub trait Shadows: Sync {
-    /// Which part of the light of this number reaches each of the places, `0..=1`, into as many `parts`. Other places in
-    /// the same call do not change the answer.
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]);
+    /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
+    /// Other places in the same call do not change the answer. Adds the rays that it took.
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], rays: &mut u64);
 
     /// Hands on the polygons that it works with; nothing where [`crate::registry::Shadowing::polygons`] says so.
     fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}
@@ -76,6 +78,11 @@ pub trait ShadowAlgorithm: Sync {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+}
+
+/// The mean of three channels, written so that grey stays as it is.
+pub(crate) fn grey([r, g, b]: Rgb) -> f32 {
+    r + ((g - r) + (b - r)) / 3.0
 }
 
 /// Hands on the polygons that the chosen algorithm works with.

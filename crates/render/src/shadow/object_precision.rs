@@ -20,7 +20,7 @@ mod clip;
 
 use super::casters::{Casters, Solid, away, faces, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
-use super::ray::above;
+use super::ray::clearance;
 use super::sources::Source;
 use super::{Drawn, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
@@ -29,7 +29,7 @@ use clip::{Cutter, Detail};
 use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// See the module.
@@ -125,7 +125,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
 /// How far above a facet its places are looked at, at most.
 fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
     let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
-    above(&Place { position, normal: DVec3::ZERO, facet: 0, seed: 0, pixel: [0.0; 2] }, extent)
+    clearance(position, f64::from(extent))
 }
 
 impl OfLight {
@@ -221,22 +221,23 @@ impl Details {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {
-            return parts.fill(1.0);
+            return parts.fill([1.0; 3]);
         }
         let (share, extent) = (1.0 / lights.len() as f32, casters.extent());
         let slack = f64::from(extent) * SLACK;
         for (place, part) in places.iter().zip(parts) {
             let facing = lights.iter().filter(|l| faces(place, l.light));
-            let passing = facing.map(|l| {
+            *part = [0.0; 3];
+            for l in facing {
+                let Some(filters) = l.at(place.facet, place.position, slack) else { continue };
                 let at = lifted(place, extent);
-                let filters = l.at(place.facet, place.position, slack);
-                filters.map_or(0.0, |f| casters.filtered(&self.occluders, l.light, place.facet, at, f))
-            });
-            *part = passing.sum::<f32>() * share;
+                let passing = casters.filtered(&self.occluders, l.light, place.facet, at, filters);
+                (0..3).for_each(|k| part[k] += share * passing[k]);
+            }
         }
     }
 

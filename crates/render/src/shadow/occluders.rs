@@ -1,10 +1,11 @@
 //! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures and vertex colours say
-//! at the point where the ray passes.
+//! at the point where the ray passes. With filtered transparency, what passes has the colour of the glass.
 
 use crate::shading::DecodeTables;
+use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
 use vitral_frame::Encoding;
-use vitral_light::{AlphaMode, Material, TextureRef};
+use vitral_light::{AlphaMode, Material, Rgb, TextureRef};
 use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Attribute, Mesh};
 
@@ -14,6 +15,7 @@ pub(super) struct Occluders<'a> {
     /// For each material whether it keeps all light.
     opaque: Vec<bool>,
     all_opaque: bool,
+    filtered: bool,
     tables: DecodeTables,
 }
 
@@ -26,7 +28,8 @@ impl<'a> Occluders<'a> {
         };
         let opaque: Vec<bool> = session.scene.materials.iter().map(opaque).collect();
         let all_opaque = opaque.iter().all(|&o| o);
-        Self { session, opaque, all_opaque, tables: DecodeTables::new(settings.color_space) }
+        let filtered = settings.transparency == Transparency::Filtered;
+        Self { session, opaque, all_opaque, filtered, tables: DecodeTables::new(settings.color_space) }
     }
 
     /// Whether a facet keeps all light.
@@ -42,36 +45,42 @@ impl<'a> Occluders<'a> {
 
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
-    pub(super) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> f32 {
-        if self.all_opaque { 0.0 } else { self.passing_at(facet, corners, point()) }
+    pub(super) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
+        if self.all_opaque { [0.0; 3] } else { self.passing_at(facet, corners, point()) }
     }
 
-    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> f32 {
+    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let mesh = &*instance.mesh;
         let triangle = (facet - instance.first_facet) as usize;
         let index = mesh.material_of_triangle(triangle);
-        let Some(material) = index.and_then(|m| self.session.scene.materials.get(m as usize)) else { return 0.0 };
+        let Some(material) = index.and_then(|m| self.session.scene.materials.get(m as usize)) else { return [0.0; 3] };
         if index.is_none_or(|m| self.opaque[m as usize]) {
-            return 0.0;
+            return [0.0; 3];
         }
 
         // Opacity as shading finds it.
         let weights = weights(corners, point);
-        let mut alpha = material.opacity;
+        let mut coverage = 1.0;
         if let Some(colors) = &mesh.colors {
-            alpha *= blend(colors, mesh, triangle, weights)[3];
+            coverage *= blend(colors, mesh, triangle, weights)[3];
         }
         if let Some(texel) = self.sample(material.base_texture, mesh, triangle, weights) {
-            alpha *= texel[3];
+            coverage *= texel[3];
         }
         if let Some(texel) = self.sample(material.opacity_texture, mesh, triangle, weights) {
-            alpha *= texel[0];
+            coverage *= texel[0];
         }
+        let alpha = (material.opacity * coverage).clamp(0.0, 1.0);
         match material.alpha_mode {
-            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha.clamp(0.0, 1.0) < cutoff)),
-            _ => 1.0 - alpha.clamp(0.0, 1.0),
+            AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < cutoff)); 3],
+            AlphaMode::Blend if self.filtered => {
+                let passes =
+                    filtered::passes(coverage.clamp(0.0, 1.0), linear::opacity(material.opacity), material.filter);
+                [passes.x, passes.y, passes.z]
+            }
+            _ => [1.0 - alpha; 3],
         }
     }
 
@@ -82,16 +91,29 @@ impl<'a> Occluders<'a> {
         triangle: usize,
         weights: [f32; 3],
     ) -> Option<[f32; 4]> {
-        let reference = reference?;
-        let texture = self.session.scene.textures.get(reference.texture as usize)?;
-        let uv = blend(mesh.uvs.get(reference.uv_set as usize)?, mesh, triangle, weights);
-        let [u, v] = reference.transform.map(|row| uv[0] * row[0] + uv[1] * row[1] + row[2]);
-        let decode = match texture.encoding {
-            Encoding::Srgb => &self.tables.srgb,
-            Encoding::Linear => &self.tables.linear,
-        };
-        Some(texture.sample(&reference.sampler, u, v, 0.0, decode))
+        texel(self.session, &self.tables, reference, mesh, triangle, weights, 0.0)
     }
+}
+
+/// A texture at a point of a triangle, at a level of detail (0: the finest); `None` where there is none.
+pub(crate) fn texel(
+    session: &Session,
+    tables: &DecodeTables,
+    reference: Option<TextureRef>,
+    mesh: &Mesh,
+    triangle: usize,
+    weights: [f32; 3],
+    level: f32,
+) -> Option<[f32; 4]> {
+    let reference = reference?;
+    let texture = session.scene.textures.get(reference.texture as usize)?;
+    let uv = blend(mesh.uvs.get(reference.uv_set as usize)?, mesh, triangle, weights);
+    let [u, v] = reference.transform.map(|row| uv[0] * row[0] + uv[1] * row[1] + row[2]);
+    let decode = match texture.encoding {
+        Encoding::Srgb => &tables.srgb,
+        Encoding::Linear => &tables.linear,
+    };
+    Some(texture.sample(&reference.sampler, u, v, level, decode))
 }
 
 /// An attribute between the corners of a triangle.
@@ -101,8 +123,8 @@ fn blend<const N: usize>(a: &Attribute<[f32; N]>, mesh: &Mesh, triangle: usize, 
 }
 
 /// Barycentric coordinates of a point in a triangle's plane.
-fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
+pub(crate) fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
+    let (a, b, c) = (corners[0].as_dvec3(), corners[1].as_dvec3(), corners[2].as_dvec3());
     let normal = (b - a).cross(c - a);
     let whole = normal.length_squared();
     if whole == 0.0 {

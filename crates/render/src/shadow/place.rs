@@ -11,6 +11,30 @@ use vitral_math::lanes::LANES;
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
+/// Corners and unit normal of a facet.
+pub(crate) type Facet = ([DVec3; 3], DVec3);
+
+/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
+/// on the side from which they run counter-clockwise in the model; zero without area.
+pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet {
+    let mesh = &instance.mesh;
+    let corner = |i: u32| {
+        let [x, y, z] = mesh.positions[i as usize];
+        let p = dvec3(f64::from(x), f64::from(y), f64::from(z));
+        (instance.world_from_model.transform_point3(p) - center).as_vec3().as_dvec3()
+    };
+    let [a, b, c] = mesh.triangles[triangle as usize];
+    let corners = [corner(a), corner(b), corner(c)];
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+    (corners, if mirrors(&instance.world_from_model) { -normal } else { normal })
+}
+
+/// The point with these weights of the corners.
+pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
+    let w = [f64::from(weights[0]), f64::from(weights[1]), f64::from(weights[2])];
+    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
+}
+
 /// What all points of an object have in common.
 pub(crate) struct Placing<'a> {
     view: &'a PreparedView<'a>,
@@ -32,27 +56,28 @@ pub(crate) fn places(
 ) -> [Place; LANES] {
     let center = Triangles::center_of(&view.session.world);
     let placing = Placing { view, instance, turns, center };
+    // Neighbours mostly lie on one facet.
+    let mut last = (triangles[0], facet(instance, triangles[0], center));
     std::array::from_fn(|lane| {
-        let weights = weights.map(|w| w[lane]);
+        if last.0 != triangles[lane] {
+            last = (triangles[lane], facet(instance, triangles[lane], center));
+        }
+        let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
         let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
         let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
-        placing.place(triangles[lane], weights, seed, screen.map(|s| s[lane]))
+        placing.place(&last, weights, seed, screen.map(|s| s[lane]))
     })
 }
 
 impl Placing<'_> {
-    fn place(&self, triangle: u32, weights: [f32; 3], seed: u32, pixel: [f32; 2]) -> Place {
-        let mesh = &self.instance.mesh;
-        let corners = mesh.triangles[triangle as usize].map(|i| {
-            let [x, y, z] = mesh.positions[i as usize].map(f64::from);
-            let p = self.instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center;
-            // The corners that the rays' triangles have.
-            p.as_vec3().as_dvec3()
-        });
-        let w = weights.map(f64::from);
-        let position = (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2]);
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        let outward = if mirrors(&self.instance.world_from_model) { -normal } else { normal };
+    fn place(
+        &self,
+        &(triangle, (corners, outward)): &(u32, Facet),
+        weights: [f32; 3],
+        seed: u32,
+        pixel: [f32; 2],
+    ) -> Place {
+        let position = weighted(&corners, weights);
         let (eye, perspective) = self.view.eye();
         let towards =
             if perspective { eye - self.center - position } else { self.view.view.view_from_world.row(2).truncate() };

@@ -24,7 +24,7 @@ use crate::raytrace::{Structure, Visitor};
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -34,9 +34,9 @@ pub struct RayShadows;
 /// Rounding of one operation.
 const UNIT: f64 = 1.0 / (1u32 << 24) as f64;
 
-/// How far above its facet a place is looked at.
-pub(super) fn above(place: &Place, extent: f32) -> f64 {
-    16.0 * UNIT * (place.position.abs().max_element() + f64::from(extent))
+/// How far above its facet a ray must start at this place of a scene of half-width `extent`; see the module.
+pub(crate) fn clearance(position: DVec3, extent: f64) -> f64 {
+    16.0 * UNIT * (position.abs().max_element() + extent)
 }
 
 struct Prepared<'a> {
@@ -62,16 +62,20 @@ impl ShadowAlgorithm for RayShadows {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], rays: &mut u64) {
         for (place, part) in places.iter().zip(parts) {
             *part = match &self.sources[light] {
-                Source::Unhindered => 1.0,
-                Source::Infinity(towards) => self.passing(place, *towards, false),
-                Source::Point(at) => self.passing(place, *at - place.position, true),
+                Source::Unhindered => [1.0; 3],
+                Source::Infinity(towards) => self.passing(place, *towards, false, rays),
+                Source::Point(at) => self.passing(place, *at - place.position, true, rays),
                 Source::Area(area) => {
                     let seed = hash(place.seed ^ hash(light as u32));
-                    let samples = (0..area.count()).map(|i| area.place(i, seed) - place.position);
-                    samples.map(|way| self.passing(place, way, true)).sum::<f32>() / area.count() as f32
+                    let mut sum = [0.0; 3];
+                    for i in 0..area.count() {
+                        let part = self.passing(place, area.place(i, seed) - place.position, true, rays);
+                        sum = [0, 1, 2].map(|k| sum[k] + part[k]);
+                    }
+                    sum.map(|channel| channel / area.count() as f32)
                 }
             };
         }
@@ -80,24 +84,26 @@ impl Shadows for Prepared<'_> {
 
 impl Prepared<'_> {
     /// What passes on the way from the place along `way`, to its end or to infinity.
-    fn passing(&self, place: &Place, way: DVec3, ends: bool) -> f32 {
+    fn passing(&self, place: &Place, way: DVec3, ends: bool, rays: &mut u64) -> Rgb {
         // Attached shadow; also a light in the facet's plane, or at the very place.
         if place.normal.dot(way) <= 0.0 {
-            return 0.0;
+            return [0.0; 3];
         }
         let triangles = self.tree.triangles();
-        let above = above(place, triangles.extent);
+        let extent = f64::from(triangles.extent);
+        let above = clearance(place.position, extent);
         let origin = place.position + place.normal * above;
         let way = if ends { way - place.normal * above } else { way };
         let length = way.abs().max_element();
         let scale = 1.0 / length;
         let ray = Ray::new(origin.as_vec3(), (way * scale).as_vec3());
         if !ray.direction.is_finite() || ray.direction == Vec3::ZERO {
-            return 1.0;
+            return [1.0; 3];
         }
+        *rays += 1;
         // What the light itself is fixed to does not hide it.
         let far = if ends { (length - above) as f32 } else { f32::INFINITY };
-        let mut passing = Passing { prepared: self, ray: &ray, far, own: place.facet, left: 1.0 };
+        let mut passing = Passing { prepared: self, ray: &ray, far, own: place.facet, left: [1.0; 3] };
         self.tree.traverse(&Beam::around(&ray, triangles.extent), &mut passing);
         passing.left
     }
@@ -111,7 +117,7 @@ struct Passing<'a> {
     far: f32,
     /// The facet that the ray leaves.
     own: u32,
-    left: f32,
+    left: Rgb,
 }
 
 impl Visitor for Passing<'_> {
@@ -122,18 +128,19 @@ impl Visitor for Passing<'_> {
 
     #[inline(always)]
     fn done(&self, near: f32) -> bool {
-        self.left == 0.0 || near >= self.far
+        self.left == [0.0; 3] || near >= self.far
     }
 
     #[inline(always)]
     fn triangle(&mut self, place: usize) {
         let triangles = self.prepared.tree.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
-        if self.left == 0.0 || facet == self.own {
+        if self.left == [0.0; 3] || facet == self.own {
             return;
         }
         let Some(t) = self.ray.hit(corners).filter(|t| *t < self.far) else { return };
         let point = || (self.ray.origin + self.ray.direction * t).as_dvec3();
-        self.left *= self.prepared.occluders.passing(facet, corners, point);
+        let passing = self.prepared.occluders.passing(facet, corners, point);
+        self.left = [0, 1, 2].map(|k| self.left[k] * passing[k]);
     }
 }

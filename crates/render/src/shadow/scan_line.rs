@@ -21,7 +21,7 @@ use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings};
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// See the module.
@@ -74,12 +74,12 @@ struct Work {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {
-            return parts.fill(1.0);
+            return parts.fill([1.0; 3]);
         }
-        parts.fill(0.0);
+        parts.fill([0.0; 3]);
         let (share, extent) = (1.0 / lights.len() as f32, self.casters.extent());
         let mut work = Work::default();
         for &from in lights {
@@ -99,8 +99,8 @@ impl Shadows for Prepared<'_> {
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
                     let own = places[point.index].facet;
-                    parts[point.index] +=
-                        share * self.casters.filtered(&self.occluders, from, own, point.lifted, filters);
+                    let passing = self.casters.filtered(&self.occluders, from, own, point.lifted, filters);
+                    (0..3).for_each(|k| parts[point.index][k] += share * passing[k]);
                 });
             }
         }

@@ -38,7 +38,7 @@ use count::{Batch, Lit};
 use edges::Edges;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::Light;
+use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -196,12 +196,12 @@ impl LightVolumes {
 }
 
 impl Shadows for Counting<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [f32]) {
+    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
-            return parts.fill(1.0);
+            return parts.fill([1.0; 3]);
         }
-        parts.fill(0.0);
+        parts.fill([0.0; 3]);
         let share = 1.0 / volumes.len() as f32;
         let mut batch = Batch::default();
         for (place_of_light, &around_viewer) in volumes.iter().zip(&self.around_viewer[light]) {
@@ -214,11 +214,12 @@ impl Shadows for Counting<'_> {
                 if count <= 0 {
                     let own = places[index].facet;
                     let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);
-                    parts[index] += share * passing;
+                    (0..3).for_each(|k| parts[index][k] += share * passing[k]);
                 }
             });
         }
     }
+
     fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
         let triangles = self.volumes.casters.triangles();
         for (light, places) in self.volumes.lights.iter().enumerate() {

@@ -195,7 +195,7 @@ pub(super) fn extent(pattern: &SamplePattern) -> [[i32; 2]; 2] {
 
 /// Whether depth `a` of facet `fa` hides depth `b` of facet `fb` at one sample: the law of agreement.
 #[inline]
-pub(super) fn nearer((a, fa): (f32, u32), (b, fb): (f32, u32)) -> bool {
+pub(crate) fn nearer((a, fa): (f32, u32), (b, fb): (f32, u32)) -> bool {
     a > b || (a == b && fa < fb)
 }
 

@@ -13,6 +13,7 @@ pub mod weiler_atherton;
 pub mod zbuffer;
 
 pub(crate) use bsp::Tree as BspTree;
+pub(crate) use facets::nearer;
 pub(crate) use screen_setups::charged;
 
 use crate::stats::{GeometryStats, VisibilityCounters};

@@ -51,10 +51,10 @@ fn with_shadows<R>(
     let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
-        let mut part = [f32::NAN];
+        let mut part = [[f32::NAN; 3]];
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
-        ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part);
-        part[0]
+        ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part, &mut 0);
+        part[0][0]
     })
 }
 
@@ -408,7 +408,12 @@ const SIDES: [DVec3; 3] = [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.
 #[test]
 fn f23_maps_agree_with_rays_the_better_the_larger() {
     let mut means = [0.0; 2];
-    for (name, _) in builtin::names() {
+    // Scenes of opaque things; glass keeps only a part of the light, and the Cornell box is lit from within.
+    let opaque = |name: &str| {
+        let scene = builtin::scene(name).unwrap();
+        scene.materials.iter().all(|m| !m.is_layered() && m.emission == [0.0; 3])
+    };
+    for (name, _) in builtin::names().iter().filter(|(name, _)| opaque(name)) {
         for light in lights_for(name) {
             for from in SIDES {
                 let maps = |size| Settings { shadow_map_size: size, ..settings("map") };

@@ -6,6 +6,7 @@ mod culling;
 mod determinism;
 mod interpolation;
 mod lighting;
+mod ray_trace;
 mod robust;
 mod transparency;
 mod traps;

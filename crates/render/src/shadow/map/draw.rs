@@ -1,5 +1,6 @@
 //! The first pass: depths from the light, by the z-buffer algorithm of the renderer itself.
 
+use super::super::grey;
 use super::super::occluders::Occluders;
 use super::{Layer, Lens, Map};
 use crate::stats::CullCounters;
@@ -107,6 +108,7 @@ impl DepthSink<'_> {
         });
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
         let world_from_view = self.lens.view_from_world.inverse();
-        self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
+        // A map knows one number for all colours.
+        grey(self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point)))
     }
 }

@@ -1,0 +1,90 @@
+//! What a ray is in: the stack of media that it entered and has not left.
+//!
+//! A ray that enters a body pushes the body's material; one that leaves it takes the material away, wherever it is in the
+//! stack. The innermost is what light runs through, air where there is none. So a bubble in a glass of water in air has
+//! the right neighbours on each of its surfaces, and bodies that overlap instead of touching do no harm.
+//!
+//! In:   material, entering or leaving. Out: the materials before and behind the surface.
+//! Cost: constant.
+//! Source: \[Glassner 1989\]. Departs from it: beyond [`MOST`] media the outermost is forgotten.
+
+/// Most media that are remembered.
+pub const MOST: usize = 8;
+
+/// See the module.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Media {
+    stack: [u32; MOST],
+    count: u8,
+}
+
+/// A surface between two media; `None` is air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Border {
+    /// Where the ray comes from.
+    pub before: Option<u32>,
+    /// Where it goes.
+    pub behind: Option<u32>,
+    /// What it is in then.
+    pub then: Media,
+}
+
+impl Media {
+    /// The innermost medium.
+    pub fn innermost(&self) -> Option<u32> {
+        self.stack[..usize::from(self.count)].last().copied()
+    }
+
+    /// The ray enters a body of `material`.
+    pub fn enter(self, material: u32) -> Border {
+        let mut then = self;
+        if usize::from(then.count) == MOST {
+            then.stack.copy_within(1.., 0);
+            then.count -= 1;
+        }
+        then.stack[usize::from(then.count)] = material;
+        then.count += 1;
+        Border { before: self.innermost(), behind: Some(material), then }
+    }
+
+    /// The ray leaves a body of `material`. If it never entered it, the viewer is in the body.
+    pub fn leave(self, material: u32) -> Border {
+        let count = usize::from(self.count);
+        let Some(at) = self.stack[..count].iter().rposition(|&m| m == material) else {
+            return Border { before: Some(material), behind: self.innermost(), then: self };
+        };
+        let mut then = self;
+        then.stack.copy_within(at + 1..count, at);
+        then.count -= 1;
+        Border { before: self.innermost(), behind: then.innermost(), then }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bubble_in_water_in_glass() {
+        let (glass, water, air) = (4, 7, None);
+        let border = Media::default().enter(glass);
+        assert_eq!((border.before, border.behind), (air, Some(glass)));
+        let border = border.then.enter(water);
+        assert_eq!((border.before, border.behind), (Some(glass), Some(water)));
+        let border = border.then.leave(water);
+        assert_eq!((border.before, border.behind), (Some(water), Some(glass)));
+        let border = border.then.leave(glass);
+        assert_eq!((border.before, border.behind, border.then.innermost()), (Some(glass), air, air));
+    }
+
+    #[test]
+    fn overlapping_bodies_and_a_viewer_inside() {
+        // Into A, into B, out of A, out of B: inside B nothing changes where A ends.
+        let border = Media::default().enter(1).then.enter(2).then.leave(1);
+        assert_eq!((border.before, border.behind), (Some(2), Some(2)));
+        assert_eq!(border.then.leave(2).behind, None);
+        assert_eq!(Media::default().leave(3), Border { before: Some(3), behind: None, then: Media::default() });
+        let deep = (0..20).fold(Media::default(), |media, m| media.enter(m).then);
+        assert_eq!((deep.innermost(), deep.leave(19).behind), (Some(19), Some(18)));
+    }
+}

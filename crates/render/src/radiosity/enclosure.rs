@@ -1,0 +1,236 @@
+//! What radiosity needs to know of a scene: elements, how they reflect, what they send out by themselves.
+//!
+//! Both sides of a surface may be lit, so each element counts twice: `2 e` is its front, from which its corners run
+//! counter-clockwise, `2 e + 1` its back. Light that surfaces send out leaves the front, and the back as well if the
+//! material is two-sided. What light sources bring (with shadows by rays) is reflected once before anything else happens;
+//! area lights that stand for surfaces which shine by themselves are left out. Surfaces that let more than half of the
+//! light pass take no part.
+//!
+//! In:   a session, lights. Out: [`Enclosure`].
+//! Cost: linear in elements, times lights.
+//! Source: \[Goral et al. 1984\].
+
+use super::patch::Trees;
+use crate::raytrace::triangles::Triangles;
+use crate::shading::DecodeTables;
+use crate::shadow::{Place, Shadows, facet as facet_of, ray::RayShadows, texel};
+use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_light::{AlphaMode, Light, LightKind, Material, PreparedLight, Reflectance};
+use vitral_math::lanes::V3;
+use vitral_math::{DVec3, DVec4};
+use vitral_scene::{Mesh, Part, Scene};
+
+/// Red, green, blue.
+pub type Color = [f64; 3];
+
+/// Reflectances above this count as this, so that light dies out.
+const MOST_REFLECTED: f64 = 0.99;
+/// More elements are not made.
+const MOST_ELEMENTS: usize = 4 << 20;
+
+/// A small triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Element {
+    /// Its node in the trees.
+    pub node: u32,
+    /// Its patch.
+    pub patch: u32,
+    /// Middle, world space less the scene's.
+    pub center: DVec3,
+    /// Unit normal of the front.
+    pub normal: DVec3,
+    /// In squares of the world's unit.
+    pub area: f64,
+    /// Reflected part of diffuse light.
+    pub reflectance: Color,
+}
+
+/// A triangle that sends light.
+#[derive(Clone, Copy, Debug)]
+pub struct Patch {
+    /// Middle.
+    pub center: DVec3,
+    /// Unit normal of the front.
+    pub normal: DVec3,
+}
+
+/// 1 for the front of an element or a patch, -1 for its back, by the number of the side.
+pub(super) fn turned(side: usize) -> f64 {
+    1.0 - 2.0 * (side & 1) as f64
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Enclosure {
+    /// The quadtrees.
+    pub trees: Trees,
+    /// Their leaves.
+    pub elements: Vec<Element>,
+    /// Patches, by number.
+    pub patches: Vec<Patch>,
+    /// Radiosity of each side of each element before light goes on from surface to surface: what it sends out by itself,
+    /// and what it reflects of light sources.
+    pub emission: Vec<Color>,
+    /// The elements as a scene, a facet each.
+    pub scene: Session,
+}
+
+/// The lights that light surfaces directly: without ambient light, and without area lights where surfaces shine.
+pub(crate) fn direct_lights(scene: &Scene, lights: &[Light]) -> Vec<Light> {
+    let shining = scene.materials.iter().any(|m| m.emission != [0.0; 3]);
+    let direct = lights.iter().map(|light| {
+        let stands_for = shining && matches!(light.kind, LightKind::Area { .. });
+        Light { ambient: [0.0; 3], enabled: light.enabled && !stands_for, ..light.clone() }
+    });
+    direct.collect()
+}
+
+/// Whether a material's surfaces take part.
+fn takes_part(material: Option<&Material>) -> bool {
+    material.is_none_or(|m| m.alpha_mode != AlphaMode::Blend || m.opacity >= 0.5)
+}
+
+/// Quadtrees over the facets that take part.
+pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
+    let (world, center) = (&session.world, Triangles::center_of(&session.world));
+    let corners = |number: u32| {
+        let instance = &world.instances[world.instance_of_facet(number)];
+        let triangle = number - instance.first_facet;
+        let material = instance.mesh.material_of_triangle(triangle as usize);
+        let (corners, normal) = facet_of(instance, triangle, center);
+        let sound = normal != DVec3::ZERO && corners.iter().all(|c| c.is_finite());
+        let part = takes_part(material.and_then(|m| session.scene.materials.get(m as usize)));
+        (sound && part).then_some(corners)
+    };
+    let limit = Limit::Work { needed: 2 * MOST_ELEMENTS as u64, limit: MOST_ELEMENTS as u64, stage: "cutting patches" };
+    Trees::new(world.facet_count, corners, longest, MOST_ELEMENTS).ok_or(limit)
+}
+
+impl Enclosure {
+    /// Looks at the leaves of `trees`, which are of this session's facets.
+    pub fn new(
+        trees: Trees,
+        session: &Session,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
+        let leaves = trees.leaves();
+        let tables = DecodeTables::new(settings.color_space);
+        let found = execution.workers.map(leaves.len(), |i| element(&trees, leaves[i], session, &tables));
+        let (elements, own): (Vec<Element>, Vec<[Color; 2]>) = found.into_iter().unzip();
+        let mut patches = vec![Patch { center: DVec3::ZERO, normal: DVec3::Z }; trees.patches as usize];
+        let mut areas = vec![0.0; patches.len()];
+        for element in &elements {
+            let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
+            (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
+            *area += element.area;
+        }
+        patches.iter_mut().zip(areas).for_each(|(patch, area)| patch.center /= area);
+        let scene = element_scene(&trees, &leaves);
+        let mut enclosure = Self { trees, elements, patches, emission: own.into_flattened(), scene };
+        enclosure.add_direct(session, lights, settings, execution)?;
+        Ok(enclosure)
+    }
+
+    /// Adds what the elements reflect of light sources.
+    fn add_direct(
+        &mut self,
+        session: &Session,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<(), Limit> {
+        let center = Triangles::center_of(&session.world);
+        let here = vitral_math::DMat4::from_translation(-center);
+        let prepared = lights.iter().map(|l| PreparedLight::new(l, &here)).enumerate();
+        let prepared: Vec<_> = prepared.filter_map(|(i, l)| Some((i, l?))).collect();
+        if prepared.is_empty() || !settings.lighting {
+            return Ok(());
+        }
+        let shadows = RayShadows.prepare(session, lights, DVec4::Z, settings, execution)?;
+        let direct = execution.workers.map(self.emission.len(), |i| {
+            let element = &self.elements[i / 2];
+            let facet = self.trees.nodes[element.node as usize].facet;
+            let place = Place {
+                position: element.center,
+                normal: element.normal * turned(i),
+                facet,
+                seed: i as u32,
+                pixel: [0.0; 2],
+            };
+            arriving(&prepared, &*shadows, &place)
+        });
+        for (i, arriving) in direct.into_iter().enumerate() {
+            let reflectance = self.elements[i / 2].reflectance;
+            (0..3).for_each(|k| self.emission[i][k] += reflectance[k] * arriving[k]);
+        }
+        Ok(())
+    }
+}
+
+/// Light that comes straight from light sources to a place, on its normal's side.
+fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Place) -> Color {
+    let three = |v: DVec3| V3::splat(0.0f32, v.as_vec3().to_array());
+    let (position, normal) = (three(place.position), three(place.normal));
+    let mut sum = [0.0; 3];
+    for (number, light) in lights {
+        let incident = light.incident(position);
+        let cos = normal.dot(incident.l);
+        if cos > 0.0 && incident.intensity > 0.0 {
+            let mut part = [[0.0; 3]];
+            shadows.arriving(*number, std::slice::from_ref(place), &mut part, &mut 0);
+            let [part] = part;
+            (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * incident.intensity * cos));
+        }
+    }
+    sum
+}
+
+/// An element, and what its front and back send out by themselves.
+fn element(trees: &Trees, node: u32, session: &Session, tables: &DecodeTables) -> (Element, [Color; 2]) {
+    let corners = trees.places(node);
+    let number = trees.nodes[node as usize].facet;
+    let instance = &session.world.instances[session.world.instance_of_facet(number)];
+    let triangle = number - instance.first_facet;
+    let (_, normal) = facet_of(instance, triangle, DVec3::ZERO);
+    let mesh = &*instance.mesh;
+    let material = mesh.material_of_triangle(triangle as usize);
+    let default = Material::default();
+    let material = material.and_then(|m| session.scene.materials.get(m as usize)).unwrap_or(&default);
+
+    // Colours of the whole facet: a texture counts with its mean.
+    let weights = [1.0 / 3.0; 3];
+    let mean = |texture| {
+        const SMALLEST_LEVEL: f32 = 64.0;
+        let found = texel(session, tables, texture, mesh, triangle as usize, weights, SMALLEST_LEVEL);
+        found.map_or([1.0; 3], |t| [0, 1, 2].map(|k| f64::from(t[k])))
+    };
+    let (base, glow) = (mean(material.base_texture), mean(material.emission_texture));
+    let vertex = mesh.colors.as_ref().map_or([1.0; 3], |colors| {
+        let corners = colors.at(triangle as usize, &mesh.triangles);
+        [0, 1, 2].map(|k| corners.iter().map(|c| f64::from(c[k])).sum::<f64>() / 3.0)
+    });
+    let diffuse = match material.reflectance {
+        Reflectance::Phong { kd, .. } => kd,
+        Reflectance::MetallicRoughness { base_color, metallic, .. } => base_color.map(|c| c * (1.0 - metallic)),
+    };
+    let reflectance = [0, 1, 2].map(|k| (f64::from(diffuse[k]) * base[k] * vertex[k]).clamp(0.0, MOST_REFLECTED));
+    let front = [0, 1, 2].map(|k| f64::from(material.emission[k]).max(0.0) * glow[k]);
+    let back = if material.double_sided { front } else { [0.0; 3] };
+    let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
+    let patch = trees.nodes[node as usize].patch;
+    (Element { node, patch, center, normal, area, reflectance }, [front, back])
+}
+
+/// The leaves as a scene of their own.
+fn element_scene(trees: &Trees, leaves: &[u32]) -> Session {
+    let positions = trees.vertices.iter().map(|v| v.as_vec3().to_array()).collect();
+    let triangles = leaves.iter().map(|&l| trees.nodes[l as usize].corners).collect();
+    let parts = vec![Part { name: String::new(), triangles: 0..leaves.len() as u32, material: None }];
+    let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
+    Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound")
+}

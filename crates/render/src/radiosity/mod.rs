@@ -1,0 +1,175 @@
+//! Radiosity: light that matt surfaces send to each other.
+//!
+//! Surfaces are cut into patches ([`patch`]); form factors say what part of the light of one arrives at another
+//! ([`form_factor`], [`hemicube`]); light is sent from patch to patch until little is left on its way ([`progressive`]),
+//! or all patches gather it from all others, the reference ([`gather`]). Where the light changes fast, elements are cut
+//! again and the solution begins anew. The [`solution`] belongs to the scene, not to a viewer: the session keeps it, and
+//! pictures from other cameras only look it up.
+//!
+//! A picture adds what arrives from other surfaces to what the local model says about light sources, with their shadows.
+//! Ambient light, the local models' guess at all this, is left out.
+//!
+//! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
+
+pub mod enclosure;
+pub mod form_factor;
+pub mod gather;
+pub mod hemicube;
+pub mod patch;
+pub mod progressive;
+pub mod solution;
+
+pub use solution::Solution;
+
+use crate::stats::RadiosityCounters;
+use crate::{ColorSpace, Execution, Session, Settings};
+use enclosure::Enclosure;
+use hemicube::Hemicube;
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_light::Light;
+
+/// Pixels along an edge of hemicubes, and of those of strong patches.
+const HEMICUBE: [u32; 2] = [128, 512];
+/// The part of the light that may be left.
+pub const RESIDUAL: f64 = 0.01;
+/// The part that may be left before elements are cut again.
+const ROUGH: f64 = 0.2;
+/// How often elements are cut again.
+const ROUNDS: usize = 2;
+/// Elements over which light changes by more than this part of the mean are cut.
+const CONTRAST: f64 = 0.5;
+
+/// What a solution depends on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Key {
+    /// Solved here.
+    Solved {
+        lights: Vec<Light>,
+        patch_size: Option<f64>,
+        iterations: Option<u64>,
+        lighting: bool,
+        color_space: ColorSpace,
+    },
+    /// Handed in: holds whatever is asked for.
+    Loaded,
+}
+
+/// The solution for these lights: the one that is known, or a new one, whose making is counted.
+pub(crate) fn solution(
+    session: &Session,
+    lights: &[Light],
+    settings: &Settings,
+    execution: &Execution,
+    counters: &mut RadiosityCounters,
+) -> Result<Arc<Solution>, Limit> {
+    let key = Key::Solved {
+        lights: lights.to_vec(),
+        patch_size: settings.patch_size,
+        iterations: settings.iterations,
+        lighting: settings.lighting,
+        color_space: settings.color_space,
+    };
+    let mut kept = session.radiosity.lock().expect("no thread panics while it solves");
+    if let Some((known, solution)) = &*kept
+        && (*known == key || *known == Key::Loaded)
+    {
+        return Ok(Arc::clone(solution));
+    }
+    *kept = None;
+    let solution = Arc::new(solve(session, lights, settings, execution, counters)?);
+    *kept = Some((key, Arc::clone(&solution)));
+    Ok(solution)
+}
+
+/// Patches, rough solutions that say where to cut elements, and the solution.
+fn solve(
+    session: &Session,
+    lights: &[Light],
+    settings: &Settings,
+    execution: &Execution,
+    counters: &mut RadiosityCounters,
+) -> Result<Solution, Limit> {
+    let start = execution.budget.elapsed();
+    let diagonal = session.world.bounds.diagonal();
+    let [coarse, fine] = HEMICUBE.map(|side| Hemicube::new(side, diagonal));
+    let hemicubes = [&coarse, &fine];
+    let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
+    let most = settings.iterations.unwrap_or(u64::MAX);
+    let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
+    for _ in 0..ROUNDS {
+        let rough = progressive::solve(&enclosure, hemicubes, ROUGH, most, execution)?;
+        let contrasts = Solution::new(&enclosure, &rough).contrasts();
+        let mut trees = std::mem::take(&mut enclosure.trees);
+        let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
+        if cut.is_empty() {
+            enclosure.trees = trees;
+            break;
+        }
+        cut.iter().for_each(|(element, _)| trees.split(element.node as usize));
+        trees.balance();
+        enclosure = enclosed(trees, session, lights, settings, execution)?;
+    }
+    let progress = progressive::solve(&enclosure, hemicubes, RESIDUAL, most, execution)?;
+    let solution = Solution::new(&enclosure, &progress);
+    *counters = RadiosityCounters {
+        patches: enclosure.patches.len() as u64,
+        elements: enclosure.elements.len() as u64,
+        shots: progress.shots,
+        residual: progress.residual,
+        emitted: progress.emitted,
+        absorbed: progress.absorbed,
+        escaped: progress.escaped,
+        seconds: execution.budget.elapsed() - start,
+    };
+    Ok(solution)
+}
+
+/// An enclosure whose memory the budget allows.
+fn enclosed(
+    trees: patch::Trees,
+    session: &Session,
+    lights: &[Light],
+    settings: &Settings,
+    execution: &Execution,
+) -> Result<Enclosure, Limit> {
+    // A node, a vertex, an element with two sides, its triangle, and what the solution keeps of it.
+    let bytes = trees.nodes.len() as u64 * 600 + progressive::MOST_BYTES.min(trees.nodes.len().pow(2) as u64 * 16);
+    execution.budget.charge(bytes, "radiosity")?;
+    execution.budget.release(bytes);
+    Enclosure::new(trees, session, lights, settings, execution)
+}
+
+impl Session {
+    /// A number that tells this scene's shapes and materials from others, for stored solutions.
+    fn fingerprint(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325;
+        for instance in &self.world.instances {
+            let matrix = instance.world_from_model.to_cols_array();
+            matrix.iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
+            let mesh = &instance.mesh;
+            mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
+            mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
+        }
+        for material in &self.scene.materials {
+            hash = solution::mix(hash, format!("{:?} {:?}", material.reflectance, material.emission).as_bytes());
+        }
+        hash
+    }
+
+    /// The solution of the last picture with radiosity, as bytes for [`Self::load_radiosity`]; `None` without one.
+    pub fn save_radiosity(&self) -> Option<Vec<u8>> {
+        let kept = self.radiosity.lock().expect("no thread panics while it solves");
+        kept.as_ref().map(|(_, solution)| solution.to_bytes(self.fingerprint()))
+    }
+
+    /// Uses a stored solution for all pictures with radiosity, instead of solving.
+    ///
+    /// # Errors
+    /// [`crate::Error::Radiosity`] for bytes that are no solution for this scene.
+    pub fn load_radiosity(&self, bytes: &[u8]) -> Result<(), crate::Error> {
+        let solution = Solution::from_bytes(bytes, self.fingerprint())?;
+        *self.radiosity.lock().expect("no thread panics while it solves") = Some((Key::Loaded, Arc::new(solution)));
+        Ok(())
+    }
+}

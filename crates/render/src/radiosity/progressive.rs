@@ -1,0 +1,180 @@
+//! Progressive refinement: the patch with the most light left to send sends it, again and again.
+//!
+//! Every side of a patch has light that it has received, or sends out by itself, and has not yet sent on. The one with
+//! the most of it stands in the middle of a hemicube, which says what part arrives at each element; each element takes
+//! that, and has so much more to send in turn. After a few patches the picture is near the solution, and it only gets
+//! brighter. The light that is still on its way is guessed as an ambient term, the same everywhere:
+//! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance.
+//!
+//! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
+//! light is added in their order: so the result does not depend on threads.
+//!
+//! In:   an enclosure. Out: irradiance of each side of each element.
+//! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
+//! multiplications a shot for each element that it shows.
+//! Source: \[Cohen et al. 1988\].
+
+use super::enclosure::{Color, Enclosure, turned};
+use super::gather::Row;
+use super::hemicube::Hemicube;
+use crate::Execution;
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_math::DVec3;
+
+/// Form factors that are kept for a patch's next shot: 256 MiB.
+const MOST_KNOWN: usize = 16 << 20;
+/// Bytes that they take.
+pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f64)>()) as u64;
+/// Patches that shoot in one step.
+const VOLLEY: usize = 16;
+
+/// How far a solution is.
+#[derive(Clone, Debug, Default)]
+pub struct Progress {
+    /// Light that arrived at each side of each element from other surfaces, per area.
+    pub irradiance: Vec<Color>,
+    /// The guess at what is still on its way, the same everywhere.
+    pub ambient: Color,
+    /// Shots so far.
+    pub shots: u64,
+    /// Light not yet sent on, as a part of what was sent out in the beginning.
+    pub residual: f64,
+    /// Light that left the scene, of all colours.
+    pub escaped: f64,
+    /// Light that was sent out in the beginning, of all colours.
+    pub emitted: f64,
+    /// Light that surfaces kept, of all colours.
+    pub absorbed: f64,
+}
+
+/// Patches that send at least this part of all light use the finer hemicube.
+const STRONG: f64 = 1.0 / 512.0;
+
+/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the two hemicubes the second, finer
+/// one is for the patches with the most light, whose errors show the most.
+pub fn solve(
+    enclosure: &Enclosure,
+    hemicubes: [&Hemicube; 2],
+    residual: f64,
+    most: u64,
+    execution: &Execution,
+) -> Result<Progress, Limit> {
+    let sides = enclosure.emission.len();
+    let mut progress = Progress { irradiance: vec![[0.0; 3]; sides], ..Progress::default() };
+    // Power left to send of each side of each patch.
+    let mut unsent = vec![[0.0; 3]; 2 * enclosure.patches.len()];
+    for (side, emission) in enclosure.emission.iter().enumerate() {
+        let element = &enclosure.elements[side / 2];
+        let to = &mut unsent[2 * element.patch as usize + side % 2];
+        (0..3).for_each(|k| to[k] += emission[k] * element.area);
+    }
+    progress.emitted = unsent.iter().map(power).sum();
+    let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
+    loop {
+        let left: f64 = unsent.iter().map(power).sum();
+        progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
+        tell(&progress, residual, execution);
+        if progress.residual <= residual || progress.shots >= most {
+            break;
+        }
+        execution.budget.check("radiosity")?;
+
+        // Choose the patches with the most light, and see whom they see.
+        let shooters = strongest(&unsent, VOLLEY.min((most - progress.shots) as usize));
+        let seen = execution.workers.map(shooters.len(), |i| {
+            if let Some(row) = &known.rows[shooters[i]] {
+                return Ok(Arc::clone(row));
+            }
+            let patch = &enclosure.patches[shooters[i] / 2];
+            let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
+            let hemicube = hemicubes[usize::from(strong)];
+            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned(shooters[i]), execution).map(Arc::new)
+        });
+        let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
+        for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
+            let (mut arrived, seen) = (0.0, seen?);
+            known.keep(*shooter, &seen);
+            for &(number, factor) in &*seen {
+                let at = enclosure.patches[shooter / 2].center;
+                receive(enclosure, number, at, factor, sent, &mut unsent, &mut progress);
+                arrived += factor;
+            }
+            progress.escaped += power(&sent) * (1.0 - arrived);
+            progress.shots += 1;
+        }
+    }
+    progress.ambient = ambient(enclosure, &unsent);
+    Ok(progress)
+}
+
+/// What patches were found to see, for as long as there is room.
+struct Known {
+    rows: Vec<Option<Arc<Row>>>,
+    /// Factors that may still be kept.
+    room: usize,
+}
+
+impl Known {
+    fn keep(&mut self, shooter: usize, row: &Arc<Row>) {
+        if self.rows[shooter].is_none() && row.len() <= self.room {
+            self.room -= row.len();
+            self.rows[shooter] = Some(Arc::clone(row));
+        }
+    }
+}
+
+/// An element takes its part of what is sent from `at`.
+fn receive(
+    enclosure: &Enclosure,
+    number: u32,
+    at: DVec3,
+    factor: f64,
+    sent: Color,
+    unsent: &mut [Color],
+    progress: &mut Progress,
+) {
+    let element = &enclosure.elements[number as usize];
+    let side = usize::from(element.normal.dot(at - element.center) < 0.0);
+    let irradiance = &mut progress.irradiance[2 * number as usize + side];
+    let to_send = &mut unsent[2 * element.patch as usize + side];
+    for k in 0..3 {
+        let arriving = sent[k] * factor;
+        irradiance[k] += arriving / element.area;
+        to_send[k] += arriving * element.reflectance[k];
+        progress.absorbed += arriving * (1.0 - element.reflectance[k]);
+    }
+}
+
+fn power(color: &Color) -> f64 {
+    color.iter().sum()
+}
+
+/// The sides of patches with the most light to send, the most first; the lower number of equals.
+fn strongest(unsent: &[Color], count: usize) -> Vec<usize> {
+    let mut sides: Vec<(f64, usize)> = unsent.iter().map(power).zip(0..).filter(|(p, _)| *p > 0.0).collect();
+    let order = |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+    if sides.len() > count {
+        sides.select_nth_unstable_by(count, order);
+        sides.truncate(count);
+    }
+    sides.sort_unstable_by(order);
+    sides.into_iter().map(|(_, side)| side).collect()
+}
+
+/// The ambient term: irradiance that the light on its way will bring, if it goes everywhere alike.
+fn ambient(enclosure: &Enclosure, unsent: &[Color]) -> Color {
+    let area: f64 = enclosure.elements.iter().map(|e| e.area).sum();
+    [0, 1, 2].map(|k| {
+        let reflected: f64 = enclosure.elements.iter().map(|e| e.area * e.reflectance[k]).sum();
+        let (mean, left) = (reflected / area, unsent.iter().map(|u| u[k]).sum::<f64>());
+        if area > 0.0 { left / area / (1.0 - mean) } else { 0.0 }
+    })
+}
+
+/// Progress in thousandths, on the scale of logarithms on which the light falls.
+fn tell(progress: &Progress, residual: f64, execution: &Execution) {
+    let ratio =
+        vitral_math::func::ln(progress.residual.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
+    execution.budget.progress("radiosity", (ratio.clamp(0.0, 1.0) * 1000.0) as u64, 1000);
+}

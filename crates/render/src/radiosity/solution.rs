@@ -1,0 +1,245 @@
+//! A solution of radiosity: how much light arrives at any point of the scene, from wherever it is seen.
+//!
+//! Light is known for elements; between their middles it is interpolated. Each vertex gets the mean of the elements round
+//! it that lie about in its plane, so that light is smooth over a surface and breaks at its edges. A leaf that has a
+//! vertex in the middle of an edge, from a finer neighbour, is cut there: both sides of every edge then show the same.
+//! What is kept is irradiance, not radiosity, so that textures stay as sharp as they are.
+//!
+//! In:   facet, weights of its corners, side. Out: irradiance, linear RGB, on the scale on which a white surface that a
+//!       light of intensity 1 faces receives 1.
+//! Cost: a step for each level of the quadtree.
+//! Source: \[Cohen & Wallace 1993\], chapter 9.
+
+use super::enclosure::{Color, Enclosure};
+use super::patch::{NONE, Node, Trees, descend};
+use super::progressive::Progress;
+use crate::Error;
+use vitral_light::Rgb;
+use vitral_math::DVec3;
+
+/// First bytes of a stored solution.
+const MAGIC: &[u8; 20] = b"vitral radiosity 1\n\0";
+/// Elements whose normals are apart by less than 30 degrees are one surface.
+const SAME_SURFACE: f64 = 0.866;
+
+/// Light at the corners of an element and at the middles of its edges (0 to 1, 1 to 2, 2 to 0).
+type Six = [Rgb; 6];
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    nodes: Vec<Node>,
+    roots: Vec<u32>,
+    /// For each leaf in the order of nodes, front and back.
+    light: Vec<[Six; 2]>,
+    /// For each node its place among the leaves.
+    leaf: Vec<u32>,
+    ambient: Rgb,
+}
+
+impl Solution {
+    /// What was found so far.
+    pub fn new(enclosure: &Enclosure, progress: &Progress) -> Self {
+        let around = Around::new(enclosure);
+        let trees = &enclosure.trees;
+        let light = (0..enclosure.elements.len())
+            .map(|e| {
+                let node = enclosure.elements[e].node;
+                let corners = trees.nodes[node as usize].corners;
+                let middles = trees.middles(node);
+                [0, 1].map(|side| {
+                    let at = |vertex| around.mean(enclosure, progress, vertex, e, side);
+                    let ends = corners.map(at);
+                    let between = |k: usize| [0, 1, 2].map(|c| (ends[k][c] + ends[(k + 1) % 3][c]) * 0.5);
+                    let middle = |k: usize| middles[k].map_or_else(|| between(k), at);
+                    [ends[0], ends[1], ends[2], middle(0), middle(1), middle(2)]
+                })
+            })
+            .collect();
+        let ambient = progress.ambient.map(|c| c as f32);
+        Self::assemble(trees.nodes.clone(), trees.roots.clone(), light, ambient)
+    }
+
+    fn assemble(nodes: Vec<Node>, roots: Vec<u32>, light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
+        let mut leaves = 0;
+        let leaf = nodes.iter().map(|n| {
+            leaves += u32::from(n.children == NONE);
+            leaves.wrapping_sub(1)
+        });
+        Self { leaf: leaf.collect(), nodes, roots, light, ambient }
+    }
+
+    /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take no part.
+    pub fn irradiance(&self, facet: u32, weights: [f32; 3], front: bool) -> Rgb {
+        let Some(&root) = self.roots.get(facet as usize).filter(|&&root| root != NONE) else { return [0.0; 3] };
+        let (mut at, mut weights) = (root, weights);
+        while self.nodes[at as usize].children != NONE {
+            let (child, inside) = descend(weights);
+            (at, weights) = (self.nodes[at as usize].children + child, inside);
+        }
+        let six = &self.light[self.leaf[at as usize] as usize][usize::from(!front)];
+        let (part, inside) = descend(weights);
+        let corners = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]][part as usize];
+        [0, 1, 2].map(|c| {
+            let light: f32 = (0..3).map(|k| inside[k] * six[corners[k]][c]).sum();
+            light.max(0.0) + self.ambient[c]
+        })
+    }
+
+    /// The difference of light over each leaf, as a part of the mean over all; the brighter side.
+    pub(super) fn contrasts(&self) -> Vec<f64> {
+        let sum = |c: &Rgb| f64::from(c[0] + c[1] + c[2]);
+        let all = self.light.iter().flatten().flatten().map(sum);
+        let mean = all.sum::<f64>() / (self.light.len().max(1) * 12) as f64;
+        let contrast = |six: &Six| {
+            let values = six.iter().map(sum);
+            values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
+        };
+        self.light.iter().map(|sides| sides.iter().map(contrast).fold(0.0, f64::max) / mean.max(1e-300)).collect()
+    }
+
+    /// The solution as bytes, to be used again with the scene that has this fingerprint.
+    pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(fingerprint.to_le_bytes());
+        for count in [self.nodes.len(), self.roots.len(), self.light.len()] {
+            bytes.extend((count as u32).to_le_bytes());
+        }
+        let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
+        numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
+        let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
+        floats.for_each(|f| bytes.extend(f.to_le_bytes()));
+        bytes
+    }
+
+    /// What [`Self::to_bytes`] made of a solution for the scene with this fingerprint.
+    ///
+    /// # Errors
+    /// Bytes that are something else, damaged, or of another scene.
+    pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, Error> {
+        let bad = |what: &str| Error::Radiosity(what.to_owned());
+        let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| bad("this is no stored solution"))?;
+        let (own, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
+        if u64::from_le_bytes(*own) != fingerprint {
+            return Err(bad("the solution belongs to another scene, or to other materials"));
+        }
+        let (words, extra) = rest.as_chunks::<4>();
+        if words.len() < 6 || !extra.is_empty() {
+            return Err(bad("the file is cut off"));
+        }
+        let word = |i: usize| u32::from_le_bytes(words[i]);
+        let [nodes, roots, leaves] = [word(0), word(1), word(2)].map(|n| n as usize);
+        if nodes.saturating_mul(3).saturating_add(roots).saturating_add(leaves.saturating_mul(36)) != words.len() - 6 {
+            return Err(bad("the file's length is not that of its contents"));
+        }
+        let node = |i: usize| {
+            let [children, facet, patch] = [0, 1, 2].map(|k| word(3 + 3 * i + k));
+            Node { corners: [NONE; 3], children, facet, patch }
+        };
+        let nodes: Vec<Node> = (0..nodes).map(node).collect();
+        let count = nodes.len() as u64;
+        // Children come after their parents, so that going down ends.
+        let sound =
+            |i: usize, n: &Node| n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count);
+        if !nodes.iter().enumerate().all(|(i, n)| sound(i, n)) {
+            return Err(bad("a node has no children where it says"));
+        }
+        if nodes.iter().filter(|n| n.children == NONE).count() != leaves {
+            return Err(bad("the number of leaves is wrong"));
+        }
+        let start = 3 + 3 * nodes.len();
+        let roots: Vec<u32> = (0..roots).map(|i| word(start + i)).collect();
+        if roots.iter().any(|&r| r != NONE && r as usize >= nodes.len()) {
+            return Err(bad("a facet's tree is not there"));
+        }
+        let start = start + roots.len();
+        let float = |i: usize| f32::from_le_bytes(words[start + i]);
+        let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
+        let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
+        let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
+        Ok(Self::assemble(nodes, roots, light, color(12 * leaves)))
+    }
+}
+
+/// The elements round each vertex.
+struct Around {
+    starts: Vec<u32>,
+    elements: Vec<u32>,
+}
+
+impl Around {
+    fn new(enclosure: &Enclosure) -> Self {
+        let trees: &Trees = &enclosure.trees;
+        let corners = |e: usize| trees.nodes[enclosure.elements[e].node as usize].corners;
+        let mut starts = vec![0u32; trees.vertices.len() + 2];
+        let all = 0..enclosure.elements.len();
+        all.clone().flat_map(corners).for_each(|v| starts[v as usize + 2] += 1);
+        (2..starts.len()).for_each(|v| starts[v] += starts[v - 1]);
+        let mut elements = vec![0; 3 * all.len()];
+        for e in all {
+            for v in corners(e) {
+                let place = &mut starts[v as usize + 1];
+                elements[*place as usize] = e as u32;
+                *place += 1;
+            }
+        }
+        Self { starts, elements }
+    }
+
+    /// The mean light of the elements round a vertex that lie about in the plane of element `own`.
+    fn mean(&self, enclosure: &Enclosure, progress: &Progress, vertex: u32, own: usize, side: usize) -> Rgb {
+        let range = self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize;
+        let normal: DVec3 = enclosure.elements[own].normal;
+        let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
+        for &e in &self.elements[range] {
+            let element = &enclosure.elements[e as usize];
+            if element.normal.dot(normal) > SAME_SURFACE {
+                let irradiance = progress.irradiance[2 * e as usize + side];
+                (0..3).for_each(|k| sum[k] += irradiance[k] * element.area);
+                weight += element.area;
+            }
+        }
+        if weight > 0.0 {
+            return sum.map(|c| (c / weight) as f32);
+        }
+        progress.irradiance[2 * own + side].map(|c| c as f32)
+    }
+}
+
+/// Mixes bytes into a fingerprint.
+pub(super) fn mix(fingerprint: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(fingerprint, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_leaves() -> Solution {
+        let node = |children| Node { corners: [NONE; 3], children, facet: 0, patch: 0 };
+        let nodes = vec![node(1), node(NONE), node(NONE), node(NONE), node(NONE)];
+        let light = (0..4).map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32]))).collect();
+        Solution::assemble(nodes, vec![NONE, 0], light, [0.0, 0.0, 0.5])
+    }
+
+    #[test]
+    fn stored_solutions_come_back() {
+        let solution = two_leaves();
+        let bytes = solution.to_bytes(77);
+        let back = Solution::from_bytes(&bytes, 77).unwrap();
+        for weights in [[0.9, 0.05, 0.05], [0.1, 0.2, 0.7], [0.3, 0.3, 0.4]] {
+            for front in [true, false] {
+                assert_eq!(solution.irradiance(1, weights, front), back.irradiance(1, weights, front));
+            }
+        }
+        assert_eq!(back.irradiance(1, [1.0, 0.0, 0.0], false), [0.0, 1.0, 0.5]);
+        assert_eq!(back.irradiance(0, [1.0, 0.0, 0.0], true), [0.0; 3], "takes no part");
+        assert!(Solution::from_bytes(&bytes, 78).unwrap_err().to_string().contains("another scene"));
+        for cut in 0..bytes.len() {
+            assert!(Solution::from_bytes(&bytes[..cut], 77).is_err());
+        }
+        let mut circle = bytes.clone();
+        circle[MAGIC.len() + 8 + 12] = 0;
+        assert!(Solution::from_bytes(&circle, 77).is_err(), "a node that is its own child");
+    }
+}

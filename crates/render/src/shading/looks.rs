@@ -1,0 +1,357 @@
+//! What textures and vertex colours make of a material at eight points.
+//!
+//! A material says how a surface reflects on the whole; its textures and the mesh's colours vary that from point to
+//! point. Here they are looked up and put together into the coefficients that the illumination models take.
+//!
+//! In:   points of one object and material. Out: [`Looks`], linear or raw as the picture is.
+//! Cost: a lookup for each texture and point.
+//! Source: \[Foley et al. 1990\], 16.3, for textures; the transparency models name their own.
+
+use super::FrameConstants;
+use super::frame_constants::{MaterialConstants, TextureConstants};
+use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather};
+use super::group::{Coefficients, Model};
+use super::hits::Along;
+use super::phong;
+use crate::transparency::{kay, linear};
+use crate::{Shading, Transparency};
+use vitral_light::{DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
+use vitral_scene::{Attribute, Mesh};
+
+/// What textures and vertex colours make of a material at eight points.
+pub(super) struct Looks<S: Simd> {
+    /// Texture colour alone.
+    pub(super) texture: V3<F<S>>,
+    /// Texture colour times vertex colour: multiplies the diffuse or base colour.
+    pub(super) base: V3<F<S>>,
+    /// Vertex colours at the three corners.
+    pub(super) corner_colors: [V3<F<S>>; 3],
+    pub(super) specular: V3<F<S>>,
+    pub(super) emission: V3<F<S>>,
+    pub(super) metallic_factor: F<S>,
+    pub(super) roughness_factor: F<S>,
+    /// How much of the ambient light arrives.
+    pub(super) occlusion: F<S>,
+    /// How much of the point textures and vertex colours leave of the surface.
+    pub(super) coverage: F<S>,
+    /// Transmission of the surface where it is.
+    pub(super) kt: F<S>,
+    /// Opacity, both together.
+    pub(super) alpha: F<S>,
+}
+
+impl<S: Simd> Looks<S> {
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        raw: bool,
+    ) -> Self {
+        let one = constant(simd, 1.0);
+        let white = V3::new(one, one, one);
+        let lookup = lanes::inlined(
+            #[inline(always)]
+            |texture: &Option<TextureConstants<'_>>| match texture {
+                Some(t) => sample(simd, mesh, slots, surface, t),
+                None => None,
+            },
+        );
+
+        // Vertex colours are kept linear; the raw colour space wants them as they were in the file.
+        let (mut corner_colors, mut vertex_color, mut alpha) = ([white; 3], white, one);
+        if let Some(attribute) = &mesh.colors {
+            let corners = gather_attribute(simd, attribute, mesh, slots);
+            for c in 0..3 {
+                let [r, g, b, _] = corners[c];
+                corner_colors[c] = V3::new(r, g, b);
+                if raw {
+                    let encode = lanes::Lanes::srgb_from_linear;
+                    corner_colors[c] = V3::new(encode(r), encode(g), encode(b));
+                }
+            }
+            vertex_color = blend3(&surface.weights, &corner_colors);
+            alpha = blend(&surface.weights, [corners[0][3], corners[1][3], corners[2][3]]);
+        }
+
+        let base_texture = lookup(&material.base);
+        let mut texture = white;
+        if let Some(t) = &base_texture {
+            texture = V3::new(t[0], t[1], t[2]);
+            alpha *= t[3];
+        }
+        if let Some(t) = lookup(&material.opacity) {
+            alpha *= t[0];
+        }
+        // Only blended surfaces have degrees of opacity; Kay's model changes it later.
+        let opacity = material.material.opacity;
+        let coverage = lanes::Lanes::saturate(alpha);
+        let kt = constant(simd, if material.blend { linear::opacity(opacity) } else { 0.0 });
+        let alpha = lanes::Lanes::saturate(alpha * opacity);
+        let alpha = match (material.cutoff, material.blend) {
+            (Some(cutoff), _) => {
+                let gone = lanes::Lanes::lt(alpha, constant(simd, cutoff));
+                gone.select(constant(simd, 0.0), one)
+            }
+            (None, true) => alpha,
+            (None, false) => one,
+        };
+        let mut emission = V3::splat(one, material.material.emission);
+        if let Some([r, g, b, _]) = lookup(&material.emission) {
+            emission = emission.times(V3::new(r, g, b));
+        }
+        let mut specular = white;
+        if let Some([r, g, b, _]) = lookup(&material.specular) {
+            specular = V3::new(r, g, b);
+        }
+        let (mut metallic_factor, mut roughness_factor) = (one, one);
+        if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
+            (metallic_factor, roughness_factor) = (b, g);
+        }
+        let mut occlusion = one;
+        if let Some([r, ..]) = lookup(&material.occlusion) {
+            occlusion = one + (r - one) * material.material.occlusion_strength;
+        }
+        Self {
+            texture,
+            base: texture.times(vertex_color),
+            corner_colors,
+            specular,
+            emission,
+            metallic_factor,
+            roughness_factor,
+            occlusion,
+            coverage,
+            kt,
+            alpha,
+        }
+    }
+
+    /// Kay's model: how much light a blended surface lets through depends on how it is turned.
+    #[inline(always)]
+    pub(super) fn let_through(
+        &mut self,
+        simd: S,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        constants: &FrameConstants<'_>,
+        along: Option<&Along>,
+    ) {
+        if constants.transparency != Transparency::Kay || !material.blend {
+            return;
+        }
+        let flat = constants.shading == Shading::Flat;
+        let n = if flat { surface.facet_normal } else { phong::interpolated_normal(surface) };
+        let facing = match along {
+            Some(along) => {
+                let position = blend3(&surface.weights, &surface.positions);
+                n.dot((along.origin(simd) - position).normalize())
+            }
+            None => n.z,
+        };
+        let least = constant(simd, constants.kay.least);
+        let least = lanes::Lanes::min(least, self.kt);
+        self.kt = kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent));
+        self.alpha = self.coverage * linear::opacity(self.kt);
+    }
+
+    /// The surface's own colour.
+    #[inline(always)]
+    pub(super) fn own(&self, simd: S, material: &MaterialConstants<'_>) -> V3<F<S>> {
+        let color = match material.material.reflectance {
+            Reflectance::Phong { kd, .. } => kd,
+            Reflectance::MetallicRoughness { base_color, .. } => base_color,
+        };
+        V3::splat(constant(simd, 1.0), color).times(self.base)
+    }
+
+    /// What the mirror image is weighed with: the specular coefficient of mirrors.
+    #[inline(always)]
+    pub(super) fn mirror(&self, simd: S, material: &MaterialConstants<'_>) -> V3<F<S>> {
+        let one = constant(simd, 1.0);
+        if !material.material.mirror {
+            return V3::splat(one, [0.0; 3]);
+        }
+        match material.material.reflectance {
+            Reflectance::Phong { ks, .. } => V3::splat(one, ks).times(self.specular),
+            Reflectance::MetallicRoughness { base_color, metallic, .. } => {
+                let metallic = lanes::Lanes::saturate(self.metallic_factor * metallic);
+                let metal = V3::splat(one, base_color).times(self.base).scale(metallic);
+                let dielectric = (one - metallic) * DIELECTRIC_F0;
+                metal + V3::new(dielectric, dielectric, dielectric)
+            }
+        }
+    }
+
+    /// Coefficients for the material's model, with `color` multiplying the diffuse or base colour.
+    pub(super) fn coefficients(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.coefficients_inlined(simd, material, color),
+        )
+    }
+
+    #[inline(always)]
+    fn coefficients_inlined(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
+        let one = constant(simd, 1.0);
+        match (material.material.reflectance, material.model) {
+            (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
+                let k = Phong {
+                    ka: V3::splat(one, ka).times(color).scale(self.occlusion),
+                    kd: V3::splat(one, kd).times(color),
+                    ks: V3::splat(one, ks).times(self.specular),
+                    shininess: constant(simd, shininess),
+                };
+                match model {
+                    Model::Microfacet => {
+                        let m = microfacet_from_phong(&k);
+                        Coefficients::Microfacet(Microfacet { occlusion: self.occlusion, ..m })
+                    }
+                    _ => Coefficients::Empirical(k),
+                }
+            }
+            (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
+                let m = Microfacet {
+                    base_color: V3::splat(one, base_color).times(color),
+                    metallic: self.metallic_factor * metallic,
+                    roughness: self.roughness_factor * roughness,
+                    occlusion: self.occlusion,
+                };
+                match model {
+                    Model::Microfacet => Coefficients::Microfacet(m),
+                    _ => Coefficients::Empirical(phong_from_microfacet(&m)),
+                }
+            }
+        }
+    }
+
+    /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates.
+    pub(super) fn mapped_normal(
+        &self,
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+    ) -> Option<V3<F<S>>> {
+        let texture = material.normal.as_ref()?;
+        simd.vectorize(
+            #[inline(always)]
+            || self.bend_normal(simd, mesh, slots, surface, material, texture),
+        )
+    }
+
+    #[inline(always)]
+    fn bend_normal(
+        &self,
+        simd: S,
+        mesh: &Mesh,
+        slots: &Slots,
+        surface: &Surface<S>,
+        material: &MaterialConstants<'_>,
+        texture: &TextureConstants<'_>,
+    ) -> Option<V3<F<S>>> {
+        let texel = sample(simd, mesh, slots, surface, texture)?;
+        let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
+        let uv = gather_attribute(simd, attribute, mesh, slots);
+        let n = phong::interpolated_normal(surface);
+
+        // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
+        let (e1, e2) = (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
+        let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
+        let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
+        let zero = constant(simd, 0.0);
+        let flipped = lanes::Lanes::lt(du1 * dv2 - du2 * dv1, zero);
+        let tangent = e1.scale(dv2) - e2.scale(dv1);
+        let tangent = V3::select(flipped, -tangent, tangent);
+        let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
+        let bitangent = n.cross(tangent);
+        let scale = material.material.normal_scale;
+        let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
+        Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
+    }
+}
+
+/// The values of an attribute at the corners of each lane's facet.
+#[inline(always)]
+fn gather_attribute<S: Simd, const N: usize>(
+    simd: S,
+    attribute: &Attribute<[f32; N]>,
+    mesh: &Mesh,
+    slots: &Slots,
+) -> [[F<S>; N]; 3] {
+    let corners = attribute.corners.as_deref().unwrap_or(&mesh.triangles);
+    gather(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [a, b, c] = corners[slots.triangle[lane] as usize];
+            [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
+        },
+    )
+}
+
+/// Looks a texture up at eight points; `None` if the mesh has no such texture coordinates.
+fn sample<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<S>,
+    t: &TextureConstants<'_>,
+) -> Option<[F<S>; 4]> {
+    simd.vectorize(
+        #[inline(always)]
+        || sample_inlined(simd, mesh, slots, surface, t),
+    )
+}
+
+#[inline(always)]
+fn sample_inlined<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<S>,
+    t: &TextureConstants<'_>,
+) -> Option<[F<S>; 4]> {
+    let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
+    let m = &t.reference.transform;
+    let corners = gather_attribute(simd, attribute, mesh, slots);
+    let coordinate = lanes::inlined(
+        #[inline(always)]
+        |r: usize, c: usize| corners[c][0] * m[r][0] + corners[c][1] * m[r][1] + m[r][2],
+    );
+    let u = [coordinate(0, 0), coordinate(0, 1), coordinate(0, 2)];
+    let v = [coordinate(1, 0), coordinate(1, 1), coordinate(1, 2)];
+    let here = (blend(&surface.weights, u), blend(&surface.weights, v));
+
+    // Level of detail: the longer side of the pixel's footprint, in texels.
+    let base = t.texture.levels.first()?;
+    let (w, h) = (base.width() as f32, base.height() as f32);
+    let [right, down] = surface.neighbours();
+    let length2 = lanes::inlined(
+        #[inline(always)]
+        |weights: &[F<S>; 3]| {
+            let (du, dv) = ((blend(weights, u) - here.0) * w, (blend(weights, v) - here.1) * h);
+            du * du + dv * dv
+        },
+    );
+    let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(&right), length2(&down))) * 0.5;
+    let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
+    let mut soa = [[0.0f32; LANES]; 4];
+    for lane in 0..LANES {
+        let texel = t.texture.sample(&t.reference.sampler, us[lane], vs[lane], lods[lane], t.decode);
+        for k in 0..4 {
+            soa[k][lane] = texel[k];
+        }
+    }
+    Some([
+        F32x8::from_slice(simd, &soa[0]),
+        F32x8::from_slice(simd, &soa[1]),
+        F32x8::from_slice(simd, &soa[2]),
+        F32x8::from_slice(simd, &soa[3]),
+    ])
+}

@@ -1,0 +1,275 @@
+//! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with the local models.
+
+use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, project, sun};
+use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
+use vitral::math::{DMat4, DVec3};
+use vitral::render::registry::VISIBILITY;
+use vitral::render::{Background, Global, Transparency};
+use vitral::scene::builtin::solids;
+use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
+
+/// A colour that no light changes.
+fn poster(color: [f32; 3]) -> Material {
+    let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 };
+    Material { reflectance, unlit: true, ..Material::default() }
+}
+
+/// Glass that shows nothing of its own.
+fn glass(kt: f32, ior: f32) -> Material {
+    let mut material = Material { alpha_mode: AlphaMode::Blend, ior, ..poster([0.0; 3]) };
+    material.set_kt(kt);
+    material
+}
+
+fn mirror() -> Material {
+    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
+    Material { reflectance, mirror: true, unlit: true, ..Material::default() }
+}
+
+fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, to: DMat4) {
+    let material = Some(scene.add_material(material));
+    mesh.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(mesh, to);
+}
+
+fn at(x: f64, y: f64, z: f64) -> DMat4 {
+    DMat4::from_translation(DVec3::new(x, y, z))
+}
+
+fn traced(mut renderer: Renderer) -> Renderer {
+    renderer.settings.global = Global::RayTrace;
+    renderer.settings.shadows = "ray".to_owned();
+    renderer
+}
+
+fn pixel(renderer: &Renderer, picture: &[[u8; 4]], point: DVec3) -> [u8; 4] {
+    let p = project(renderer, point);
+    picture[p.y as usize * renderer.settings.width as usize + p.x as usize]
+}
+
+/// Which channel is the brightest.
+fn hue([r, g, b, _]: [u8; 4]) -> usize {
+    (0..3).max_by_key(|&k| [r, g, b][k]).unwrap()
+}
+
+#[test]
+fn t4_refraction_changes_which_polygon_is_seen_in_p_and_q() {
+    let (p, q) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0));
+    let seen = |mut r: Renderer| {
+        let picture = colors(&mut r);
+        [p, q].map(|point| hue(pixel(&r, &picture, point)))
+    };
+    // 3 is red, 4 is blue.
+    assert_eq!(seen(exact_builtin("refraction", 200, 150)), [0, 2], "straight on");
+    assert_eq!(seen(traced(exact_builtin("refraction", 200, 150))), [2, 0], "bent");
+    // Bodies with the index of air bend nothing.
+    let mut scene = vitral::load_builtin("refraction").unwrap();
+    scene.materials.iter_mut().for_each(|m| m.ior = 1.0);
+    let mut air = traced(exact(scene, 200, 150));
+    air.camera = exact_builtin("refraction", 8, 8).camera;
+    assert_eq!(seen(air), [0, 2]);
+}
+
+#[test]
+fn f11_a_glass_ball_inverts_what_is_behind_it() {
+    let mut r = traced(exact_builtin("lens", 240, 180));
+    let picture = colors(&mut r);
+    // Beside the ball and through it, point by point: the colours of opposite quarters agree.
+    for (x, y) in [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)] {
+        let beside = pixel(&r, &picture, DVec3::new(2.2 * x, 1.2 * y, -4.0));
+        let through = pixel(&r, &picture, DVec3::new(-0.35 * x, -0.35 * y, 0.0));
+        let far = (0..3).map(|k| beside[k].abs_diff(through[k])).max().unwrap();
+        assert!(far < 40, "{x} {y}: {beside:?} {through:?}");
+    }
+    assert!(r.render().unwrap().stats.tracing.total_reflections < 1000);
+}
+
+#[test]
+fn t5_a_slab_moves_what_is_behind_by_the_formula() {
+    // A white bar behind a slab that is turned by 40 degrees, seen by parallel rays.
+    let (thick, angle) = (1.0f64, 40f64.to_radians());
+    let mut scene = Scene::default();
+    add(&mut scene, solids::cuboid(DVec3::new(0.4, 4.0, 0.1)), poster([1.0; 3]), at(0.0, 0.0, -4.0));
+    let slab = solids::cuboid(DVec3::new(6.0, 4.0, thick));
+    add(&mut scene, slab, glass(1.0, 1.5), DMat4::from_rotation_y(angle));
+    let mut r = exact(scene, 400, 100);
+    let projection = Projection::Parallel { height: 1.0 };
+    r.camera = Some(Camera { projection, ..on_z(8.0, 1.0) });
+    let center = |picture: &[[u8; 4]]| {
+        let row = &picture[50 * 400..51 * 400];
+        let lit: Vec<usize> = (0..400).filter(|&x| row[x][0] > 127).collect();
+        assert!(lit.len() > 30, "{}", lit.len());
+        lit.iter().sum::<usize>() as f64 / lit.len() as f64 + 0.5
+    };
+    let straight = center(&colors(&mut r));
+    let bent = center(&colors(&mut traced(r)));
+    let sin_r = vitral::math::func::sin(angle) / 1.5;
+    let r_angle = vitral::math::func::asin(sin_r);
+    let offset = thick * vitral::math::func::sin(angle - r_angle) / vitral::math::func::cos(r_angle);
+    assert!(((bent - straight).abs() - offset * 100.0).abs() < 1.0, "{straight} {bent}, {}", offset * 100.0);
+}
+
+#[test]
+fn p36_a_mirror_shows_the_virtual_image() {
+    // A coloured ball in front of a mirror in the plane z = 0, seen against its image.
+    let ball = |z: f64, scene: &mut Scene| {
+        add(scene, solids::sphere(0.4, 64, 32), poster([0.9, 0.3, 0.1]), at(0.5, 0.2, z));
+    };
+    let camera = Camera { position: DVec3::new(-2.0, 0.6, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.8) };
+    let wall = || solids::cuboid(DVec3::new(6.0, 6.0, 0.2));
+    let mut mirrored = Scene::default();
+    add(&mut mirrored, wall(), mirror(), at(0.0, 0.0, -0.1));
+    ball(1.0, &mut mirrored);
+    let mut mirrored = traced(exact(mirrored, 120, 90));
+    let mut virtual_image = Scene::default();
+    ball(1.0, &mut virtual_image);
+    ball(-1.0, &mut virtual_image);
+    let mut virtual_image = exact(virtual_image, 120, 90);
+    for r in [&mut mirrored, &mut virtual_image] {
+        r.camera = Some(camera);
+    }
+    let (a, b) = (colors(&mut mirrored), colors(&mut virtual_image));
+    let different = a.iter().zip(&b).filter(|(a, b)| a != b).count();
+    assert!(different < 12, "{different} pixels, all of them on the outline");
+    assert!(b.iter().filter(|p| p[0] > 0).count() > 300);
+}
+
+#[test]
+fn opaque_surfaces_look_as_without_ray_tracing() {
+    for name in ["scene0", "scene1", "cubs", "teapot"] {
+        for samples in [1, 4] {
+            let mut local = exact_builtin(name, 96, 72);
+            (local.settings.shadows, local.settings.samples) = ("ray".to_owned(), samples);
+            let expected = colors(&mut local);
+            assert!(colors(&mut traced(local)) == expected, "{name}, {samples}");
+        }
+    }
+}
+
+/// Panes one behind the other, and something lit behind them.
+fn panes(count: usize, ior: f32) -> Scene {
+    let mut scene = Scene::default();
+    add(&mut scene, solids::cuboid(DVec3::splat(2.0)), poster([1.0, 0.6, 0.2]), at(0.0, 0.0, -3.0));
+    for i in 0..count {
+        let pane = Material { filter: [1.0, 0.5, 0.8], ..glass(0.7, ior) };
+        let quad = solids::plane(6.0, 6.0, 1, 1);
+        add(&mut scene, quad, pane, at(0.0, 0.0, i as f64 * 0.3) * DMat4::from_rotation_x(1.5707963));
+    }
+    scene
+}
+
+#[test]
+fn t7_straight_through_any_number_of_panes_is_the_same_as_sorting_them() {
+    for count in 1..=12 {
+        for model in [Transparency::Linear, Transparency::Kay, Transparency::Filtered, Transparency::None] {
+            // Sheets have no inside: their index does not matter.
+            let mut sorted = exact(panes(count, 1.5), 40, 30);
+            sorted.camera = Some(on_z(9.0, 0.6));
+            sorted.settings.transparency = model;
+            let expected = colors(&mut sorted);
+            let own = colors(&mut traced(sorted));
+            assert!(largest_difference(&own, &expected) <= 1, "{count} panes, {model:?}");
+        }
+    }
+}
+
+#[test]
+fn backgrounds_are_seen_through_glass_as_they_are() {
+    let gradient = Background::Gradient { top: [0.9, 0.2, 0.1], bottom: [0.1, 0.3, 0.9] };
+    for background in [Background::Transparent, gradient] {
+        let mut sorted = exact(panes(3, 1.0), 60, 50);
+        sorted.camera = Some(on_z(9.0, 0.9));
+        sorted.settings.background = background;
+        let expected = colors(&mut sorted);
+        assert!(largest_difference(&colors(&mut traced(sorted)), &expected) <= 1, "{background:?}");
+    }
+}
+
+#[test]
+fn shadows_of_coloured_glass_have_its_colour() {
+    let mut scene = Scene::default();
+    let white = Material {
+        reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        ..Material::default()
+    };
+    add(&mut scene, solids::plane(8.0, 8.0, 1, 1), white, DMat4::IDENTITY);
+    let red = Material { filter: [1.0, 0.25, 0.0], ..glass(0.8, 1.0) };
+    add(&mut scene, solids::plane(2.0, 2.0, 1, 1), red, at(0.0, 1.0, 0.0));
+    let mut r = traced(exact(scene, 100, 100));
+    r.settings.transparency = Transparency::Filtered;
+    r.lights = Some(vec![sun(DVec3::new(1.0, 1.0, 0.0), 1.0)]);
+    let eye = Camera { position: DVec3::new(0.0, 6.0, 6.0), focal_point: DVec3::ZERO, ..on_z(6.0, 1.0) };
+    r.camera = Some(eye);
+    let picture = colors(&mut r);
+    // The pane's shadow lies one to the left of it.
+    let shadow = pixel(&r, &picture, DVec3::new(-1.6, 0.0, 0.0));
+    let lit = pixel(&r, &picture, DVec3::new(2.5, 0.0, 0.0));
+    let share = |k: usize| f64::from(shadow[k]) / f64::from(lit[k]);
+    assert!((share(0) - 0.8).abs() < 0.02 && (share(1) - 0.2).abs() < 0.02 && shadow[2] == 0, "{shadow:?} {lit:?}");
+}
+
+#[test]
+fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
+    let mut r = traced(exact_builtin("mirrors", 80, 60));
+    r.settings.samples = 2;
+    let expected = colors(&mut r);
+    for algorithm in VISIBILITY {
+        r.settings.visibility = algorithm.name.to_owned();
+        let own = colors(&mut r);
+        let different = own.iter().zip(&expected).filter(|(a, b)| a != b).count();
+        assert!(different <= 4, "{}: {different}", algorithm.name);
+    }
+    r.settings.visibility = "z-buffer".to_owned();
+    for threads in [1, 2, 5] {
+        let mut execution = vitral::execution(threads).unwrap();
+        for (_, level) in vitral::math::lanes::available_levels() {
+            execution.level = level;
+            let scene = vitral::load_builtin("mirrors").unwrap();
+            let mut other = Renderer::with_execution(scene, execution.clone()).unwrap();
+            (other.settings, other.camera) = (r.settings.clone(), r.camera);
+            assert!(colors(&mut other) == expected, "{threads} threads, {level:?}");
+        }
+    }
+}
+
+#[test]
+fn total_internal_reflection_and_the_most_turns() {
+    // From inside a block of glass the camera sees its side at a flat angle: everything is mirrored.
+    let mut scene = Scene::default();
+    add(&mut scene, solids::cuboid(DVec3::splat(4.0)), glass(1.0, 1.5), DMat4::IDENTITY);
+    let mut r = traced(exact(scene, 16, 16));
+    r.settings.background = Background::Color { color: [1.0; 3] };
+    r.camera =
+        Some(Camera { position: DVec3::new(0.0, 0.0, 1.0), focal_point: DVec3::new(1.0, 1.0, 0.0), ..on_z(1.0, 0.1) });
+    let tracing = r.render().unwrap().stats.tracing;
+    // The diagonal meets all sides beyond the critical angle of 41.8 degrees: 54.7.
+    assert_eq!((tracing.refracted, tracing.stopped_by_depth), (0, 256));
+    assert_eq!(tracing.total_reflections, 256 * 9);
+    r.settings.max_depth = 2;
+    assert_eq!(r.render().unwrap().stats.tracing.total_reflections, 256 * 3);
+}
+
+#[test]
+fn bad_indices_of_refraction_are_refused() {
+    for ior in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let mut r = traced(exact(one(solids::sphere(1.0, 8, 4), glass(0.5, ior)), 8, 8));
+        let error = r.render().unwrap_err().to_string();
+        assert!(error.contains("index of refraction") && error.contains("above 0"), "{error}");
+    }
+    let mut open = traced(exact(panes(1, 1.5), 8, 8));
+    assert!(open.render().unwrap().warnings[0].contains("not closed"));
+    open.settings.max_depth = 0;
+    assert!(open.render().unwrap_err().to_string().contains("1 to 64"));
+}
+
+#[test]
+fn limits_stop_the_rays() {
+    let mut r = traced(exact_builtin("mirrors", 64, 48));
+    r.execution_mut().budget = r.execution().budget.renewed().with_memory_limit(Some(1 << 20));
+    assert!(r.render().is_err());
+    r.execution_mut().budget = r.execution().budget.renewed().with_memory_limit(None).with_time_limit(Some(1e-9));
+    assert!(r.render().is_err());
+    let light = Light { kind: LightKind::Ambient, ..Light::default() };
+    (r.lights, r.execution_mut().budget) = (Some(vec![light]), r.execution().budget.renewed().with_time_limit(None));
+    assert!(r.render().is_ok());
+}

@@ -68,7 +68,8 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
         );
     }
-    if output.save_radiosity.is_some() && !state.settings.channels.color {
+    let drawn = !outputs.is_empty() || output.reference.is_some();
+    if output.save_radiosity.is_some() && !(drawn && state.settings.channels.color) {
         return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;

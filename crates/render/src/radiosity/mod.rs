@@ -133,8 +133,9 @@ fn enclosed(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Enclosure, Limit> {
-    // A node, a vertex, an element with two sides, its triangle, and what the solution keeps of it.
-    let bytes = trees.nodes.len() as u64 * 600 + progressive::MOST_BYTES.min(trees.nodes.len().pow(2) as u64 * 16);
+    // A node, a vertex, an element with two sides, its triangle, what the solution keeps of it; and form factors.
+    let count = trees.nodes.len() as u64;
+    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(16));
     execution.budget.charge(bytes, "radiosity")?;
     execution.budget.release(bytes);
     Enclosure::new(trees, session, lights, settings, execution)

@@ -49,7 +49,7 @@ pub struct Progress {
 }
 
 /// Patches that send at least this part of all light use the finer hemicube.
-const STRONG: f64 = 1.0 / 512.0;
+const STRONG: f64 = 1.0 / 64.0;
 
 /// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the two hemicubes the second, finer
 /// one is for the patches with the most light, whose errors show the most.

@@ -405,15 +405,19 @@ fn lights_for(name: &str) -> [Light; 3] {
 /// Three sides from which a scene is looked at.
 const SIDES: [DVec3; 3] = [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)];
 
-#[test]
-fn f23_maps_agree_with_rays_the_better_the_larger() {
-    let mut means = [0.0; 2];
-    // Scenes of opaque things; glass keeps only a part of the light, and the Cornell box is lit from within.
-    let opaque = |name: &str| {
+/// Built-in scenes of opaque things; glass keeps only a part of the light, and the Cornell box is lit from within.
+fn opaque_scenes() -> Vec<&'static str> {
+    let opaque = |name: &&str| {
         let scene = builtin::scene(name).unwrap();
         scene.materials.iter().all(|m| !m.is_layered() && m.emission == [0.0; 3])
     };
-    for (name, _) in builtin::names().iter().filter(|(name, _)| opaque(name)) {
+    builtin::names().iter().map(|(name, _)| *name).filter(opaque).collect()
+}
+
+#[test]
+fn f23_maps_agree_with_rays_the_better_the_larger() {
+    let mut means = [0.0; 2];
+    for name in opaque_scenes() {
         for light in lights_for(name) {
             for from in SIDES {
                 let maps = |size| Settings { shadow_map_size: size, ..settings("map") };

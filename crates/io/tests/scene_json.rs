@@ -85,6 +85,7 @@ fn full_materials() -> Vec<Material> {
         transmission: Transmission::Translucent,
         filter: [0.9, 0.5, 0.25],
         ior: 1.33,
+        mirror: true,
         double_sided: true,
         unlit: true,
         base_texture: Some(TextureRef::new(0)),

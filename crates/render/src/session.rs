@@ -67,10 +67,10 @@ pub struct Session {
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
-    pub(crate) radiosity: Mutex<Option<(radiosity::Key, Arc<radiosity::Solution>)>>,
-    pub(crate) shadow_maps: Mutex<Option<(shadow::map::Key, Arc<shadow::map::Maps>)>>,
-    pub(crate) shadow_volumes: Mutex<Option<(shadow::volume::Key, Arc<shadow::volume::Volumes>)>>,
-    pub(crate) lit_polygons: Mutex<Option<(shadow::object_precision::Key, Arc<shadow::object_precision::LitPolygons>)>>,
+    pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
+    pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
+    pub(crate) shadow_volumes: KeptFor<shadow::Key, shadow::volume::Volumes>,
+    pub(crate) lit_polygons: KeptFor<shadow::Key, shadow::object_precision::LitPolygons>,
 }
 
 /// What is made when it is first asked for, and then kept.
@@ -83,6 +83,27 @@ fn keep<T>(kept: &Kept<T>, make: impl FnOnce() -> Result<T, Limit>) -> Result<Ar
         return Ok(Arc::clone(known));
     }
     Ok(Arc::clone(kept.insert(Arc::new(make()?))))
+}
+
+/// What is kept until it is asked for with another key.
+pub(crate) type KeptFor<K, T> = Mutex<Option<(K, Arc<T>)>>;
+
+/// What is kept for this key, or else what `make` makes. The old one need not stay while the new one is made.
+pub(crate) fn keep_for<K: PartialEq, T>(
+    kept: &KeptFor<K, T>,
+    key: K,
+    make: impl FnOnce() -> Result<T, Limit>,
+) -> Result<Arc<T>, Limit> {
+    let mut kept = kept.lock().expect("no thread panics while it makes what is kept");
+    if let Some((known, value)) = &*kept
+        && *known == key
+    {
+        return Ok(Arc::clone(value));
+    }
+    *kept = None;
+    let value = Arc::new(make()?);
+    *kept = Some((key, Arc::clone(&value)));
+    Ok(value)
 }
 
 /// What is found out about a mesh when it is first needed.

@@ -106,7 +106,7 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
         (|_: &_| false, &mut 0),
         #[inline(always)]
         |eight| {
-            let n = interpolated_normal(&surface(simd, &eight.records, eight.slots));
+            let n = interpolated_normal(&surface(simd, eight.records, eight.slots));
             let soa = [n.x.to_array(), n.y.to_array(), n.z.to_array()];
             for (lane, &p) in eight.points.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
@@ -135,7 +135,7 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         (|_: &_| true, &mut 0),
         #[inline(always)]
         |eight| {
-            let surface = surface(simd, &eight.records, eight.slots);
+            let surface = surface(simd, eight.records, eight.slots);
             let [attached, cast] = shadow_shares(constants, &surface, eight.arriving, eight.first);
             for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];

@@ -26,6 +26,7 @@ use super::occluders::Occluders;
 use super::sources::Source;
 use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::triangles::Triangles;
+use crate::session::keep_for;
 use crate::{ColorSpace, Execution, Session, Settings, Transparency};
 use lens::Lens;
 use std::sync::Arc;
@@ -107,19 +108,11 @@ impl ShadowAlgorithm for MapShadows {
             transparency: settings.transparency,
             color_space: settings.color_space,
         };
-        let mut kept = session.shadow_maps.lock().expect("no thread panics while it makes shadow maps");
-        if let Some((known, maps)) = &*kept
-            && *known == key
-        {
-            return Ok(Box::new(Arc::clone(maps)));
-        }
-        // The old ones need not stay while the new ones are made.
-        *kept = None;
-        let occluders = Occluders::new(session, settings);
-        let lights: Result<_, Limit> =
-            lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution)).collect();
-        let maps = Arc::new(Maps(lights?));
-        *kept = Some((key, Arc::clone(&maps)));
+        let maps = keep_for(&session.shadow_maps, key, || {
+            let occluders = Occluders::new(session, settings);
+            let maps = lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution));
+            Ok(Maps(maps.collect::<Result<_, Limit>>()?))
+        })?;
         Ok(Box::new(maps))
     }
 }

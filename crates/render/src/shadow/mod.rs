@@ -25,7 +25,7 @@ pub(crate) use occluders::{texel, weights};
 pub(crate) use place::{facet, places, weighted};
 pub(crate) use ray::clearance;
 
-use crate::{Execution, PreparedView, Session, Settings, registry};
+use crate::{Execution, PreparedView, Session, Settings, Transparency, registry};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
@@ -78,6 +78,20 @@ pub trait ShadowAlgorithm: Sync {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+}
+
+/// What shadows depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    samples: u32,
+    transparency: Transparency,
+}
+
+impl Key {
+    fn new(lights: &[Light], settings: &Settings) -> Self {
+        Self { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency }
+    }
 }
 
 /// The mean of three channels, written so that grey stays as it is.

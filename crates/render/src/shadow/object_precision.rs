@@ -22,9 +22,10 @@ use super::casters::{Casters, Solid, away, faces, lifted, near, wide, winding_no
 use super::occluders::Occluders;
 use super::ray::clearance;
 use super::sources::Source;
-use super::{Drawn, Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
-use crate::{Execution, Session, Settings, Transparency};
+use crate::session::keep_for;
+use crate::{Execution, Session, Settings};
 use clip::{Cutter, Detail};
 use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
@@ -35,14 +36,6 @@ use vitral_math::{DVec3, DVec4};
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct ObjectPrecisionShadows;
-
-/// What lit polygons depend on, besides the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
-    lights: Vec<Light>,
-    samples: u32,
-    transparency: Transparency,
-}
 
 /// The lit polygons of all lights.
 #[derive(Debug)]
@@ -101,23 +94,16 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let key = Key { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency };
-        let mut kept = session.lit_polygons.lock().expect("no thread panics while it makes lit polygons");
-        if let Some((known, polygons)) = &*kept
-            && *known == key
-        {
-            return Ok(Box::new(Prepared { polygons: Arc::clone(polygons), occluders }));
-        }
-        *kept = None;
-        let casters = Casters::new(session, &occluders, execution)?;
-        let facets = session.world.facet_count as usize;
-        let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
-            let places = Source::new(light, settings.light_samples, casters.triangles().center).places();
-            places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
-        };
-        let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
-        let polygons = Arc::new(LitPolygons { lights: lights?, casters });
-        *kept = Some((key, Arc::clone(&polygons)));
+        let polygons = keep_for(&session.lit_polygons, Key::new(lights, settings), || {
+            let casters = Casters::new(session, &occluders, execution)?;
+            let facets = session.world.facet_count as usize;
+            let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
+                let places = Source::new(light, settings.light_samples, casters.triangles().center).places();
+                places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
+            };
+            let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
+            Ok(LitPolygons { lights: lights?, casters })
+        })?;
         Ok(Box::new(Prepared { polygons, occluders }))
     }
 }

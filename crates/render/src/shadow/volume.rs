@@ -30,10 +30,11 @@ use super::casters::{Casters, away, box_around, faces, lifted, near};
 use super::casters::{wide, winding_normal};
 use super::occluders::Occluders;
 use super::sources::Source;
-use super::{Drawn, Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::{Execution, Session, Settings, Transparency, VolumeCounting};
+use crate::session::keep_for;
+use crate::{Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit};
 use edges::Edges;
 use std::sync::Arc;
@@ -44,14 +45,6 @@ use vitral_math::{DVec3, DVec4, Vec3};
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeShadows;
-
-/// What volumes depend on, besides the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
-    lights: Vec<Light>,
-    samples: u32,
-    transparency: Transparency,
-}
 
 /// The volumes of all lights.
 #[derive(Debug)]
@@ -100,7 +93,9 @@ impl ShadowAlgorithm for VolumeShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let volumes = kept(session, lights, &occluders, settings, execution)?;
+        let volumes = keep_for(&session.shadow_volumes, Key::new(lights, settings), || {
+            Volumes::new(session, lights, &occluders, settings, execution)
+        })?;
         let triangles = volumes.casters.triangles();
         let odd = ODD * (f64::from(triangles.extent) * 1e-4);
         let viewer = if viewer.w > 0.0 {
@@ -119,27 +114,6 @@ impl ShadowAlgorithm for VolumeShadows {
         let around_viewer = around_viewer.collect();
         Ok(Box::new(Counting { volumes, occluders, counting, viewer, around_viewer }))
     }
-}
-
-/// The session's volumes, if they are those of these lights, else new ones.
-fn kept(
-    session: &Session,
-    lights: &[Light],
-    occluders: &Occluders<'_>,
-    settings: &Settings,
-    execution: &Execution,
-) -> Result<Arc<Volumes>, Limit> {
-    let key = Key { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency };
-    let mut kept = session.shadow_volumes.lock().expect("no thread panics while it makes shadow volumes");
-    if let Some((known, volumes)) = &*kept
-        && *known == key
-    {
-        return Ok(Arc::clone(volumes));
-    }
-    *kept = None;
-    let volumes = Arc::new(Volumes::new(session, lights, occluders, settings, execution)?);
-    *kept = Some((key, Arc::clone(&volumes)));
-    Ok(volumes)
 }
 
 impl Volumes {

@@ -153,7 +153,7 @@ fn panes(count: usize, ior: f32) -> Scene {
     for i in 0..count {
         let pane = Material { filter: [1.0, 0.5, 0.8], ..glass(0.7, ior) };
         let quad = solids::plane(6.0, 6.0, 1, 1);
-        add(&mut scene, quad, pane, at(0.0, 0.0, i as f64 * 0.3) * DMat4::from_rotation_x(1.5707963));
+        add(&mut scene, quad, pane, at(0.0, 0.0, i as f64 * 0.3) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
     }
     scene
 }

@@ -23,11 +23,19 @@ const SCENES: [(&str, &str, Recipe); 10] = [
     ("sphere", "Lab3D's Sphere(): a smooth sphere with vertex normals", scenes::sphere),
     ("scene0", "Lab3D's Scene 0: box, sphere, cone and cylinder on a chequered floor", scenes::scene0),
     ("scene1", "Lab3D's Scene 1: a flight of steps with a torus, a tetrahedron, a column and a ball", scenes::scene1),
-    ("refraction", "the notes' figure: through prisms 1 and 2, P and Q show polygon 3 or 4", optics::refraction),
-    ("rod", "a stick in water, which looks broken (--global ray-trace)", optics::rod),
-    ("lens", "a glass ball that turns what is behind upside down (--global ray-trace)", optics::lens),
-    ("mirrors", "mirrors, glass, a coloured pane, two lights (--global ray-trace)", optics::mirrors),
-    ("cornell", "the Cornell box, with a lamp that shines by itself", optics::cornell),
+    (
+        "refraction",
+        "the notes' figure: through prisms 1 and 2, P and Q show polygon 3 or 4 (--global ray-trace --camera-index 0)",
+        optics::refraction,
+    ),
+    ("rod", "a stick in water, which looks broken (--global ray-trace --camera-index 0)", optics::rod),
+    ("lens", "a glass ball that turns what is behind upside down (--global ray-trace --camera-index 0)", optics::lens),
+    ("mirrors", "mirrors, glass, a coloured pane, two lights (--global ray-trace --camera-index 0)", optics::mirrors),
+    (
+        "cornell",
+        "the Cornell box, with a lamp that shines by itself (--global radiosity --camera-index 0)",
+        optics::cornell,
+    ),
     ("teapot", "the Utah teapot, 32 Bezier patches with exact normals", scenes::teapot_scene),
 ];
 

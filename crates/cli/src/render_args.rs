@@ -56,6 +56,10 @@ pub(crate) struct OutputArgs {
     /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
     #[arg(long, value_name = "F", value_parser = values::share, requires = "reference")]
     pub(crate) reference_threshold: Option<f64>,
+    /// Write the notes' figure of the shadow algorithm instead of one picture: six panels, each of the size of a picture;
+    /// for --shadows map and object-precision
+    #[arg(long)]
+    pub(crate) panels: bool,
     /// Write the solution of radiosity into this file, for pictures from other cameras
     #[arg(long, value_name = "FILE")]
     pub(crate) save_radiosity: Option<PathBuf>,

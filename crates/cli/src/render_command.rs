@@ -149,7 +149,9 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer) -> Result<Drawn
     let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count);
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
-        let rendered = renderer.render_from(&cameras[number as usize])?;
+        let camera = &cameras[number as usize];
+        let rendered =
+            if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };
         // A turntable's frames mostly share their warnings.
         let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
         if !args.report.quiet {

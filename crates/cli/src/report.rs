@@ -85,11 +85,7 @@ impl From<clap::Error> for Failure {
             Some(ContextValue::String(text)) => text.as_str(),
             _ => "",
         };
-        let option = context(ContextKind::InvalidArg).split([' ', '=']).next().unwrap_or_default();
         match error.kind() {
-            ErrorKind::UnknownArgument if crate::unbuilt::option(option) => {
-                return Self::usage(format!("{option}: this option is not there yet"));
-            }
             ErrorKind::InvalidSubcommand if crate::unbuilt::verb(context(ContextKind::InvalidSubcommand)) => {
                 let verb = context(ContextKind::InvalidSubcommand);
                 return Self::usage(format!("{verb}: this verb is not there yet"));

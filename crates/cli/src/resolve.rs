@@ -7,7 +7,7 @@ use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::render::{Background, Channels, Global, Lines, registry};
-use vitral::{State, Viewpoint};
+use vitral::{Channel, State, Viewpoint};
 
 /// Largest configuration or state file, in bytes.
 const MAX_STATE_BYTES: u64 = 64 << 20;
@@ -67,6 +67,15 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
         );
+    }
+    if let Some(other) = outputs.iter().find(|o| output.panels && o.channel != Channel::Color) {
+        return Err(Failure::usage(format!(
+            "--panels makes colour pictures, not the channel {}",
+            other.channel.name()
+        )));
+    }
+    if output.panels && outputs.is_empty() {
+        return Err(Failure::usage("--panels: no picture is made").with_hint("give --output"));
     }
     let drawn = !outputs.is_empty() || output.reference.is_some();
     if output.save_radiosity.is_some() && !(drawn && state.settings.channels.color) {

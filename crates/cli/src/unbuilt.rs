@@ -4,17 +4,9 @@
 /// Verbs to come.
 const VERBS: [&str; 3] = ["draw", "lab", "batch"];
 
-/// Options to come.
-const OPTIONS: [&str; 1] = ["--panels"];
-
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {
     VERBS.contains(&name)
-}
-
-/// Whether this option is to come.
-pub(crate) fn option(name: &str) -> bool {
-    OPTIONS.contains(&name)
 }
 
 #[cfg(test)]
@@ -28,11 +20,6 @@ mod tests {
         let cli = Cli::command();
         for command in cli.get_subcommands() {
             assert!(!verb(command.get_name()), "{}", command.get_name());
-            for argument in command.get_arguments() {
-                let Some(long) = argument.get_long() else { continue };
-                let name = format!("--{long}");
-                assert!(!option(&name), "{name}");
-            }
         }
     }
 }

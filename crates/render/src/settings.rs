@@ -413,6 +413,14 @@ pub enum SettingsError {
         /// Those that do.
         choices: String,
     },
+    /// The panels of a shadow algorithm are wanted, but it has none.
+    #[error("the shadows `{shadows}` have no panels: choose {choices}")]
+    Panels {
+        /// Asked for.
+        shadows: String,
+        /// Those that have.
+        choices: String,
+    },
     /// Cast shadows are wanted, but none are computed.
     #[error("the channel cast-shadow needs a shadow algorithm: choose {0}")]
     CastShadow(String),

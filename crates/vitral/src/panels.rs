@@ -104,7 +104,7 @@ fn grey(rendered: Rendered) -> Picture {
     let (low, high) = seen.fold((f32::INFINITY, 0.0f32), |(low, high), z| (low.min(z), high.max(z)));
     let range = (high - low).max(f32::MIN_POSITIVE);
     let shade = |&z: &f32| {
-        let v = if z > 0.0 { (40.0 + 215.0 * (z - low) / range) as u8 } else { 0 };
+        let v = if z > 0.0 { (40.5 + 215.0 * (z - low) / range) as u8 } else { 0 };
         [v, v, v, 255]
     };
     Plane::from_rows(depth.width(), depth.height(), depth.data().iter().map(shade).collect()).unwrap_or_default()

@@ -121,7 +121,7 @@ impl Points {
         self.mixed.clear();
         self.followed.clear();
         if tile.touched {
-            if constants.view.pattern.len() == 1 {
+            if constants.view.pattern.len() == 1 && !constants.follows_rays() {
                 self.collect_single(tile, constants);
             } else {
                 self.collect_opaque(tile, constants);
@@ -134,7 +134,7 @@ impl Points {
         self.group(constants);
     }
 
-    /// [`Self::collect_opaque`] for one sample a pixel: no pixel is mixed.
+    /// [`Self::collect_opaque`] for one sample a pixel and no rays that go on: no pixel is mixed.
     fn collect_single(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
         let (width, height) = visible_part(tile, constants);
         self.facet.resize(TILE_PIXELS, 0);

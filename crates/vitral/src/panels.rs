@@ -258,7 +258,9 @@ mod tests {
         let mut dark = 0;
         for i in 0..plain.len() {
             if darkened[i] == plain[i] {
-                assert_eq!(shadowed[i], plain[i], "lit places are the same");
+                // A trace of shadow may round to nothing.
+                let apart = (0..4).map(|k| shadowed[i][k].abs_diff(plain[i][k])).max();
+                assert!(apart <= Some(1), "lit places are the same: {:?} {:?}", shadowed[i], plain[i]);
             } else {
                 dark += 1;
                 // Ambient light is left, and nothing gets lighter.

@@ -191,8 +191,13 @@ fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Came
     let mut whole = Renderer::with_execution(scene, renderer.execution().clone())?;
     whole.settings = Settings { shadows: "none".to_owned(), lines: Lines::None, ..renderer.settings.clone() };
     whole.lights = Some(lights.to_vec());
-    (whole.ambient, whole.up, whole.view) = (renderer.ambient, renderer.up, renderer.view);
-    Ok(color(whole.render()?))
+    whole.ambient = renderer.ambient;
+    // From beside the viewer, so that the cone hides nothing.
+    let (up, back) = (renderer.up.vector(), (viewer.position - viewer.focal_point).normalize_or(DVec3::Z));
+    let side = up.cross(back).try_normalize().unwrap_or_else(|| up.any_orthonormal_vector());
+    let eye = side + back * 0.3 + up * 0.4;
+    let seen = framing::frame_from(&whole.world().bounds, eye, up, Lens::default(), renderer.aspect(), framing::FILL);
+    Ok(color(whole.render_from(&seen)?))
 }
 
 /// The lit polygons of one of the lights, white.

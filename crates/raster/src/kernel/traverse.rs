@@ -95,13 +95,43 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
     if place.columns[1] - place.columns[0] < LANES && place.is_small() {
         match pattern.len() {
-            1 => walk_rows::<S, K, 1>(simd, setup, &place, pattern, sink),
-            4 => walk_rows::<S, K, 4>(simd, setup, &place, pattern, sink),
-            _ => walk_rows::<S, K, 16>(simd, setup, &place, pattern, sink),
+            1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
+            _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
-        traverse(simd, setup, tile, pattern, sink);
+        blocks_apart(simd, setup, tile, pattern, sink);
     }
+}
+
+/// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's compiler takes minutes.
+#[inline(never)]
+fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
+    simd: S,
+    setup: &Setup,
+    place: &Placed,
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || walk_rows::<S, K, MOST>(simd, setup, place, pattern, sink),
+    );
+}
+
+/// [`traverse`] as a function of its own.
+#[inline(never)]
+fn blocks_apart<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || traverse(simd, setup, tile, pattern, sink),
+    );
 }
 
 /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits.

@@ -337,6 +337,7 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::traverse::traverse_anywhere;
     use crate::{CornerPosition, TileGrid, Viewport, traverse, traverse_by_rows};
     use vitral_math::lanes::{Level, dispatch};
 
@@ -403,22 +404,24 @@ mod tests {
     }
 
     #[test]
-    fn rows_give_each_layer_once() {
+    fn rows_and_blocks_anywhere_give_each_layer_once() {
         let pattern = SamplePattern::new(4);
         let tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
         for setup in triangles() {
-            let mut found = [LayerList::default(), LayerList::default()];
-            let [rows, blocks] = &mut found;
+            let mut found = [LayerList::default(), LayerList::default(), LayerList::default()];
+            let [rows, blocks, anywhere] = &mut found;
             dispatch!(Level::new(), simd => {
                 traverse_by_rows(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, rows));
                 traverse(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, blocks));
+                traverse_anywhere(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, anywhere));
             });
-            let [rows, blocks] = found.map(|list| {
+            let [rows, blocks, anywhere] = found.map(|list| {
                 let mut places: Vec<_> = list.iter().map(|l| (l.at, l.depth.to_bits())).collect();
                 places.sort_unstable();
                 places
             });
             assert_eq!(rows, blocks);
+            assert_eq!(anywhere, blocks);
         }
     }
 }

@@ -2,10 +2,13 @@
 //!
 //! `cargo run --release -p vitral --example turntable_bench -- MODEL FRAMES SAMPLES [WIDTHxHEIGHT]`
 //!
-//! Every frame ends as RGBA bytes in memory; nothing is encoded. `VITRAL_THREADS` limits the threads.
+//! Every frame ends as RGBA bytes in memory; nothing is encoded. `parts_ms` is what the parts of a whole run take one by
+//! one, the median of five each: reading the file, the first picture of a scene, encoding it as PNG. `VITRAL_THREADS` limits
+//! the threads.
 
 use std::time::Instant;
-use vitral::{Error, LoadOptions, Renderer, default_up, execution, load};
+use vitral::render::Execution;
+use vitral::{Channel, Error, LoadOptions, PictureFormat, Renderer, default_up, encode, execution, load};
 
 /// What is to be measured.
 struct Plan {
@@ -31,17 +34,44 @@ impl Plan {
     }
 }
 
+/// A file as a renderer that will draw it.
+fn open(plan: &Plan, execution: &Execution) -> Result<Renderer, Error> {
+    let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
+    let mut renderer = Renderer::with_execution(scene, execution.clone())?;
+    renderer.up = default_up(&plan.model);
+    (renderer.settings.width, renderer.settings.height) = plan.size;
+    renderer.settings.samples = plan.samples;
+    Ok(renderer)
+}
+
+/// Reading, the first picture, encoding: the sum of their medians.
+fn parts(plan: &Plan, execution: &Execution) -> Result<f64, Error> {
+    let mut times = [const { Vec::new() }; 3];
+    let mut timed = |part: usize, start: Instant| times[part].push(start.elapsed().as_secs_f64() * 1e3);
+    for _ in 0..5 {
+        let start = Instant::now();
+        let mut renderer = open(plan, execution)?;
+        timed(0, start);
+        let start = Instant::now();
+        let rendered = renderer.render()?;
+        timed(1, start);
+        let start = Instant::now();
+        std::hint::black_box(encode(&rendered.frame, Channel::Color, PictureFormat::Png)?);
+        timed(2, start);
+    }
+    let median = |mut part: Vec<f64>| {
+        part.sort_by(f64::total_cmp);
+        part[part.len() / 2]
+    };
+    Ok(times.map(median).into_iter().sum())
+}
+
 fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
     let threads = std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
     let execution = execution(threads)?;
     let start = Instant::now();
-    let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
+    let mut renderer = open(plan, &execution)?;
     let load_ms = start.elapsed().as_secs_f64() * 1e3;
-
-    let mut renderer = Renderer::with_execution(scene, execution)?;
-    renderer.up = default_up(&plan.model);
-    (renderer.settings.width, renderer.settings.height) = plan.size;
-    renderer.settings.samples = plan.samples;
     let mut milliseconds = Vec::with_capacity(plan.frames);
     let mut bytes = 0;
     for camera in renderer.turntable_cameras(plan.frames) {
@@ -51,12 +81,14 @@ fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
         bytes += rendered.frame.color.map_or(0, |c| c.data().as_flattened().len());
     }
     milliseconds.sort_by(f64::total_cmp);
+    let parts_ms = parts(plan, renderer.execution())?;
     Ok(serde_json::json!({
         "median_ms": milliseconds[plan.frames / 2],
         "min_ms": milliseconds[0],
         "frames": plan.frames,
         "triangles": renderer.world().facet_count,
         "load_ms": load_ms,
+        "parts_ms": parts_ms,
         "bytes": bytes,
     }))
 }

@@ -31,7 +31,12 @@ pub(crate) struct DepthRule {
 }
 
 /// The pixels of a block at `(x, y)` that lie in `x0..x1`, `y0..y1`: bit `8 * row + column`.
+#[inline(always)]
 pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
+    let side = BLOCK as i32;
+    if x >= x0 && y >= y0 && x + side <= x1 && y + side <= y1 {
+        return u64::MAX;
+    }
     let columns = super::fragment::columns(x, x0, x1) as u64;
     let (first, last) = ((y0 - y).clamp(0, 8), (y1 - y).clamp(0, 8));
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))

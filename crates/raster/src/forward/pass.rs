@@ -464,6 +464,6 @@ fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
 }
 
 /// The facet of a setup.
-pub(crate) fn facet_of(primitives: &Primitives, number: u32) -> Facet {
-    primitives.facets[number as usize]
+pub(crate) fn facet_of(primitives: &Primitives, number: u32) -> &Facet {
+    &primitives.facets[number as usize]
 }

@@ -200,7 +200,7 @@ pub(crate) struct Shader<'a> {
     pub state: &'a FragmentState,
     pub layout: &'a Layout,
     pub planes: &'a [Option<&'a DepthPlane>; UNITS],
-    pub facet: Facet,
+    pub facet: &'a Facet,
     primitives: &'a Primitives,
     pub records: &'a [f32],
     /// The tile's first pixel.
@@ -214,7 +214,7 @@ pub(crate) struct Shader<'a> {
 impl<'a> Shader<'a> {
     #[inline(always)]
     pub(crate) fn new(
-        facet: Facet,
+        facet: &'a Facet,
         draw: &'a DrawContext<'a>,
         primitives: &'a Primitives,
         tile: [f32; 2],
@@ -250,10 +250,10 @@ impl<'a> Shader<'a> {
             self.scratch.differences.prepare(simd, self.records, corners, self.layout.stride);
             if let Some(Shape::Polygon { x, y, .. }) = self.shape {
                 let own = Setup { x, y, ..*setup };
-                self.scratch.interpolation = Interpolation::new(&own, &self.facet, self.records, self.tile);
+                self.scratch.interpolation = Interpolation::new(&own, self.facet, self.records, self.tile);
                 self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.scratch.interpolation = Interpolation::new(setup, &self.facet, self.records, self.tile);
+                self.scratch.interpolation = Interpolation::new(setup, self.facet, self.records, self.tile);
             }
         }
     }
@@ -358,12 +358,19 @@ impl<'a> Shader<'a> {
     }
 
     /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
-    pub(crate) fn block<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), any: u64) -> (Words, u64) {
+    pub(crate) fn block<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        (left, bottom): (usize, usize),
+        any: u64,
+    ) -> (Words, u64) {
         if let Some(color) = self.constant() {
             let passed = self.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
             let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
             return (Words::One(word), if passed { any } else { 0 });
         }
+        self.prepare(simd, setup);
         let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
         if any == u64::MAX {
             let x = CENTERS.map(|c| c + left as f32);

@@ -11,7 +11,7 @@ use super::sample::sample;
 use super::shade::{Scratch, Shader};
 use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
-use crate::kernel::traverse::{Block, BlockSink, traverse};
+use crate::kernel::traverse::{Block, BlockSink, traverse, traverse_anywhere};
 use crate::sink::row_depth;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use vitral_math::lanes::prelude::*;
@@ -100,7 +100,11 @@ impl<'a> TileRun<'a> {
                     let (x, y) = (self.x, self.y);
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
                     let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
-                    traverse(simd, setup, (x, y), pattern, &mut sink);
+                    if sink.by_blocks() {
+                        traverse_anywhere(simd, setup, (x, y), pattern, &mut sink);
+                    } else {
+                        traverse(simd, setup, (x, y), pattern, &mut sink);
+                    }
                 }
             },
         );
@@ -269,9 +273,7 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let packed = !matches!(self.run.planes.color, Some(ColorTile::RgbaF32(_)));
-        if self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
-        {
+        if self.by_blocks() {
             return self.block(simd, setup, block, masks);
         }
         let [x0, y0, x1, y1] = self.clip;
@@ -293,6 +295,13 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
 }
 
 impl FragmentSink<'_, '_, '_> {
+    /// Whether its fragments are of the common kinds, see [`super::block`]; these blocks may begin at any pixel.
+    #[inline(always)]
+    fn by_blocks(&self) -> bool {
+        let packed = !matches!(self.run.planes.color, Some(ColorTile::RgbaF32(_)));
+        self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
+    }
+
     /// The common kinds of fragments, see [`super::block`].
     #[inline(always)]
     fn block<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
@@ -327,8 +336,7 @@ impl FragmentSink<'_, '_, '_> {
         if any == 0 || !self.draw.shaded {
             return;
         }
-        self.shader.prepare(simd, setup);
-        let (words, passed) = self.shader.block(simd, place, any);
+        let (words, passed) = self.shader.block(simd, setup, place, any);
         if late {
             for b in &mut bits {
                 *b &= passed;

@@ -6,6 +6,7 @@
 //!
 //! Source: [Pineda 1988]; hierarchical traversal after [Greene 1996].
 
+use crate::samples::MOST_SAMPLES;
 use crate::setup::is_top_left;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE};
 use std::ops::Range;
@@ -102,6 +103,48 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
         }
     } else {
         blocks_apart(simd, setup, tile, pattern, sink);
+    }
+}
+
+/// [`traverse`] for a sink that takes blocks from any pixel on, not only those of the tile: triangles of at most 8x8
+/// pixels, which lie in up to four of the tile's blocks, make one.
+#[cfg(any(test, feature = "forward"))]
+#[inline(always)]
+pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    let window = [0..TILE, 0..TILE];
+    let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
+    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+    if x1 - x0 >= BLOCK || y1 - y0 >= BLOCK || !place.is_small() {
+        return traverse(simd, setup, tile, pattern, sink);
+    }
+    // Blocks must not reach beyond the tile.
+    let (x, y) = (x0.min(TILE - BLOCK), y0.min(TILE - BLOCK));
+    let block = Block { x, y, rows: y0 - y..y1 + 1 - y };
+    if sink.rejects(setup, &block) {
+        return;
+    }
+    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let (edges, corners) = place.edges();
+    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
+    let [xs, ys] = pattern.axes();
+    let (mut masks, mut any) = ([0; MOST_SAMPLES], 0);
+    for s in 0..pattern.len().min(MOST_SAMPLES) {
+        let mut at_block = [0; 3];
+        for i in 0..3 {
+            let Edge { a, b } = edges[i];
+            at_block[i] = ((corners[i] + (b * ys[s] + a * xs[s])) >> 8) + a * x as i32 + b * y as i32;
+        }
+        masks[s] = mask_rows(simd, &edges, &across, at_block, block.rows.clone());
+        any |= masks[s];
+    }
+    if any != 0 {
+        sink.cover(simd, setup, &block, &masks[..pattern.len()]);
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Frames {
     pub(super) coverage: Option<f64>,
     /// Milliseconds of drawing alone, without handing the pixels over, if the program says it.
     pub(super) render_only_ms: Option<f64>,
+    /// Milliseconds of the parts of a whole process, one by one, if the program says it.
+    pub(super) parts_ms: Option<f64>,
     /// The program's version and renderer, for the report.
     pub(super) about: String,
 }
@@ -38,6 +40,7 @@ impl Frames {
             cpu_ms: number("cpu_ms"),
             coverage: number("coverage"),
             render_only_ms: number("render_only_ms"),
+            parts_ms: number("parts_ms"),
             about: about.collect::<Vec<_>>().join(", "),
         })
     }
@@ -155,6 +158,7 @@ mod tests {
             cpu_ms: None,
             coverage: None,
             render_only_ms: None,
+            parts_ms: None,
             about: String::new(),
         };
         let middle = Frames::median(vec![round(9.0, 1.0), round(2.0, 2.0), round(5.0, 3.0)]);

@@ -65,11 +65,17 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
             println!("left out: {} is not there", relative(&model));
             continue;
         }
+        let mut parts = None;
         for samples in [1, 4] {
             eprintln!("{name}, {samples} sample(s) a pixel");
-            report.turntable(name, samples, &turntables(&programs, &model, samples, effort));
+            let frames = turntables(&programs, &model, samples, effort);
+            let own = frames.first().and_then(|f| f.as_ref().ok()).and_then(|f| f.parts_ms);
+            parts = parts.or(own);
+            report.turntable(name, samples, &frames);
         }
-        report.processes(name, &processes(&programs, &model, effort));
+        let whole = processes(&programs, &model, effort);
+        report.parts(name, whole.first().and_then(|w| w.as_ref().ok()).copied(), parts);
+        report.processes(name, &whole);
     }
     report.start_up(&python, effort.rounds)?;
     print!("{report}");

@@ -22,6 +22,9 @@ const FRAME_TARGETS: [Target; 2] = [
 /// The whole process; it holds for every model.
 const PROCESS_TARGETS: [Target; 1] = [Target { peer: "F3D", ratio: 12.0, models: &[] }];
 
+/// The most that a whole process may take, as a multiple of its parts measured alone.
+const MOST_OF_PARTS: f64 = 1.5;
+
 /// The generated mesh: frames a second and million triangles a second.
 const TORUS_TARGETS: (f64, f64) = (30.0, 25.0);
 
@@ -90,6 +93,18 @@ impl Report {
         }
         row += &self.ratios(&times, &PROCESS_TARGETS, model);
         self.processes.push(row);
+    }
+
+    /// Notes how vitral's whole process compares with its parts, one sample a pixel.
+    pub(super) fn parts(&mut self, model: &str, whole: Option<f64>, parts_ms: Option<f64>) {
+        if let Some((whole, parts)) = whole.zip(parts_ms) {
+            let whole = 1000.0 * whole;
+            self.notes.push(format!(
+                "{model}: vitral's whole process takes {whole:.0} ms, {:.2}x of reading, drawing and encoding measured \
+                 alone, {parts:.0} ms (target at most {MOST_OF_PARTS}x)",
+                whole / parts
+            ));
+        }
     }
 
     /// Measures what Python and the peers' libraries cost before anything is loaded: part of the whole process.
@@ -179,6 +194,7 @@ mod tests {
             cpu_ms: Some(7.0),
             coverage: Some(0.5),
             render_only_ms: None,
+            parts_ms: None,
             about: "4.0".to_owned(),
         }
     }
@@ -207,6 +223,15 @@ mod tests {
         let mut report = report();
         report.turntable("torus, 1M triangles", 4, &[Ok(frames(20.0)), Ok(frames(600.0)), Ok(frames(100.0))]);
         assert!(report.to_string().contains("50.0 frames/s (target 30), 50.0 Mtri/s (target 25)"), "{report}");
+    }
+
+    #[test]
+    fn the_whole_is_compared_with_its_parts() {
+        let mut report = report();
+        report.parts("bunny", Some(0.06), Some(50.0));
+        report.parts("torus", None, Some(50.0));
+        let text = report.to_string();
+        assert!(text.contains("60 ms, 1.20x of") && !text.contains("torus"), "{text}");
     }
 
     #[test]

@@ -6,7 +6,6 @@
 //!
 //! Source: [Pineda 1988]; hierarchical traversal after [Greene 1996].
 
-use crate::samples::MOST_SAMPLES;
 use crate::setup::is_top_left;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE};
 use std::ops::Range;
@@ -117,6 +116,7 @@ pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
+    use crate::samples::MOST_SAMPLES;
     let window = [0..TILE, 0..TILE];
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);

@@ -10,17 +10,17 @@
 //! Cost: linear in elements, times lights.
 //! Source: \[Goral et al. 1984\].
 
+use super::hemicube::Targets;
 use super::patch::Trees;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::DecodeTables;
 use crate::shadow::{Place, Shadows, facet as facet_of, ray::RayShadows, texel};
 use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
-use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Light, LightKind, Material, PreparedLight, Reflectance};
 use vitral_math::lanes::V3;
 use vitral_math::{DVec3, DVec4};
-use vitral_scene::{Mesh, Part, Scene};
+use vitral_scene::Scene;
 
 /// Red, green, blue.
 pub type Color = [f64; 3];
@@ -73,8 +73,8 @@ pub struct Enclosure {
     /// Radiosity of each side of each element before light goes on from surface to surface: what it sends out by itself,
     /// and what it reflects of light sources.
     pub emission: Vec<Color>,
-    /// The elements as a scene, a facet each.
-    pub scene: Session,
+    /// The elements as hemicubes find them.
+    pub targets: Targets,
 }
 
 /// The lights that light surfaces directly: without ambient light, and without area lights where surfaces shine.
@@ -129,8 +129,8 @@ impl Enclosure {
             *area += element.area;
         }
         patches.iter_mut().zip(areas).for_each(|(patch, area)| patch.center /= area);
-        let scene = element_scene(&trees, &leaves);
-        let mut enclosure = Self { trees, elements, patches, emission: own.into_flattened(), scene };
+        let targets = Targets::new(&trees);
+        let mut enclosure = Self { trees, elements, patches, emission: own.into_flattened(), targets };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
     }
@@ -224,13 +224,4 @@ fn element(trees: &Trees, node: u32, session: &Session, tables: &DecodeTables) -
     let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
     let patch = trees.nodes[node as usize].patch;
     (Element { node, patch, center, normal, area, reflectance }, [front, back])
-}
-
-/// The leaves as a scene of their own.
-fn element_scene(trees: &Trees, leaves: &[u32]) -> Session {
-    let positions = trees.vertices.iter().map(|v| v.as_vec3().to_array()).collect();
-    let triangles = leaves.iter().map(|&l| trees.nodes[l as usize].corners).collect();
-    let parts = vec![Part { name: String::new(), triangles: 0..leaves.len() as u32, material: None }];
-    let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
-    Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound")
 }

@@ -153,15 +153,27 @@ impl Trees {
         })
     }
 
-    /// The leaf of a facet at a point of it, and the weights of the leaf's corners there.
-    pub fn find(&self, facet: u32, mut weights: [f32; 3]) -> Option<(u32, [f32; 3])> {
-        let mut at = *self.roots.get(facet as usize).filter(|&&root| root != NONE)?;
+    /// The leaf at a point of the tree from `root` on. The weights of the root's corners there, and how they change along
+    /// some line, come in, those of the leaf's go out; all may be times any positive number.
+    pub fn leaf_along(&self, root: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
+        let mut at = root;
         while self.nodes[at as usize].children != NONE {
-            let (child, inside) = descend(weights);
-            at = self.nodes[at as usize].children + child;
-            weights = inside;
+            let half = 0.5 * (weights[0] + weights[1] + weights[2]);
+            let child = (0..3).find(|&k| weights[k] >= half).unwrap_or(3);
+            for values in [&mut weights, &mut slopes] {
+                let [a, b, c] = *values;
+                let sum = a + b + c;
+                *values = match child {
+                    3 => [sum - 2.0 * a, sum - 2.0 * b, sum - 2.0 * c],
+                    _ => [2.0 * a, 2.0 * b, 2.0 * c],
+                };
+                if child < 3 {
+                    values[child] -= sum;
+                }
+            }
+            at = self.nodes[at as usize].children + child as u32;
         }
-        Some((at, weights))
+        (at, weights, slopes)
     }
 }
 
@@ -228,12 +240,17 @@ mod tests {
         for i in 0..200u32 {
             let (u, v) = (f64::from(i % 14) / 14.0 + 0.01, f64::from(i / 14) / 15.0 + 0.02);
             let w = if u + v < 1.0 { [u, v, 1.0 - u - v] } else { [1.0 - u, 1.0 - v, u + v - 1.0] };
-            let (leaf, inside) = trees.find(i % 2, w.map(|w| w as f32)).unwrap();
-            let place = |corners: [DVec3; 3], w: [f64; 3]| corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
-            let expected = place(trees.places(trees.roots[i as usize % 2]), w);
-            assert!(place(trees.places(leaf), inside.map(f64::from)).abs_diff_eq(expected, 1e-6));
-            assert!(inside.iter().all(|w| *w > -1e-6));
+            // Any scale will do.
+            let (w, step) = (w.map(|w| 3.0 * w), [0.2, -0.3, 0.1]);
+            let (leaf, inside, along) = trees.leaf_along(trees.roots[i as usize % 2], w, step);
+            let place = |corners: [DVec3; 3], w: [f64; 3]| {
+                (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / w.iter().sum::<f64>()
+            };
+            let root = trees.places(trees.roots[i as usize % 2]);
+            let ahead = |w: [f64; 3], step: [f64; 3]| [0, 1, 2].map(|k| w[k] + 0.7 * step[k]);
+            assert!(place(trees.places(leaf), inside).abs_diff_eq(place(root, w), 1e-12));
+            assert!(place(trees.places(leaf), ahead(inside, along)).abs_diff_eq(place(root, ahead(w, step)), 1e-12));
+            assert!(inside.iter().all(|w| *w > -1e-12));
         }
-        assert!(trees.find(7, [1.0, 0.0, 0.0]).is_none());
     }
 }

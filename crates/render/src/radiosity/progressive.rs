@@ -89,7 +89,8 @@ pub fn solve(
             let patch = &enclosure.patches[shooters[i] / 2];
             let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
             let hemicube = hemicubes[usize::from(strong)];
-            hemicube.look(&enclosure.scene, patch.center, patch.normal * turned(shooters[i]), execution).map(Arc::new)
+            let normal = patch.normal * turned(shooters[i]);
+            hemicube.look(&enclosure.targets, &enclosure.trees, patch.center, normal, execution).map(Arc::new)
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {

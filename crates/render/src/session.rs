@@ -69,6 +69,8 @@ pub struct Session {
     uniform_grid: Kept<Grid>,
     pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
     pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
+    /// Those of one view.
+    pub(crate) shadow_cascades: KeptFor<shadow::map::CascadesKey, shadow::map::Cascades>,
     pub(crate) shadow_volumes: KeptFor<shadow::Key, shadow::volume::Volumes>,
     pub(crate) lit_polygons: KeptFor<shadow::Key, shadow::object_precision::LitPolygons>,
 }
@@ -164,6 +166,7 @@ impl Session {
             uniform_grid: Mutex::default(),
             radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
+            shadow_cascades: Mutex::default(),
             shadow_volumes: Mutex::default(),
             lit_polygons: Mutex::default(),
         })
@@ -221,6 +224,7 @@ impl Session {
         self.octree = Mutex::default();
         self.uniform_grid = Mutex::default();
         self.shadow_maps = Mutex::default();
+        self.shadow_cascades = Mutex::default();
         self.shadow_volumes = Mutex::default();
         self.lit_polygons = Mutex::default();
     }

@@ -4,7 +4,8 @@
 //! [`Setup`]s (integer edge functions, a depth plane) and sorts them into the tiles they touch; [`traverse`] walks a
 //! tile's triangles in blocks of 8x8 pixels and hands each block with its coverage masks to a [`BlockSink`], which
 //! decides what a covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
-//! facet in front of it.
+//! facet in front of it. [`traverse_by_rows`] hands triangles that are at most eight pixels wide row by row to a
+//! [`RowSink`], wherever the rows begin: of a fine mesh, most are.
 //!
 //! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two triangles that share
 //! an edge cover each sample along it exactly once. Depth is `1` at the near plane and `0` at the far plane; the

@@ -43,25 +43,18 @@ impl<S: Simd> Row<S> {
     }
 }
 
-/// Goes through the rows of a block in which `masks`, one a sample, have something; the tile starts at pixel `corner`.
+/// [`BlockSink::cover`] for a sink that takes rows: hands it the rows in which `masks`, one a sample, have something.
 #[inline(always)]
-fn each_row<S: Simd>(
-    simd: S,
-    setup: &Setup,
-    place: (&SamplePattern, [usize; 2]),
-    block: &Block,
-    masks: &[u64],
-    mut visit: impl FnMut(Row<S>),
-) {
+fn cover_by_rows<S: Simd>(simd: S, setup: &Setup, block: &Block, masks: &[u64], sink: &mut impl RowSink<S>) {
     for (s, &mask) in masks.iter().enumerate() {
         for row in block.rows.clone() {
             let covered = (mask >> (8 * row)) & 0xff;
             if covered != 0 {
-                let covered = Mask8::from_bitmask(simd, covered);
-                visit(Row::new(simd, setup, place, s, [block.x, block.y + row], covered));
+                sink.cover_row(simd, setup, s, [block.x, block.y + row], Mask8::from_bitmask(simd, covered));
             }
         }
     }
+    sink.end(simd, [block.x, block.y]);
 }
 
 /// The tile's first pixel.
@@ -144,19 +137,7 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let facet = U32x8::splat(simd, setup.facet);
-        let place = (self.pattern, corner(self.tile));
-        let mut written = 0;
-        each_row(
-            simd,
-            setup,
-            place,
-            block,
-            masks,
-            #[inline(always)]
-            |row| written += keep_nearer(simd, self.tile, facet, &row).wins.to_bitmask().count_ones(),
-        );
-        note_writes(simd, self.tile, self.pattern.len(), block, (written, self.patience));
+        cover_by_rows(simd, setup, block, masks, self);
     }
 }
 
@@ -264,19 +245,7 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let facet = U32x8::splat(simd, setup.facet);
-        let place = (self.pattern, corner(self.tile));
-        let mut written = 0;
-        each_row(
-            simd,
-            setup,
-            place,
-            block,
-            masks,
-            #[inline(always)]
-            |row| written += self.draw(simd, facet, &row),
-        );
-        self.note(simd, block, written);
+        cover_by_rows(simd, setup, block, masks, self);
     }
 }
 
@@ -351,9 +320,6 @@ impl<S: Simd> RowSink<S> for LayerSink<'_> {
         let place = (self.pattern, corner(self.tile));
         self.collect(setup.facet, &Row::new(simd, setup, place, sample, at, covered));
     }
-
-    #[inline(always)]
-    fn end(&mut self, _: S, _: [usize; 2]) {}
 }
 
 impl<S: Simd> BlockSink<S> for LayerSink<'_> {
@@ -364,16 +330,7 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
 
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let place = (self.pattern, corner(self.tile));
-        each_row(
-            simd,
-            setup,
-            place,
-            block,
-            masks,
-            #[inline(always)]
-            |row| self.collect(setup.facet, &row),
-        );
+        cover_by_rows(simd, setup, block, masks, self);
     }
 }
 

@@ -157,6 +157,15 @@ pub static ACCELERATION: &[AccelerationStructure] = &[
     },
 ];
 
+/// A figure sequence of the notes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panels {
+    /// Depths from the light and from the viewer, and how a picture is darkened by them.
+    ImageSpace,
+    /// What the light sees becomes polygons of the scene.
+    ObjectPrecision,
+}
+
 /// A way to find shadows.
 pub struct Shadowing {
     /// Name on the command line.
@@ -167,6 +176,8 @@ pub struct Shadowing {
     pub source: &'static str,
     /// What polygons it works with, if it does, which can be drawn.
     pub polygons: Option<&'static str>,
+    /// The notes' figure sequence that shows how it works, if there is one.
+    pub panels: Option<Panels>,
     /// The code; `None` for no shadows.
     pub algorithm: Option<&'static dyn ShadowAlgorithm>,
 }
@@ -178,6 +189,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "every light reaches what faces it",
         source: "Foley et al. 1990",
         polygons: None,
+        panels: None,
         algorithm: None,
     },
     Shadowing {
@@ -185,6 +197,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "a ray from every point to every light: the reference of the others",
         source: "Appel 1968",
         polygons: None,
+        panels: None,
         algorithm: Some(&RayShadows),
     },
     Shadowing {
@@ -192,6 +205,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "the z-buffer from the light, kept while lights and scene stay",
         source: "Williams 1978",
         polygons: None,
+        panels: Some(Panels::ImageSpace),
         algorithm: Some(&MapShadows),
     },
     Shadowing {
@@ -199,6 +213,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "solids behind what keeps light, counted along a path (--volume-counting)",
         source: "Crow 1977",
         polygons: Some("caps and sides of the volumes, as far as the scene is large"),
+        panels: None,
         algorithm: Some(&VolumeShadows),
     },
     Shadowing {
@@ -206,6 +221,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "each line of pixels on a facet is cut where it crosses the shadows on the facet",
         source: "Bouknight & Kelley 1970",
         polygons: None,
+        panels: None,
         algorithm: Some(&ScanLineShadows),
     },
     Shadowing {
@@ -213,6 +229,7 @@ pub static SHADOWS: &[Shadowing] = &[
         description: "facets are cut in lit polygons, as the light sees them, kept while lights and scene stay",
         source: "Atherton, Weiler & Greenberg 1978",
         polygons: Some("lit polygons"),
+        panels: Some(Panels::ObjectPrecision),
         algorithm: Some(&ObjectPrecisionShadows),
     },
 ];

@@ -68,6 +68,7 @@ pub struct Session {
     octree: Kept<Octree>,
     uniform_grid: Kept<Grid>,
     pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
+    pub(crate) loaded_radiosity: Kept<radiosity::Solution>,
     pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
     /// Those of one view.
     pub(crate) shadow_cascades: KeptFor<shadow::map::CascadesKey, shadow::map::Cascades>,
@@ -76,7 +77,7 @@ pub struct Session {
 }
 
 /// What is made when it is first asked for, and then kept.
-type Kept<T> = Mutex<Option<Arc<T>>>;
+pub(crate) type Kept<T> = Mutex<Option<Arc<T>>>;
 
 /// What is kept, or else what `make` makes.
 fn keep<T>(kept: &Kept<T>, make: impl FnOnce() -> Result<T, Limit>) -> Result<Arc<T>, Limit> {
@@ -165,6 +166,7 @@ impl Session {
             octree: Mutex::default(),
             uniform_grid: Mutex::default(),
             radiosity: Mutex::default(),
+            loaded_radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
             shadow_cascades: Mutex::default(),
             shadow_volumes: Mutex::default(),

@@ -12,6 +12,7 @@ use crate::{Error, Renderer};
 use vitral_frame::{Frame, Plane};
 use vitral_light::{AreaShape, Light, LightKind, Material, Reflectance};
 use vitral_math::{DMat4, DQuat, DVec3};
+use vitral_render::registry::{self, Panels};
 use vitral_render::{Channels, Lines, Rendered, Settings, SettingsError, shadow};
 use vitral_scene::builtin::solids;
 use vitral_scene::{Camera, Faces, Lens, Mesh, Part, Projection, Scene, framing};
@@ -20,8 +21,6 @@ use vitral_scene::{Camera, Faces, Lens, Mesh, Part, Projection, Scene, framing};
 const GAP: usize = 4;
 /// What is left of a colour where shadow falls, if the picture is darkened afterwards.
 const DARKENED: f32 = 0.5;
-/// The shadows that have panels.
-const CHOICES: [&str; 2] = ["map", "object-precision"];
 
 type Picture = Plane<[u8; 4]>;
 
@@ -32,10 +31,11 @@ type Picture = Plane<[u8; 4]>;
 /// Shadows without panels, a scene without such a light, and whatever ends a picture.
 pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Error> {
     let settings = renderer.settings.clone();
-    if !CHOICES.contains(&settings.shadows.as_str()) {
-        let error = SettingsError::Panels { shadows: settings.shadows, choices: CHOICES.join(", ") };
+    let Some(sequence) = registry::shadows(&settings.shadows).and_then(|s| s.panels) else {
+        let choices: Vec<_> = registry::SHADOWS.iter().filter(|s| s.panels.is_some()).map(|s| s.name).collect();
+        let error = SettingsError::Panels { shadows: settings.shadows, choices: choices.join(", ") };
         return Err(vitral_render::Error::from(error).into());
-    }
+    };
     let lights = renderer.frame_lights(camera);
     let number = lights.iter().position(|l| l.kind != LightKind::Ambient);
     let Some(number) = number else {
@@ -43,16 +43,16 @@ pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Erro
     };
     let from_light = light_camera(renderer, &lights[number]);
     let overview = overview(renderer, camera, &lights, &from_light)?;
-    let result = six(renderer, camera, (&lights, number), &from_light, overview);
+    let result = six(renderer, sequence, [camera, &from_light], (&lights, number), overview);
     renderer.settings = settings;
     result
 }
 
 fn six(
     renderer: &mut Renderer,
-    camera: &Camera,
+    sequence: Panels,
+    [camera, from_light]: [&Camera; 2],
     (lights, number): (&[Light], usize),
-    from_light: &Camera,
     overview: Picture,
 ) -> Result<Rendered, Error> {
     let with = renderer.settings.clone();
@@ -66,23 +66,25 @@ fn six(
         };
         let mut shadowed = shot(&with, camera)?;
         let plain = color(shot(&without, camera)?);
-        let rest = if with.shadows == "map" {
-            let depth = Channels { depth: true, color: false, ..Channels::default() };
-            let depths = Settings { channels: depth, ..without };
-            let cast = Channels { cast_shadow: true, color: false, ..Channels::default() };
-            let mask = shot(&Settings { channels: cast, ..with }, camera)?.frame.cast_shadow.unwrap_or_default();
-            let texels = texels(&depths);
-            let [light, viewer] = [shot(&texels, from_light)?, shot(&depths, camera)?].map(grey);
-            let light = enlarged(&light, [viewer.width(), viewer.height()]);
-            let darkened = darkened(&plain, &mask);
-            [light, viewer, plain, darkened]
-        } else {
-            let seen = color(shot(&without, from_light)?);
-            renderer.settings = with.clone();
-            let mut lit = lit_scene(renderer, number)?;
-            lit.settings = without;
-            let [light, viewer] = [color(lit.render_from(from_light)?), color(lit.render_from(camera)?)];
-            [seen, light, viewer, plain]
+        let rest = match sequence {
+            Panels::ImageSpace => {
+                let depth = Channels { depth: true, color: false, ..Channels::default() };
+                let depths = Settings { channels: depth, ..without };
+                let cast = Channels { cast_shadow: true, color: false, ..Channels::default() };
+                let mask = shot(&Settings { channels: cast, ..with }, camera)?.frame.cast_shadow.unwrap_or_default();
+                let [light, viewer] = [shot(&texels(&depths), from_light)?, shot(&depths, camera)?].map(grey);
+                let light = enlarged(&light, [viewer.width(), viewer.height()]);
+                let darkened = darkened(&plain, &mask);
+                [light, viewer, plain, darkened]
+            }
+            Panels::ObjectPrecision => {
+                let seen = color(shot(&without, from_light)?);
+                renderer.settings = with.clone();
+                let mut lit = lit_scene(renderer, number)?;
+                lit.settings = without;
+                let [light, viewer] = [color(lit.render_from(from_light)?), color(lit.render_from(camera)?)];
+                [seen, light, viewer, plain]
+            }
         };
         let last = shadowed.frame.color.take().unwrap_or_default();
         let [b, c, d, e] = &rest;
@@ -224,15 +226,16 @@ fn lit_scene(renderer: &Renderer, number: usize) -> Result<Renderer, Error> {
     let mut mesh = Mesh { name: "lit".to_owned(), ..Mesh::default() };
     let (mut starts, mut corners) = (vec![0], Vec::new());
     let drawn = shadow::draw(renderer.session(), &lights, &renderer.settings, renderer.execution(), &mut |polygon| {
-        if polygon.light != number {
-            return;
+        if polygon.light == number {
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(polygon.corners.iter().map(|c| c.as_vec3().to_array()));
+            let count = polygon.corners.len() as u32;
+            mesh.triangles.extend((2..count).map(|i| [first, first + i - 1, first + i]));
+            corners.extend(first..first + count);
+            starts.push(corners.len() as u32);
         }
-        let first = mesh.positions.len() as u32;
-        mesh.positions.extend(polygon.corners.iter().map(|c| c.as_vec3().to_array()));
-        let count = polygon.corners.len() as u32;
-        mesh.triangles.extend((2..count).map(|i| [first, first + i - 1, first + i]));
-        corners.extend(first..first + count);
-        starts.push(corners.len() as u32);
+        let triples = mesh.positions.len() + mesh.triangles.len();
+        (12 * triples + 4 * (corners.len() + starts.len())) as u64
     });
     drawn.map_err(vitral_render::Error::from)?;
     mesh.faces = Faces::Polygons { starts, corners };

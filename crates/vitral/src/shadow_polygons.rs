@@ -4,9 +4,6 @@ use crate::{Error, Renderer};
 use std::fmt::Write;
 use vitral_render::{SettingsError, registry, shadow};
 
-/// Bytes of text that are charged to the budget together.
-const CHARGED_AHEAD: u64 = 1 << 20;
-
 /// The polygons of the chosen shadow algorithm for the next picture of `renderer`, as OBJ text: a group for each light
 /// and kind of polygon, world space.
 ///
@@ -25,18 +22,8 @@ pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
     }
     let camera = renderer.frame_camera();
     let lights = renderer.frame_lights(&camera);
-    let execution = renderer.execution();
-    let budget = &execution.budget;
     let (mut text, mut count, mut group) = (String::new(), 0u64, None);
-    let (mut charged, mut within) = (0, Ok(()));
-    let drawn = shadow::draw(renderer.session(), &lights, settings, execution, &mut |polygon| {
-        if within.is_err() {
-            return;
-        }
-        if text.len() as u64 + CHARGED_AHEAD / 2 > charged {
-            within = budget.check("shadow polygons").and_then(|()| budget.charge(CHARGED_AHEAD, "shadow polygons"));
-            charged += if within.is_ok() { CHARGED_AHEAD } else { 0 };
-        }
+    let drawn = shadow::draw(renderer.session(), &lights, settings, renderer.execution(), &mut |polygon| {
         // A group is named where it begins.
         let name = (polygon.light, polygon.kind);
         if group != Some(name) {
@@ -52,8 +39,8 @@ pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
             let _ = write!(text, " {count}");
         }
         text.push('\n');
+        text.len() as u64
     });
-    budget.release(charged);
-    drawn.and(within).map_err(vitral_render::Error::from)?;
+    drawn.map_err(vitral_render::Error::from)?;
     Ok(text)
 }

@@ -49,8 +49,9 @@ pub trait RowSink<S: Simd>: BlockSink<S> {
     /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
     fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
 
-    /// The last row of a triangle whose box begins at pixel `at` was given.
-    fn end(&mut self, simd: S, at: [usize; 2]);
+    /// The last row of a triangle, or of its part in a block, whose box begins at pixel `at` was given.
+    #[inline(always)]
+    fn end(&mut self, _simd: S, _at: [usize; 2]) {}
 }
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.

@@ -301,7 +301,7 @@ impl<'a> Whitted<'a> {
         let weights = [0, 1, 2].map(|k| [weights[k], slope(k, ways[0]), slope(k, ways[1])]);
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
-        let place = Place { position, normal, facet, seed, pixel: [0.0; 2] };
+        let place = Place { position, normal, facet, seed, pixel: None };
         Some((Hit { weights, origin: origin.as_vec3().to_array(), place }, from_behind))
     }
 

@@ -159,7 +159,7 @@ impl Enclosure {
                 normal: element.normal * turned(i),
                 facet,
                 seed: i as u32,
-                pixel: [0.0; 2],
+                pixel: None,
             };
             arriving(&prepared, &*shadows, &place)
         });

@@ -22,7 +22,7 @@ pub mod solution;
 pub use solution::Solution;
 
 use crate::stats::RadiosityCounters;
-use crate::{ColorSpace, Execution, Session, Settings};
+use crate::{ColorSpace, Execution, Session, Settings, session};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
 use std::sync::Arc;
@@ -42,20 +42,16 @@ const CONTRAST: f64 = 0.5;
 
 /// What a solution depends on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Key {
-    /// Solved here.
-    Solved {
-        lights: Vec<Light>,
-        patch_size: Option<f64>,
-        iterations: Option<u64>,
-        lighting: bool,
-        color_space: ColorSpace,
-    },
-    /// Handed in: holds whatever is asked for.
-    Loaded,
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    patch_size: Option<f64>,
+    iterations: Option<u64>,
+    lighting: bool,
+    color_space: ColorSpace,
 }
 
-/// The solution for these lights: the one that is known, or a new one, whose making is counted.
+/// The solution for these lights: the one that was handed in, the one that is known, or a new one, whose making is
+/// counted.
 pub(crate) fn solution(
     session: &Session,
     lights: &[Light],
@@ -63,23 +59,17 @@ pub(crate) fn solution(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Arc<Solution>, Limit> {
-    let key = Key::Solved {
+    if let Some(loaded) = &*session.loaded_radiosity.lock().expect("it is only replaced") {
+        return Ok(Arc::clone(loaded));
+    }
+    let key = Key {
         lights: lights.to_vec(),
         patch_size: settings.patch_size,
         iterations: settings.iterations,
         lighting: settings.lighting,
         color_space: settings.color_space,
     };
-    let mut kept = session.radiosity.lock().expect("no thread panics while it solves");
-    if let Some((known, solution)) = &*kept
-        && (*known == key || *known == Key::Loaded)
-    {
-        return Ok(Arc::clone(solution));
-    }
-    *kept = None;
-    let solution = Arc::new(solve(session, lights, settings, execution, counters)?);
-    *kept = Some((key, Arc::clone(&solution)));
-    Ok(solution)
+    session::keep_for(&session.radiosity, key, || solve(session, lights, settings, execution, counters))
 }
 
 /// Patches, rough solutions that say where to cut elements, and the solution.
@@ -160,8 +150,10 @@ impl Session {
 
     /// The solution of the last picture with radiosity, as bytes for [`Self::load_radiosity`]; `None` without one.
     pub fn save_radiosity(&self) -> Option<Vec<u8>> {
-        let kept = self.radiosity.lock().expect("no thread panics while it solves");
-        kept.as_ref().map(|(_, solution)| solution.to_bytes(self.fingerprint()))
+        let loaded = self.loaded_radiosity.lock().expect("it is only replaced");
+        let solved = self.radiosity.lock().expect("no thread panics while it solves");
+        let solution = loaded.as_ref().or(solved.as_ref().map(|(_, solution)| solution));
+        solution.map(|solution| solution.to_bytes(self.fingerprint()))
     }
 
     /// Uses a stored solution for all pictures with radiosity, instead of solving.
@@ -170,7 +162,7 @@ impl Session {
     /// [`crate::Error::Radiosity`] for bytes that are no solution for this scene.
     pub fn load_radiosity(&self, bytes: &[u8]) -> Result<(), crate::Error> {
         let solution = Solution::from_bytes(bytes, self.fingerprint())?;
-        *self.radiosity.lock().expect("no thread panics while it solves") = Some((Key::Loaded, Arc::new(solution)));
+        *self.loaded_radiosity.lock().expect("it is only replaced") = Some(Arc::new(solution));
         Ok(())
     }
 }

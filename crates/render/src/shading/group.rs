@@ -126,7 +126,7 @@ pub(crate) struct Bounce {
 
 impl Default for Bounce {
     fn default() -> Self {
-        let place = Place { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: [0.0; 2] };
+        let place = Place { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: None };
         Self { normal: [0.0; 3], mirror: [0.0; 3], place }
     }
 }

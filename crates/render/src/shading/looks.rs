@@ -191,42 +191,39 @@ impl<S: Simd> Looks<S> {
     pub(super) fn coefficients(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
         simd.vectorize(
             #[inline(always)]
-            || self.coefficients_inlined(simd, material, color),
-        )
-    }
-
-    #[inline(always)]
-    fn coefficients_inlined(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
-        let one = constant(simd, 1.0);
-        match (material.material.reflectance, material.model) {
-            (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
-                let k = Phong {
-                    ka: V3::splat(one, ka).times(color).scale(self.occlusion),
-                    kd: V3::splat(one, kd).times(color),
-                    ks: V3::splat(one, ks).times(self.specular),
-                    shininess: constant(simd, shininess),
-                };
-                match model {
-                    Model::Microfacet => {
-                        let m = microfacet_from_phong(&k);
-                        Coefficients::Microfacet(Microfacet { occlusion: self.occlusion, ..m })
+            || {
+                let one = constant(simd, 1.0);
+                match (material.material.reflectance, material.model) {
+                    (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
+                        let k = Phong {
+                            ka: V3::splat(one, ka).times(color).scale(self.occlusion),
+                            kd: V3::splat(one, kd).times(color),
+                            ks: V3::splat(one, ks).times(self.specular),
+                            shininess: constant(simd, shininess),
+                        };
+                        match model {
+                            Model::Microfacet => {
+                                let m = microfacet_from_phong(&k);
+                                Coefficients::Microfacet(Microfacet { occlusion: self.occlusion, ..m })
+                            }
+                            _ => Coefficients::Empirical(k),
+                        }
                     }
-                    _ => Coefficients::Empirical(k),
+                    (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
+                        let m = Microfacet {
+                            base_color: V3::splat(one, base_color).times(color),
+                            metallic: self.metallic_factor * metallic,
+                            roughness: self.roughness_factor * roughness,
+                            occlusion: self.occlusion,
+                        };
+                        match model {
+                            Model::Microfacet => Coefficients::Microfacet(m),
+                            _ => Coefficients::Empirical(phong_from_microfacet(&m)),
+                        }
+                    }
                 }
-            }
-            (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
-                let m = Microfacet {
-                    base_color: V3::splat(one, base_color).times(color),
-                    metallic: self.metallic_factor * metallic,
-                    roughness: self.roughness_factor * roughness,
-                    occlusion: self.occlusion,
-                };
-                match model {
-                    Model::Microfacet => Coefficients::Microfacet(m),
-                    _ => Coefficients::Empirical(phong_from_microfacet(&m)),
-                }
-            }
-        }
+            },
+        )
     }
 
     /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates.
@@ -241,38 +238,28 @@ impl<S: Simd> Looks<S> {
         let texture = material.normal.as_ref()?;
         simd.vectorize(
             #[inline(always)]
-            || self.bend_normal(simd, mesh, slots, surface, material, texture),
+            || {
+                let texel = sample(simd, mesh, slots, surface, texture)?;
+                let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
+                let uv = gather_attribute(simd, attribute, mesh, slots);
+                let n = phong::interpolated_normal(surface);
+
+                // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
+                let (e1, e2) =
+                    (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
+                let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
+                let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
+                let zero = constant(simd, 0.0);
+                let flipped = lanes::Lanes::lt(du1 * dv2 - du2 * dv1, zero);
+                let tangent = e1.scale(dv2) - e2.scale(dv1);
+                let tangent = V3::select(flipped, -tangent, tangent);
+                let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
+                let bitangent = n.cross(tangent);
+                let scale = material.material.normal_scale;
+                let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
+                Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
+            },
         )
-    }
-
-    #[inline(always)]
-    fn bend_normal(
-        &self,
-        simd: S,
-        mesh: &Mesh,
-        slots: &Slots,
-        surface: &Surface<S>,
-        material: &MaterialConstants<'_>,
-        texture: &TextureConstants<'_>,
-    ) -> Option<V3<F<S>>> {
-        let texel = sample(simd, mesh, slots, surface, texture)?;
-        let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
-        let uv = gather_attribute(simd, attribute, mesh, slots);
-        let n = phong::interpolated_normal(surface);
-
-        // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
-        let (e1, e2) = (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
-        let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
-        let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
-        let zero = constant(simd, 0.0);
-        let flipped = lanes::Lanes::lt(du1 * dv2 - du2 * dv1, zero);
-        let tangent = e1.scale(dv2) - e2.scale(dv1);
-        let tangent = V3::select(flipped, -tangent, tangent);
-        let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
-        let bitangent = n.cross(tangent);
-        let scale = material.material.normal_scale;
-        let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
-        Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
     }
 }
 
@@ -305,53 +292,44 @@ fn sample<S: Simd>(
 ) -> Option<[F<S>; 4]> {
     simd.vectorize(
         #[inline(always)]
-        || sample_inlined(simd, mesh, slots, surface, t),
-    )
-}
+        || {
+            let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
+            let m = &t.reference.transform;
+            let corners = gather_attribute(simd, attribute, mesh, slots);
+            let coordinate = lanes::inlined(
+                #[inline(always)]
+                |r: usize, c: usize| corners[c][0] * m[r][0] + corners[c][1] * m[r][1] + m[r][2],
+            );
+            let u = [coordinate(0, 0), coordinate(0, 1), coordinate(0, 2)];
+            let v = [coordinate(1, 0), coordinate(1, 1), coordinate(1, 2)];
+            let here = (blend(&surface.weights, u), blend(&surface.weights, v));
 
-#[inline(always)]
-fn sample_inlined<S: Simd>(
-    simd: S,
-    mesh: &Mesh,
-    slots: &Slots,
-    surface: &Surface<S>,
-    t: &TextureConstants<'_>,
-) -> Option<[F<S>; 4]> {
-    let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
-    let m = &t.reference.transform;
-    let corners = gather_attribute(simd, attribute, mesh, slots);
-    let coordinate = lanes::inlined(
-        #[inline(always)]
-        |r: usize, c: usize| corners[c][0] * m[r][0] + corners[c][1] * m[r][1] + m[r][2],
-    );
-    let u = [coordinate(0, 0), coordinate(0, 1), coordinate(0, 2)];
-    let v = [coordinate(1, 0), coordinate(1, 1), coordinate(1, 2)];
-    let here = (blend(&surface.weights, u), blend(&surface.weights, v));
-
-    // Level of detail: the longer side of the pixel's footprint, in texels.
-    let base = t.texture.levels.first()?;
-    let (w, h) = (base.width() as f32, base.height() as f32);
-    let [right, down] = surface.neighbours();
-    let length2 = lanes::inlined(
-        #[inline(always)]
-        |weights: &[F<S>; 3]| {
-            let (du, dv) = ((blend(weights, u) - here.0) * w, (blend(weights, v) - here.1) * h);
-            du * du + dv * dv
+            // Level of detail: the longer side of the pixel's footprint, in texels.
+            let base = t.texture.levels.first()?;
+            let (w, h) = (base.width() as f32, base.height() as f32);
+            let [right, down] = surface.neighbours();
+            let length2 = lanes::inlined(
+                #[inline(always)]
+                |weights: &[F<S>; 3]| {
+                    let (du, dv) = ((blend(weights, u) - here.0) * w, (blend(weights, v) - here.1) * h);
+                    du * du + dv * dv
+                },
+            );
+            let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(&right), length2(&down))) * 0.5;
+            let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
+            let mut soa = [[0.0f32; LANES]; 4];
+            for lane in 0..LANES {
+                let texel = t.texture.sample(&t.reference.sampler, us[lane], vs[lane], lods[lane], t.decode);
+                for k in 0..4 {
+                    soa[k][lane] = texel[k];
+                }
+            }
+            Some([
+                F32x8::from_slice(simd, &soa[0]),
+                F32x8::from_slice(simd, &soa[1]),
+                F32x8::from_slice(simd, &soa[2]),
+                F32x8::from_slice(simd, &soa[3]),
+            ])
         },
-    );
-    let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(&right), length2(&down))) * 0.5;
-    let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
-    let mut soa = [[0.0f32; LANES]; 4];
-    for lane in 0..LANES {
-        let texel = t.texture.sample(&t.reference.sampler, us[lane], vs[lane], lods[lane], t.decode);
-        for k in 0..4 {
-            soa[k][lane] = texel[k];
-        }
-    }
-    Some([
-        F32x8::from_slice(simd, &soa[0]),
-        F32x8::from_slice(simd, &soa[1]),
-        F32x8::from_slice(simd, &soa[2]),
-        F32x8::from_slice(simd, &soa[3]),
-    ])
+    )
 }

@@ -41,8 +41,9 @@ pub struct Place {
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,
-    /// Where it is seen, in pixels of the picture; places with one `y` that are on one facet are on one line.
-    pub pixel: [f32; 2],
+    /// Where it is seen, in pixels of the picture, if the viewer sees it straight: places with one `y` that are on one
+    /// facet are on one line.
+    pub pixel: Option<[f32; 2]>,
 }
 
 /// Shadows of one set of lights in one scene.
@@ -110,19 +111,34 @@ pub(crate) fn grey([r, g, b]: Rgb) -> f32 {
     r + ((g - r) + (b - r)) / 3.0
 }
 
-/// Hands on the polygons that the chosen algorithm works with.
+/// Bytes that are charged to the budget together while polygons are handed on.
+const CHARGED_AHEAD: u64 = 1 << 20;
+
+/// Hands on the polygons that the chosen algorithm works with, until a limit is reached. `take` says how many bytes it
+/// keeps of all that it got; the budget allows them or ends it.
 pub fn draw(
     session: &Session,
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
-    take: &mut dyn FnMut(Drawn<'_>),
+    take: &mut dyn FnMut(Drawn<'_>) -> u64,
 ) -> Result<(), Limit> {
-    if let Some(algorithm) = registry::shadows(&settings.shadows).and_then(|s| s.algorithm) {
-        // They are the same for every viewer.
-        algorithm.prepare(session, lights, DVec4::Z, settings, execution)?.draw(take);
-    }
-    Ok(())
+    let Some(algorithm) = registry::shadows(&settings.shadows).and_then(|s| s.algorithm) else { return Ok(()) };
+    // They are the same for every viewer.
+    let shadows = algorithm.prepare(session, lights, DVec4::Z, settings, execution)?;
+    let budget = &execution.budget;
+    let (mut charged, mut kept, mut within) = (0, 0, Ok(()));
+    shadows.draw(&mut |polygon| {
+        if within.is_ok() && kept + CHARGED_AHEAD / 2 > charged {
+            within = budget.check("shadow polygons").and_then(|()| budget.charge(CHARGED_AHEAD, "shadow polygons"));
+            charged += if within.is_ok() { CHARGED_AHEAD } else { 0 };
+        }
+        if within.is_ok() {
+            kept = take(polygon);
+        }
+    });
+    budget.release(charged);
+    within
 }
 
 /// The chosen algorithm, ready; `None` without shadows.

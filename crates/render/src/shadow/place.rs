@@ -65,7 +65,7 @@ pub(crate) fn places(
         let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
         let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
         let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
-        placing.place(&last, weights, seed, screen.map(|s| s[lane]))
+        placing.place(&last, weights, seed, Some(screen.map(|s| s[lane])))
     })
 }
 
@@ -75,7 +75,7 @@ impl Placing<'_> {
         &(triangle, (corners, outward)): &(u32, Facet),
         weights: [f32; 3],
         seed: u32,
-        pixel: [f32; 2],
+        pixel: Option<[f32; 2]>,
     ) -> Place {
         let position = weighted(&corners, weights);
         let (eye, perspective) = self.view.eye();

@@ -58,7 +58,7 @@ struct Point {
     /// Its number among those that were asked about.
     index: usize,
     facet: u32,
-    pixel: [f32; 2],
+    pixel: Option<[f32; 2]>,
     lifted: DVec3,
 }
 
@@ -94,8 +94,11 @@ impl Shadows for Prepared<'_> {
             // Facet by facet, line by line, from left to right.
             let mut points: Vec<Point> = asked.map(point).collect();
             points.sort_unstable_by(|a, b| {
-                let by_pixel = a.pixel[1].total_cmp(&b.pixel[1]).then(a.pixel[0].total_cmp(&b.pixel[0]));
-                a.facet.cmp(&b.facet).then(by_pixel).then(a.index.cmp(&b.index))
+                let by_pixel = || match (a.pixel, b.pixel) {
+                    (Some(a), Some(b)) => a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])),
+                    (a, b) => a.is_some().cmp(&b.is_some()),
+                };
+                a.facet.cmp(&b.facet).then_with(by_pixel).then(a.index.cmp(&b.index))
             });
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
@@ -132,7 +135,9 @@ impl Prepared<'_> {
         let solid = |&t: &u32| Solid::new(&wide(&list.corners[t as usize]), light, near);
         solids.extend(casting.filter_map(solid).filter(|s| s.touches(middle, half)));
 
-        for line in part.chunk_by(|a, b| a.pixel[1] == b.pixel[1]) {
+        // What is seen in mirrors is on no line of the picture.
+        let one_line = |a: &Point, b: &Point| a.pixel.zip(b.pixel).is_some_and(|(a, b)| a[1] == b[1]);
+        for line in part.chunk_by(one_line) {
             dark.clear();
             dark.resize(line.len(), false);
             if let [only] = line {
@@ -197,7 +202,7 @@ mod tests {
         let point = |index: usize| Point {
             index,
             facet: 0,
-            pixel: [index as f32, 0.0],
+            pixel: Some([index as f32, 0.0]),
             lifted: dvec3(index as f64 - 4.0, 0.0, 0.5),
         };
         let line: Vec<Point> = (0..9).map(point).collect();

@@ -83,7 +83,8 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
     let mut scene = Scene::default();
     let wall = solids::cuboid(dvec3(0.25, 2.0, 4.0));
     add(&mut scene, wall, matt(), dvec3(-0.125, 1.0, 0.0));
-    let place = Place { position: dvec3(0.0, 1.0, 0.0), normal: DVec3::X, facet: u32::MAX, seed: 3, pixel: [0.5; 2] };
+    let place =
+        Place { position: dvec3(0.0, 1.0, 0.0), normal: DVec3::X, facet: u32::MAX, seed: 3, pixel: Some([0.5; 2]) };
     for algorithm in names() {
         with_shadows(&scene, &[square()], &Settings { light_samples: 16, ..settings(algorithm) }, |arriving| {
             assert_eq!(arriving(place), 1.0, "{algorithm}");

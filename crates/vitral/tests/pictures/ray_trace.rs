@@ -3,7 +3,7 @@
 use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, project, sun};
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::VISIBILITY;
+use vitral::render::registry::{SHADOWS, VISIBILITY};
 use vitral::render::{Background, Global, Transparency};
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
@@ -229,6 +229,29 @@ fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
             (other.settings, other.camera) = (r.settings.clone(), r.camera);
             assert!(colors(&mut other) == expected, "{threads} threads, {level:?}");
         }
+    }
+}
+
+#[test]
+fn every_shadow_algorithm_serves_what_rays_hit() {
+    let scene = || exact_builtin("mirrors", 96, 72);
+    let [rays, none] = ["ray", "none"].map(|shadows| {
+        let mut r = traced(scene());
+        r.settings.shadows = shadows.to_owned();
+        colors(&mut r)
+    });
+    let differing = |a: &[[u8; 4]], b: &[[u8; 4]]| {
+        let apart = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|k| a[k].abs_diff(b[k]) > 2);
+        a.iter().zip(b).filter(apart).count() as f64 / a.len() as f64
+    };
+    assert!(differing(&rays, &none) > 0.05);
+    for shadows in SHADOWS.iter().filter(|s| s.name != "none") {
+        let mut r = traced(scene());
+        r.settings.shadows = shadows.name.to_owned();
+        // Maps differ within texels of a shadow's edge.
+        let allowed = if shadows.name == "map" { 0.02 } else { 0.001 };
+        let differing = differing(&rays, &colors(&mut r));
+        assert!(differing <= allowed, "{}: {differing}", shadows.name);
     }
 }
 

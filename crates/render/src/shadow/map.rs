@@ -46,7 +46,7 @@ pub struct MapShadows;
 
 /// Shortest side of an area light's maps.
 const LEAST_SIDE: u32 = 256;
-/// How far a point is lifted, in texels.
+/// How far a point is lifted along its normal, in texels.
 const LIFT: f64 = 1.0;
 /// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
 /// texel, and two roundings may add up.
@@ -93,8 +93,14 @@ struct Map {
     lens: Lens,
     /// Tiles in a row.
     columns: usize,
-    /// Distance of the nearest opaque thing along the axis, ∞ where there is none, tile by tile; empty for a tile without any.
-    depth: Vec<Vec<f32>>,
+    tiles: Vec<MapTile>,
+}
+
+/// What the light sees in a tile.
+#[derive(Debug, Default)]
+struct MapTile {
+    /// Distance of the nearest opaque thing along the axis, ∞ where there is none; empty if there is none at all.
+    depth: Vec<f32>,
     /// Transparent things, sorted by texel.
     layers: Vec<Layer>,
 }
@@ -102,6 +108,7 @@ struct Map {
 /// A transparent thing at a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Layer {
+    /// Within the tile.
     texel: u32,
     depth: f32,
     /// The part of light that passes.
@@ -259,42 +266,54 @@ impl Map {
         let point = lens.view_from_world.transform_point3(place.position);
         let point = point + normal * (LIFT * lens.texel_at(-point.z));
         let Some([u, v]) = lens.texel_place(point) else { return 1.0 };
-        let (left, top) = ((u - 0.5).floor(), (v - 0.5).floor());
-        let (right, bottom) = ((u - 0.5 - left) as f32, (v - 0.5 - top) as f32);
+        let beyond = |x: f64, side: u32| !(x > -0.5 && x < f64::from(side) + 0.5);
+        if beyond(u, lens.width) || beyond(v, lens.height) {
+            return 1.0;
+        }
+        // The upper left of the four texels whose middles are nearest: rounded down.
+        let (left, top) = ((u + 0.5) as i64 - 1, (v + 0.5) as i64 - 1);
+        let (right, bottom) = ((u - 0.5 - left as f64) as f32, (v - 0.5 - top as f64) as f32);
         let (plane, own) = (lens.plane(point, normal), -point.z);
-        let at = |dx: f64, dy: f64| self.passing_at(left + dx, top + dy, &plane, own);
+        let at = |dx: i64, dy: i64| self.passing_at([left + dx, top + dy], &plane, own);
         // Written so that four equal answers stay what they are.
-        let row = |dy: f64| {
-            let (a, b) = (at(0.0, dy), at(1.0, dy));
+        let row = |dy: i64| {
+            let (a, b) = (at(0, dy), at(1, dy));
             a + (b - a) * right
         };
-        let (a, b) = (row(0.0), row(1.0));
+        let (a, b) = (row(0), row(1));
         a + (b - a) * bottom
     }
 
     /// The same, asking one texel, for a place on a plane at a distance of its `own`.
-    fn passing_at(&self, x: f64, y: f64, plane: &PlaneDepth, own: f64) -> f32 {
-        let (width, height) = (f64::from(self.lens.width), f64::from(self.lens.height));
-        if x < 0.0 || y < 0.0 || x >= width || y >= height {
+    #[inline(always)]
+    fn passing_at(&self, [column, row]: [i64; 2], plane: &PlaneDepth, own: f64) -> f32 {
+        let outside = |k: i64, side: u32| k < 0 || k >= i64::from(side);
+        if outside(column, self.lens.width) || outside(row, self.lens.height) {
             return 1.0;
         }
-        let (column, row) = (x as usize, y as usize);
-        let tile = &self.depth[row / TILE * self.columns + column / TILE];
-        let nearest = tile.get(row % TILE * TILE + column % TILE).copied().unwrap_or(f32::INFINITY);
-        if nearest == f32::INFINITY && self.layers.is_empty() {
-            return 1.0;
-        }
-        let there = plane.at([x + 0.5, y + 0.5]).unwrap_or(own);
+        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+        let (column, row) = (column as usize, row as usize);
+        let tile = &self.tiles[row / TILE * self.columns + column / TILE];
+        let texel = row % TILE * TILE + column % TILE;
+        let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
+        let there = plane.at([x, y]).unwrap_or(own);
         // The nearer of the two: the plane may go down further than the facet does.
         let slope = (there - own).abs();
         let depth = there.min(own) - slope * SLOPE_BIAS - own.abs() * DEPTH_BIAS;
         if f64::from(nearest) < depth {
-            return 0.0;
+            0.0
+        } else if tile.layers.is_empty() {
+            1.0
+        } else {
+            tile.filtered(texel, depth)
         }
-        if self.layers.is_empty() {
-            return 1.0;
-        }
-        let texel = row * self.lens.width as usize + column;
+    }
+}
+
+impl MapTile {
+    /// What the transparent things at a texel let through to this depth.
+    #[inline(never)]
+    fn filtered(&self, texel: usize, depth: f64) -> f32 {
         let first = self.layers.partition_point(|l| (l.texel as usize) < texel);
         let here = self.layers[first..].iter().take_while(|l| l.texel as usize == texel);
         here.filter(|l| f64::from(l.depth) < depth).map(|l| l.passing).product()

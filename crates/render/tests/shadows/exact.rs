@@ -148,7 +148,10 @@ fn f26_pictures_from_within_a_shadow_are_those_of_rays() {
 fn drawn(scene: &Scene, light: &Light, settings: &Settings) -> Vec<(&'static str, Vec<DVec3>)> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let (mut all, lights) = (Vec::new(), std::slice::from_ref(light));
-    let mut take = |polygon: Drawn<'_>| all.push((polygon.kind, polygon.corners.to_vec()));
+    let mut take = |polygon: Drawn<'_>| {
+        all.push((polygon.kind, polygon.corners.to_vec()));
+        0
+    };
     shadow::draw(&session, lights, settings, &Execution::default(), &mut take).unwrap();
     all
 }
@@ -184,7 +187,10 @@ fn f19_two_viewers_share_the_lit_polygons() {
         render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     }
     let mut after = Vec::new();
-    let mut take = |polygon: Drawn<'_>| after.push((polygon.kind, polygon.corners.to_vec()));
+    let mut take = |polygon: Drawn<'_>| {
+        after.push((polygon.kind, polygon.corners.to_vec()));
+        0
+    };
     shadow::draw(&session, lights, &settings, &Execution::default(), &mut take).unwrap();
     assert!(!after.is_empty() && after == alone);
 }

@@ -59,7 +59,10 @@ impl Cascades {
         let depths = solids.iter().flat_map(slice::Convex::corners).map(|p| row.dot(p.extend(1.0)));
         let [near, far] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[n, f], d| [n.min(d), f.max(d)]);
         let cuts = if near < far { cuts(near, far, view.perspective, count) } else { Vec::new() };
-        let slices: Vec<_> = cuts.windows(2).map(|ends| slice::between(&solids, row, [ends[0], ends[1]])).collect();
+        // A slice's map is asked about places before it, too: those that fade into it.
+        let start = |i: usize| if i == 0 { cuts[0] } else { cuts[i] - FADE * (cuts[i] - cuts[i - 1]) };
+        let ends = (1..cuts.len()).map(|i| [start(i - 1), cuts[i]]);
+        let slices: Vec<_> = ends.map(|ends| slice::between(&solids, row, ends)).collect();
         let of_light = |light: &LightMaps| -> Result<Vec<Option<Map>>, Limit> {
             let lenses = slices.iter().map(|solids| lens(light, solids, world, size));
             lenses.map(|lens| lens.map(&draw).transpose()).collect()

@@ -2,7 +2,7 @@
 
 use super::super::grey;
 use super::super::occluders::Occluders;
-use super::{Layer, Lens, Map};
+use super::{Layer, Lens, Map, MapTile};
 use crate::stats::CullCounters;
 use crate::visible::TileSink;
 use crate::visible::zbuffer::resolve_in_passing;
@@ -18,11 +18,8 @@ struct DepthSink<'a> {
     session: &'a Session,
     occluders: &'a Occluders<'a>,
     center: DVec3,
-    tiles: Vec<Mutex<Found>>,
+    tiles: Vec<Mutex<MapTile>>,
 }
-
-/// Distances of a tile's texels, none if nothing is there, and its transparent things with their facets.
-type Found = (Vec<f32>, Vec<(u32, Layer)>);
 
 impl Map {
     pub(super) fn draw(
@@ -51,15 +48,8 @@ impl Map {
         let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| Mutex::default()).collect();
         let sink = DepthSink { lens: &lens, session, occluders, center, tiles };
         resolve_in_passing(&view, execution, &sink)?;
-        let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile"));
-        let (depth, layers): (Vec<_>, Vec<_>) = tiles.unzip();
-        let mut layers = layers.concat();
-        layers.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
-            a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
-        });
-        layers.dedup_by_key(|(facet, l)| (*facet, l.texel));
-        let layers = layers.into_iter().map(|(_, layer)| layer).collect();
-        Ok(Self { lens, columns, depth, layers })
+        let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile")).collect();
+        Ok(Self { lens, columns, tiles })
     }
 }
 
@@ -77,10 +67,15 @@ impl TileSink for DepthSink<'_> {
             if x < lens.width && y < lens.height {
                 let depth = lens.distance(layer.depth);
                 let passing = self.passing(layer.facet, [x, y], depth);
-                found.push((layer.facet, Layer { texel: y * lens.width + x, depth, passing }));
+                found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
         }
-        *self.tiles[index].lock().expect("finished tile") = (distances, found);
+        found.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
+            a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
+        });
+        found.dedup_by_key(|(facet, l)| (*facet, l.texel));
+        let layers = found.into_iter().map(|(_, layer)| layer).collect();
+        *self.tiles[index].lock().expect("finished tile") = MapTile { depth: distances, layers };
     }
 }
 

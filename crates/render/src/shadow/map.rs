@@ -14,7 +14,7 @@
 //! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
 //! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its
 //! places. Transparent things are kept as lists at their texels, with the part of the light that passes. In large scenes, one
-//! map may be joined by sharper ones for what is near the viewer ([`cascade`]), as many as `shadow_cascades` says.
+//! map may be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as `shadow_cascades` says.
 //!
 //! In:   lights, scene. Out: the part of a light that arrives at a place.
 //! Cost: a z-buffer pass for each map; a question is a constant number of texels. 4 bytes a texel.

@@ -132,6 +132,13 @@ pub(crate) struct AlgorithmArgs {
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) light_samples: Option<u32>,
+    /// Texels along the longer side of a shadow map, 16 to 8192; with --shadows map [default: 2048]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub(crate) shadow_map_size: Option<u32>,
+    /// Shadow maps for each light, 1 to 8, cut in depth: the sharper the nearer, for large scenes; with --shadows map
+    /// [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub(crate) shadow_cascades: Option<u32>,
     /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
     #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
     pub(crate) volume_counting: Option<VolumeCounting>,

@@ -185,6 +185,12 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     settings.patch_size = args.patch_size.or(settings.patch_size);
     settings.iterations = args.iterations.or(settings.iterations);
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
+    let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
+    if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows != "map") {
+        return Err(Failure::usage(format!("{option}: no shadow maps are drawn")).with_hint("add --shadows map"));
+    }
+    settings.shadow_map_size = args.shadow_map_size.unwrap_or(settings.shadow_map_size);
+    settings.shadow_cascades = args.shadow_cascades.unwrap_or(settings.shadow_cascades);
     settings.volume_counting = args.volume_counting.or(settings.volume_counting);
     let lines = [
         (args.wireframe, Lines::Wireframe),

@@ -177,7 +177,7 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 25] = [
+    let cases: [(&[&str], i32, &str); 29] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--panels"], 2, "`none` have no panels: choose map, object-precision"),
@@ -192,6 +192,10 @@ fn exit_codes() {
         (&["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"], 2, "choose volume, object-precision"),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
+        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
+        (&["a.obj", "-o", "x.png", "--shadow-cascades", "4"], 2, "add --shadows map"),
+        (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "9000"], 2, "9000 is not in 16..=8192"),
+        (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "64", "--shadow-cascades", "4"], 0, ""),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=maybe"], 2, "shadow"),

@@ -76,9 +76,18 @@ pub fn cook_torrance<T: Lanes>(
         let incident = light.incident(s.position);
         sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
         let n_l = s.n.dot(incident.l).saturate();
-        let arriving = visibility(j).scale(incident.intensity);
-        let entering = n_l * (-schlick(zero.splat(DIELECTRIC_F0), n_l) + 1.0);
-        sum.diffuse = sum.diffuse + tint(albedo, light.diffuse).times(arriving.scale(entering));
+        let visible = visibility(j);
+        let arriving = visible.scale(incident.intensity);
+        let enters = |cos: T| -schlick(zero.splat(DIELECTRIC_F0), cos) + 1.0;
+        let entering = match light.irradiance(s.position, s.n) {
+            Some(irradiance) => {
+                // At the angle whose cosine is the mean over the shape.
+                let mean = T::select(zero.lt(incident.intensity), irradiance / incident.intensity, n_l).saturate();
+                visible.scale(irradiance * enters(mean))
+            }
+            None => arriving.scale(n_l * enters(n_l)),
+        };
+        sum.diffuse = sum.diffuse + tint(albedo, light.diffuse).times(entering);
 
         let in_front = zero.lt(n_l);
         if !T::any(in_front) {

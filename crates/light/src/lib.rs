@@ -7,6 +7,7 @@
 //! Scale: a white Lambert surface that faces a directional light of intensity 1 reflects 1. There is no `1/π`.
 #![forbid(unsafe_code)]
 
+mod area;
 mod cook_torrance;
 mod illumination;
 mod light;

@@ -73,8 +73,8 @@ pub enum LightKind {
         /// Inside the cone intensity goes with `cos^exponent` of the angle to the axis (GL's form; 0: constant).
         exponent: f64,
     },
-    /// From a flat shape, on the side its normal points to. It illuminates like one sample at its centre; its shadows
-    /// are those of many.
+    /// From a flat shape, on the side its normal points to. Diffuse surfaces get what the whole shape sends, highlights
+    /// are those of one sample at its centre, shadows those of many.
     Area {
         /// The shape.
         shape: AreaShape,

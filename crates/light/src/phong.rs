@@ -59,10 +59,15 @@ pub fn phong<T: Lanes>(
             continue;
         }
 
-        // Diffuse: the beam spreads over 1/cos of its width, and not over the back.
+        // Diffuse: the beam spreads over 1/cos of its width, and not over the back. Area lights send many beams.
         let n_l = s.n.dot(incident.l).positive();
-        let arriving = visibility(j).scale(incident.intensity);
-        sum.diffuse = sum.diffuse + tint(k.kd, light.diffuse).times(arriving.scale(n_l));
+        let visible = visibility(j);
+        let arriving = visible.scale(incident.intensity);
+        let caught = match light.irradiance(s.position, s.n) {
+            Some(irradiance) => visible.scale(irradiance),
+            None => arriving.scale(n_l),
+        };
+        sum.diffuse = sum.diffuse + tint(k.kd, light.diffuse).times(caught);
 
         // Specular: only where the light is in front of the surface.
         let in_front = zero.lt(n_l);

@@ -5,10 +5,12 @@
 //! Cost: one square root and two divisions a point; a spot with an exponent adds a power.
 //! Source: course notes, part P (light types, attenuation); [OpenGL 2.1], section 2.14 (spot exponent, GL attenuation);
 //!         KHR_lights_punctual (smooth edge of a spot, range).
-//! Departs from them: an area light counts as one sample at its centroid, weighted with the cosine of emission (its
-//! surface shines like a Lambert surface, and not to the back).
+//! Departs from them: an area light shines like a Lambert surface, and not to the back. Where one direction towards it is
+//! asked for, it counts as one sample at its centroid, weighted with the cosine of emission; what a diffuse surface gets
+//! is that of the whole shape ([`PreparedLight::irradiance`]).
 
-use crate::{AreaShape, Attenuation, Light, LightKind, Rgb};
+use crate::area::Shape;
+use crate::{Attenuation, Light, LightKind, Rgb};
 use vitral_math::lanes::{Lanes, V3};
 use vitral_math::{DMat4, DVec3, func};
 
@@ -56,11 +58,7 @@ enum Source {
         axis: [f32; 3],
         cone: Cone,
     },
-    /// The centroid of an area light and the unit normal of its shining side.
-    Area {
-        centroid: [f32; 3],
-        normal: [f32; 3],
-    },
+    Area(Shape),
 }
 
 /// How a spot's intensity depends on the cosine of the angle to its axis.
@@ -102,10 +100,7 @@ impl PreparedLight {
                 let cone = Cone::new(cutoff, inner, exponent)?;
                 Source::Spot { position: place(position)?, axis: unit(direction)?, cone }
             }
-            LightKind::Area { shape } => {
-                let (centroid, normal) = sample_point(shape);
-                Source::Area { centroid: place(centroid)?, normal: unit(normal)? }
-            }
+            LightKind::Area { shape } => Source::Area(Shape::new(shape, f64::from(FARTHEST))?),
         };
         let falloff = Falloff::new(light.attenuation)?;
         let [ambient, diffuse, specular] = [light.ambient, light.diffuse, light.specular].map(finite);
@@ -131,12 +126,28 @@ impl PreparedLight {
                 let intensity = attenuation * cone.factor(-l.dot(V3::splat(zero, *axis)));
                 Incident { l, intensity, ambient_intensity: intensity }
             }
-            Source::Area { centroid, normal } => {
-                let (l, attenuation) = self.arrive(position, *centroid);
-                let intensity = attenuation * (-l.dot(V3::splat(zero, *normal))).positive();
+            Source::Area(shape) => {
+                let (l, attenuation) = self.arrive(position, shape.centroid);
+                let intensity = attenuation * (-l.dot(V3::splat(zero, shape.normal))).positive();
                 Incident { l, intensity, ambient_intensity: intensity }
             }
         }
+    }
+
+    /// What a diffuse surface with unit normal `n` at `position` gets of an area light if nothing is in between, where a
+    /// point would give `intensity * N·L`: the integral over the shape that is above the surface's horizon. `None` for
+    /// other lights.
+    ///
+    /// Exact for attenuation by the inverse square. Other laws are no part of the integral: they multiply it by what they
+    /// make of the inverse square at the mean distance from the shape, the square root of the mean of `d²`.
+    #[inline(always)]
+    pub fn irradiance<T: Lanes>(&self, position: V3<T>, n: V3<T>) -> Option<T> {
+        let Source::Area(shape) = &self.source else { return None };
+        let to = V3::splat(position.x, shape.centroid) - position;
+        let limit = position.x.splat(FARTHEST * FARTHEST);
+        let square = (to.dot(to) + shape.spread).min(limit);
+        let law = self.falloff.attenuation(square.sqrt(), square) * square;
+        Some((shape.mean(position, n) * law).positive().min(position.x.splat(BRIGHTEST * BRIGHTEST)))
     }
 
     /// Unit direction from `position` to the light at `at`, and the attenuation over that distance.
@@ -213,24 +224,6 @@ impl Cone {
     }
 }
 
-/// The one sample of an area light, and a vector along its shining normal.
-fn sample_point(shape: &AreaShape) -> (DVec3, DVec3) {
-    match shape {
-        AreaShape::Disc { center, normal, .. } => (*center, *normal),
-        AreaShape::Polygon { corners } => {
-            // Add up the triangles of a fan, weighted with their signed area along the polygon's normal.
-            let fan = || corners.windows(2).skip(1).map(|pair| (corners[0], pair[0], pair[1]));
-            let normal: DVec3 = fan().map(|(a, b, c)| (b - a).cross(c - a)).sum();
-            let mut centroid = DVec3::ZERO;
-            for (a, b, c) in fan() {
-                let share = (b - a).cross(c - a).dot(normal) / normal.length_squared();
-                centroid += (a + b + c) * (share / 3.0);
-            }
-            (centroid, normal)
-        }
-    }
-}
-
 /// A position that lighting can compute with.
 fn place(position: DVec3) -> Option<[f32; 3]> {
     (position.abs().max_element() <= f64::from(FARTHEST)).then(|| position.as_vec3().to_array())
@@ -248,6 +241,7 @@ fn finite(color: Rgb) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::AreaShape;
     use vitral_math::dvec3;
 
     fn light(kind: LightKind, attenuation: Attenuation) -> Light {
@@ -348,14 +342,6 @@ mod tests {
             assert!((at([3.0 + 2.0 * 3.0f32.sqrt(), 0.0, 4.0]) - 0.5).abs() < 1e-6, "60 degrees off");
             assert_eq!(at([3.0, 0.0, 1.0]), 0.0, "behind");
         }
-    }
-
-    #[test]
-    fn the_centroid_of_a_concave_polygon_is_its_centre_of_mass() {
-        // An L of three unit squares.
-        let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
-        let (centroid, normal) = sample_point(&AreaShape::Polygon { corners: l });
-        assert!(centroid.distance(dvec3(2.5 / 3.0, 2.5 / 3.0, 0.0)) < 1e-12 && normal == dvec3(0.0, 0.0, 6.0));
     }
 
     #[test]

@@ -104,7 +104,52 @@ fn p32_every_kind_of_light_reaches_the_surface_below_it() {
         let light = Light { kind, ..Light::default() };
         let k = material(0.0, 1.0, 0.0, 9.0);
         let r = lit(Illumination::Lambert, std::slice::from_ref(&light), [0.0; 3], &point(DVec3::Z), &k);
-        assert!((r.diffuse.x - 1.0).abs() < 1e-6, "{light:?}: {}", r.diffuse.x);
+        // A disc's border is seen from the side: F = R² / (R² + h²), in units of what would come from its middle; without
+        // loss over the way, which is √(h² + R² / 2) in the mean.
+        let whole = if matches!(light.kind, LightKind::Area { .. }) { 4.125 / 4.25 } else { 1.0 };
+        assert!((r.diffuse.x - whole).abs() < 1e-6, "{light:?}: {}", r.diffuse.x);
+    }
+}
+
+#[test]
+fn area_lights_send_what_their_whole_shape_sends() {
+    let k = material(0.0, 1.0, 0.0, 9.0);
+    let ceiling = |center: DVec3, half: f64, attenuation: Attenuation| {
+        let corners = [[-1., -1.], [-1., 1.], [1., 1.], [1., -1.]].map(|[x, y]| center + dvec3(x, y, 0.0) * half);
+        let shape = AreaShape::Polygon { corners: corners.to_vec() };
+        Light { kind: LightKind::Area { shape }, attenuation, ..Light::default() }
+    };
+    let get = |light: &Light, n: DVec3| {
+        lit(Illumination::Lambert, std::slice::from_ref(light), [0.0; 3], &point(n), &k).diffuse.x
+    };
+    // Under the middle of a square, by the inverse square: E = 4 · 2 A / √(1 + A²) atan(A / √(1 + A²)) / 2 / area.
+    let square = ceiling(DVec3::Z, 1.0, Attenuation::InverseSquare);
+    let wanted = 4.0 * (0.5f64.sqrt() * func::atan2(0.5f64.sqrt(), 1.0)) / 4.0;
+    assert!((f64::from(get(&square, DVec3::Z)) - wanted).abs() < 1e-6, "{} {wanted}", get(&square, DVec3::Z));
+    // Its middle is below the horizon, but not all of it.
+    let tilted = dvec3(1.0, 0.0, -0.2).normalize();
+    assert!(get(&square, tilted) > 0.05);
+    assert_eq!(get(&square, DVec3::NEG_Z), 0.0);
+    // Far away it is a point, by any law.
+    let laws = [Attenuation::None, Attenuation::InverseSquare, Attenuation::Clamped { c1: 0.2, c2: 0.01, c3: 0.001 }];
+    for attenuation in laws {
+        let at = dvec3(30.0, 0.0, 40.0);
+        let whole = get(&ceiling(at, 0.3, attenuation), DVec3::Z);
+        let loss = match attenuation {
+            Attenuation::InverseSquare => 1.0 / 2500.0,
+            Attenuation::Clamped { .. } => 1.0 / (0.2 + 0.5 + 2.5),
+            _ => 1.0,
+        };
+        assert!((whole / (0.64 * loss) - 1.0).abs() < 2e-4, "{attenuation:?}: {whole}");
+    }
+    // No size at all is a point that shines to one side.
+    let disc = AreaShape::Disc { center: dvec3(3.0, 0.0, 4.0), normal: DVec3::NEG_Z, radius: 0.0 };
+    let dot = Light { kind: LightKind::Area { shape: disc }, ..Light::default() };
+    assert!((get(&dot, DVec3::Z) - 0.64).abs() < 1e-6);
+    let bad = |radius| AreaShape::Disc { center: DVec3::Z, normal: DVec3::NEG_Z, radius };
+    for radius in [f64::NAN, f64::INFINITY] {
+        let light = Light { kind: LightKind::Area { shape: bad(radius) }, ..Light::default() };
+        assert_eq!(PreparedLight::new(&light, &DMat4::IDENTITY), None);
     }
 }
 

@@ -36,6 +36,7 @@ fn lights() -> Vec<PreparedLight> {
         LightKind::Spot { position: at, direction: -at, cutoff: 0.9, inner: 0.5, exponent: 3.5 },
         LightKind::Spot { position: at, direction: -at, cutoff: 0.7, inner: 0.7, exponent: 0.0 },
         LightKind::Area { shape: AreaShape::Polygon { corners } },
+        LightKind::Area { shape: AreaShape::Disc { center: at, normal: -at, radius: 0.4 } },
     ];
     let losses = [
         Attenuation::None,
@@ -81,7 +82,7 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
 #[test]
 fn one_point_and_eight_give_the_same_bits_at_every_level() {
     let lights = lights();
-    assert_eq!(lights.len(), 30);
+    assert_eq!(lights.len(), 35);
     for seed in 0..20 {
         let x = inputs(seed);
         let mut expected: Outputs = Vec::new();

@@ -202,7 +202,7 @@ pub static SHADOWS: &[Shadowing] = &[
     },
     Shadowing {
         name: "map",
-        description: "the z-buffer from the light, kept while lights and scene stay",
+        description: "the z-buffer from the light, kept while lights and scene stay (--shadow-map-size, --shadow-cascades)",
         source: "Williams 1978",
         polygons: None,
         panels: Some(Panels::ImageSpace),

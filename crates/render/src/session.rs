@@ -70,6 +70,8 @@ pub struct Session {
     pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
     pub(crate) loaded_radiosity: Kept<radiosity::Solution>,
     pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
+    /// Those of one view.
+    pub(crate) shadow_cascades: KeptFor<shadow::map::CascadesKey, shadow::map::Cascades>,
     pub(crate) shadow_volumes: KeptFor<shadow::Key, shadow::volume::Volumes>,
     pub(crate) lit_polygons: KeptFor<shadow::Key, shadow::object_precision::LitPolygons>,
 }
@@ -166,6 +168,7 @@ impl Session {
             radiosity: Mutex::default(),
             loaded_radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
+            shadow_cascades: Mutex::default(),
             shadow_volumes: Mutex::default(),
             lit_polygons: Mutex::default(),
         })
@@ -223,6 +226,7 @@ impl Session {
         self.octree = Mutex::default();
         self.uniform_grid = Mutex::default();
         self.shadow_maps = Mutex::default();
+        self.shadow_cascades = Mutex::default();
         self.shadow_volumes = Mutex::default();
         self.lit_polygons = Mutex::default();
     }

@@ -33,6 +33,8 @@ pub struct Settings {
     pub light_samples: u32,
     /// Texels along the longer side of a shadow map, `16..=8192`.
     pub shadow_map_size: u32,
+    /// Shadow maps that share what is near the viewer of a large scene, for each light, `1..=8`; 1: one for the whole scene.
+    pub shadow_cascades: u32,
     /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
     pub volume_counting: Option<VolumeCounting>,
     /// Light from other surfaces.
@@ -81,6 +83,7 @@ impl Default for Settings {
             shadows: "none".to_owned(),
             light_samples: 16,
             shadow_map_size: 2048,
+            shadow_cascades: 1,
             volume_counting: None,
             global: Global::default(),
             max_depth: 8,
@@ -402,6 +405,9 @@ pub enum SettingsError {
     /// Size of shadow maps.
     #[error("shadow maps of {0} texels a side: 16 to 8192 are possible")]
     ShadowMapSize(u32),
+    /// Number of cascades.
+    #[error("{0} cascades of shadow maps: 1 to 8 are possible")]
+    ShadowCascades(u32),
     /// A way to count shadow volumes, but none.
     #[error("a way to count shadow volumes was chosen, but the shadows are `{0}`: choose volume")]
     VolumeCounting(String),
@@ -488,6 +494,9 @@ impl Settings {
         }
         if !(16..=8192).contains(&self.shadow_map_size) {
             return Err(SettingsError::ShadowMapSize(self.shadow_map_size));
+        }
+        if !(1..=8).contains(&self.shadow_cascades) {
+            return Err(SettingsError::ShadowCascades(self.shadow_cascades));
         }
         let choices = |all: bool| {
             let names = registry::SHADOWS.iter().filter(|s| all || s.algorithm.is_some()).map(|s| s.name);

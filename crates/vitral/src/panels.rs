@@ -1,8 +1,8 @@
 //! The notes' figures of an algorithm for shadows: six pictures, three in a row, on one sheet.
 //!
 //! In image space (`--shadows map`), after the figure from Columbia University: the whole scene with light and viewer; the
-//! z-buffer from the light; the z-buffer from the viewer; the picture without shadows; the finished picture darkened where
-//! shadow falls, highlights and all; the picture whose illumination knows the shadows.
+//! z-buffer from the light, in no more texels than a map has; the z-buffer from the viewer; the picture without shadows; the
+//! finished picture darkened where shadow falls, highlights and all; the picture whose illumination knows the shadows.
 //!
 //! At object precision (`--shadows object-precision`), after the figure from Cornell University: the whole scene with light
 //! and viewer; what the light sees; the lit polygons as the light sees them, the same outlines; the lit polygons as the
@@ -72,7 +72,8 @@ fn six(
                 let depths = Settings { channels: depth, ..without };
                 let cast = Channels { cast_shadow: true, color: false, ..Channels::default() };
                 let mask = shot(&Settings { channels: cast, ..with }, camera)?.frame.cast_shadow.unwrap_or_default();
-                let [light, viewer] = [shot(&depths, from_light)?, shot(&depths, camera)?].map(grey);
+                let [light, viewer] = [shot(&texels(&depths), from_light)?, shot(&depths, camera)?].map(grey);
+                let light = enlarged(&light, [viewer.width(), viewer.height()]);
                 let darkened = darkened(&plain, &mask);
                 [light, viewer, plain, darkened]
             }
@@ -111,6 +112,22 @@ fn grey(rendered: Rendered) -> Picture {
         [v, v, v, 255]
     };
     Plane::from_rows(depth.width(), depth.height(), depth.data().iter().map(shade).collect()).unwrap_or_default()
+}
+
+/// Settings for a picture with no more pixels along its longer side than a shadow map has texels.
+fn texels(settings: &Settings) -> Settings {
+    let longer = u64::from(settings.width.max(settings.height));
+    let most = longer.min(u64::from(settings.shadow_map_size));
+    let [width, height] = [settings.width, settings.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
+    Settings { width, height, ..settings.clone() }
+}
+
+/// The picture in another size, each pixel as the nearest is.
+fn enlarged(picture: &Picture, [width, height]: [u32; 2]) -> Picture {
+    let from = |i: u32, size: u32, of: u32| (u64::from(i) * u64::from(of) / u64::from(size.max(1))) as u32;
+    let column = |x: u32, y: u32| *picture.at(from(x, width, picture.width()), from(y, height, picture.height()));
+    let all = (0..height).flat_map(|y| (0..width).map(move |x| column(x, y)));
+    Plane::from_rows(width, height, all.collect()).unwrap_or_default()
 }
 
 /// The picture, darkened by the mask after it was illuminated.
@@ -277,6 +294,22 @@ mod tests {
             }
         }
         assert!(dark > plain.len() / 50, "{dark} pixels in shadow");
+    }
+
+    #[test]
+    fn f25_panels_show_the_size_of_the_map() {
+        let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
+        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (96, 72, 1);
+        renderer.settings.shadows = "map".to_owned();
+        renderer.settings.shadow_map_size = 16;
+        let camera = renderer.frame_camera();
+        let coarse = panels(&mut renderer, &camera).unwrap().frame;
+        let (fine, size) = of("map");
+        // Sixteen texels in a row of 96: six pixels each.
+        let row = panel(&coarse, 1, size);
+        assert!(row.chunks(96).all(|row| row.chunks(6).all(|texel| texel.iter().all(|p| *p == texel[0]))));
+        assert!(row != panel(&fine, 1, size) && panel(&coarse, 5, size) != panel(&fine, 5, size));
+        assert!([2, 3].into_iter().all(|i| panel(&coarse, i, size) == panel(&fine, i, size)));
     }
 
     #[test]

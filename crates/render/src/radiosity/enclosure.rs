@@ -178,12 +178,15 @@ fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Pl
     let mut sum = [0.0; 3];
     for (number, light) in lights {
         let incident = light.incident(position);
-        let cos = normal.dot(incident.l);
-        if cos > 0.0 && incident.intensity > 0.0 {
+        let (intensity, cos) = match light.irradiance(position, normal) {
+            Some(irradiance) => (irradiance, 1.0),
+            None => (incident.intensity, normal.dot(incident.l)),
+        };
+        if cos > 0.0 && intensity > 0.0 {
             let mut part = [[0.0; 3]];
             shadows.arriving(*number, std::slice::from_ref(place), &mut part, &mut 0);
             let [part] = part;
-            (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * incident.intensity * cos));
+            (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * intensity * cos));
         }
     }
     sum

@@ -12,27 +12,33 @@
 //! are compared one by one, and the answers are blended (*percentage-closer filtering*).
 //!
 //! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
-//! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its places. Transparent things are kept as
-//! lists at their texels, with the part of the light that passes.
+//! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its
+//! places. Transparent things are kept as lists at their texels, with the part of the light that passes. In large scenes, one
+//! map may be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as `shadow_cascades` says.
 //!
 //! In:   lights, scene. Out: the part of a light that arrives at a place.
 //! Cost: a z-buffer pass for each map; a question is a constant number of texels. 4 bytes a texel.
 //! Source: [Williams 1978]; filtering after [Reeves, Salesin & Cook 1987], area lights after [Brotman & Badler 1984].
 
+mod cascade;
 mod draw;
 mod lens;
+mod slice;
 
 use super::occluders::Occluders;
-use super::sources::Source;
+use super::sources::{Emitter, Shares, Source};
 use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
-use crate::{ColorSpace, Execution, Session, Settings, Transparency};
-use lens::Lens;
+use crate::{ColorSpace, Execution, PreparedView, Session, Settings, Transparency};
+pub(crate) use cascade::Cascades;
+use lens::{Lens, PlaneDepth};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::{DVec3, DVec4};
+use vitral_raster::TILE;
+use vitral_scene::ViewTransform;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +46,7 @@ pub struct MapShadows;
 
 /// Shortest side of an area light's maps.
 const LEAST_SIDE: u32 = 256;
-/// How far a point is lifted, in texels.
+/// How far a point is lifted along its normal, in texels.
 const LIFT: f64 = 1.0;
 /// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
 /// texel, and two roundings may add up.
@@ -58,6 +64,14 @@ pub(crate) struct Key {
     color_space: ColorSpace,
 }
 
+/// What cascades depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CascadesKey {
+    maps: Key,
+    count: u32,
+    view: ViewTransform,
+}
+
 /// The maps of all lights, in order.
 #[derive(Debug)]
 pub(crate) struct Maps(Vec<LightMaps>);
@@ -70,14 +84,22 @@ enum LightMaps {
         map: Box<Map>,
     },
     /// Each place of a light with its maps.
-    Places(Vec<(DVec3, Vec<Map>)>),
+    Places(Vec<(Emitter, Vec<Map>)>),
 }
 
 /// What the light sees through one lens.
 #[derive(Debug)]
 struct Map {
     lens: Lens,
-    /// Distance of the nearest opaque thing along the axis, ∞ where there is none.
+    /// Tiles in a row.
+    columns: usize,
+    tiles: Vec<MapTile>,
+}
+
+/// What the light sees in a tile.
+#[derive(Debug, Default)]
+struct MapTile {
+    /// Distance of the nearest opaque thing along the axis, ∞ where there is none; empty if there is none at all.
     depth: Vec<f32>,
     /// Transparent things, sorted by texel.
     layers: Vec<Layer>,
@@ -86,6 +108,7 @@ struct Map {
 /// A transparent thing at a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Layer {
+    /// Within the tile.
     texel: u32,
     depth: f32,
     /// The part of light that passes.
@@ -101,19 +124,53 @@ impl ShadowAlgorithm for MapShadows {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
-        let key = Key {
+        let maps = Maps::of(session, lights, settings, execution)?;
+        Ok(Box::new(Prepared { maps, cascades: None }))
+    }
+
+    fn prepare_for<'a>(
+        &self,
+        view: &PreparedView<'a>,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+        let session = view.session;
+        let maps = Maps::of(session, lights, settings, execution)?;
+        let (count, size) = (settings.shadow_cascades, settings.shadow_map_size);
+        if count < 2 {
+            return Ok(Box::new(Prepared { maps, cascades: None }));
+        }
+        let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
+        let cascades = keep_for(&session.shadow_cascades, key, || {
+            let occluders = Occluders::new(session, settings);
+            let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution);
+            Cascades::new(&session.world, &view.view, &maps, (count, size), draw)
+        })?;
+        Ok(Box::new(Prepared { maps, cascades: Some(cascades) }))
+    }
+}
+
+impl Key {
+    fn new(lights: &[Light], settings: &Settings) -> Self {
+        Self {
             lights: lights.to_vec(),
             size: settings.shadow_map_size,
             samples: settings.light_samples,
             transparency: settings.transparency,
             color_space: settings.color_space,
-        };
-        let maps = keep_for(&session.shadow_maps, key, || {
+        }
+    }
+}
+
+impl Maps {
+    /// Those that the session keeps, or new ones.
+    fn of(session: &Session, lights: &[Light], settings: &Settings, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        keep_for(&session.shadow_maps, Key::new(lights, settings), || {
             let occluders = Occluders::new(session, settings);
             let maps = lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution));
-            Ok(Maps(maps.collect::<Result<_, Limit>>()?))
-        })?;
-        Ok(Box::new(maps))
+            Ok(Self(maps.collect::<Result<_, Limit>>()?))
+        })
     }
 }
 
@@ -131,11 +188,14 @@ impl LightMaps {
         }
         let draw = |lens: Lens| Map::draw(lens, session, occluders, settings, execution);
         let size = settings.shadow_map_size;
-        let around = |at: DVec3, size: u32| -> Result<(DVec3, Vec<Map>), Limit> {
-            let maps: Result<_, Limit> = Lens::around(at, world, size).into_iter().map(draw).collect();
-            Ok((at, maps?))
+        let around = |from: Emitter, size: u32| -> Result<(Emitter, Vec<Map>), Limit> {
+            let lenses = Lens::around(from.at.truncate(), world, size);
+            let maps: Result<_, Limit> = lenses.into_iter().map(draw).collect();
+            Ok((from, maps?))
         };
-        Ok(match Source::new(light, settings.light_samples, Triangles::center_of(world)) {
+        let source = Source::new(light, settings.light_samples, Triangles::center_of(world));
+        let emitters = source.places();
+        Ok(match source {
             Source::Unhindered => Self::Unhindered,
             Source::Infinity(towards) => {
                 Self::Infinity { towards, map: Box::new(draw(Lens::parallel(towards, world, size))?) }
@@ -146,45 +206,53 @@ impl LightMaps {
                     _ => None,
                 };
                 Self::Places(vec![match lens {
-                    Some(lens) => (at, vec![draw(lens)?]),
-                    None => around(at, size)?,
+                    Some(lens) => (emitters[0], vec![draw(lens)?]),
+                    None => around(emitters[0], size)?,
                 }])
             }
-            Source::Area(area) => {
-                let side = (f64::from(size) / (area.count() as f64).sqrt()) as u32;
+            Source::Area(_) => {
+                let side = (f64::from(size) / (emitters.len() as f64).sqrt()) as u32;
                 let side = side.max(LEAST_SIDE.min(size));
-                let places: Result<_, Limit> = (0..area.count()).map(|i| around(area.place(i, 0), side)).collect();
+                let places: Result<_, Limit> = emitters.into_iter().map(|from| around(from, side)).collect();
                 Self::Places(places?)
             }
         })
     }
 }
 
-impl Shadows for Arc<Maps> {
+/// The maps, ready to be asked.
+struct Prepared {
+    maps: Arc<Maps>,
+    cascades: Option<Arc<Cascades>>,
+}
+
+impl Shadows for Prepared {
     fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
-        places.iter().zip(parts).for_each(|(place, part)| *part = [self.0[light].arriving(place); 3]);
+        let maps = &self.maps.0[light];
+        for (place, part) in places.iter().zip(parts) {
+            let ask = |whole: &Map| match &self.cascades {
+                Some(cascades) => cascades.passing(light, place, || whole.passing(place)),
+                None => whole.passing(place),
+            };
+            *part = maps.arriving(place, ask);
+        }
     }
 }
 
 impl LightMaps {
-    fn arriving(&self, place: &Place) -> f32 {
+    /// The part of light that arrives at a place; `ask` asks the map that sees it.
+    fn arriving(&self, place: &Place, ask: impl Fn(&Map) -> f32) -> Rgb {
         match self {
-            Self::Unhindered => 1.0,
-            Self::Infinity { towards, map } => {
-                if place.normal.dot(*towards) <= 0.0 {
-                    0.0
-                } else {
-                    map.passing(place)
-                }
-            }
+            Self::Unhindered => [1.0; 3],
+            Self::Infinity { towards, .. } if place.normal.dot(*towards) <= 0.0 => [0.0; 3],
+            Self::Infinity { map, .. } => [ask(map); 3],
             Self::Places(places) => {
-                let parts = places.iter().map(|(at, maps)| {
-                    if place.normal.dot(*at - place.position) <= 0.0 {
-                        return 0.0;
-                    }
-                    maps.iter().find(|m| m.lens.sees(place.position)).map_or(1.0, |m| m.passing(place))
-                });
-                parts.sum::<f32>() / places.len() as f32
+                let mut shares = Shares::default();
+                for (from, maps) in places {
+                    let sees = |m: &&Map| m.lens.sees(place.position);
+                    shares.add(from.weight(place), || [maps.iter().find(sees).map_or(1.0, &ask); 3]);
+                }
+                shares.part()
             }
         }
     }
@@ -194,40 +262,58 @@ impl Map {
     /// The part of light that arrives at a place that faces it.
     fn passing(&self, place: &Place) -> f32 {
         let lens = &self.lens;
-        let lifted = place.position + place.normal * (LIFT * lens.texel(place.position));
-        let point = lens.view_from_world.transform_point3(lifted);
         let normal = lens.view_from_world.transform_vector3(place.normal);
+        let point = lens.view_from_world.transform_point3(place.position);
+        let point = point + normal * (LIFT * lens.texel_at(-point.z));
         let Some([u, v]) = lens.texel_place(point) else { return 1.0 };
-        let (left, top) = ((u - 0.5).floor(), (v - 0.5).floor());
-        let (right, bottom) = ((u - 0.5 - left) as f32, (v - 0.5 - top) as f32);
-        let at = |dx: f64, dy: f64| self.passing_at(left + dx, top + dy, point, normal);
+        let beyond = |x: f64, side: u32| !(x > -0.5 && x < f64::from(side) + 0.5);
+        if beyond(u, lens.width) || beyond(v, lens.height) {
+            return 1.0;
+        }
+        // The upper left of the four texels whose middles are nearest: rounded down.
+        let (left, top) = ((u + 0.5) as i64 - 1, (v + 0.5) as i64 - 1);
+        let (right, bottom) = ((u - 0.5 - left as f64) as f32, (v - 0.5 - top as f64) as f32);
+        let (plane, own) = (lens.plane(point, normal), -point.z);
+        let at = |dx: i64, dy: i64| self.passing_at([left + dx, top + dy], &plane, own);
         // Written so that four equal answers stay what they are.
-        let row = |dy: f64| {
-            let (a, b) = (at(0.0, dy), at(1.0, dy));
+        let row = |dy: i64| {
+            let (a, b) = (at(0, dy), at(1, dy));
             a + (b - a) * right
         };
-        let (a, b) = (row(0.0), row(1.0));
+        let (a, b) = (row(0), row(1));
         a + (b - a) * bottom
     }
 
-    /// The same, asking one texel.
-    fn passing_at(&self, x: f64, y: f64, point: DVec3, normal: DVec3) -> f32 {
-        let (width, height) = (f64::from(self.lens.width), f64::from(self.lens.height));
-        if x < 0.0 || y < 0.0 || x >= width || y >= height {
+    /// The same, asking one texel, for a place on a plane at a distance of its `own`.
+    #[inline(always)]
+    fn passing_at(&self, [column, row]: [i64; 2], plane: &PlaneDepth, own: f64) -> f32 {
+        let outside = |k: i64, side: u32| k < 0 || k >= i64::from(side);
+        if outside(column, self.lens.width) || outside(row, self.lens.height) {
             return 1.0;
         }
-        let texel = y as usize * self.lens.width as usize + x as usize;
-        let own = -point.z;
-        let there = self.lens.plane_depth([x + 0.5, y + 0.5], point, normal);
+        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+        let (column, row) = (column as usize, row as usize);
+        let tile = &self.tiles[row / TILE * self.columns + column / TILE];
+        let texel = row % TILE * TILE + column % TILE;
+        let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
+        let there = plane.at([x, y]).unwrap_or(own);
         // The nearer of the two: the plane may go down further than the facet does.
         let slope = (there - own).abs();
         let depth = there.min(own) - slope * SLOPE_BIAS - own.abs() * DEPTH_BIAS;
-        if f64::from(self.depth[texel]) < depth {
-            return 0.0;
+        if f64::from(nearest) < depth {
+            0.0
+        } else if tile.layers.is_empty() {
+            1.0
+        } else {
+            tile.filtered(texel, depth)
         }
-        if self.layers.is_empty() {
-            return 1.0;
-        }
+    }
+}
+
+impl MapTile {
+    /// What the transparent things at a texel let through to this depth.
+    #[inline(never)]
+    fn filtered(&self, texel: usize, depth: f64) -> f32 {
         let first = self.layers.partition_point(|l| (l.texel as usize) < texel);
         let here = self.layers[first..].iter().take_while(|l| l.texel as usize == texel);
         here.filter(|l| f64::from(l.depth) < depth).map(|l| l.passing).product()

@@ -79,6 +79,17 @@ pub trait ShadowAlgorithm: Sync {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+
+    /// Makes ready for a picture of this view: [`Self::prepare`], but for algorithms whose precision follows the viewer.
+    fn prepare_for<'a>(
+        &self,
+        view: &PreparedView<'a>,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+        self.prepare(view.session, lights, view.viewer(), settings, execution)
+    }
 }
 
 /// What shadows depend on, besides the scene.
@@ -141,6 +152,5 @@ pub(crate) fn prepare<'a>(
     if !settings.lighting && !settings.channels.cast_shadow {
         return Ok(None);
     }
-    let viewer = view.viewer();
-    algorithm.map(|a| a.prepare(view.session, lights, viewer, settings, execution)).transpose()
+    algorithm.map(|a| a.prepare_for(view, lights, settings, execution)).transpose()
 }

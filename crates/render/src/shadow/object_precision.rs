@@ -18,10 +18,10 @@
 
 mod clip;
 
-use super::casters::{Casters, Solid, away, faces, lifted, near, wide, winding_normal};
+use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
 use super::ray::clearance;
-use super::sources::Source;
+use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::session::keep_for;
@@ -47,7 +47,7 @@ pub(crate) struct LitPolygons {
 /// The lit polygons of one place of a light.
 #[derive(Debug)]
 struct OfLight {
-    light: DVec4,
+    from: Emitter,
     /// For each facet of the world where it is found.
     places: Vec<Found>,
     details: Vec<Details>,
@@ -115,7 +115,7 @@ fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
 }
 
 impl OfLight {
-    fn new(light: DVec4, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
+    fn new(from: Emitter, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
         let triangles = casters.triangles();
         let jobs = triangles.count().div_ceil(TRIANGLES_A_JOB);
         let charged = Mutex::new(0u64);
@@ -125,7 +125,7 @@ impl OfLight {
             let mut details = Details::default();
             for t in first..triangles.count().min(first + TRIANGLES_A_JOB) {
                 budget.check("object-precision shadows")?;
-                details.add(t, light, casters);
+                details.add(t, from.at, casters);
             }
             let bytes = details.bytes();
             budget.charge(bytes, "object-precision shadows")?;
@@ -141,7 +141,7 @@ impl OfLight {
                 places[facet as usize] = Found { piece: piece as u32, ..*found };
             }
         }
-        Ok(Self { light, places, details })
+        Ok(Self { from, places, details })
     }
 
     /// The transparent triangles that may filter the light at a place, or `None` if it is not lit.
@@ -213,17 +213,19 @@ impl Shadows for Prepared<'_> {
         if lights.is_empty() {
             return parts.fill([1.0; 3]);
         }
-        let (share, extent) = (1.0 / lights.len() as f32, casters.extent());
+        let extent = casters.extent();
         let slack = f64::from(extent) * SLACK;
         for (place, part) in places.iter().zip(parts) {
-            let facing = lights.iter().filter(|l| faces(place, l.light));
-            *part = [0.0; 3];
-            for l in facing {
-                let Some(filters) = l.at(place.facet, place.position, slack) else { continue };
-                let at = lifted(place, extent);
-                let passing = casters.filtered(&self.occluders, l.light, place.facet, at, filters);
-                (0..3).for_each(|k| part[k] += share * passing[k]);
+            let mut shares = Shares::default();
+            for l in lights {
+                shares.add(l.from.weight(place), || {
+                    let filters = l.at(place.facet, place.position, slack);
+                    let at = lifted(place, extent);
+                    let passing = |filters| casters.filtered(&self.occluders, l.from.at, place.facet, at, filters);
+                    filters.map_or([0.0; 3], passing)
+                });
             }
+            *part = shares.part();
         }
     }
 

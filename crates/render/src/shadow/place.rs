@@ -17,6 +17,11 @@ pub(crate) type Facet = ([DVec3; 3], DVec3);
 /// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
 /// on the side from which they run counter-clockwise in the model; zero without area.
 pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet {
+    oriented(instance, triangle, center, mirrors(&instance.world_from_model))
+}
+
+/// The same for an instance of which it is known whether it is `mirrored`.
+fn oriented(instance: &Instance, triangle: u32, center: DVec3, mirrored: bool) -> Facet {
     let mesh = &instance.mesh;
     let corner = |i: u32| {
         let [x, y, z] = mesh.positions[i as usize];
@@ -26,7 +31,7 @@ pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet 
     let [a, b, c] = mesh.triangles[triangle as usize];
     let corners = [corner(a), corner(b), corner(c)];
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-    (corners, if mirrors(&instance.world_from_model) { -normal } else { normal })
+    (corners, if mirrored { -normal } else { normal })
 }
 
 /// The point with these weights of the corners.
@@ -57,10 +62,11 @@ pub(crate) fn places(
     let center = Triangles::center_of(&view.session.world);
     let placing = Placing { view, instance, turns, center };
     // Neighbours mostly lie on one facet.
-    let mut last = (triangles[0], facet(instance, triangles[0], center));
+    let mirrored = mirrors(&instance.world_from_model);
+    let mut last = (triangles[0], oriented(instance, triangles[0], center, mirrored));
     std::array::from_fn(|lane| {
         if last.0 != triangles[lane] {
-            last = (triangles[lane], facet(instance, triangles[lane], center));
+            last = (triangles[lane], oriented(instance, triangles[lane], center, mirrored));
         }
         let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
         let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);

@@ -15,7 +15,7 @@
 //! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without bending it.
 
 use super::occluders::Occluders;
-use super::sources::{Source, hash};
+use super::sources::{Shares, Source, hash};
 use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::beam::Beam;
 use crate::raytrace::bvh::Bvh;
@@ -70,12 +70,13 @@ impl Shadows for Prepared<'_> {
                 Source::Point(at) => self.passing(place, *at - place.position, true, rays),
                 Source::Area(area) => {
                     let seed = hash(place.seed ^ hash(light as u32));
-                    let mut sum = [0.0; 3];
+                    let mut shares = Shares::default();
                     for i in 0..area.count() {
-                        let part = self.passing(place, area.place(i, seed) - place.position, true, rays);
-                        sum = [0, 1, 2].map(|k| sum[k] + part[k]);
+                        let emitter = area.emitter(i, seed);
+                        let way = emitter.at.truncate() - place.position;
+                        shares.add(emitter.weight(place), || self.passing(place, way, true, rays));
                     }
-                    sum.map(|channel| channel / area.count() as f32)
+                    shares.part()
                 }
             };
         }

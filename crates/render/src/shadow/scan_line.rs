@@ -16,7 +16,7 @@
 
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
-use super::sources::Source;
+use super::sources::{Emitter, Shares, Source};
 use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings};
@@ -32,7 +32,7 @@ struct Prepared<'a> {
     casters: Casters,
     occluders: Occluders<'a>,
     /// For each light its places.
-    lights: Vec<Vec<DVec4>>,
+    lights: Vec<Vec<Emitter>>,
 }
 
 impl ShadowAlgorithm for ScanLineShadows {
@@ -80,9 +80,10 @@ impl Shadows for Prepared<'_> {
             return parts.fill([1.0; 3]);
         }
         parts.fill([0.0; 3]);
-        let (share, extent) = (1.0 / lights.len() as f32, self.casters.extent());
+        let extent = self.casters.extent();
         let mut work = Work::default();
-        for &from in lights {
+        for emitter in lights {
+            let from = emitter.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, from));
             let point = |(index, p): (usize, &Place)| Point {
                 index,
@@ -103,10 +104,12 @@ impl Shadows for Prepared<'_> {
                 self.scan(part, from, &mut work, |point, filters| {
                     let own = places[point.index].facet;
                     let passing = self.casters.filtered(&self.occluders, from, own, point.lifted, filters);
-                    (0..3).for_each(|k| parts[point.index][k] += share * passing[k]);
+                    let weight = emitter.weight(&places[point.index]);
+                    (0..3).for_each(|k| parts[point.index][k] += weight * passing[k]);
                 });
             }
         }
+        Shares::normalize(lights.iter().copied(), places, parts);
     }
 }
 

@@ -5,15 +5,20 @@
 //! some do. Chance is a hash of the point's place in the picture, so that a picture is the same however it is made, and
 //! neighbouring pixels err differently: noise instead of bands.
 //!
+//! Places do not count alike. What a light wholly in view sends to a point is computed without sampling, and shadows only
+//! say which part of it arrives; so each place counts with `cos θ cos θ' / d²`, its share in that whole (a *ratio estimator*).
+//! Places below the horizon of the point's facet have no share: they are not in the whole either.
+//!
 //! A disc's cells are squares of a square that is mapped to the disc ring by ring, which keeps areas in proportion. A
 //! polygon's are squares of the rectangle round it, along its longest edge, whose middle lies inside.
 //!
 //! In:   a light, world space. Out: places on it, less the scene's middle.
 //! Cost: one ray for each cell.
-//! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997].
+//! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
+use super::Place;
 use std::f64::consts::FRAC_PI_4;
-use vitral_light::{AreaShape, Light, LightKind};
+use vitral_light::{AreaShape, Light, LightKind, Rgb};
 use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
 
 /// See the module.
@@ -39,6 +44,24 @@ pub(super) struct Area {
     size: DVec2,
     origin: DVec3,
     axes: [DVec3; 2],
+    /// Unit normal.
+    normal: DVec3,
+}
+
+/// A place that light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Emitter {
+    /// Homogeneous, less the scene's middle: `w` is 0 for a direction.
+    pub(super) at: DVec4,
+    /// Unit normal of the shape; zero where there is none.
+    normal: DVec3,
+}
+
+/// Adds up what arrives from the places of a light.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shares {
+    lit: Rgb,
+    whole: f32,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -67,14 +90,53 @@ impl Source {
 }
 
 impl Source {
-    /// The places that light comes from, the same for all points, homogeneous: `w` is 0 for a direction. None if it
-    /// casts no shadows.
-    pub(super) fn places(&self) -> Vec<DVec4> {
+    /// The places that light comes from, the same for all points. None if it casts no shadows.
+    pub(super) fn places(&self) -> Vec<Emitter> {
+        let only = |at: DVec4| vec![Emitter { at, normal: DVec3::ZERO }];
         match self {
             Self::Unhindered => Vec::new(),
-            Self::Infinity(towards) => vec![towards.extend(0.0)],
-            Self::Point(at) => vec![at.extend(1.0)],
-            Self::Area(area) => (0..area.count()).map(|i| area.place(i, 0).extend(1.0)).collect(),
+            Self::Infinity(towards) => only(towards.extend(0.0)),
+            Self::Point(at) => only(at.extend(1.0)),
+            Self::Area(area) => (0..area.count()).map(|i| area.emitter(i, 0)).collect(),
+        }
+    }
+}
+
+impl Emitter {
+    /// The place's share in what the facet of `place` gets of the light; 0 if it looks away, 1 for a light of one place.
+    pub(super) fn weight(&self, place: &Place) -> f32 {
+        let way = self.at.truncate() - place.position * self.at.w;
+        let cos = place.normal.dot(way);
+        if self.normal == DVec3::ZERO {
+            return f32::from(u8::from(cos > 0.0));
+        }
+        // Behind the light, too, the places are told apart.
+        let square = way.length_squared();
+        let weight = cos * self.normal.dot(way).abs() / (square * square);
+        if weight > 0.0 { weight.min(1e30) as f32 } else { 0.0 }
+    }
+}
+
+impl Shares {
+    /// Adds a place; `passing` tells what arrives of it, unless it does not count.
+    pub(super) fn add(&mut self, weight: f32, passing: impl FnOnce() -> Rgb) {
+        if weight > 0.0 {
+            self.whole += weight;
+            let passing = passing();
+            self.lit = [0, 1, 2].map(|k| self.lit[k] + weight * passing[k]);
+        }
+    }
+
+    /// The part of the whole that arrives.
+    pub(super) fn part(&self) -> Rgb {
+        self.lit.map(|channel| if self.whole > 0.0 { channel / self.whole } else { 0.0 })
+    }
+
+    /// Parts from what arrives at each of the places, weighted, and added in the order of the emitters.
+    pub(super) fn normalize(emitters: impl Iterator<Item = Emitter> + Clone, places: &[Place], parts: &mut [Rgb]) {
+        for (place, part) in places.iter().zip(parts) {
+            let whole: f32 = emitters.clone().map(|e| e.weight(place)).sum();
+            *part = Self { lit: *part, whole }.part();
         }
     }
 }
@@ -84,10 +146,11 @@ impl Area {
     fn new(shape: &AreaShape, samples: u32, center: DVec3) -> Option<Self> {
         match shape {
             AreaShape::Disc { center: middle, normal, radius } => {
-                let (x, y) = normal.try_normalize()?.any_orthonormal_pair();
+                let normal = normal.try_normalize()?;
+                let (x, y) = normal.any_orthonormal_pair();
                 let (cells, size) = cells([DVec2::NEG_ONE, DVec2::ONE], 1.0, samples, |_| true);
                 let axes = [x * *radius, y * *radius];
-                Some(Self { shape: Shape::Disc, cells, size, origin: *middle - center, axes })
+                Some(Self { shape: Shape::Disc, cells, size, origin: *middle - center, axes, normal })
             }
             AreaShape::Polygon { corners } => Self::polygon(corners, samples, center),
         }
@@ -107,7 +170,7 @@ impl Area {
         let share = area / (extent.x * extent.y);
         let (cells, size) = cells(bounds, share, samples, |p| contains(&flat, p));
         let origin = corners[0] - center;
-        (!cells.is_empty()).then_some(Self { shape: Shape::Polygon(flat), cells, size, origin, axes: [x, y] })
+        (!cells.is_empty()).then_some(Self { shape: Shape::Polygon(flat), cells, size, origin, axes: [x, y], normal })
     }
 
     /// How many places are asked.
@@ -116,7 +179,11 @@ impl Area {
     }
 
     /// A place in cell `i`, by the chance that `seed` gives.
-    pub(super) fn place(&self, i: usize, seed: u32) -> DVec3 {
+    pub(super) fn emitter(&self, i: usize, seed: u32) -> Emitter {
+        Emitter { at: self.place(i, seed).extend(1.0), normal: self.normal }
+    }
+
+    fn place(&self, i: usize, seed: u32) -> DVec3 {
         let chance = hash(seed ^ hash(i as u32 + 1));
         let [u, v] = [chance & 0xffff, chance >> 16].map(|bits| (f64::from(bits) + 0.5) / 65_536.0);
         let p = self.cells[i] + self.size * dvec2(u, v);

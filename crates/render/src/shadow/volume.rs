@@ -29,7 +29,7 @@ mod edges;
 use super::casters::{Casters, away, box_around, faces, lifted, near};
 use super::casters::{wide, winding_normal};
 use super::occluders::Occluders;
-use super::sources::Source;
+use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
@@ -58,8 +58,7 @@ pub(crate) struct Volumes {
 /// The volumes of one place of a light.
 #[derive(Debug)]
 struct LightVolumes {
-    /// Homogeneous: `w` is 0 for a direction.
-    light: DVec4,
+    from: Emitter,
     /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
     turned: Vec<i8>,
     sides: Vec<edges::Side>,
@@ -146,7 +145,8 @@ impl Volumes {
 }
 
 impl LightVolumes {
-    fn new(light: DVec4, triangles: &Triangles, edges: &Edges, execution: &Execution) -> Result<Self, Limit> {
+    fn new(from: Emitter, triangles: &Triangles, edges: &Edges, execution: &Execution) -> Result<Self, Limit> {
+        let light = from.at;
         execution.budget.check("shadow volumes")?;
         let turned = edges::turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
         let sides = edges.sides(light, &turned, triangles);
@@ -165,7 +165,7 @@ impl LightVolumes {
         let bytes = sides.len() as u64 * size_of::<edges::Side>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
-        Ok(Self { light, turned, sides, tree: Bvh::build(&boxes, &execution.workers, &execution.budget)? })
+        Ok(Self { from, turned, sides, tree: Bvh::build(&boxes, &execution.workers, &execution.budget)? })
     }
 }
 
@@ -176,11 +176,11 @@ impl Shadows for Counting<'_> {
             return parts.fill([1.0; 3]);
         }
         parts.fill([0.0; 3]);
-        let share = 1.0 / volumes.len() as f32;
         let mut batch = Batch::default();
         for (place_of_light, &around_viewer) in volumes.iter().zip(&self.around_viewer[light]) {
             // Attached shadows, and a light in the facet's plane, need no count.
-            let (light, extent) = (place_of_light.light, self.volumes.casters.extent());
+            let (from, extent) = (place_of_light.from, self.volumes.casters.extent());
+            let light = from.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
             batch.reset(asked.map(|(i, p)| (i as u32, lifted(p, extent))));
             let lit = self.volumes.lit(place_of_light);
@@ -188,10 +188,12 @@ impl Shadows for Counting<'_> {
                 if count <= 0 {
                     let own = places[index].facet;
                     let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);
-                    (0..3).for_each(|k| parts[index][k] += share * passing[k]);
+                    let weight = from.weight(&places[index]);
+                    (0..3).for_each(|k| parts[index][k] += weight * passing[k]);
                 }
             });
         }
+        Shares::normalize(volumes.iter().map(|v| v.from), places, parts);
     }
 
     fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
@@ -206,7 +208,7 @@ impl LightVolumes {
     /// Hands on caps and sides, cut where the scene is well left behind.
     fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
         let reach = f64::from(triangles.extent) * 2.0;
-        let beyond = |p: DVec3| p + away(self.light, p).normalize_or_zero() * reach;
+        let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
         let mut hand = |kind: &'static str, corners: &[DVec3]| {
             let corners: Vec<DVec3> = corners.iter().map(|&c| c + triangles.center).collect();
             take(Drawn { light, kind, corners: &corners });

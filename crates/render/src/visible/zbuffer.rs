@@ -13,7 +13,7 @@
 //! depths go to the lower facet, so the order of triangles cannot be seen.
 
 use super::brute_force::size_in_picture;
-use super::{Resolved, TileSink, VisibleSurface};
+use super::{Resolved, TileSink, VisibleSurface, charged};
 use crate::stats::GeometryStats;
 use crate::trace::Step;
 use crate::{Execution, PreparedView};
@@ -22,8 +22,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, Draw, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, Tile, TileGrid, VisibilitySink,
-    transform, traverse_by_rows,
+    Batch, Draw, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE, Tile, TileGrid, Viewport,
+    VisibilitySink, transform, traverse_by_rows,
 };
 
 /// Triangles in one piece of work.
@@ -111,6 +111,56 @@ impl VisibleSurface for ZBuffer {
         spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
         Ok(resolved)
     }
+}
+
+/// Resolves a view whose tiles nobody needs afterwards, without marks: each is filled in memory that the next one uses again,
+/// and handed to `sink` unless nothing is in it. The samples are those that [`ZBuffer`] finds.
+pub(crate) fn resolve_in_passing(
+    view: &PreparedView<'_>,
+    execution: &Execution,
+    sink: &dyn TileSink,
+) -> Result<(), Limit> {
+    let jobs = jobs(view);
+    if rounds(&jobs).len() > 1 {
+        // Tiles must wait for more triangles.
+        let bytes = TileGrid::bytes(view.viewport, view.pattern.len());
+        return charged(&execution.budget, bytes, "a z-buffer", || {
+            let mut grid = TileGrid::new(view.viewport, view.pattern.len());
+            ZBuffer.resolve(view, None, &mut grid, execution, sink).map(|_| ())
+        });
+    }
+    execution.budget.check("visibility")?;
+    let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
+    transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
+    let batches = set_up(view, &jobs, &vertices, execution);
+    let spare: Mutex<Vec<Tile>> = Mutex::default();
+    let (columns, rows) = (view.viewport.tiles_x(), view.viewport.tiles_y());
+    execution.workers.for_each((0..columns * rows).collect(), |number| {
+        let index = number as usize;
+        if batches.iter().all(|(_, batch)| batch.tile(index).next().is_none()) {
+            return;
+        }
+        let used = spare.lock().expect("spare tiles").pop();
+        let mut tile = used.unwrap_or_else(|| {
+            let side = TILE as u32;
+            let one = TileGrid::new(Viewport { width: side, height: side }, view.pattern.len());
+            one.tiles.into_iter().next().expect("one tile")
+        });
+        tile.clear();
+        (tile.x, tile.y) = (number % columns * TILE as u32, number / columns * TILE as u32);
+        let mut layers = view.layer_list();
+        let batches = batches.iter().map(|(layered, batch)| (*layered, batch));
+        walk(execution.level, batches, index, &mut tile, &view.pattern, &mut layers);
+        layers.finish();
+        if tile.touched || !layers.is_empty() {
+            sink.tile(index, &tile, &mut layers);
+        }
+        spare.lock().expect("spare tiles").push(tile);
+    });
+    view.session.spare_batches.lock().expect("spare batches").extend(batches.into_iter().map(|(_, batch)| batch));
+    let vertices = vertices.into_iter().filter(|v| v.capacity() > 0);
+    view.session.spare_vertices.lock().expect("spare vertices").extend(vertices);
+    Ok(())
 }
 
 /// Adds for each pixel of a tile how many opaque facets of these batches cover its first sample.

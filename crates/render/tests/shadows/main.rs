@@ -1,5 +1,7 @@
 //! Shadows: what the definitions say, by arithmetic where there is a formula.
 
+mod area;
+mod cascades;
 mod exact;
 
 use std::sync::Arc;
@@ -78,7 +80,7 @@ fn facet_at(session: &Session, position: DVec3) -> u32 {
 
 /// A place in the world, on whatever facet is there.
 fn place(position: DVec3, normal: DVec3) -> Place {
-    Place { position, normal, facet: u32::MAX, seed: 1, pixel: [0.5; 2] }
+    Place { position, normal, facet: u32::MAX, seed: 1, pixel: Some([0.5; 2]) }
 }
 
 fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, at: DVec3) {
@@ -150,7 +152,7 @@ fn nothing_shades_itself() {
                     if normal.dot((far - p).normalize()) < 0.02 {
                         continue;
                     }
-                    let part = arriving(Place { position: p + center, normal, facet, seed: 0, pixel: [0.5; 2] });
+                    let part = arriving(Place { position: p + center, normal, facet, seed: 0, pixel: Some([0.5; 2]) });
                     assert_eq!(part, 1.0, "facet {facet} at {p}");
                     lit += 1;
                 }
@@ -238,8 +240,9 @@ fn transparent_things_take_their_part() {
     }
 }
 
-/// Width of the penumbra behind an edge: the slope of the lit part along a line across it.
-fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
+/// Width of the penumbra behind an edge, along a line across it: from where the first light is seen to where all of it is; and
+/// by the slope in its middle.
+fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
     // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
     let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
     let settings = Settings { light_samples: samples, ..settings(algorithm) };
@@ -249,8 +252,17 @@ fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
             f64::from(parts.sum::<f32>()) / 32.0
         };
         assert_eq!((at(-1.0), at(1.0)), (0.0, 1.0), "umbra and full light");
+        // Halve the interval in which it begins, and the one in which it ends.
+        let change = |above: f64| {
+            let (mut low, mut high) = (-1.0, 1.0);
+            for _ in 0..14 {
+                let middle = 0.5 * (low + high);
+                if at(middle) > above { high = middle } else { low = middle }
+            }
+            high
+        };
         let (x, step) = (-0.1, 0.2);
-        step / (at(x + step) - at(x))
+        [change(1.0 - 1e-6) - change(1e-6), step / (at(x + step) - at(x))]
     })
 }
 
@@ -259,19 +271,22 @@ fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
     let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]].map(|[x, z]| dvec3(x, 3.0, z)).to_vec();
     // D = 0.8, a = 2, b = 1.
     let square = AreaShape::Polygon { corners };
-    let width = penumbra("ray", square.clone(), 256);
+    let [width, slope] = penumbra("ray", square.clone(), 256);
     assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
+    // The light's middle is 1 part in 40 brighter than its border, as seen from here.
+    assert!((slope / 0.4 - 1.0).abs() < 0.03, "{slope}");
     // The same 64 places serve all points: steps of an eighth.
     for algorithm in names().filter(|&name| name != "ray") {
-        let width = penumbra(algorithm, square.clone(), 64);
-        assert!((width / 0.4 - 1.0).abs() < 0.15, "{algorithm}: {width}");
+        let [_, slope] = penumbra(algorithm, square.clone(), 64);
+        assert!((slope / 0.4 - 1.0).abs() < 0.15, "{algorithm}: {slope}");
     }
-    // Through the middle of a disc the lit part rises by 4 / (π D) of its width: D = 0.8 again.
     let disc = AreaShape::Disc { center: dvec3(0.0, 3.0, 0.0), normal: DVec3::NEG_Y, radius: 0.4 };
+    let [width, slope] = penumbra("ray", disc, 256);
+    assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
+    // Through its middle the lit part rises by 4 / (π D) of its width.
     let t: f64 = 0.5;
     let share = 2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
-    let width = penumbra("ray", disc, 256);
-    assert!((width / (0.2 / share) - 1.0).abs() < 0.02, "{width}");
+    assert!((slope / (0.2 / share) - 1.0).abs() < 0.03, "{slope}");
 }
 
 #[test]
@@ -343,6 +358,8 @@ fn settings_that_cannot_be_are_refused() {
     assert!(text(settings("umbra")).contains("choose none, ray, map"));
     assert!(text(Settings { light_samples: 0, ..settings("ray") }).contains("1 to 4096"));
     assert!(text(Settings { shadow_map_size: 9000, ..settings("map") }).contains("16 to 8192"));
+    assert!(text(Settings { shadow_cascades: 9, ..settings("map") }).contains("1 to 8"));
+    assert!(text(Settings { shadow_cascades: 0, ..settings("map") }).contains("1 to 8"));
     let channels = Channels { cast_shadow: true, ..Channels::default() };
     assert!(text(Settings { channels, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
 }
@@ -465,7 +482,7 @@ fn maps_show_no_acne() {
                 if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
                     let position = (a + b + c) / 3.0;
                     assert_eq!(
-                        arriving(Place { position, normal, facet, seed: 0, pixel: [0.5; 2] }),
+                        arriving(Place { position, normal, facet, seed: 0, pixel: Some([0.5; 2]) }),
                         1.0,
                         "facet {facet}"
                     );
@@ -543,7 +560,7 @@ fn places_on(scene: &Scene) -> Vec<Place> {
             for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
                 let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
                 let position = a + (b - a) * u + (c - a) * v;
-                places.push(Place { position, normal, facet, seed: 0, pixel: [k, i].map(|n| n as f32) });
+                places.push(Place { position, normal, facet, seed: 0, pixel: Some([k, i].map(|n| n as f32)) });
             }
         }
     }

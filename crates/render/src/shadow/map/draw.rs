@@ -2,15 +2,15 @@
 
 use super::super::grey;
 use super::super::occluders::Occluders;
-use super::{Layer, Lens, Map};
+use super::{Layer, Lens, Map, MapTile};
 use crate::stats::CullCounters;
-use crate::visible::zbuffer::ZBuffer;
-use crate::visible::{TileSink, VisibleSurface};
+use crate::visible::TileSink;
+use crate::visible::zbuffer::resolve_in_passing;
 use crate::{Background, Execution, Lines, PreparedView, Session, Settings};
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::{DVec3, dvec3};
-use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid, Viewport};
+use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
 
 /// Turns tiles into distances and layers.
 struct DepthSink<'a> {
@@ -18,11 +18,8 @@ struct DepthSink<'a> {
     session: &'a Session,
     occluders: &'a Occluders<'a>,
     center: DVec3,
-    tiles: Vec<Mutex<Found>>,
+    tiles: Vec<Mutex<MapTile>>,
 }
-
-/// Distances of a tile's texels, and its transparent things with their facets.
-type Found = (Vec<f32>, Vec<(u32, Layer)>);
 
 impl Map {
     pub(super) fn draw(
@@ -33,8 +30,7 @@ impl Map {
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let viewport = Viewport { width: lens.width, height: lens.height };
-        let texels = u64::from(lens.width) * u64::from(lens.height);
-        let bytes = TileGrid::bytes(viewport, 1) + texels * 8;
+        let bytes = u64::from(lens.width) * u64::from(lens.height) * 8;
         execution.budget.check("shadow maps")?;
         execution.budget.charge(bytes, "a shadow map")?;
         execution.budget.release(bytes);
@@ -47,32 +43,13 @@ impl Map {
         };
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
         let view = PreparedView::new(session, &lens.camera, &settings, viewport, pattern, execution, counters);
-        let mut grid = TileGrid::new(viewport, 1);
         let center = crate::raytrace::triangles::Triangles::center_of(&session.world);
-        let tiles = grid.tiles.iter().map(|_| Mutex::default()).collect();
+        let columns = viewport.tiles_x() as usize;
+        let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| Mutex::default()).collect();
         let sink = DepthSink { lens: &lens, session, occluders, center, tiles };
-        ZBuffer.resolve(&view, None, &mut grid, execution, &sink)?;
-        let places: Vec<_> = grid.tiles.iter().map(|t| (t.x as usize, t.y as usize)).collect();
-        let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile"));
-
-        // Put the tiles together.
-        let (width, height) = (lens.width as usize, lens.height as usize);
-        let mut depth = vec![f32::INFINITY; width * height];
-        let mut layers = Vec::new();
-        for ((x, y), (distances, mut found)) in places.into_iter().zip(tiles) {
-            layers.append(&mut found);
-            let columns = TILE.min(width - x);
-            for (row, distances) in distances.chunks(TILE).enumerate().take(TILE.min(height - y)) {
-                let at = (y + row) * width + x;
-                depth[at..at + columns].copy_from_slice(&distances[..columns]);
-            }
-        }
-        layers.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
-            a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
-        });
-        layers.dedup_by_key(|(facet, l)| (*facet, l.texel));
-        let layers = layers.into_iter().map(|(_, layer)| layer).collect();
-        Ok(Self { lens, depth, layers })
+        resolve_in_passing(&view, execution, &sink)?;
+        let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile")).collect();
+        Ok(Self { lens, columns, tiles })
     }
 }
 
@@ -80,8 +57,9 @@ impl TileSink for DepthSink<'_> {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let lens = self.lens;
         let seen = tile.facet[..TILE_PIXELS].iter().zip(&tile.depth);
-        let distances =
-            seen.map(|(&facet, &depth)| if facet == NO_FACET { f32::INFINITY } else { lens.distance(depth) }).collect();
+        let distance =
+            |(&facet, &depth): (&u32, &f32)| if facet == NO_FACET { f32::INFINITY } else { lens.distance(depth) };
+        let distances = if tile.touched { seen.map(distance).collect() } else { Vec::new() };
         let mut found = Vec::new();
         for layer in layers.iter() {
             let [x, y] = [layer.at as usize % TILE, layer.at as usize / TILE].map(|k| k as u32);
@@ -89,10 +67,15 @@ impl TileSink for DepthSink<'_> {
             if x < lens.width && y < lens.height {
                 let depth = lens.distance(layer.depth);
                 let passing = self.passing(layer.facet, [x, y], depth);
-                found.push((layer.facet, Layer { texel: y * lens.width + x, depth, passing }));
+                found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
         }
-        *self.tiles[index].lock().expect("finished tile") = (distances, found);
+        found.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
+            a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
+        });
+        found.dedup_by_key(|(facet, l)| (*facet, l.texel));
+        let layers = found.into_iter().map(|(_, layer)| layer).collect();
+        *self.tiles[index].lock().expect("finished tile") = MapTile { depth: distances, layers };
     }
 }
 

@@ -1,6 +1,7 @@
 //! How a light looks at the scene: the frusta of shadow maps, fitted to what is there.
 
 use crate::raytrace::triangles::Triangles;
+use std::f64::consts::FRAC_1_SQRT_2;
 use vitral_math::{DMat4, DVec3, func};
 use vitral_scene::{Camera, Projection, ViewTransform, World, depth_range};
 
@@ -22,72 +23,108 @@ pub(super) struct Lens {
 const WIDEST: f64 = 1.5;
 /// Texels left free along the border of a map.
 const BORDER: f64 = 4.0;
+/// Nearer to the border than this a map does not tell about places that lie outside of what it was fitted to.
+const INNER: f64 = 2.0;
 
 impl Lens {
     /// For light from infinitely far away.
     pub(super) fn parallel(towards: DVec3, world: &World, size: u32) -> Self {
-        let center = Triangles::center_of(world);
-        let (focal_point, position) = (center, center + towards);
-        let projection = Projection::Parallel { height: 1.0 };
-        let mut camera = Camera { position, focal_point, view_up: DVec3::Y, projection, clip: None };
+        let camera = far_away(towards, world);
         let view = camera.view_from_world();
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in corners(world) {
-            let p = view.transform_point3(corner);
-            (low, high) = (low.min(p), high.max(p));
+        let [low, high] = extent(corners(world).map(|p| view.transform_point3(p)));
+        let half = (high - low) * 0.5;
+        Self::new(aimed(camera, (low + high) * 0.5), [half.x, half.y], size, world, false)
+    }
+
+    /// For light from infinitely far away that falls on these points (world space), with texels of a size that is smaller
+    /// than those of `whole` by a power of √2, on their grid: the same place in another such lens is in the same place of a texel.
+    /// `None` without points, or for larger texels.
+    pub(super) fn parallel_round(
+        towards: DVec3,
+        points: &[DVec3],
+        whole: &Self,
+        world: &World,
+        size: u32,
+    ) -> Option<Self> {
+        let camera = far_away(towards, world);
+        let view = camera.view_from_world();
+        let [low, high] = extent(points.iter().map(|&p| view.transform_point3(p)));
+        let longer = (high - low).truncate().max_element();
+        let least = longer / (f64::from(size) - 2.0 * BORDER - 2.0).max(1.0);
+        let mut texel = 2.0 * whole.extent[0] / f64::from(whole.width);
+        if !(longer.is_finite() && least < texel) {
+            return None;
         }
-        // Aim at the middle of what the light sees.
-        let middle = (low + high) * 0.5;
-        let shift = view.inverse().transform_vector3(DVec3::new(middle.x, middle.y, 0.0));
-        (camera.position, camera.focal_point) = (position + shift, focal_point + shift);
-        let extent = (high - low) * 0.5;
-        Self::new(camera, [extent.x, extent.y], size, world, false)
+        // Finer than the grid of positions in single precision is of no use.
+        let finest = least.max(whole.extent[0].max(whole.extent[1]) * 1e-6);
+        while texel * FRAC_1_SQRT_2 >= finest {
+            texel *= FRAC_1_SQRT_2;
+        }
+        let [low, high] =
+            [(low / texel).floor() - BORDER, (high / texel).ceil() + BORDER].map(|p| [p.x, p.y].map(|k| k as i64));
+        let count = [0, 1].map(|k| (high[k] - low[k]).clamp(1, i64::from(size)) as u32);
+        let middle = [0, 1].map(|k| (low[k] + high[k]) as f64 * 0.5 * texel);
+        Some(Self::of_texels(aimed(camera, DVec3::new(middle[0], middle[1], 0.0)), count, texel, world, false))
     }
 
     /// For light from `at` (less the scene's middle): one lens before which the scene lies, or six.
     pub(super) fn around(at: DVec3, world: &World, size: u32) -> Vec<Self> {
         let position = at + Triangles::center_of(world);
-        let towards = |direction: DVec3| Camera {
-            position,
-            focal_point: position + direction,
-            view_up: DVec3::Y,
-            projection: Projection::Perspective { view_angle: 1.0 },
-            clip: None,
-        };
-        if let Some(direction) = (world.bounds.center() - position).try_normalize() {
-            let camera = towards(direction);
-            let view = camera.view_from_world();
-            let mut extent = [0.0f64; 2];
-            for corner in corners(world) {
-                let p = view.transform_point3(corner);
-                let share = |x: f64| if p.z < 0.0 { x.abs() / -p.z } else { f64::INFINITY };
-                extent = [extent[0].max(share(p.x)), extent[1].max(share(p.y))];
-            }
-            if extent[0].max(extent[1]) < WIDEST {
-                return vec![Self::new(camera, extent, size, world, true)];
-            }
+        if let Some(direction) = (world.bounds.center() - position).try_normalize()
+            && let Some(lens) = Self::holding(position, direction, corners(world), world, size)
+        {
+            return vec![lens];
         }
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
         let faces = axes.into_iter().flat_map(|axis| [axis, -axis]);
-        faces.map(|direction| Self::new(towards(direction), [1.0; 2], size, world, true)).collect()
+        faces.map(|direction| Self::new(looking(position, direction), [1.0; 2], size, world, true)).collect()
+    }
+
+    /// For light from `at` (less the scene's middle) that falls on these points (world space), if one lens holds them.
+    pub(super) fn before(at: DVec3, points: &[DVec3], world: &World, size: u32) -> Option<Self> {
+        let position = at + Triangles::center_of(world);
+        let ways = || points.iter().map(|&p| (p - position).normalize_or_zero());
+        let direction = ways().sum::<DVec3>().try_normalize()?;
+        Self::holding(position, direction, points.iter().copied(), world, size)
+    }
+
+    /// The lens at `position` that holds these points, unless it is too wide.
+    fn holding(
+        position: DVec3,
+        direction: DVec3,
+        points: impl Iterator<Item = DVec3>,
+        world: &World,
+        size: u32,
+    ) -> Option<Self> {
+        let camera = looking(position, direction);
+        let view = camera.view_from_world();
+        let mut extent = [0.0f64; 2];
+        for corner in points {
+            let p = view.transform_point3(corner);
+            let share = |x: f64| if p.z < 0.0 { x.abs() / -p.z } else { f64::INFINITY };
+            extent = [extent[0].max(share(p.x)), extent[1].max(share(p.y))];
+        }
+        (extent[0].max(extent[1]) < WIDEST).then(|| Self::new(camera, extent, size, world, true))
     }
 
     /// For a spot from `at` (less the scene's middle) with half the angle `cutoff`, unless it is too wide for one lens.
     pub(super) fn cone(at: DVec3, direction: DVec3, cutoff: f64, world: &World, size: u32) -> Option<Self> {
         let position = at + Triangles::center_of(world);
         let extent = func::tan(cutoff.clamp(1e-3, 1.5));
-        let focal_point = position + direction.try_normalize()?;
-        let projection = Projection::Perspective { view_angle: 1.0 };
-        let camera = Camera { position, focal_point, view_up: DVec3::Y, projection, clip: None };
+        let camera = looking(position, direction.try_normalize()?);
         (extent < WIDEST).then(|| Self::new(camera, [extent; 2], size, world, true))
     }
 
-    fn new(mut camera: Camera, extent: [f64; 2], size: u32, world: &World, perspective: bool) -> Self {
+    fn new(camera: Camera, extent: [f64; 2], size: u32, world: &World, perspective: bool) -> Self {
         // Square texels, as many as fit.
         let longer = extent[0].max(extent[1]).max(1e-12);
         let side = |e: f64| ((e / longer * f64::from(size)).ceil() as u32).clamp(1, size);
-        let (width, height) = (side(extent[0]), side(extent[1]));
         let texel = 2.0 * longer / (f64::from(size) - 2.0 * BORDER).max(1.0);
+        Self::of_texels(camera, extent.map(side), texel, world, perspective)
+    }
+
+    /// So many square texels of this side: at distance 1, or at any for a parallel light.
+    fn of_texels(mut camera: Camera, [width, height]: [u32; 2], texel: f64, world: &World, perspective: bool) -> Self {
         let extent = [f64::from(width) * texel * 0.5, f64::from(height) * texel * 0.5];
         camera.projection = if perspective {
             Projection::Perspective { view_angle: 2.0 * func::atan2(extent[1], 1.0) }
@@ -113,10 +150,22 @@ impl Lens {
         p.z < 0.0 && p.x.abs() <= -p.z * self.extent[0] && p.y.abs() <= -p.z * self.extent[1]
     }
 
+    /// Whether the map tells about a place, and about what is a few texels beside it.
+    pub(super) fn holds(&self, place: DVec3) -> bool {
+        let at = self.texel_place(self.view_from_world.transform_point3(place));
+        let inside = |x: f64, side: u32| x >= INNER && x <= f64::from(side) - INNER;
+        at.is_some_and(|[x, y]| inside(x, self.width) && inside(y, self.height))
+    }
+
     /// Side of a texel at the distance of a place.
     pub(super) fn texel(&self, place: DVec3) -> f64 {
+        self.texel_at(-self.view_from_world.transform_point3(place).z)
+    }
+
+    /// The same at this distance along the axis.
+    pub(super) fn texel_at(&self, distance: f64) -> f64 {
         let side = 2.0 * self.extent[0] / f64::from(self.width);
-        if self.perspective { side * self.view_from_world.transform_point3(place).z.abs() } else { side }
+        if self.perspective { side * distance.abs() } else { side }
     }
 
     /// Where a point of view space is on the map, in texels.
@@ -135,14 +184,66 @@ impl Lens {
         DVec3::new(x * scale, y * scale, -distance)
     }
 
-    /// Distance at which the ray of a place on the map meets the plane through `point` with this normal, view space; the
-    /// point's own if it does not.
-    pub(super) fn plane_depth(&self, at: [f64; 2], point: DVec3, normal: DVec3) -> f64 {
-        let (start, ahead) =
-            if self.perspective { (DVec3::ZERO, self.point(at, 1.0)) } else { (self.point(at, 0.0), DVec3::NEG_Z) };
-        let distance = normal.dot(point - start) / normal.dot(ahead);
-        if distance.is_finite() && (distance > 0.0 || !self.perspective) { distance } else { -point.z }
+    /// The plane through `point` with this normal, view space.
+    pub(super) fn plane(&self, point: DVec3, normal: DVec3) -> PlaneDepth {
+        // How a step of a texel on the map changes what the normal measures, at distance 1 or at any.
+        let step = [
+            normal.x * 2.0 * self.extent[0] / f64::from(self.width),
+            -normal.y * 2.0 * self.extent[1] / f64::from(self.height),
+        ];
+        let corner = normal.y * self.extent[1] - normal.x * self.extent[0];
+        let height = normal.dot(point);
+        if self.perspective {
+            PlaneDepth { start: corner - normal.z, step, height: Some(height) }
+        } else {
+            let scale = 1.0 / normal.z;
+            PlaneDepth { start: (corner - height) * scale, step: step.map(|s| s * scale), height: None }
+        }
     }
+}
+
+/// How far away a plane is along the ray of each place on a map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlaneDepth {
+    /// In the upper left corner of the map, and its change from texel to texel: the distance itself for a parallel light, else
+    /// what the plane's height is to be divided by.
+    start: f64,
+    step: [f64; 2],
+    height: Option<f64>,
+}
+
+impl PlaneDepth {
+    /// The distance at a place on the map, in texels; `None` where the ray does not meet the plane.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let value = self.start + self.step[0] * x + self.step[1] * y;
+        match self.height {
+            None => value.is_finite().then_some(value),
+            Some(height) => Some(height / value).filter(|d| d.is_finite() && *d > 0.0),
+        }
+    }
+}
+
+/// A viewer in the place of a light that is infinitely far away.
+fn far_away(towards: DVec3, world: &World) -> Camera {
+    let center = Triangles::center_of(world);
+    let projection = Projection::Parallel { height: 1.0 };
+    Camera { position: center + towards, focal_point: center, view_up: DVec3::Y, projection, clip: None }
+}
+
+/// The viewer, moved sideways to this place of its view space.
+fn aimed(camera: Camera, middle: DVec3) -> Camera {
+    let shift = camera.view_from_world().inverse().transform_vector3(DVec3::new(middle.x, middle.y, 0.0));
+    Camera { position: camera.position + shift, focal_point: camera.focal_point + shift, ..camera }
+}
+
+fn looking(position: DVec3, direction: DVec3) -> Camera {
+    let projection = Projection::Perspective { view_angle: 1.0 };
+    Camera { position, focal_point: position + direction, view_up: DVec3::Y, projection, clip: None }
+}
+
+/// Smallest and largest coordinates.
+fn extent(points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    points.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 /// Corners of the boxes round all objects, world space.

@@ -97,7 +97,7 @@ impl Path {
 
 impl Lit<'_> {
     fn light(&self) -> DVec4 {
-        self.volumes.light
+        self.volumes.from.at
     }
 
     /// What the near cap of a triangle adds to the count along a path that crosses its plane `along` its normal.

@@ -20,9 +20,12 @@ use crate::{Execution, PreparedView, Session, Settings};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Limit, Workers};
-use vitral_math::DVec3;
+use vitral_math::{DVec3, func};
 use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, Tile, TileGrid, Viewport};
 use vitral_scene::{Camera, Mesh, Part, Projection, Scene};
+
+/// Radians by which a hemicube is turned about the normal.
+const TURN: f64 = 0.55;
 
 /// A hemicube of some resolution.
 #[derive(Debug)]
@@ -66,7 +69,9 @@ impl Hemicube {
         normal: DVec3,
         execution: &Execution,
     ) -> Result<Vec<(u32, f64)>, Limit> {
-        let (u, v) = normal.any_orthonormal_pair();
+        // Turned, lest edges along the axes pass through the middles of a whole row of pixels.
+        let ((u, v), (sin, cos)) = (normal.any_orthonormal_pair(), func::sin_cos(TURN));
+        let (u, v) = (u * cos + v * sin, v * cos - u * sin);
         // Points look from different threads: each draws alone.
         let execution = Execution { workers: Workers::single(), observer: None, ..execution.clone() };
         let mut seen = vec![0.0; targets.leaves];

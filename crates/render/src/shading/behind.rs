@@ -417,7 +417,13 @@ mod tests {
     #[test]
     fn a_lens_knows_the_way_there_and_back() {
         for projection in [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 3.0 }] {
-            let camera = Camera { projection, clip: Some((2.0, 9.0)), ..Camera::default() };
+            let camera = Camera {
+                position: DVec3::new(3.0, 4.0, 5.0),
+                focal_point: DVec3::ZERO,
+                view_up: DVec3::Y,
+                projection,
+                clip: Some((2.0, 9.0)),
+            };
             let view = camera.transform(1.5, (2.0, 9.0));
             let lens =
                 Lens { clip_from_view: view.clip_from_view, size: dvec2(300.0, 200.0), perspective: view.perspective };

@@ -70,13 +70,10 @@ impl Fragment<'_> {
     /// Lays it over a colour: `I = I1 + t I2`, both premultiplied.
     #[inline]
     pub fn over(&self, below: &mut [f32; 4]) {
-        if let Some(behind) = self.behind {
-            *below = behind;
-        }
-        for k in 0..3 {
-            below[k] = self.color[k] + self.passes[k] * below[k];
-        }
-        below[3] = self.color[3] + (1.0 - self.color[3]) * below[3];
+        let behind = self.behind.unwrap_or(*below);
+        let [r, g, b] = self.passes;
+        let passes = [r, g, b, 1.0 - self.color[3]];
+        *below = std::array::from_fn(|k| self.color[k] + passes[k] * behind[k]);
     }
 
     /// From far to near at a sample that both cover.

@@ -200,6 +200,11 @@ struct Met {
 }
 
 impl DeepPicture<'_> {
+    /// Whether there is time left.
+    pub(crate) fn check(&self) -> Result<(), Limit> {
+        self.budget.check("what is behind translucent surfaces")
+    }
+
     /// A tile, with a copy of its colours for the composition to change.
     pub(crate) fn tile(&self, index: usize) -> Option<(&Tile, &Points, Lit)> {
         let tile = &self.tiles[index];

@@ -111,13 +111,16 @@ impl<'a> ColorSink<'a> {
         let Some(deep) = self.deep else { return Ok((self.tiles, self.passes)) };
         let deep = deep.finish()?;
         let (level, tiles) = (self.level, self.tiles);
-        workers.map(tiles.len(), |index| {
-            let Some((tile, points, mut lit)) = deep.tile(index) else { return };
+        let composed = workers.map(tiles.len(), |index| {
+            deep.check()?;
+            let Some((tile, points, mut lit)) = deep.tile(index) else { return Ok(()) };
             let (mut composer, mut picture) = (Composer::default(), vec![[0; 4]; TILE_PIXELS]);
             let (constants, marks, whole) = (self.constants, self.marks, Some((&deep, index)));
             dispatch!(level, simd => composer.compose(simd, tile, points, &mut lit, constants, marks, whole, &mut picture));
             *tiles[index].lock().expect("tile picture") = picture;
+            Ok(())
         });
+        composed.into_iter().collect::<Result<(), Limit>>()?;
         Ok((tiles, self.passes))
     }
 }

@@ -123,7 +123,8 @@ impl<'v, 'a> Facets<'v, 'a> {
         if sink.takes_passes() {
             let batches = self.layered.iter().chain(marks);
             let (level, pattern) = (self.execution.level, &self.view.pattern);
-            let mut pass = |peel: &mut Peel| peel.pass(level, batches.clone(), index, tile, pattern);
+            let go_on = || self.execution.budget.check("passes over layers").is_ok();
+            let mut pass = |peel: &mut Peel| go_on() && peel.pass(level, batches.clone(), index, tile, pattern);
             return sink.tile_in_passes(index, tile, &mut pass);
         }
         let mut layers = self.view.layer_list();
@@ -209,6 +210,10 @@ pub(super) fn fill_with(
             Err(_) => {}
         }
     });
+    if sink.takes_passes() {
+        // Passes end early at a limit.
+        facets.execution.budget.check("passes over layers")?;
+    }
     outcome.into_inner().expect("no thread panics while it counts")
 }
 

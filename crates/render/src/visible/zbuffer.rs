@@ -107,8 +107,10 @@ impl VisibleSurface for ZBuffer {
                     if passes {
                         let here = batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
                         let layered = kept.batches.iter().chain(here).chain(marks);
-                        let mut pass =
-                            |peel: &mut Peel| peel.pass(execution.level, layered.clone(), index, tile, &view.pattern);
+                        let go_on = || execution.budget.check("passes over layers").is_ok();
+                        let mut pass = |peel: &mut Peel| {
+                            go_on() && peel.pass(execution.level, layered.clone(), index, tile, &view.pattern)
+                        };
                         sink.tile_in_passes(index, tile, &mut pass);
                         return;
                     }
@@ -116,7 +118,12 @@ impl VisibleSurface for ZBuffer {
                     sink.tile(index, tile, &mut layers);
                 }
             });
-            let batches = if sink.takes_passes() { kept.keep(batches)? } else { batches };
+            let mut batches = batches;
+            if sink.takes_passes() {
+                // Passes end early at a limit.
+                execution.budget.check("passes over layers")?;
+                batches = kept.keep(batches)?;
+            }
             let mut spare = view.session.spare_batches.lock().expect("spare batches");
             spare.extend(batches.into_iter().map(|(_, batch)| batch));
             execution.budget.advance();

@@ -11,7 +11,7 @@ use vitral::render::transparency::registry::ORDERS;
 use vitral::render::{Global, Transparency, TransparencyOrder};
 use vitral::scene::Part;
 use vitral::scene::builtin::solids;
-use vitral::{Camera, Execution, Material, Mesh, Projection, Renderer, Scene};
+use vitral::{Camera, Execution, Material, Mesh, Projection, Renderer, Scene, SystemClock};
 
 /// A colour that no light changes.
 fn plain(color: [f32; 3]) -> Material {
@@ -270,4 +270,24 @@ fn parallel_views_blur_too() {
     };
     let (clear, blurred) = (of(Transmission::Transparent), of(Transmission::Translucent));
     assert!(blurred < 0.15 * clear, "{blurred} of {clear}");
+}
+
+#[test]
+fn blur_and_passes_stop_at_a_time_limit() {
+    let with_limit = |scene: Scene, order| {
+        let mut r = seen(scene, 4);
+        r.settings.transparency_order = order;
+        let budget = Budget::new(std::sync::Arc::new(SystemClock::default())).with_time_limit(Some(1e-9));
+        r.execution_mut().budget = budget;
+        r.render().unwrap_err().exit_code()
+    };
+    let clear = glass(0.7, Transmission::Transparent, 30.0);
+    assert_eq!(with_limit(slab(clear, 1.0), TransparencyOrder::MultiPass), 7);
+    let translucent = glass(0.7, Transmission::Translucent, 30.0);
+    assert_eq!(with_limit(slab(translucent, 1.0), TransparencyOrder::ABuffer), 7);
+    // And at one of memory.
+    let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 16);
+    (r.settings.width, r.settings.height) = (800, 600);
+    r.execution_mut().budget = Budget::default().with_memory_limit(Some(80 << 20));
+    assert!(r.render().unwrap_err().to_string().contains("behind translucent"));
 }

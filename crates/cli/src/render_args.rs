@@ -123,9 +123,12 @@ pub(crate) struct AlgorithmArgs {
     /// How transparent surfaces are combined [default: linear]
     #[arg(long, value_name = "MODEL", value_parser = choices::transparency_model())]
     pub(crate) transparency: Option<Transparency>,
-    /// In which order they are combined [default: sorted]
+    /// In which order they are combined [default: a-buffer]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
+    /// Rays a pixel, about, that a translucent surface scatters, 1 to 4096 [default: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) scatter_samples: Option<u32>,
     /// How shadows are found [default: none; with --global: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
     pub(crate) shadows: Option<String>,

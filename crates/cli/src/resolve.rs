@@ -159,6 +159,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
     settings.transparency = args.transparency.unwrap_or(settings.transparency);
     settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
+    settings.scatter_samples = args.scatter_samples.unwrap_or(settings.scatter_samples);
     if let Some(name) = &args.shadows {
         settings.shadows.clone_from(name);
     }

@@ -41,10 +41,15 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .collect();
         let orders: Vec<_> = transparency::ORDERS
             .iter()
-            .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact}))
+            .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact, "needs-list": o.needs_list, "translucent": o.blurs}))
+            .collect();
+        let translucency: Vec<_> = transparency::TRANSLUCENCY
+            .iter()
+            .map(|b| json!({"global": b.global, "description": b.description, "source": b.source}))
             .collect();
         let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows, "global": global, "illumination": illumination,
-            "shading": shading, "transparency": models, "transparency-order": orders});
+            "shading": shading, "transparency": models, "transparency-order": orders,
+            "translucency": translucency});
         return report::print_json(&all).map(|()| 0);
     }
     let mut text = String::from("Visible surfaces (--visibility)\n");
@@ -84,6 +89,12 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nOrders of transparency (--transparency-order)\n");
     for o in transparency::ORDERS {
         let _ = writeln!(text, "  {:<14} {} ({})", o.name, o.description, o.source);
+    }
+    let blurring: Vec<_> = transparency::ORDERS.iter().filter(|o| o.blurs).map(|o| o.name).collect();
+    let _ = writeln!(text, "  Translucent surfaces are shown by {}; the others refuse them.", blurring.join(", "));
+    text.push_str("\nTranslucent surfaces (--material NAME.transmission=translucent), by --global\n");
+    for b in transparency::TRANSLUCENCY {
+        let _ = writeln!(text, "  {:<14} {} ({})", b.global, b.description, b.source);
     }
     report::print(text.as_bytes()).map(|()| 0)
 }

@@ -351,6 +351,42 @@ fn the_stages_can_be_dumped() {
 }
 
 #[test]
+fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
+    let folder = Folder::new("transparency");
+    for (arguments, what, hint) in [
+        (&["--transparency-order", "back-to-front"][..], "`z-buffer` makes none", "--visibility bsp or painter"),
+        (&["--transparency-order", "sorted", "--global", "ray-trace"], "`sorted`", "leave out --transparency-order"),
+        (
+            &["--material", "glass.transmission=translucent", "--transparency-order", "two-buffer"],
+            "`glass` is translucent",
+            "glass.transmission=transparent",
+        ),
+        (&["--material", "glass.kt=1.5"], "a number from 0 to 1 is required", "kt: 1 - opacity"),
+        (&["--material", "glass.opacity=-1"], "a number from 0 to 1 is required", "opacity: 1 opaque"),
+        (&["--material", "glass.ior=0"], "a number from 1 up is required", "ior: index of refraction"),
+        (&["--scatter-samples", "0"], "0 is not in 1..=4096", ""),
+    ] {
+        let all = [&["render", "builtin:lens", "-o", "a.png"], &SMALL[..], arguments].concat();
+        let output = folder.run(&all);
+        let told = errors(&output);
+        assert_eq!(code(&output), 2, "{arguments:?}: {told}");
+        assert!(told.contains(what) && told.contains(hint), "{arguments:?}: {told}");
+        assert!(!folder.has("a.png"));
+    }
+    let translucent = ["render", "builtin:lens", "--material", "glass.transmission=translucent"];
+    let lists =
+        ["--visibility", "bsp", "--transparency-order", "back-to-front", "--scatter-samples", "8", "-o", "b.png"];
+    let output = folder.run(&[&translucent[..], &SMALL, &lists].concat());
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    let output = folder
+        .run(&[&["render", "builtin:lens", "--dump", "d", "--transparency-order", "multi-pass"], &SMALL[..]].concat());
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    // A ball has two layers.
+    assert!(folder.has("d/8-pass-00.png") && folder.has("d/8-pass-02.png"));
+    assert_eq!(folder.read("d/8-pass-02.png"), folder.read("d/8-framebuffer.png"));
+}
+
+#[test]
 fn stats_are_json() {
     let folder = Folder::new("stats");
     let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--stats-file", "s.json", "--threads", "1"]);

@@ -11,6 +11,9 @@ pub struct Frame {
     pub height: u32,
     /// Display colour, straight (not premultiplied) alpha. sRGB-encoded, or raw where the raw colour space was chosen.
     pub color: Option<Plane<[u8; 4]>>,
+    /// The colour picture after each pass of an algorithm that draws transparent surfaces in passes: what is opaque first,
+    /// the finished picture last. Empty if they were not asked for.
+    pub passes: Vec<Plane<[u8; 4]>>,
     /// Depth at the pixel centre, `1` on the near plane, `0` on the far plane and on the background.
     pub depth: Option<Plane<f32>>,
     /// Surface id: faces counted instance by instance in scene order; [`Frame::BACKGROUND`] where there is none.

@@ -57,6 +57,9 @@ struct Map {
     channel: Option<Channel>,
 }
 
+/// The least index of refraction that the format knows.
+const LEAST_INDEX: f32 = 0.001;
+
 /// Reads a library. Nothing in it is an error: what cannot be used is noted in `warnings`.
 pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
     let text = to_utf8(bytes);
@@ -95,9 +98,9 @@ impl MtlMaterial {
             b"ke" => self.ke = color(cursor, warnings).or(self.ke),
             b"tf" => self.tf = color(cursor, warnings).or(self.tf),
             b"ns" => self.ns = number(cursor, warnings).or(self.ns),
-            b"d" => self.d = dissolve(cursor, warnings).or(self.d),
-            b"tr" => self.tr = number(cursor, warnings).or(self.tr),
-            b"ni" => self.ni = number(cursor, warnings).or(self.ni),
+            b"d" => self.d = dissolve(cursor, warnings).map(|d| share(d, "d", line, warnings)).or(self.d),
+            b"tr" => self.tr = number(cursor, warnings).map(|t| share(t, "Tr", line, warnings)).or(self.tr),
+            b"ni" => self.ni = number(cursor, warnings).and_then(|n| index(n, line, warnings)).or(self.ni),
             b"illum" => {
                 self.illum = cursor.integer().filter(|i| (0..=10).contains(i)).or_else(|| {
                     warnings.note("illum", Place::Line(line), || "illum must be 0 to 10; ignored".into());
@@ -157,7 +160,7 @@ impl MtlMaterial {
             opacity,
             filter,
             alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
-            ior: self.ni.filter(|&n| n >= 0.001).unwrap_or(1.0),
+            ior: self.ni.unwrap_or(1.0),
             // The models with ray-traced reflection.
             mirror: matches!(self.illum, Some(3..=7)),
             unlit: !lit,
@@ -219,6 +222,28 @@ fn number(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
             .note("mtl number", Place::Line(line), || format!("`{word}` is not a number; the statement is ignored"));
     }
     value
+}
+
+/// A number from 0 to 1; what is outside is moved to the nearer end.
+fn share(value: f32, keyword: &str, line: u64, warnings: &mut Warnings) -> f32 {
+    let inside = value.clamp(0.0, 1.0);
+    if inside != value {
+        warnings.note("mtl share", Place::Line(line), || {
+            format!("`{keyword} {value}`: 0 to 1 is possible; {inside} is used")
+        });
+    }
+    inside
+}
+
+/// An index of refraction, above 0.
+fn index(value: f32, line: u64, warnings: &mut Warnings) -> Option<f32> {
+    if value < LEAST_INDEX {
+        warnings.note("mtl index", Place::Line(line), || {
+            format!("`Ni {value}`: an index of refraction is {LEAST_INDEX} or more; the statement is ignored")
+        });
+        return None;
+    }
+    Some(value)
 }
 
 fn dissolve(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
@@ -339,6 +364,16 @@ mod tests {
         assert_eq!(one("newmtl a\nTf 1 1 1\nillum 2").0.opacity, 1.0);
         assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 4").0.opacity, 0.5);
         assert_eq!(one("newmtl a\nTr .75").0.opacity, 0.25);
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_told() {
+        let (m, _, warnings) = one("newmtl a\nd 1.5\nNi -2\n");
+        assert_eq!((m.opacity, m.ior), (1.0, 1.0));
+        assert!(warnings[0].contains("`d 1.5`: 0 to 1 is possible; 1 is used"), "{warnings:?}");
+        assert!(warnings[1].contains("`Ni -2`: an index of refraction is 0.001 or more"), "{warnings:?}");
+        let (m, _, warnings) = one("newmtl a\nTr -0.5\nNi 1.2\nNi 0\n");
+        assert_eq!((m.opacity, m.ior, warnings.len()), (1.0, 1.2, 2));
         assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 2").0.filter, [1.0; 3]);
         assert_eq!(one("newmtl a\nTf 0 .375 .375\nillum 4").0.filter, [0.0, 1.5, 1.5], "kt is 0.25");
         assert_eq!(one("newmtl a\nTf 0 .5 .25\nd .4\nillum 4").0.filter, [0.0, 1.0, 0.5]);

@@ -293,6 +293,22 @@ fn circles_depth_and_floods_are_refused() {
 }
 
 #[test]
+fn materials_out_of_range_are_refused() {
+    for (property, part) in [
+        (r#""opacity":-0.5"#, "materials[1]: `glass`: opacity -0.5: 0 to 1 is required"),
+        (r#""opacity":1.001"#, "opacity 1.001: 0 to 1 is required"),
+        (r#""ior":0"#, "index of refraction 0: a number above 0 is required"),
+        (r#""ior":-1.5"#, "index of refraction -1.5"),
+        (r#""filter":[1,2,0]"#, "filter 2: 0 to 1 in each channel is required"),
+    ] {
+        let text = format!(r#"{{"vitral-scene":1,"materials":[{{}},{{"name":"glass",{property}}}]}}"#);
+        let error = load(&text).unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(load(r#"{"vitral-scene":1,"materials":[{"opacity":0,"ior":0.7,"filter":[0,1,0.5]}]}"#).is_ok());
+}
+
+#[test]
 fn what_is_wrong_is_told_with_its_place() {
     for (text, part) in [
         ("{\n\"vitral-scene\": 1,\n\"mesh\": []}", "a.json: line 3: column 6: "),

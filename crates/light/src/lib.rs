@@ -17,6 +17,7 @@ mod phong;
 mod prepared;
 mod refraction;
 mod surface;
+mod translucency;
 
 pub use cook_torrance::{DIELECTRIC_F0, LEAST_SLOPE, Microfacet, cook_torrance};
 pub use illumination::{Illumination, UnknownIllumination};
@@ -27,6 +28,7 @@ pub use phong::{Phong, phong};
 pub use prepared::{Incident, PreparedLight};
 pub use refraction::transmitted;
 pub use surface::{Reflected, Surface, reflect};
+pub use translucency::{scattered, scattering_exponent, transmitted_light};
 
 /// Linear RGB, each component usually in `0..=1`.
 pub type Rgb = [f32; 3];

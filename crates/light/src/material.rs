@@ -132,7 +132,7 @@ pub enum Transmission {
     /// Light passes along a straight or refracted ray: things behind are seen sharply.
     #[default]
     Transparent,
-    /// Light is scattered on its way: things behind are blurred.
+    /// Light is scattered on its way: things behind are blurred, as much as highlights are wide (shininess, roughness).
     Translucent,
 }
 

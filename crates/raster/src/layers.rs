@@ -17,12 +17,14 @@ pub struct LayerList {
     /// LayerList of each sample that stay when the limit is reached.
     kept: usize,
     lost: u64,
+    /// Entries come from back to front, and stay in their order.
+    from_back: bool,
 }
 
 impl Default for LayerList {
     /// Without a limit.
     fn default() -> Self {
-        Self { list: Vec::new(), limit: usize::MAX, kept: usize::MAX, lost: 0 }
+        Self { list: Vec::new(), limit: usize::MAX, kept: usize::MAX, lost: 0, from_back: false }
     }
 }
 
@@ -33,6 +35,12 @@ impl LayerList {
         let limit = limit.max(2 * tile);
         // Half the list at most stays: then a sort pays for at least as many entries as it looked at.
         Self { limit, kept: limit / (2 * tile), ..Self::default() }
+    }
+
+    /// For entries that come from back to front: their order is kept, and the nearest of a sample are its last.
+    #[must_use]
+    pub fn from_back_to_front(self) -> Self {
+        Self { from_back: true, ..self }
     }
 
     /// Adds an entry.
@@ -59,6 +67,9 @@ impl LayerList {
     #[cold]
     #[inline(never)]
     fn keep_nearest(&mut self) {
+        if self.from_back {
+            return self.keep_last();
+        }
         self.list
             .sort_unstable_by(|a, b| (a.at.cmp(&b.at)).then(b.depth.total_cmp(&a.depth)).then(a.facet.cmp(&b.facet)));
         let before = self.list.len();
@@ -68,6 +79,22 @@ impl LayerList {
             rank = if layer.at == at { rank + 1 } else { 0 };
             at = layer.at;
             rank < kept
+        });
+        self.lost += (before - self.list.len()) as u64;
+    }
+
+    /// Of each sample the last few entries stay, in their order.
+    fn keep_last(&mut self) {
+        let samples = self.list.iter().map(|l| l.at as usize + 1).max().unwrap_or(0);
+        let mut surplus = vec![0usize; samples];
+        self.list.iter().for_each(|l| surplus[l.at as usize] += 1);
+        surplus.iter_mut().for_each(|count| *count = count.saturating_sub(self.kept));
+        let before = self.list.len();
+        self.list.retain(|l| {
+            let surplus = &mut surplus[l.at as usize];
+            let stays = *surplus == 0;
+            *surplus -= usize::from(!stays);
+            stays
         });
         self.lost += (before - self.list.len()) as u64;
     }
@@ -110,6 +137,15 @@ mod tests {
         assert_eq!(run(&all), (left.clone(), lost));
         all.rotate_left(12_345);
         assert_eq!(run(&all), (left, lost));
+    }
+
+    #[test]
+    fn from_back_to_front_the_last_layers_stay_in_their_order() {
+        let mut layers = LayerList::new(4 * TILE_PIXELS, 1).from_back_to_front();
+        (0..30_000).for_each(|i| layers.push(Layer { at: i % 3, depth: 0.5, facet: i }));
+        layers.finish();
+        let left: Vec<_> = layers.iter().map(|l| l.facet).collect();
+        assert_eq!((left, layers.lost()), ((29_994..30_000).collect(), 29_994));
     }
 
     #[test]

@@ -3,11 +3,12 @@
 use crate::global::Whitted;
 use crate::marks;
 use crate::radiosity::{enclosure::direct_lights, solution};
-use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, FrameConstants};
+use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants};
 use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
+use crate::transparency::registry::{ORDERS, order};
 use crate::visible::{Nowhere, charged};
-use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry, shadow};
+use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, SettingsError, registry, shadow};
 use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
 use vitral_frame::{Frame, Plane};
@@ -93,6 +94,16 @@ fn check_indices(scene: &Scene) -> Result<(), Error> {
     })
 }
 
+/// Translucent surfaces need an order that can show them.
+fn check_order(material: &str, settings: &Settings) -> Result<(), SettingsError> {
+    let order = order(settings.transparency_order);
+    if order.blurs {
+        return Ok(());
+    }
+    let choices: Vec<_> = ORDERS.iter().filter(|o| o.blurs).map(|o| o.name).collect();
+    Err(SettingsError::Translucent { material: material.to_owned(), order: order.name, choices: choices.join(", ") })
+}
+
 /// What the user has to know about the picture.
 fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -150,13 +161,23 @@ fn render_color(
         Global::RayTrace => Some(Whitted::new(&constants, settings, grid.tiles.len() as u64, execution)?),
         Global::None | Global::Radiosity => None,
     };
-    let sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), execution.level, grid.tiles.len());
+    let deep = match constants.translucent().filter(|_| tracer.is_none()) {
+        Some(material) => {
+            check_order(material, settings)?;
+            Some(DeepImage::new(&constants, &mark_colors, settings.scatter_samples, &execution.budget))
+        }
+        None => None,
+    };
+    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, execution.level, grid.tiles.len());
+    if settings.channels.passes {
+        sink.show_passes();
+    }
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let marks = (!mark_colors.is_empty()).then_some(&mark_batch);
     let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
-    let t3 = clock();
     stats.picture = sink.counters();
-    let pictures = sink.tiles;
+    let pictures = sink.finish(&execution.workers);
+    let t3 = clock();
     let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
     drop(constants);
     drop(shadows);
@@ -167,8 +188,23 @@ fn render_color(
     (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
 
     // Put the tiles together.
+    let (pictures, passes) = pictures?;
     let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
     frame.color = Plane::from_rows(viewport.width, viewport.height, data);
+    let count = passes.iter().map(|p| p.lock().expect("finished tile").len()).max().unwrap_or(0);
+    let bytes = count as u64 * u64::from(viewport.width) * u64::from(viewport.height) * 4;
+    execution.budget.charge(bytes, "pictures after each pass")?;
+    execution.budget.release(bytes);
+    for number in 0..count {
+        // A tile that is done stays as it is.
+        let data = assemble(
+            viewport,
+            &passes,
+            |tile: &Vec<Vec<[u8; 4]>>| tile.get(number).or(tile.last()).expect("at least the opaque tile"),
+            &execution.workers,
+        );
+        frame.passes.extend(Plane::from_rows(viewport.width, viewport.height, data));
+    }
     let t4 = clock();
     stats.seconds.prepare = t1 - t0;
     stats.seconds.marks = t2 - t1;

@@ -6,6 +6,7 @@
 
 use crate::cull::{backface, frustum};
 use crate::stats::CullCounters;
+use crate::transparency::registry::order;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
@@ -44,6 +45,8 @@ pub struct PreparedView<'a> {
     pub acceleration: Acceleration,
     /// The kinds of coherence that are used.
     pub coherence: CoherenceSet,
+    /// Whether layers come in the order of a list of polygons, where the algorithm makes one.
+    pub lists_layers: bool,
     /// Most layers in a tile.
     layer_limit: usize,
     /// What may be visible, in scene order.
@@ -103,6 +106,7 @@ impl<'a> PreparedView<'a> {
             screen,
             acceleration,
             coherence,
+            lists_layers: order(settings.transparency_order).needs_list,
             layer_limit,
             instances,
         }
@@ -110,7 +114,8 @@ impl<'a> PreparedView<'a> {
 
     /// An empty list for the layers of a tile.
     pub(crate) fn layer_list(&self) -> LayerList {
-        LayerList::new(self.layer_limit, self.pattern.len())
+        let list = LayerList::new(self.layer_limit, self.pattern.len());
+        if self.lists_layers { list.from_back_to_front() } else { list }
     }
 
     /// The viewer in world space, and whether projectors meet there.

@@ -28,6 +28,13 @@ pub struct VisibilityAlgorithm {
     pub algorithm: &'static dyn VisibleSurface,
 }
 
+impl VisibilityAlgorithm {
+    /// Whether it makes a list of polygons from back to front, which transparent ones can be drawn by.
+    pub fn makes_list(&self) -> bool {
+        self.precision == "list-priority"
+    }
+}
+
 /// All visible-surface algorithms, the default first.
 pub static VISIBILITY: &[VisibilityAlgorithm] = &[
     VisibilityAlgorithm {

@@ -1,6 +1,6 @@
 //! What the user may choose, in one plain structure that command line, files and other faces share.
 
-use crate::{Coherence, CoherenceSet, registry};
+use crate::{Coherence, CoherenceSet, registry, transparency};
 use serde::{Deserialize, Serialize};
 use vitral_light::Illumination;
 use vitral_raster::{MAX_SIDE, Viewport};
@@ -57,6 +57,8 @@ pub struct Settings {
     pub kay: Kay,
     /// In which order they are.
     pub transparency_order: TransparencyOrder,
+    /// Rays a pixel that each translucent surface scatters, about, `1..=4096`.
+    pub scatter_samples: u32,
     /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind others are dropped,
     /// and the picture comes with a warning. Two for each sample are always allowed.
     pub layer_memory: u64,
@@ -95,6 +97,7 @@ impl Default for Settings {
             transparency: Transparency::default(),
             kay: Kay::default(),
             transparency_order: TransparencyOrder::default(),
+            scatter_samples: 32,
             layer_memory: 1 << 30,
             lines: Lines::default(),
             background: Background::default(),
@@ -244,6 +247,8 @@ pub enum TransparencyOrder {
     Sorted,
     /// The farthest layer that is left, pass after pass.
     MultiPass,
+    /// In the order of the list of a list-priority algorithm.
+    BackToFront,
     /// Opaque and transparent surfaces in a buffer each: exact for one layer.
     TwoBuffer,
     /// As they come: the error of the plain z-buffer.
@@ -309,6 +314,8 @@ pub struct Channels {
     pub normal: bool,
     /// The steps of the visibility algorithm over the picture.
     pub steps: bool,
+    /// The picture after each pass; only where the order of transparency draws in passes.
+    pub passes: bool,
     /// Attached shadows.
     pub attached_shadow: bool,
     /// Cast shadows.
@@ -324,6 +331,7 @@ impl Default for Channels {
             object: false,
             material: false,
             normal: false,
+            passes: false,
             attached_shadow: false,
             cast_shadow: false,
             steps: false,
@@ -430,6 +438,41 @@ pub enum SettingsError {
     /// Cast shadows are wanted, but none are computed.
     #[error("the channel cast-shadow needs a shadow algorithm: choose {0}")]
     CastShadow(String),
+    /// An order that takes a list, but no list.
+    #[error(
+        "the order of transparency `back-to-front` takes the list of a list-priority algorithm, and `{visibility}` makes none: choose {choices}"
+    )]
+    ListOrder {
+        /// The visibility algorithm.
+        visibility: String,
+        /// Those that make a list.
+        choices: String,
+    },
+    /// An order of transparency, but rays find what is behind.
+    #[error(
+        "the order of transparency `{0}` was chosen, but rays find what is behind transparent surfaces, one by one"
+    )]
+    OrderOfRays(&'static str),
+    /// A translucent material, and an order of transparency that has no picture of what is behind.
+    #[error(
+        "material `{material}` is translucent, which the order of transparency `{order}` cannot show: choose {choices}"
+    )]
+    Translucent {
+        /// The material's name.
+        material: String,
+        /// The order.
+        order: &'static str,
+        /// Those that can.
+        choices: String,
+    },
+    /// Pictures of passes are wanted, but there are none.
+    #[error(
+        "there are no passes with the order of transparency `{0}` and these algorithms: choose multi-pass, and neither rays nor brute-force"
+    )]
+    Passes(&'static str),
+    /// Number of scattered rays.
+    #[error("{0} scattered rays: 1 to 4096 are possible")]
+    ScatterSamples(u32),
     /// A structure for rays, but no rays.
     #[error("an acceleration structure was chosen, but `{visibility}` casts no rays: choose {choices}")]
     Acceleration {
@@ -466,6 +509,7 @@ impl Settings {
             return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
         }
         self.check_shadows()?;
+        self.check_order()?;
         if !(1..=64).contains(&self.max_depth) {
             return Err(SettingsError::MaxDepth(self.max_depth));
         }
@@ -480,6 +524,28 @@ impl Settings {
         }
         let (width, height) = (self.width, self.height);
         Viewport::new(width, height).ok_or(SettingsError::Resolution { width, height })
+    }
+
+    fn check_order(&self) -> Result<(), SettingsError> {
+        if !(1..=4096).contains(&self.scatter_samples) {
+            return Err(SettingsError::ScatterSamples(self.scatter_samples));
+        }
+        let order = transparency::registry::order(self.transparency_order);
+        if self.global == Global::RayTrace && self.transparency_order != TransparencyOrder::default() {
+            return Err(SettingsError::OrderOfRays(order.name));
+        }
+        let rays = self.global == Global::RayTrace
+            || registry::visibility(&self.visibility).is_some_and(|a| a.casts_rays || a.name == "brute-force");
+        if self.channels.passes && (self.transparency_order != TransparencyOrder::MultiPass || rays) {
+            return Err(SettingsError::Passes(order.name));
+        }
+        if order.needs_list && registry::visibility(&self.visibility).is_some_and(|a| !a.makes_list()) {
+            let listing = registry::VISIBILITY.iter().filter(|a| a.makes_list());
+            let choices: Vec<_> = listing.map(|a| a.name).collect();
+            let visibility = self.visibility.clone();
+            return Err(SettingsError::ListOrder { visibility, choices: choices.join(", ") });
+        }
+        Ok(())
     }
 
     /// The kinds of coherence that are used.

@@ -219,6 +219,8 @@ pub struct TracingCounters {
     pub refracted: u64,
     /// Rays that passed straight through something transparent.
     pub passed: u64,
+    /// Rays into which translucent surfaces scattered what passed.
+    pub scattered: u64,
     /// Rays that could not leave a denser medium.
     pub total_reflections: u64,
     /// Branches that ended after the most turns.
@@ -241,6 +243,7 @@ impl TracingCounters {
         self.mirrored += o.mirrored;
         self.refracted += o.refracted;
         self.passed += o.passed;
+        self.scattered += o.scattered;
         self.total_reflections += o.total_reflections;
         self.stopped_by_depth += o.stopped_by_depth;
         self.stopped_by_weight += o.stopped_by_weight;

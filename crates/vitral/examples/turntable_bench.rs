@@ -7,8 +7,8 @@
 //! the threads.
 
 use std::time::Instant;
-use vitral::render::Execution;
-use vitral::{Channel, Error, LoadOptions, PictureFormat, Renderer, default_up, encode, execution, load};
+use vitral::picture::encode;
+use vitral::{Channel, Error, Execution, LoadOptions, PictureFormat, Renderer, default_up, execution, load};
 
 /// What is to be measured.
 struct Plan {

@@ -12,7 +12,7 @@ use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{ACCELERATION, VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Acceleration, Error, Execution, PreparedView, Session, Settings};
+use vitral_render::{Acceleration, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
 use vitral_scene::{Camera, Scene};
 
 /// An algorithm of the registry, and for rays the structure.
@@ -111,6 +111,8 @@ impl Seen {
 /// Settings or a scene that cannot be.
 pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Result<Result<Measured, Limit>, Error> {
     let mut settings = task.settings.clone();
+    // What is measured are opaque surfaces, and not every algorithm has the order.
+    settings.transparency_order = TransparencyOrder::default();
     settings.visibility = entrant.algorithm.name.to_owned();
     settings.acceleration = entrant.acceleration.map(|(_, value)| value);
     let viewport = settings.check()?;

@@ -10,10 +10,11 @@
 //! | `6-facets.csv` | clipping and projection: the pieces of facets on the screen |
 //! | `7-surface.npy`, `7-surface.png`, `7-depth.npy` | rasterising: the visible surface of each pixel |
 //! | `8-framebuffer.png` | the picture |
+//! | `8-pass-00.png`, … | with `--transparency-order multi-pass` the picture after each pass, first what is opaque |
 //! | `index.md` | this list |
 
 use crate::picture::{self, EncodeOptions};
-use crate::{Channel, Error, PictureFormat, Renderer, Scene};
+use crate::{Channel, Error, Frame, PictureFormat, Renderer, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -45,9 +46,11 @@ pub fn dump(renderer: &mut Renderer, mut write: impl FnMut(&str, &[u8]) -> Resul
     };
 
     // The same picture again, with the planes of the visible surface.
+    let in_passes = has_passes(&renderer.settings);
     let wanted = renderer.settings.channels;
     let channels = &mut renderer.settings.channels;
     [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
+    channels.passes = in_passes;
     let rendered = renderer.render_from(&camera);
     renderer.settings.channels = wanted;
     let rendered = rendered?;
@@ -61,7 +64,19 @@ pub fn dump(renderer: &mut Renderer, mut write: impl FnMut(&str, &[u8]) -> Resul
     ] {
         write(name, &picture::encode_with(&rendered.frame, channel, PictureFormat::from_path(name)?, &options)?)?;
     }
-    write("index.md", index(&renderer.settings).as_bytes())
+    for (number, pass) in rendered.frame.passes.iter().enumerate() {
+        let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
+        let png = picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &options)?;
+        write(&format!("8-pass-{number:02}.png"), &png)?;
+    }
+    write("index.md", index(&renderer.settings, rendered.frame.passes.len()).as_bytes())
+}
+
+/// Whether the picture is made in passes.
+fn has_passes(settings: &Settings) -> bool {
+    let mut asked = settings.clone();
+    asked.channels.passes = true;
+    asked.check().is_ok()
 }
 
 /// As [`dump`], into a folder, which is made if it is not there.
@@ -210,7 +225,8 @@ fn facets(view: &PreparedView<'_>) -> String {
     text
 }
 
-fn index(settings: &Settings) -> String {
+fn index(settings: &Settings, passes: usize) -> String {
+    let of_passes = (0..passes).map(|n| format!("   - [after pass {n}](8-pass-{n:02}.png)\n")).collect::<String>();
     format!(
         "# The pipeline, stage by stage\n\n\
          1. [Scene graph](1-scene.json)\n\
@@ -222,7 +238,7 @@ fn index(settings: &Settings) -> String {
          0 far\n\
          7. Rasterising ({}): surface ids ([numbers](7-surface.npy), [colours](7-surface.png)) and [depth](7-depth.npy) \
          at pixel centres\n\
-         8. [Frame buffer](8-framebuffer.png): {} x {} pixels, {} samples each\n",
+         8. [Frame buffer](8-framebuffer.png): {} x {} pixels, {} samples each\n{of_passes}",
         settings.visibility, settings.width, settings.height, settings.samples
     )
 }

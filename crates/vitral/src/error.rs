@@ -122,6 +122,15 @@ impl Error {
             Self::Input(vitral_io::Error::Missing { why, .. }) if why.contains("outside") => {
                 "if you trust the model, --allow-external lets it read files outside its folder".to_owned()
             }
+            Self::Render(vitral_render::Error::Settings(SettingsError::ListOrder { .. })) => {
+                "--visibility bsp or painter makes a list".to_owned()
+            }
+            Self::Render(vitral_render::Error::Settings(SettingsError::Translucent { material, .. })) => {
+                format!("or --material {material}.transmission=transparent")
+            }
+            Self::Render(vitral_render::Error::Settings(SettingsError::OrderOfRays(_))) => {
+                "leave out --transparency-order, or --global ray-trace".to_owned()
+            }
             Self::Render(vitral_render::Error::Limit(Limit::Memory { .. })) => {
                 "fewer samples or a smaller resolution need less memory".to_owned()
             }

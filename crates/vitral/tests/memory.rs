@@ -5,10 +5,10 @@
 
 use peak_alloc::PeakAlloc;
 use std::path::Path;
+use vitral::raster::Setup;
 use vitral::scene::builtin::solids;
 use vitral::scene::{Attribute, Faces};
 use vitral::{LoadOptions, Mesh, Renderer, Scene, execution, load};
-use vitral_raster::Setup;
 use vitral_testkit::fixture::shared_model;
 
 #[global_allocator]

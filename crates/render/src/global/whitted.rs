@@ -11,13 +11,17 @@
 //! after `max-depth` turns. Straight ways, through sheets or through glass whose index is that of its surroundings,
 //! are no turns.
 //!
+//! A translucent surface scatters what passes it: the ray goes on as many, in directions round that of clear glass; those
+//! are scattered in one direction each where they meet another such surface.
+//!
 //! The first generation comes from the visibility algorithm: it knows what each sample sees first. Only samples on mirrors
 //! and on transparent surfaces are followed, each with a ray of its own (stratified, as samples are); all others are shaded
 //! as without ray tracing, byte for byte.
 //!
 //! In:   points of a tile, with normals and weights. Out: their colours, premultiplied.
 //! Cost: a search in the tree of boxes for each ray, and one for each light at each hit.
-//! Source: \[Whitted 1980\]; refraction after \[Heckbert 1989\]. Departs from them: opacity says what is transmitted, the
+//! Source: \[Whitted 1980\]; refraction after \[Heckbert 1989\], scattering after
+//! \[Cook, Porter & Carpenter 1984\]. Departs from them: opacity says what is transmitted, the
 //! material's flag `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
 
 use super::media::{Border, Media};
@@ -29,8 +33,9 @@ use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Counters, Structure};
 use crate::shading::hits::Hit;
 use crate::shading::{Bounce, FrameConstants, Lit, Points, shade_hits};
-use crate::shadow::{Place, clearance, facet, weighted, weights};
+use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
 use crate::stats::TracingCounters;
+use crate::transparency::scattering::Strata;
 use crate::visible::nearer;
 use crate::{Execution, Settings};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -53,6 +58,8 @@ pub(crate) struct Whitted<'a> {
     execution: &'a Execution,
     tree: Arc<Bvh>,
     max_depth: u32,
+    /// The directions in which each sample sees through the first translucent surface.
+    strata: Strata,
     sky: Sky,
     /// World to view directions.
     view_from_world: DMat3,
@@ -80,6 +87,10 @@ struct Branch {
     media: Media,
     /// Turns that it took.
     depth: u32,
+    /// It is one of many that a translucent surface scattered.
+    scattered: bool,
+    /// What its light must count at least to be followed.
+    least: f32,
     /// Distance from the eye to its start.
     travelled: f64,
     /// Row of the picture whose background it sees; `None` after a turn.
@@ -127,6 +138,7 @@ impl<'a> Whitted<'a> {
             execution,
             tree,
             max_depth: settings.max_depth,
+            strata: Strata::new(settings.scatter_samples.div_ceil(settings.samples)),
             sky: Sky { stretch, perspective: view.view.perspective },
             view_from_world,
             pixel: 2.0 / (stretch * f64::from(view.viewport.height)),
@@ -178,6 +190,8 @@ impl<'a> Whitted<'a> {
                     own: u32::MAX,
                     media: Media::default(),
                     depth: 0,
+                    scattered: false,
+                    least: LEAST_WEIGHT,
                     travelled,
                     row: Some(points.place[target as usize][1] as u32),
                     seed: bounce.place.seed,
@@ -325,20 +339,30 @@ impl<'a> Whitted<'a> {
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.clearance(place.position);
 
-        if counts(passing) {
-            match self.through(ray, &surface, place.facet, from_behind) {
-                Way::Straight(media) => {
+        if counts(passing, ray.least) {
+            let way = self.through(ray, &surface, place.facet, from_behind);
+            let exponent = self.material(place.facet).and_then(|m| self.constants.material(Some(m)).scatters);
+            match (exponent, way) {
+                (Some(exponent), Way::Straight(media)) => {
+                    let branch = Branch { weight: passing, origin: next(-surface.facet), media, ..go_on };
+                    self.scatter(&branch, ray.direction, &surface, exponent, rays, counters);
+                }
+                (Some(exponent), Way::Bent(direction, media)) => {
+                    let branch = Branch { weight: passing, origin: next(-surface.facet), media, ..go_on };
+                    self.scatter(&branch, direction, &surface, exponent, rays, counters);
+                }
+                (None, Way::Straight(media)) => {
                     counters.passed += 1;
                     rays.push(Branch { weight: passing, origin: next(-surface.facet), media, ..go_on });
                 }
-                Way::Bent(direction, media) if ray.depth < self.max_depth => {
+                (None, Way::Bent(direction, media)) if ray.depth < self.max_depth => {
                     counters.refracted += 1;
                     let origin = next(-surface.facet);
                     let depth = ray.depth + 1;
                     rays.push(Branch { weight: passing, origin, direction, media, depth, row: None, ..go_on });
                 }
-                Way::Bent(..) => counters.stopped_by_depth += 1,
-                Way::None => {
+                (None, Way::Bent(..)) => counters.stopped_by_depth += 1,
+                (_, Way::None) => {
                     counters.total_reflections += 1;
                     mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
                 }
@@ -346,7 +370,7 @@ impl<'a> Whitted<'a> {
         } else if passing != [0.0; 4] {
             counters.stopped_by_weight += 1;
         }
-        if counts(mirrored) {
+        if counts(mirrored, ray.least) {
             if ray.depth < self.max_depth {
                 counters.mirrored += 1;
                 let (origin, depth) = (next(surface.facet), ray.depth + 1);
@@ -358,6 +382,38 @@ impl<'a> Whitted<'a> {
         } else if mirrored != [0.0; 4] {
             counters.stopped_by_weight += 1;
         }
+    }
+
+    /// The rays that go on where a translucent surface scatters `branch`, which clear glass would send to `axis`.
+    fn scatter(
+        &self,
+        branch: &Branch,
+        axis: DVec3,
+        surface: &Surface,
+        exponent: f32,
+        rays: &mut Vec<Branch>,
+        counters: &mut TracingCounters,
+    ) {
+        if branch.depth >= self.max_depth {
+            counters.stopped_by_depth += 1;
+            return;
+        }
+        let strata = if branch.scattered { Strata::new(1) } else { self.strata };
+        let share = 1.0 / strata.count() as f32;
+        let (weight, least) = (branch.weight.map(|w| w * share), branch.least * share);
+        counters.scattered += u64::from(strata.count());
+        for i in 0..strata.count() {
+            let direction = surface.behind(strata.direction(i, branch.seed, exponent, axis));
+            let (depth, seed) = (branch.depth + 1, hash(branch.seed ^ hash(i)));
+            rays.push(Branch { weight, least, direction, depth, seed, scattered: true, row: None, ..*branch });
+        }
+    }
+
+    /// The material of a facet.
+    fn material(&self, number: u32) -> Option<u32> {
+        let world = &self.constants.view.session.world;
+        let instance = &world.instances[world.instance_of_facet(number)];
+        instance.mesh.material_of_triangle((number - instance.first_facet) as usize)
     }
 
     fn clearance(&self, position: DVec3) -> f64 {
@@ -431,6 +487,12 @@ struct Surface {
 }
 
 impl Surface {
+    /// The direction, on the side to which light goes that passes: the other half of the lobe is folded over.
+    fn behind(&self, direction: DVec3) -> DVec3 {
+        let towards = self.facet.dot(direction);
+        if towards < 0.0 { direction } else { direction - self.facet * (2.0 * towards) }
+    }
+
     /// The direction in which a mirror sends a ray: it leaves at the angle at which it came, and not into the facet.
     fn mirrored(&self, direction: DVec3) -> DVec3 {
         let about = |n: DVec3| direction - n * (2.0 * n.dot(direction));
@@ -455,8 +517,8 @@ impl Sky {
     }
 }
 
-fn counts(weight: [f32; 4]) -> bool {
-    weight.iter().any(|&w| w >= LEAST_WEIGHT)
+fn counts(weight: [f32; 4], least: f32) -> bool {
+    weight.iter().any(|&w| w >= least)
 }
 
 fn add(sum: &mut [f32; 4], weight: [f32; 4], color: [f32; 4]) {

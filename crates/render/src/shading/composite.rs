@@ -6,6 +6,7 @@
 //! Source: [Porter & Duff 1984] for the operator.
 
 use super::FrameConstants;
+use super::behind::DeepPicture;
 use super::group::Lit;
 use super::points::{FragmentPoint, NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
@@ -24,6 +25,7 @@ pub(crate) struct Composer {
 }
 
 impl Composer {
+    /// `deep` is the whole picture and the tile's number in it, where there are translucent surfaces.
     #[inline(always)]
     pub(crate) fn compose<S: Simd>(
         &mut self,
@@ -33,26 +35,52 @@ impl Composer {
         lit: &mut Lit,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
+        deep: Option<(&DeepPicture<'_>, usize)>,
         out: &mut [[u8; 4]],
     ) {
-        let (width, height) = visible_part(tile, constants);
-        for y in 0..height {
-            out[y * TILE..y * TILE + width].fill(constants.background_bytes[tile.y as usize + y]);
-        }
-        self.places.clear();
-        self.colors.clear();
+        self.begin(tile, constants, out);
         if points.mixed.is_empty() && points.fragments.is_empty() {
             // One point fills each pixel, in the order of the pixels.
             self.places.extend(points.pixels.iter().map(|p| p.index));
             encode(simd, &self.places, &mut lit.colors, constants.raw, out);
             return;
         }
-        self.mix(tile, points, lit, constants, marks);
+        self.mix(tile, points, lit, constants, marks, deep);
+        encode(simd, &self.places, &mut self.colors, constants.raw, out);
+    }
+
+    /// Begins a picture with the background.
+    pub(super) fn begin(&mut self, tile: &Tile, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
+        let (width, height) = visible_part(tile, constants);
+        for y in 0..height {
+            out[y * TILE..y * TILE + width].fill(constants.background_bytes[tile.y as usize + y]);
+        }
+        self.places.clear();
+        self.colors.clear();
+    }
+
+    /// Adds a pixel that is the mean of samples.
+    pub(super) fn put(&mut self, pixel: u32, samples: &[[f32; 4]]) {
+        self.places.push(pixel);
+        self.colors.push(if let [one] = samples { *one } else { mean(samples) });
+    }
+
+    /// Encodes the pixels that were added.
+    #[inline(always)]
+    pub(super) fn end<S: Simd>(&mut self, simd: S, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
         encode(simd, &self.places, &mut self.colors, constants.raw, out);
     }
 
     /// Mixes the samples of every pixel that shows more than the background.
-    fn mix(&mut self, tile: &Tile, points: &Points, lit: &Lit, constants: &FrameConstants<'_>, marks: &MarkColors) {
+    fn mix(
+        &mut self,
+        tile: &Tile,
+        points: &Points,
+        lit: &Lit,
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+        deep: Option<(&DeepPicture<'_>, usize)>,
+    ) {
         let samples = constants.view.pattern.len();
         let (mut pixels, mut layers) = (points.pixels.as_slice(), points.fragments.as_slice());
         let mut fragments = Vec::new();
@@ -89,6 +117,10 @@ impl Composer {
                     if !mine.is_empty() {
                         fragments.clear();
                         fragments.extend(mine.iter().map(|f| fragment(f, points, lit, marks)));
+                        if let Some((deep, index)) = deep {
+                            let behind = mine.iter().map(|f| deep.behind(index, f, mine));
+                            fragments.iter_mut().zip(behind).for_each(|(f, behind)| f.behind = behind);
+                        }
                         (constants.lay)(&fragments, below);
                     }
                     mean(below)
@@ -111,7 +143,7 @@ fn mean(samples: &[[f32; 4]]) -> [f32; 4] {
 }
 
 /// A fragment with its colour.
-fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, marks: &MarkColors) -> Fragment<'a> {
+pub(super) fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, marks: &MarkColors) -> Fragment<'a> {
     let (start, source) = (f.start as usize, f.source as usize);
     let color = if f.is_mark { marks.color(source) } else { lit.colors[source] };
     let passes = match lit.passes.get(source) {
@@ -119,7 +151,7 @@ fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, marks: &MarkCo
         _ => [1.0 - color[3]; 3],
     };
     let depths = &points.depths[start..start + f.mask.count_ones() as usize];
-    Fragment { facet: f.facet, mask: f.mask, depths, color, passes }
+    Fragment { facet: f.facet, mask: f.mask, depths, color, passes, behind: None }
 }
 
 /// Premultiplied colours to display bytes with straight alpha, put in their places; two pixels a step.

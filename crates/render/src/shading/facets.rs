@@ -46,6 +46,13 @@ pub(crate) struct Subject<'a> {
     pub viewing: Viewing,
 }
 
+impl Subject<'_> {
+    /// Whether both sides are seen, so that normals are turned to the viewer.
+    pub(crate) fn turns(&self) -> bool {
+        self.instance.two_sided || self.viewing.double_sided
+    }
+}
+
 /// The records of a group's facets.
 #[derive(Default)]
 pub(crate) struct FacetTable {
@@ -208,7 +215,7 @@ fn facing<S: Simd>(
     mut normals: [V3<F<S>>; 3],
 ) -> (V3<F<S>>, [V3<F<S>>; 3]) {
     // A ray inside a body sees the back of its surface.
-    if origin.is_none() && !(subject.instance.two_sided || subject.viewing.double_sided) {
+    if origin.is_none() && !subject.turns() {
         return (geometric, normals);
     }
     // Every point of the facet is on the same side of the eye.

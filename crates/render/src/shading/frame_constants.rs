@@ -1,15 +1,19 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
 use super::group::{Model, model};
+use super::points::offset;
 use crate::prepare::{is_solid, mirrors};
 use crate::radiosity::Solution;
 use crate::settings::Kay;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
-use crate::{Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency};
+use crate::{
+    Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency,
+    TransparencyOrder,
+};
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
-use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef};
+use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef, Transmission, scattering_exponent};
 use vitral_math::color::byte_from_unit;
 use vitral_math::lanes::Lanes;
 use vitral_math::{DMat4, DVec4};
@@ -53,6 +57,8 @@ pub(crate) struct MaterialConstants<'a> {
     pub blend: bool,
     /// Rays that meet it are followed on.
     pub follows: bool,
+    /// It is translucent: the exponent with which it scatters what passes.
+    pub scatters: Option<f32>,
 }
 
 /// Decode tables of one frame.
@@ -97,6 +103,10 @@ pub(crate) struct FrameConstants<'a> {
     pub kay: Kay,
     /// How they are laid over each other.
     pub lay: Lay,
+    /// For each set of few samples their middle within the pixel, see `points`.
+    pub middles: Vec<[f32; 2]>,
+    /// Layers are wanted pass by pass.
+    pub in_passes: bool,
     /// Surfaces are drawn in the background's colour.
     pub surfaces_are_background: bool,
     /// Background of each row in the space in which colours are composed, and 0 or 1 for its alpha.
@@ -146,7 +156,9 @@ impl<'a> FrameConstants<'a> {
             raw,
             transparency: settings.transparency,
             kay: settings.kay,
-            lay: registry::lay(settings.transparency_order),
+            lay: registry::order(settings.transparency_order).lay,
+            middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
+            in_passes: settings.transparency_order == TransparencyOrder::MultiPass,
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
             background_bytes: background.iter().map(bytes).collect(),
             background,
@@ -162,6 +174,15 @@ impl<'a> FrameConstants<'a> {
     #[inline(always)]
     pub(crate) fn follows(&self, facet: u32) -> bool {
         self.follows.get(facet as usize).copied().unwrap_or(false)
+    }
+
+    /// The name of a translucent material that the view shows, if there is one.
+    pub(crate) fn translucent(&self) -> Option<&str> {
+        let world = &self.view.session.world;
+        let shown = self.view.instances.iter().filter(|i| !i.layered.is_empty());
+        let mut parts = shown.flat_map(|i| &world.instances[i.instance].mesh.parts);
+        let scatters = |m: &&MaterialConstants<'_>| m.scatters.is_some();
+        parts.find_map(|part| Some(self.material(part.material)).filter(scatters)).map(|m| m.material.name.as_str())
     }
 
     /// The material of a part of a mesh.
@@ -246,6 +267,8 @@ fn material_constants<'a>(
         cutoff,
         blend,
         follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
+        scatters: (blend && material.transmission == Transmission::Translucent)
+            .then(|| scattering_exponent(&material.reflectance)),
         material: material.clone(),
     }
 }

@@ -8,7 +8,7 @@ use super::hits::{Along, Hit};
 use super::looks::Looks;
 use super::points::{Group, Points};
 use super::shadowed::Arriving;
-use super::{flat, gouraud, hits, phong, shadowed};
+use super::{flat, glow, gouraud, hits, phong, shadowed};
 use crate::radiosity::Solution;
 use crate::shadow::Place;
 use crate::transparency::{filtered, linear};
@@ -63,6 +63,21 @@ pub(crate) struct Lighting<'a> {
     first: usize,
 }
 
+/// Unit vector from a position (view space) to the eye, or to where the rays come from.
+#[inline(always)]
+pub(crate) fn towards_viewer<S: Simd>(
+    simd: S,
+    position: &V3<F<S>>,
+    along: Option<&Along>,
+    perspective: bool,
+) -> V3<F<S>> {
+    match along {
+        Some(along) => (along.origin(simd) - *position).normalize(),
+        None if perspective => (-*position).normalize(),
+        None => V3::splat(constant(simd, 1.0), [0.0, 0.0, 1.0]),
+    }
+}
+
 impl Lighting<'_> {
     /// Light reflected towards the viewer; position and unit normal in view space.
     pub(crate) fn reflect<S: Simd>(
@@ -76,11 +91,7 @@ impl Lighting<'_> {
             #[inline(always)]
             || {
                 let one = constant(simd, 1.0);
-                let v = match self.along {
-                    Some(along) => (along.origin(simd) - *position).normalize(),
-                    None if self.perspective => (-*position).normalize(),
-                    None => V3::splat(one, [0.0, 0.0, 1.0]),
-                };
+                let v = towards_viewer(simd, position, self.along, self.perspective);
                 let surface = vitral_light::Surface { position: *position, n: *n, v };
                 let lit = lanes::inlined(
                     #[inline(always)]
@@ -190,6 +201,8 @@ pub(crate) struct Eight<'a> {
     pub along: Option<&'a Along>,
     /// What of each light comes to all points of the group; empty without shadows, or if nobody asks.
     pub arriving: &'a [Arriving],
+    /// The same for the other side of a translucent sheet.
+    pub arriving_behind: &'a [Arriving],
     /// The place of the first point in the group.
     pub first: usize,
 }
@@ -209,16 +222,17 @@ pub(crate) fn each_eight<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        let arriving = if asks(material) {
-            shadowed::arriving(simd, constants, &subject, points, order, facets, rays)
+        let [arriving, behind] = if asks(material) {
+            shadowed::arriving(simd, constants, (&subject, material), points, order, facets, rays)
         } else {
-            Vec::new()
+            [Vec::new(), Vec::new()]
         };
         for (i, (eight, records)) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)).enumerate() {
             let slots = slots(points, eight, records, subject.first_facet);
             let (subject, arriving, first) = (&subject, &arriving, i * LANES);
             let (slots, records, along) = (&slots, &facets.records, None);
-            visit(&Eight { subject, material, points: eight, slots, records, along, arriving, first });
+            let arriving_behind = &behind;
+            visit(&Eight { subject, material, points: eight, slots, records, along, arriving, arriving_behind, first });
         }
     }
 }
@@ -237,11 +251,11 @@ pub(crate) fn shade_hits<S: Simd>(
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
-        let arriving = if asks(material) {
-            let places: Vec<_> = order.iter().map(|&p| hits[p as usize].place).collect();
-            shadowed::arriving_at(constants, &places, &mut lit.shadow_rays)
+        let [arriving, behind] = if asks(material) {
+            let places = order.iter().map(|&p| hits[p as usize].place).collect();
+            shadowed::arriving_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
-            Vec::new()
+            [Vec::new(), Vec::new()]
         };
         for (i, eight) in order.chunks(LANES).enumerate() {
             together.clear();
@@ -249,7 +263,9 @@ pub(crate) fn shade_hits<S: Simd>(
             let (slots, along) = hits::prepare(simd, &subject, &together, &mut records);
             let (subject, along) = (&subject, Some(&along));
             let (slots, records, arriving, first) = (&slots, &records, &arriving, i * LANES);
-            let eight = Eight { subject, material, points: eight, slots, records, along, arriving, first };
+            let arriving_behind = &behind;
+            let eight =
+                Eight { subject, material, points: eight, slots, records, along, arriving, arriving_behind, first };
             shade_eight(simd, &eight, constants, lit);
         }
     }
@@ -304,7 +320,7 @@ fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'
 
 #[inline(always)]
 fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
-    let &Eight { subject, material, points, slots, records, along, arriving, first } = eight;
+    let &Eight { subject, material, points, slots, records, along, arriving, first, .. } = eight;
     let (mesh, instance) = (subject.mesh, subject.instance);
     let surface = surface(simd, records, slots);
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
@@ -377,6 +393,9 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
     } else if constants.transparency == Transparency::Filtered {
         let gap = linear::opacity(looks.alpha).to_array();
         points.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
+    }
+    if let (Some(_), Model::Empirical(_) | Model::Microfacet) = (material.scatters, material.model) {
+        color = color + glow::glow(simd, eight, &looks, &surface, constants);
     }
     if material.follows && !lit.bounces.is_empty() {
         let normal = match constants.shading {

@@ -2,7 +2,8 @@
 
 use super::FrameConstants;
 use crate::marks::MarkColors;
-use vitral_raster::{Layer, NO_FACET, TILE, TILE_PIXELS, Tile};
+use crate::visible::Peel;
+use vitral_raster::{Layer, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile};
 
 /// The points of a tile.
 #[derive(Default)]
@@ -17,7 +18,7 @@ pub(crate) struct Points {
     pub mixed: Vec<u32>,
     /// The points that rays are followed on from, one for each sample.
     pub followed: Vec<u32>,
-    /// Layers, facet by facet in each pixel, in the order of the scene.
+    /// Layers, facet by facet in each pixel, in the order of the scene; by a list, piece by piece in its order.
     pub fragments: Vec<FragmentPoint>,
     /// Their depths, sample by sample.
     pub depths: Vec<f32>,
@@ -54,18 +55,18 @@ pub(crate) enum Source {
     Mixed(u32),
 }
 
-/// A layer at a sample.
+/// A layer at a sample of a pixel.
 #[derive(Clone, Copy, Default)]
 struct LayerPoint {
-    pixel: u32,
     sample: u32,
     depth: f32,
     facet: u32,
 }
 
 impl LayerPoint {
+    #[inline(always)]
     fn key(&self) -> u64 {
-        u64::from(self.pixel) << 36 | u64::from(self.facet) << 4 | u64::from(self.sample)
+        u64::from(self.facet) << 4 | u64::from(self.sample)
     }
 }
 
@@ -217,41 +218,160 @@ impl Points {
 
     fn collect_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>, marks: &MarkColors) {
         self.sort_layers(tile, layers, constants);
-        // A clipped facet's pieces may both touch a sample on their common border: keep the nearer.
-        self.layers.dedup_by(|second, first| {
-            let same = second.key() == first.key();
+        let mut layers = std::mem::take(&mut self.layers);
+        let mut start = 0;
+        for pixel in 0..TILE_PIXELS {
+            // Each pixel's start has moved to its end.
+            let end = self.starts[pixel] as usize;
+            let here = &mut layers[start..end];
+            start = end;
+            if here.is_empty() {
+                continue;
+            }
+            let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
+            if constants.view.lists_layers {
+                self.collect_listed(pixel as u32, here, place, constants, marks);
+                continue;
+            }
+            // Mostly they come in the order of the scene.
+            let count = if here.is_sorted_by(|a, b| a.key() < b.key()) { here.len() } else { settle(here) };
+            let mut i = 0;
+            while i < count {
+                // One point for each facet in a pixel.
+                let facet = here[i].facet;
+                let (start, mut mask) = (self.depths.len() as u32, 0);
+                while i < count && here[i].facet == facet {
+                    mask |= 1 << here[i].sample;
+                    self.depths.push(here[i].depth);
+                    i += 1;
+                }
+                let mark = marks.index(facet);
+                let source = mark.unwrap_or_else(|| self.push(facet, middle(place, mask, constants)));
+                let (pixel, is_mark) = (pixel as u32, mark.is_some());
+                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+            }
+        }
+        self.layers = layers;
+    }
+
+    /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with all layers at once.
+    pub(crate) fn collect_pass(
+        &mut self,
+        tile: &Tile,
+        peel: &Peel,
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
+        self.facet.clear();
+        self.place.clear();
+        self.fragments.clear();
+        self.depths.clear();
+        let (samples, (width, height)) = (constants.view.pattern.len(), visible_part(tile, constants));
+        for pixel in (0..height).flat_map(|y| (0..width).map(move |x| y * TILE + x)) {
+            let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
+            let layer = |sample: usize| peel.layer(sample * TILE_PIXELS + pixel);
+            let mut done = 0u32;
+            for first in 0..samples {
+                let Some(found) = layer(first).filter(|_| done >> first & 1 == 0) else { continue };
+                let (facet, start, mut mask) = (found.facet, self.depths.len() as u32, 0);
+                for sample in first..samples {
+                    if let Some(same) = layer(sample).filter(|l| l.facet == facet) {
+                        mask |= 1 << sample;
+                        self.depths.push(same.depth);
+                    }
+                }
+                done |= mask;
+                let mark = marks.index(facet);
+                let source = mark.unwrap_or_else(|| self.push(facet, middle(place, found.covers, constants)));
+                let (pixel, is_mark) = (pixel as u32, mark.is_some());
+                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+            }
+        }
+        self.group(constants);
+    }
+
+    /// A pixel's layers in the order of a list. What comes one after the other of one facet is a fragment; all fragments of
+    /// a facet share a point, the same as without a list.
+    fn collect_listed(
+        &mut self,
+        pixel: u32,
+        here: &mut [LayerPoint],
+        place: [f32; 2],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
+        // One point for each facet, in the order of the scene.
+        let mut facets: Vec<_> = here.iter().map(|l| (l.facet, 1u32 << l.sample, 0)).collect();
+        facets.sort_unstable();
+        facets.dedup_by(|next, facet| {
+            let same = next.0 == facet.0;
             if same {
-                first.depth = first.depth.max(second.depth);
+                facet.1 |= next.1;
             }
             same
         });
-        let mut i = 0;
-        while i < self.layers.len() {
-            // One point for each facet in a pixel.
-            let LayerPoint { pixel, facet, .. } = self.layers[i];
-            let same = |l: &&LayerPoint| l.pixel == pixel && l.facet == facet;
+        for (facet, mask, source) in &mut facets {
+            *source = match marks.index(*facet) {
+                Some(mark) => mark,
+                None => self.push(*facet, middle(place, *mask, constants)),
+            };
+        }
+
+        // One fragment for each piece; a sample on the common border of clipped pieces belongs to the first.
+        let mut drawn = Vec::new();
+        for piece in here.chunk_by_mut(|a, b| a.facet == b.facet) {
+            let facet = piece[0].facet;
+            piece.sort_by_key(|l| l.sample);
+            let Ok(known) = facets.binary_search_by_key(&facet, |f| f.0) else { continue };
+            let (_, undrawn, source) = &mut facets[known];
             let (start, mut mask) = (self.depths.len() as u32, 0);
-            for layer in self.layers[i..].iter().take_while(same) {
-                mask |= 1 << layer.sample;
-                self.depths.push(layer.depth);
-                i += 1;
+            for layer in piece.iter().filter(|l| *undrawn >> l.sample & 1 == 1) {
+                if mask >> layer.sample & 1 == 0 {
+                    mask |= 1 << layer.sample;
+                    self.depths.push(layer.depth);
+                }
             }
-            let mark = marks.index(facet);
-            let source = mark.unwrap_or_else(|| {
-                let (x, y) = (pixel as usize % TILE, pixel as usize / TILE);
-                let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                self.push(facet, middle(place, mask, constants))
-            });
-            self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark: mark.is_some() });
+            *undrawn &= !mask;
+            let (is_mark, source) = (marks.index(facet).is_some(), *source);
+            if is_mark {
+                // It may have another place at each sample.
+                let samples = (0..32).filter(|s| mask >> s & 1 == 1).map(|s| 1u32 << s);
+                let at_sample = |(mask, start)| FragmentPoint { pixel, facet, mask, start, source, is_mark };
+                drawn.extend(samples.zip(start..).map(at_sample));
+            } else if mask != 0 {
+                drawn.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+            }
+        }
+        self.place_marks(&mut drawn);
+        self.fragments.append(&mut drawn);
+    }
+
+    /// Marks come after the list, sample by sample. Puts each in front of the last fragment that is farther than it.
+    fn place_marks(&self, drawn: &mut [FragmentPoint]) {
+        let depth = |f: &FragmentPoint, sample: u32| {
+            let before = f.mask & ((1u32 << sample) - 1);
+            self.depths[(f.start + before.count_ones()) as usize]
+        };
+        let first = drawn.iter().position(|f| f.is_mark).unwrap_or(drawn.len());
+        for i in first..drawn.len() {
+            let mark = drawn[i];
+            let in_front = |f: &FragmentPoint| {
+                let common = f.mask & mark.mask;
+                common != 0 && depth(f, common.trailing_zeros()) > depth(&mark, common.trailing_zeros())
+            };
+            let behind = drawn[..i].iter().rposition(|f| !in_front(f) && f.mask & mark.mask != 0);
+            let place = behind.map_or(0, |b| b + 1);
+            drawn[place..=i].rotate_right(1);
         }
     }
 
-    /// Layers pixel by pixel, facet by facet, sample by sample. A counting sort by pixel leaves each pixel's in the order
-    /// in which they came, which mostly is that of the scene: little is left to sort.
+    /// Layers pixel by pixel, each pixel's in the order in which they came (a counting sort); leaves each pixel's end in
+    /// `starts`.
     fn sort_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>) {
         let (width, height) = visible_part(tile, constants);
+        let whole = (width, height) == (TILE, TILE);
         let pixel_of = |l: &Layer| l.at as usize % TILE_PIXELS;
-        let inside = |pixel: usize| pixel % TILE < width && pixel / TILE < height;
+        let inside = |pixel: usize| whole || (pixel % TILE < width && pixel / TILE < height);
         let starts = &mut self.starts;
         starts.clear();
         starts.resize(TILE_PIXELS + 1, 0);
@@ -266,20 +386,23 @@ impl Points {
         for layer in layers {
             let (sample, pixel) = (layer.at / TILE_PIXELS as u32, pixel_of(layer));
             if inside(pixel) {
-                self.layers[starts[pixel] as usize] =
-                    LayerPoint { pixel: pixel as u32, sample, depth: layer.depth, facet: layer.facet };
+                self.layers[starts[pixel] as usize] = LayerPoint { sample, depth: layer.depth, facet: layer.facet };
                 starts[pixel] += 1;
             }
         }
-        // Each start has moved to the end of its pixel.
-        let mut start = 0;
-        for &end in &starts[..TILE_PIXELS] {
-            let end = end as usize;
-            if end > start + 1 {
-                self.layers[start..end].sort_unstable_by_key(LayerPoint::key);
-            }
-            start = end;
-        }
+    }
+
+    /// Frees what only finding the points took.
+    pub(crate) fn forget_workspace(&mut self) {
+        (self.layers, self.order, self.keys, self.key_of_point) = Default::default();
+        (self.starts, self.followed, self.groups) = Default::default();
+    }
+
+    /// Bytes of what is left then.
+    pub(crate) fn bytes(&self) -> usize {
+        let fragments = self.fragments.capacity() * size_of::<FragmentPoint>() + self.depths.capacity() * 4;
+        let pixels = self.pixels.capacity() * size_of::<Pixel>() + self.mixed.capacity() * 4;
+        fragments + pixels + self.facet.capacity() * 4 + self.place.capacity() * 8
     }
 
     /// Takes facets as points that are nowhere on the screen, and sorts them into groups.
@@ -352,18 +475,41 @@ pub(crate) fn visible_part(tile: &Tile, constants: &FrameConstants<'_>) -> (usiz
     ((viewport.width - tile.x).min(TILE as u32) as usize, (viewport.height - tile.y).min(TILE as u32) as usize)
 }
 
+/// Sorts a pixel's layers facet by facet, sample by sample; the first so many are left. A clipped facet's pieces may both
+/// touch a sample on their common border: the nearer stays.
+fn settle(layers: &mut [LayerPoint]) -> usize {
+    layers.sort_unstable_by_key(LayerPoint::key);
+    let mut last = 0;
+    for i in 1..layers.len() {
+        let layer = layers[i];
+        if layer.key() == layers[last].key() {
+            layers[last].depth = layers[last].depth.max(layer.depth);
+        } else {
+            last += 1;
+            layers[last] = layer;
+        }
+    }
+    last + 1
+}
+
 /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the pixel's centre if it
 /// covers them all, else in their middle, so that nothing is extrapolated.
+#[inline(always)]
 fn middle(place: [f32; 2], mask: u32, constants: &FrameConstants<'_>) -> [f32; 2] {
-    let pattern = &constants.view.pattern;
+    let [x, y] = constants.middles.get(mask as usize).copied().unwrap_or_else(|| offset(mask, &constants.view.pattern));
+    [place[0] + x, place[1] + y]
+}
+
+/// [`middle`] within the pixel.
+pub(super) fn offset(mask: u32, pattern: &SamplePattern) -> [f32; 2] {
     let count = mask.count_ones();
     if count as usize == pattern.len() {
-        return [place[0] + 0.5, place[1] + 0.5];
+        return [0.5; 2];
     }
     let mut sum = [0.0; 2];
     for s in (0..pattern.len()).filter(|s| mask >> s & 1 == 1) {
         let offset = pattern.offset(s);
         sum = [sum[0] + offset[0], sum[1] + offset[1]];
     }
-    [place[0] + sum[0] / count as f32, place[1] + sum[1] / count as f32]
+    sum.map(|s| s / count as f32)
 }

@@ -5,6 +5,7 @@
 
 use super::FrameConstants;
 use super::facets::{FacetTable, Subject};
+use super::frame_constants::MaterialConstants;
 use super::geometry::{F, Slots, Surface, blend3, surface};
 use super::group::slots;
 use super::phong::interpolated_normal;
@@ -44,19 +45,19 @@ impl Arriving {
     }
 }
 
-/// What of each light arrives at the points of a group that the eye sees; empty without shadows. Adds the rays that it
-/// took.
+/// What of each light arrives at the points of a group that the eye sees, and on the other side of a translucent sheet;
+/// empty without shadows. Adds the rays that it took.
 pub(crate) fn arriving<S: Simd>(
     simd: S,
     constants: &FrameConstants<'_>,
-    subject: &Subject<'_>,
+    (subject, material): (&Subject<'_>, &MaterialConstants<'_>),
     points: &Points,
     order: &[u32],
     facets: &FacetTable,
     rays: &mut u64,
-) -> Vec<Arriving> {
+) -> [Vec<Arriving>; 2] {
     if constants.shadows.is_none() {
-        return Vec::new();
+        return [Vec::new(), Vec::new()];
     }
     let mut all = Vec::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
@@ -67,11 +68,27 @@ pub(crate) fn arriving<S: Simd>(
         );
         all.extend_from_slice(&world_places(constants, subject, &slots, weights)[..eight.len()]);
     }
-    arriving_at(constants, &all, rays)
+    arriving_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
+}
+
+/// What of each light arrives at these places, and if asked, on the other side of their facets; empty without shadows.
+/// Adds the rays that it took.
+pub(crate) fn arriving_on_sides(
+    constants: &FrameConstants<'_>,
+    both: bool,
+    mut places: Vec<Place>,
+    rays: &mut u64,
+) -> [Vec<Arriving>; 2] {
+    let seen = arriving_at(constants, &places, rays);
+    if !both {
+        return [seen, Vec::new()];
+    }
+    places.iter_mut().for_each(|place| place.normal = -place.normal);
+    [seen, arriving_at(constants, &places, rays)]
 }
 
 /// What of each light arrives at these places; empty without shadows. Adds the rays that it took.
-pub(crate) fn arriving_at(constants: &FrameConstants<'_>, places: &[Place], rays: &mut u64) -> Vec<Arriving> {
+fn arriving_at(constants: &FrameConstants<'_>, places: &[Place], rays: &mut u64) -> Vec<Arriving> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let mut parts = vec![[0.0; 3]; places.len()];
     let of_light = |&light: &usize| {
@@ -95,8 +112,7 @@ pub(super) fn world_places(
     weights: [[f32; LANES]; 3],
 ) -> [Place; LANES] {
     let instance = &constants.view.session.world.instances[subject.instance_index as usize];
-    let turns = subject.instance.two_sided || subject.viewing.double_sided;
-    places(constants.view, instance, turns, &slots.triangle, weights, [&slots.x, &slots.y])
+    places(constants.view, instance, subject.turns(), &slots.triangle, weights, [&slots.x, &slots.y])
 }
 
 /// Attached and cast shadow of eight points, the first the `first` of its group: shares of the lights that have a place

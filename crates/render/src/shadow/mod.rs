@@ -24,6 +24,7 @@ pub mod volume;
 pub(crate) use occluders::{texel, weights};
 pub(crate) use place::{facet, places, weighted};
 pub(crate) use ray::clearance;
+pub(crate) use sources::hash;
 
 use crate::{Execution, PreparedView, Session, Settings, Transparency, registry};
 use vitral_exec::Limit;

@@ -243,7 +243,7 @@ fn contains(corners: &[DVec2], p: DVec2) -> bool {
 }
 
 /// Mixes bits.
-pub(super) fn hash(value: u32) -> u32 {
+pub(crate) fn hash(value: u32) -> u32 {
     let mut h = value.wrapping_mul(0x9e37_79b9);
     h = (h ^ h >> 16).wrapping_mul(0x85eb_ca6b);
     h = (h ^ h >> 13).wrapping_mul(0xc2b2_ae35);

@@ -30,16 +30,27 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
     }
     let mut ranges = [Range::default(); FEW];
     let ranges = &mut ranges[..fragments.len()];
-    for (i, (range, fragment)) in ranges.iter_mut().zip(fragments).enumerate() {
-        let (far, near) = fragment.depths.iter().fold((f32::MAX, f32::MIN), |(f, n), &d| (f.min(d), n.max(d)));
-        *range = Range { index: i as u8, far, near };
-    }
     let of = |r: &Range| &fragments[usize::from(r.index)];
-    ranges.sort_unstable_by(|a, b| a.far.total_cmp(&b.far).then(of(b).facet.cmp(&of(a).facet)));
+    for (i, fragment) in fragments.iter().enumerate() {
+        let (mut far, mut near) = (f32::MAX, f32::MIN);
+        for &depth in fragment.depths {
+            far = if depth < far { depth } else { far };
+            near = if depth > near { depth } else { near };
+        }
+        // They are few: each finds its place among those before it.
+        let range = Range { index: i as u8, far, near };
+        let farther = |r: &Range| r.far < far || (r.far == far && of(r).facet > fragment.facet);
+        let mut place = i;
+        while place > 0 && !farther(&ranges[place - 1]) {
+            ranges[place] = ranges[place - 1];
+            place -= 1;
+        }
+        ranges[place] = range;
+    }
     let mixed = ranges
         .iter()
         .enumerate()
-        .any(|(i, b)| ranges[..i].iter().any(|a| of(a).mask & of(b).mask != 0 && a.near >= b.far));
+        .any(|(i, b)| ranges[..i].iter().any(|a| a.near >= b.far && of(a).mask & of(b).mask != 0));
     if mixed {
         return sorted::lay(fragments, samples);
     }
@@ -88,6 +99,7 @@ mod tests {
             depths,
             color: [red * 0.5, 0.0, 0.0, 0.5],
             passes: [0.5; 3],
+            behind: None,
         };
         for order in [[0, 1], [1, 0]] {
             let both = [fragment(0, &rising, 1.0), fragment(1, &falling, 0.0)];
@@ -99,7 +111,8 @@ mod tests {
 
     #[test]
     fn masks_say_which_samples_a_fragment_changes() {
-        let half = Fragment { facet: 0, mask: 0b1001, depths: &[0.5, 0.5], color: [1.0; 4], passes: [0.0; 3] };
+        let half =
+            Fragment { facet: 0, mask: 0b1001, depths: &[0.5, 0.5], color: [1.0; 4], passes: [0.0; 3], behind: None };
         let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
         lay(&[half], &mut samples);
         assert_eq!(samples.map(|s| s[0]), [1.0, 0.0, 0.0, 1.0]);

@@ -2,19 +2,23 @@
 //!
 //! Two choices, independent of each other and of everything else. A *model* says how much light a surface lets through:
 //! [`linear`], [`kay`], [`filtered`]. An *order* says how the surfaces in front of a pixel are laid over each other: by
-//! [`a_buffer`], [`sorted`], [`multi_pass`] exactly, by [`two_buffer`] and [`submission`] with the errors for which
+//! [`a_buffer`], [`sorted`], [`multi_pass`], [`back_to_front`] exactly, by [`two_buffer`] and [`submission`] with the errors for which
 //! they are known. [`registry`] lists both.
 //!
 //! A visibility algorithm resolves the opaque surfaces and hands on every transparent facet that lies in front of them;
 //! all algorithms hand on the same ones, so each model and each order works with each of them. The facets of a pixel
-//! become [`Fragment`]s; the orders take these in the order of the scene (that in which triangles were submitted).
+//! become [`Fragment`]s; the orders take these in the order of the scene (that in which triangles were submitted), only
+//! [`back_to_front`] in that of a list. A translucent surface shows a blurred picture of what is behind it instead
+//! ([`registry::TRANSLUCENCY`]).
 
 pub mod a_buffer;
+pub mod back_to_front;
 pub mod filtered;
 pub mod kay;
 pub mod linear;
 pub mod multi_pass;
 pub mod registry;
+pub(crate) mod scattering;
 pub mod sorted;
 pub mod submission;
 pub mod two_buffer;
@@ -40,6 +44,8 @@ pub struct Fragment<'a> {
     pub color: [f32; 4],
     /// The part of the light from behind that passes.
     pub passes: [f32; 3],
+    /// What is behind it in place of what the pixel holds, premultiplied: blurred, for a translucent surface.
+    pub behind: Option<[f32; 4]>,
 }
 
 impl Fragment<'_> {
@@ -64,10 +70,10 @@ impl Fragment<'_> {
     /// Lays it over a colour: `I = I1 + t I2`, both premultiplied.
     #[inline]
     pub fn over(&self, below: &mut [f32; 4]) {
-        for k in 0..3 {
-            below[k] = self.color[k] + self.passes[k] * below[k];
-        }
-        below[3] = self.color[3] + (1.0 - self.color[3]) * below[3];
+        let behind = self.behind.unwrap_or(*below);
+        let [r, g, b] = self.passes;
+        let passes = [r, g, b, 1.0 - self.color[3]];
+        *below = std::array::from_fn(|k| self.color[k] + passes[k] * behind[k]);
     }
 
     /// From far to near at a sample that both cover.
@@ -101,7 +107,7 @@ pub(crate) mod tests {
     /// A grey pane with transmission `kt` that covers one sample.
     pub(crate) fn pane(facet: u32, depth: &[f32], grey: f32, kt: f32) -> Fragment<'_> {
         let own = grey * (1.0 - kt);
-        Fragment { facet, mask: 1, depths: depth, color: [own, own, own, 1.0 - kt], passes: [kt; 3] }
+        Fragment { facet, mask: 1, depths: depth, color: [own, own, own, 1.0 - kt], passes: [kt; 3], behind: None }
     }
 
     /// What an order makes of fragments over grey in one sample.

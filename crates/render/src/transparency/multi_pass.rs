@@ -3,10 +3,13 @@
 //! Besides the opaque z-buffer there is one more buffer of depths. A pass goes through all transparent facets in any
 //! order and keeps, at each sample, the farthest one that is nearer than what has been laid so far; then it is laid over
 //! the picture, and its depth becomes the new limit. There are as many passes as layers, and no list is ever sorted.
-//! Depth peeling is the same from the other end, from near to far. Here a pass goes through the pixel's fragments.
+//! Depth peeling is the same from the other end, from near to far. `visible/peel.rs` goes through the triangles of a tile,
+//! `shading/passes.rs` lays what it finds; nothing is kept of earlier passes but their picture, so thousands of layers
+//! are only a matter of time. Rays, and the comparison of every facet with every sample, find all layers of a sample
+//! at once; for them a pass goes through the pixel's fragments, here.
 //!
 //! In:   fragments of a pixel. Out: its samples.
-//! Cost: n² for n layers; memory: one layer a sample, whatever n is.
+//! Cost: n² for n layers; memory: one layer a sample, whatever n is, where passes go through triangles.
 //! Source: \[Mammen 1989\]; from near to far \[Everitt 2001\]. Departs from both: of coincident facets each gets a pass of
 //! its own, the lower facet last.
 

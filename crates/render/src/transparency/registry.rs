@@ -1,6 +1,6 @@
 //! The tables of transparency models and orders, the defaults first.
 
-use super::{Lay, a_buffer, multi_pass, sorted, submission, two_buffer};
+use super::{Lay, a_buffer, back_to_front, multi_pass, sorted, submission, two_buffer};
 use crate::{Transparency, TransparencyOrder};
 
 /// How much light a surface lets through.
@@ -55,6 +55,10 @@ pub struct Order {
     pub source: &'static str,
     /// Whether the result is that of sorting, whatever the order of the scene.
     pub exact: bool,
+    /// Whether it takes the list of a list-priority algorithm.
+    pub needs_list: bool,
+    /// Whether it can show translucent surfaces.
+    pub blurs: bool,
     /// As a setting.
     pub value: TransparencyOrder,
     /// The code.
@@ -68,6 +72,8 @@ pub static ORDERS: &[Order] = &[
         description: "lists of fragments with coverage masks in each pixel; exact",
         source: "Carpenter 1984",
         exact: true,
+        needs_list: false,
+        blurs: true,
         value: TransparencyOrder::ABuffer,
         lay: a_buffer::lay,
     },
@@ -76,6 +82,8 @@ pub static ORDERS: &[Order] = &[
         description: "from back to front by depth at each sample; exact",
         source: "Newell, Newell & Sancha 1972",
         exact: true,
+        needs_list: false,
+        blurs: true,
         value: TransparencyOrder::Sorted,
         lay: sorted::lay,
     },
@@ -84,14 +92,28 @@ pub static ORDERS: &[Order] = &[
         description: "one pass for each layer, the farthest first; exact",
         source: "Mammen 1989",
         exact: true,
+        needs_list: false,
+        blurs: false,
         value: TransparencyOrder::MultiPass,
         lay: multi_pass::lay,
+    },
+    Order {
+        name: "back-to-front",
+        description: "fragment over pixel in the order of a list, without looking at depths; exact; with --visibility painter or bsp",
+        source: "Newell, Newell & Sancha 1972",
+        exact: true,
+        needs_list: true,
+        blurs: true,
+        value: TransparencyOrder::BackToFront,
+        lay: back_to_front::lay,
     },
     Order {
         name: "two-buffer",
         description: "opaque and transparent surfaces in a buffer each; exact for one layer",
         source: "Foley et al. 1990",
         exact: false,
+        needs_list: false,
+        blurs: false,
         value: TransparencyOrder::TwoBuffer,
         lay: two_buffer::lay,
     },
@@ -100,14 +122,44 @@ pub static ORDERS: &[Order] = &[
         description: "a plain z-buffer in the order of the scene: shows the classical error",
         source: "Catmull 1974",
         exact: false,
+        needs_list: false,
+        blurs: false,
         value: TransparencyOrder::Submission,
         lay: submission::lay,
     },
 ];
 
-/// The code of an order.
-pub fn lay(order: TransparencyOrder) -> Lay {
-    ORDERS.iter().find(|o| o.value == order).map_or(sorted::lay, |o| o.lay)
+/// How translucent surfaces blur what is behind them.
+#[derive(Clone, Copy, Debug)]
+pub struct Blur {
+    /// Where light from other surfaces is found so, as on the command line.
+    pub global: &'static str,
+    /// What is done, in a line.
+    pub description: &'static str,
+    /// Key into the bibliography.
+    pub source: &'static str,
+}
+
+/// How translucent materials are shown.
+pub static TRANSLUCENCY: &[Blur] = &[
+    Blur {
+        global: "none, radiosity",
+        description: "scattered rays through the layers that the picture has; with the orders that say so",
+        source: "Cook, Porter & Carpenter 1984",
+    },
+    Blur {
+        global: "ray-trace",
+        description: "scattered rays through the scene",
+        source: "Cook, Porter & Carpenter 1984",
+    },
+];
+
+/// The row of an order.
+///
+/// # Panics
+/// Not at all: every order has a row, as a test says.
+pub fn order(order: TransparencyOrder) -> &'static Order {
+    ORDERS.iter().find(|o| o.value == order).expect("every order has a row")
 }
 
 #[cfg(test)]
@@ -123,6 +175,16 @@ mod tests {
         for row in ORDERS {
             let name: TransparencyOrder = by_name(row.name);
             assert_eq!(name, row.value);
+        }
+        for value in [
+            TransparencyOrder::ABuffer,
+            TransparencyOrder::Sorted,
+            TransparencyOrder::MultiPass,
+            TransparencyOrder::BackToFront,
+            TransparencyOrder::TwoBuffer,
+            TransparencyOrder::Submission,
+        ] {
+            assert_eq!(order(value).value, value);
         }
         assert_eq!(MODELS[0].value, Transparency::default());
         assert_eq!(ORDERS[0].value, TransparencyOrder::default());

@@ -17,13 +17,14 @@
 mod tree;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Pieces, Raster, draw, piece_step};
+use super::pieces::{Cut, List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_math::DVec4;
-use vitral_raster::{Batch, SUBPIXEL, Setup, TileGrid};
+use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, Tile, TileGrid};
 
 pub(crate) use tree::Tree;
 
@@ -81,9 +82,11 @@ fn picture(
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,
-) -> Result<crate::stats::VisibilityCounters, Limit> {
+) -> Result<VisibilityCounters, Limit> {
     let view = facets.view();
-    let setups = facets.opaque();
+    let mut setups = facets.opaque();
+    let opaque = setups.len();
+    setups.extend(facets.listed_layers());
     let facet_count = view.session.world.facet_count;
     let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + tree.node_count() * size_of::<DVec4>() as u64;
     execution.budget.charge(bytes, "BSP fragments on the screen")?;
@@ -119,11 +122,16 @@ fn picture(
     });
 
     // Draw them, tile by tile.
-    let filled = fill_with(facets, marks, grid, sink, 1, &|facets, index, tiles, counters| {
+    let list = List { setups: &setups, opaque, runs: &runs };
+    let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
         execution.budget.check("drawing BSP fragments")?;
-        draw::<true>(facets, &setups, &runs, index, &mut tiles[0], counters);
+        draw::<true>(facets, &list, index, &mut tiles[0], counters);
         Ok(())
-    });
+    };
+    let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
+        draw_layers::<true>(facets, &list, index, tile, layers);
+    };
+    let filled = fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect));
     execution.budget.release(bytes);
     let mut counters = filled?;
     counters.pieces = runs.iter().map(|r| r.len() as u64).sum();

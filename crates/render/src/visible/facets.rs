@@ -9,15 +9,15 @@
 //! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they are set up.
 
 use super::zbuffer::{jobs, retire_vertices, rounds, set_up, transform_vertices, walk};
-use super::{Resolved, TileSink};
+use super::{Peel, Resolved, TileSink};
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid};
+use vitral_raster::{Batch, LayerList, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid};
 
 /// Bytes of a triangle: its setup, its entry in a tile's list, and what becomes of that when the lists are sorted.
-const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
+pub(super) const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
 
 /// The set-up triangles of a view. A facet that was clipped has several, with one depth plane.
 pub(super) struct Facets<'v, 'a> {
@@ -96,6 +96,11 @@ impl<'v, 'a> Facets<'v, 'a> {
         self.opaque.iter().flat_map(Batch::setups).collect()
     }
 
+    /// All layers, where they are to be drawn by a list; none elsewhere.
+    pub(super) fn listed_layers(&self) -> impl Iterator<Item = &Setup> {
+        self.layered.iter().filter(|_| self.view.lists_layers).flat_map(Batch::setups)
+    }
+
     /// The view.
     pub(super) fn view(&self) -> &'v PreparedView<'a> {
         self.view
@@ -107,9 +112,28 @@ impl<'v, 'a> Facets<'v, 'a> {
     }
 
     /// Collects what lies in front of a tile's finished opaque samples, and hands the tile on.
-    fn finish(&self, index: usize, tile: &mut Tile, marks: Option<&Batch>, sink: &dyn TileSink) {
+    fn finish(
+        &self,
+        index: usize,
+        tile: &mut Tile,
+        marks: Option<&Batch>,
+        sink: &dyn TileSink,
+        collect: Option<&Collect<'_>>,
+    ) {
+        if sink.takes_passes() {
+            let batches = self.layered.iter().chain(marks);
+            let (level, pattern) = (self.execution.level, &self.view.pattern);
+            let go_on = || self.execution.budget.check("passes over layers").is_ok();
+            let mut pass = |peel: &mut Peel| go_on() && peel.pass(level, batches.clone(), index, tile, pattern);
+            return sink.tile_in_passes(index, tile, &mut pass);
+        }
         let mut layers = self.view.layer_list();
-        let in_front = self.layered.iter().chain(marks).map(|batch| (true, batch));
+        let mut layered = self.layered.as_slice();
+        if let Some(collect) = collect.filter(|_| self.view.lists_layers) {
+            collect(self, index, tile, &mut layers);
+            layered = &[];
+        }
+        let in_front = layered.iter().chain(marks).map(|batch| (true, batch));
         walk(self.execution.level, in_front, index, tile, &self.view.pattern, &mut layers);
         layers.finish();
         sink.tile(index, tile, &mut layers);
@@ -125,6 +149,9 @@ impl Drop for Facets<'_, '_> {
         self.execution.budget.release(self.charged);
     }
 }
+
+/// Collects the layers in front of a tile's finished opaque samples, from back to front.
+pub(super) type Collect<'f> = dyn Fn(&Facets<'_, '_>, usize, &Tile, &mut LayerList) + Sync + Send + 'f;
 
 /// Fills tiles with opaque facets: all facets, index of the first tile, the tiles (empty), counters.
 pub(super) type Fill<'f> =
@@ -142,11 +169,11 @@ pub(super) fn fill_tiles(
 ) -> Result<Resolved, Limit> {
     let mut resolved = Resolved::default();
     let facets = Facets::new(view, execution, &mut resolved)?;
-    resolved.counters = fill_with(&facets, marks, grid, sink, chunk, fill)?;
+    resolved.counters = fill_with(&facets, marks, grid, sink, chunk, fill, None)?;
     Ok(resolved)
 }
 
-/// [`fill_tiles`], of facets that are on the screen already.
+/// [`fill_tiles`], of facets that are on the screen already; `collect` takes the layers by a list, if there is one.
 pub(super) fn fill_with(
     facets: &Facets<'_, '_>,
     marks: Option<&Batch>,
@@ -154,6 +181,7 @@ pub(super) fn fill_with(
     sink: &dyn TileSink,
     chunk: usize,
     fill: &Fill<'_>,
+    collect: Option<&Collect<'_>>,
 ) -> Result<VisibilityCounters, Limit> {
     let outcome = Mutex::new(Ok(VisibilityCounters::default()));
     facets.execution.budget.begin("tiles", grid.tiles.len() as u64);
@@ -167,7 +195,7 @@ pub(super) fn fill_with(
         let filled = fill(facets, first, tiles, &mut counters);
         if filled.is_ok() {
             for (i, tile) in tiles.iter_mut().enumerate() {
-                facets.finish(first + i, tile, marks, sink);
+                facets.finish(first + i, tile, marks, sink, collect);
                 facets.execution.budget.advance();
             }
         }
@@ -182,6 +210,10 @@ pub(super) fn fill_with(
             Err(_) => {}
         }
     });
+    if sink.takes_passes() {
+        // Passes end early at a limit.
+        facets.execution.budget.check("passes over layers")?;
+    }
     outcome.into_inner().expect("no thread panics while it counts")
 }
 

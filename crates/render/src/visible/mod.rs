@@ -4,6 +4,7 @@ pub mod brute_force;
 pub mod bsp;
 mod facets;
 pub mod painter;
+mod peel;
 mod pieces;
 pub mod ray_cast;
 pub mod scanline;
@@ -14,6 +15,7 @@ pub mod zbuffer;
 
 pub(crate) use bsp::Tree as BspTree;
 pub(crate) use facets::nearer;
+pub use peel::{PassLayer, Peel};
 pub(crate) use screen_setups::charged;
 
 use crate::stats::{GeometryStats, VisibilityCounters};
@@ -25,6 +27,14 @@ use vitral_raster::{Batch, LayerList, Tile, TileGrid};
 pub trait TileSink: Sync {
     /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
+
+    /// Whether it asks for layers pass by pass. Algorithms that find all layers of a sample at once (rays) hand on all.
+    fn takes_passes(&self) -> bool {
+        false
+    }
+
+    /// [`Self::tile`] for those that do: `pass` goes through all layers again, as long as it finds some.
+    fn tile_in_passes(&self, _: usize, _: &Tile, _: &mut dyn FnMut(&mut Peel) -> bool) {}
 }
 
 /// Takes tiles and does nothing with them.

@@ -21,7 +21,7 @@
 mod compare;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Pieces, Raster, bounds, corners, draw, piece_step};
+use super::pieces::{Cut, List, Pieces, Raster, bounds, corners, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -31,7 +31,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, Setup, TileGrid};
+use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,9 @@ impl VisibleSurface for Painter {
     ) -> Result<Resolved, Limit> {
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
-        let setups = facets.opaque();
+        let mut setups = facets.opaque();
+        let opaque = setups.len();
+        setups.extend(facets.listed_layers());
         let raster = Raster::new(view.viewport, &view.pattern);
         let mut counters = VisibilityCounters::default();
         let mut sorting = Sorting::new(&setups, raster, execution, &mut counters)?;
@@ -61,11 +63,16 @@ impl VisibleSurface for Painter {
         counters.pieces = list.len() as u64;
         let bytes = list.bytes();
         let runs = [list];
-        let filled = fill_with(&facets, marks, grid, sink, 1, &|facets, index, tiles, counters| {
+        let list = List { setups: &setups, opaque, runs: &runs };
+        let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
             execution.budget.check("painting")?;
-            draw::<false>(facets, &setups, &runs, index, &mut tiles[0], counters);
+            draw::<false>(facets, &list, index, &mut tiles[0], counters);
             Ok(())
-        });
+        };
+        let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
+            draw_layers::<false>(facets, &list, index, tile, layers);
+        };
+        let filled = fill_with(&facets, marks, grid, sink, 1, &fill, Some(&collect));
         execution.budget.release(bytes);
         counters.add(&filled?);
         resolved.counters = counters;

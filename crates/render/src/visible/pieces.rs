@@ -10,6 +10,9 @@
 //! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
 //! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
 //!
+//! Transparent facets can take part in the list, for an order of transparency that draws by it. Which of them lie in front
+//! of what is opaque is the law's matter as for all algorithms; in which order they are drawn is the list's alone.
+//!
 //! In:   set-up triangles and lines (screen space). Out: the samples of each tile (screen space).
 //! Cost: linear in the pieces, the tiles that each touches, and covered samples, hidden ones included.
 //! Source: [Newell, Newell & Sancha 1972] for the list; the lines are those of [Fuchs, Kedem & Naylor 1980].
@@ -20,8 +23,8 @@ use crate::trace::Step;
 use std::ops::Range;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, Block, BlockSink, PriorityCounts, PrioritySink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, Viewport,
-    traverse_by_rows, traverse_window,
+    BLOCK, Block, BlockSink, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL, SamplePattern,
+    Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
 };
 
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
@@ -258,69 +261,106 @@ impl Pieces {
     }
 }
 
-/// Draws a tile's part of a list given in runs, from front to back or from back to front.
+/// A list of pieces, in runs.
+#[derive(Clone, Copy)]
+pub(super) struct List<'a> {
+    /// The triangles that they are of, opaque ones first.
+    pub(super) setups: &'a [&'a Setup],
+    /// How many are opaque.
+    pub(super) opaque: usize,
+    pub(super) runs: &'a [Pieces],
+}
+
+impl<'a> List<'a> {
+    /// The pieces that may touch a tile, in the order of the list: each with its run.
+    fn in_tile(&self, index: usize) -> impl DoubleEndedIterator<Item = (&'a Pieces, &'a Piece)> {
+        self.runs.iter().flat_map(move |run| {
+            let items = &run.items[run.starts[index] as usize..run.starts[index + 1] as usize];
+            items.iter().map(move |&item| (run, &run.pieces[item as usize]))
+        })
+    }
+}
+
+/// Draws the opaque pieces of a tile's part of a list, from front to back or from back to front.
 pub(super) fn draw<const FRONT_FIRST: bool>(
     facets: &Facets<'_, '_>,
-    setups: &[&Setup],
-    runs: &[Pieces],
+    list: &List<'_>,
     index: usize,
     tile: &mut Tile,
     counters: &mut VisibilityCounters,
 ) {
     let pattern = &facets.view().pattern;
-    let mut counts = PriorityCounts::default();
-    dispatch!(facets.execution().level, simd => draw_runs::<_, FRONT_FIRST>(simd, setups, runs, index, tile, pattern, &mut counts));
+    let place = (tile.x, tile.y);
+    let mut sink = PieceSink { inner: PrioritySink::<FRONT_FIRST>::new(tile, pattern), place, pattern, cuts: &[] };
+    dispatch!(facets.execution().level, simd => {
+        for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
+            draw_piece(simd, list, run, piece, &mut sink);
+        }
+    });
+    let counts: PriorityCounts = sink.inner.counts;
     counters.overdrawn += counts.overdrawn;
     counters.overruled += counts.overruled;
     counters.overruled_far += counts.overruled_far;
 }
 
-#[inline(always)]
-fn draw_runs<S: Simd, const FRONT_FIRST: bool>(
-    simd: S,
-    setups: &[&Setup],
-    runs: &[Pieces],
+/// Collects the layers of a tile's part of a list from back to front, as far as they lie in front of its opaque samples.
+pub(super) fn draw_layers<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    list: &List<'_>,
     index: usize,
-    tile: &mut Tile,
-    pattern: &SamplePattern,
-    counts: &mut PriorityCounts,
+    tile: &Tile,
+    layers: &mut LayerList,
 ) {
+    let pattern = &facets.view().pattern;
     let place = (tile.x, tile.y);
-    let mut sink = PieceSink::<FRONT_FIRST> { inner: PrioritySink::new(tile, pattern), place, pattern, cuts: &[] };
-    for run in runs {
-        for &item in &run.items[run.starts[index] as usize..run.starts[index + 1] as usize] {
-            let piece = &run.pieces[item as usize];
-            let setup = setups[piece.setup as usize];
-            sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
-            if sink.cuts.is_empty() {
-                traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
-            } else {
-                let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
-                let inside = |first: i32, last: i32, start: u32| {
-                    let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
-                    pixel(first)..pixel(last + 1)
-                };
-                let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
-                traverse_window(simd, setup, place, &window, pattern, &mut sink);
-            }
+    let mut sink = PieceSink { inner: LayerSink::new(tile, pattern, layers), place, pattern, cuts: &[] };
+    let pieces = list.in_tile(index).filter(|(_, piece)| piece.setup as usize >= list.opaque);
+    dispatch!(facets.execution().level, simd => {
+        if FRONT_FIRST {
+            pieces.rev().for_each(|(run, piece)| draw_piece(simd, list, run, piece, &mut sink));
+        } else {
+            pieces.for_each(|(run, piece)| draw_piece(simd, list, run, piece, &mut sink));
         }
+    });
+}
+
+#[inline(always)]
+fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
+    simd: S,
+    list: &List<'_>,
+    run: &'a Pieces,
+    piece: &Piece,
+    sink: &mut PieceSink<'a, K>,
+) {
+    let setup = list.setups[piece.setup as usize];
+    let (place, pattern) = (sink.place, sink.pattern);
+    sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
+    if sink.cuts.is_empty() {
+        traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
+        return;
     }
-    *counts = sink.inner.counts;
+    let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
+    let inside = |first: i32, last: i32, start: u32| {
+        let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
+        pixel(first)..pixel(last + 1)
+    };
+    let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
+    traverse_window(simd, setup, place, &window, pattern, sink);
 }
 
 /// Narrows a triangle's coverage to one of its pieces.
-struct PieceSink<'a, const FRONT_FIRST: bool> {
-    inner: PrioritySink<'a, FRONT_FIRST>,
+struct PieceSink<'a, K> {
+    inner: K,
     /// The tile's first pixel.
     place: (u32, u32),
     pattern: &'a SamplePattern,
     cuts: &'a [Cut],
 }
 
-impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PieceSink<'_, FRONT_FIRST> {
+impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
     #[inline(always)]
     fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        BlockSink::<S>::rejects(&self.inner, setup, block)
+        self.inner.rejects(setup, block)
     }
 
     #[inline(always)]

@@ -13,7 +13,8 @@
 //! depths go to the lower facet, so the order of triangles cannot be seen.
 
 use super::brute_force::size_in_picture;
-use super::{Resolved, TileSink, VisibleSurface, charged};
+use super::facets::BYTES_A_TRIANGLE;
+use super::{Peel, Resolved, TileSink, VisibleSurface, charged};
 use crate::stats::GeometryStats;
 use crate::trace::Step;
 use crate::{Execution, PreparedView};
@@ -68,6 +69,8 @@ impl VisibleSurface for ZBuffer {
         // How many facets cover each pixel, for who looks on.
         let watched = if execution.observer.is_some() { grid.tiles.len() } else { 0 };
         let costs: Vec<Mutex<Vec<u32>>> = (0..watched).map(|_| Mutex::default()).collect();
+        // Passes go through the layers of all rounds.
+        let mut kept = Kept { batches: Vec::new(), charged: 0, execution };
         execution.budget.begin("rounds of triangles", rounds.len() as u64);
         for (number, round) in rounds.iter().enumerate() {
             execution.budget.check("visibility")?;
@@ -89,8 +92,10 @@ impl VisibleSurface for ZBuffer {
                     tile.clear();
                 }
                 let mut layers = layers[index].lock().expect("no thread panics while it holds layers");
-                let tile_batches = batches.iter().map(|(layered, batch)| (*layered, batch));
-                let tile_batches = tile_batches.chain(marks.filter(|_| last).map(|m| (true, m)));
+                let passes = sink.takes_passes();
+                let tile_batches = batches.iter().filter(|(layered, _)| !(passes && *layered));
+                let tile_batches = tile_batches.map(|(layered, batch)| (*layered, batch));
+                let tile_batches = tile_batches.chain(marks.filter(|_| last && !passes).map(|m| (true, m)));
                 if execution.observer.is_some() {
                     count_facets(view, &batches, index, tile, &mut costs[index].lock().expect("counts"));
                 }
@@ -99,10 +104,26 @@ impl VisibleSurface for ZBuffer {
                     if execution.observer.is_some() {
                         tell_tile(view, &costs[index], execution, tile);
                     }
+                    if passes {
+                        let here = batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
+                        let layered = kept.batches.iter().chain(here).chain(marks);
+                        let go_on = || execution.budget.check("passes over layers").is_ok();
+                        let mut pass = |peel: &mut Peel| {
+                            go_on() && peel.pass(execution.level, layered.clone(), index, tile, &view.pattern)
+                        };
+                        sink.tile_in_passes(index, tile, &mut pass);
+                        return;
+                    }
                     layers.finish();
                     sink.tile(index, tile, &mut layers);
                 }
             });
+            let mut batches = batches;
+            if sink.takes_passes() {
+                // Passes end early at a limit.
+                execution.budget.check("passes over layers")?;
+                batches = kept.keep(batches)?;
+            }
             let mut spare = view.session.spare_batches.lock().expect("spare batches");
             spare.extend(batches.into_iter().map(|(_, batch)| batch));
             execution.budget.advance();
@@ -161,6 +182,33 @@ pub(crate) fn resolve_in_passing(
     let vertices = vertices.into_iter().filter(|v| v.capacity() > 0);
     view.session.spare_vertices.lock().expect("spare vertices").extend(vertices);
     Ok(())
+}
+
+/// Layers of earlier rounds, charged to the budget.
+struct Kept<'e> {
+    batches: Vec<Batch>,
+    charged: u64,
+    execution: &'e Execution,
+}
+
+impl Kept<'_> {
+    /// Keeps the layers and gives the rest back.
+    fn keep(&mut self, batches: Vec<(bool, Batch)>) -> Result<Vec<(bool, Batch)>, Limit> {
+        let (layered, rest): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
+        for (_, batch) in layered {
+            let bytes = batch.setups().len() as u64 * BYTES_A_TRIANGLE;
+            self.execution.budget.charge(bytes, "layers to go through")?;
+            self.charged += bytes;
+            self.batches.push(batch);
+        }
+        Ok(rest)
+    }
+}
+
+impl Drop for Kept<'_> {
+    fn drop(&mut self) {
+        self.execution.budget.release(self.charged);
+    }
 }
 
 /// Adds for each pixel of a tile how many opaque facets of these batches cover its first sample.

@@ -41,6 +41,7 @@ pub(crate) fn all_channels() -> Channels {
         object: true,
         material: true,
         normal: true,
+        passes: false,
         attached_shadow: true,
         cast_shadow: false,
         steps: true,

@@ -8,5 +8,6 @@ mod interpolation;
 mod lighting;
 mod ray_trace;
 mod robust;
+mod translucent;
 mod transparency;
 mod traps;

@@ -1,0 +1,108 @@
+//! Composing a tile pass by pass, with one layer in memory.
+//!
+//! The picture begins with what is opaque. Each pass brings one layer for each sample that has some left, the farthest:
+//! it is illuminated, laid over the picture, and forgotten. What a layer looks like, and where in the pixel it is
+//! illuminated, is the same as when all layers are there at once, to the last bit.
+//!
+//! In:   a tile, and passes over what is in front of it. Out: its pixels, and on demand those after each pass.
+//! Cost: see `visible/peel.rs`; memory: a colour for each sample.
+//! Source: \[Mammen 1989\].
+
+use super::composite::fragment;
+use super::group::Lit;
+use super::points::{NO_POINT, Points, Source};
+use super::{ColorSink, Scratch, group};
+use crate::visible::Peel;
+use vitral_math::lanes::dispatch;
+use vitral_raster::{TILE, TILE_PIXELS, Tile};
+
+/// The picture of a tile, as far as it is composed.
+struct Canvas {
+    samples: Vec<[f32; 4]>,
+    /// Pixels in which something is, and those that have layers.
+    filled: Vec<bool>,
+    layered: Vec<bool>,
+}
+
+impl ColorSink<'_> {
+    /// Composes a tile; `pass` goes through the layers. Gives what each pass made of it, the opaque tile first, if it is
+    /// to be `shown`, else the last alone; and how many samples of layers there were.
+    pub(super) fn compose_in_passes(
+        &self,
+        tile: &Tile,
+        scratch: &mut Scratch,
+        pass: &mut dyn FnMut(&mut Peel) -> bool,
+        shown: bool,
+    ) -> (Vec<Vec<[u8; 4]>>, u64, u64) {
+        let samples = self.constants.view.pattern.len();
+        let mut canvas = self.canvas(tile, &scratch.points, &scratch.lit, samples);
+        let (mut pictures, mut layers, mut shaded) = (Vec::new(), 0, 0);
+        let mut peel = Peel::default();
+        peel.reset(samples);
+        while pass(&mut peel) {
+            if shown {
+                pictures.push(self.encode(tile, scratch, &canvas, samples));
+            }
+            let Scratch { points, facets, lit, .. } = &mut *scratch;
+            points.collect_pass(tile, &peel, self.constants, self.marks);
+            lit.reset(points.len(), self.constants);
+            dispatch!(self.level, simd => group::shade_all(simd, points, facets, self.constants, lit));
+            shaded += points.len() as u64;
+            for of in &points.fragments {
+                let fragment = fragment(of, points, lit, self.marks);
+                (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
+                for sample in (0..samples).filter(|s| of.mask >> s & 1 == 1) {
+                    fragment.over(&mut canvas.samples[sample * TILE_PIXELS + of.pixel as usize]);
+                    layers += 1;
+                }
+            }
+        }
+        pictures.push(self.encode(tile, scratch, &canvas, samples));
+        (pictures, layers, shaded)
+    }
+
+    /// What is opaque, and the background.
+    fn canvas(&self, tile: &Tile, points: &Points, lit: &Lit, samples: usize) -> Canvas {
+        let background = |pixel: usize| {
+            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.len() - 1);
+            self.constants.background[row]
+        };
+        let mut canvas = Canvas {
+            samples: (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect(),
+            filled: vec![false; TILE_PIXELS],
+            layered: vec![false; TILE_PIXELS],
+        };
+        for pixel in &points.pixels {
+            let at = pixel.index as usize;
+            canvas.filled[at] = true;
+            for sample in 0..samples {
+                let point = match pixel.source {
+                    Source::Point(point) => point,
+                    Source::Mixed(start) => points.mixed[start as usize + sample],
+                };
+                if point != NO_POINT {
+                    canvas.samples[sample * TILE_PIXELS + at] = lit.colors[point as usize];
+                }
+            }
+            canvas.layered[at] = matches!(pixel.source, Source::Mixed(_));
+        }
+        canvas
+    }
+
+    /// The canvas as display bytes.
+    fn encode(&self, tile: &Tile, scratch: &mut Scratch, canvas: &Canvas, samples: usize) -> Vec<[u8; 4]> {
+        let mut picture = vec![[0; 4]; TILE_PIXELS];
+        let (composer, constants) = (&mut scratch.composer, self.constants);
+        composer.begin(tile, constants, &mut picture);
+        let mut of_pixel = Vec::with_capacity(samples);
+        for pixel in (0..TILE_PIXELS).filter(|&p| canvas.filled[p]) {
+            of_pixel.clear();
+            // Pixels that one opaque point fills are that point, not a mean.
+            let count = if canvas.layered[pixel] { samples } else { 1 };
+            of_pixel.extend((0..count).map(|s| canvas.samples[s * TILE_PIXELS + pixel]));
+            composer.put(pixel as u32, &of_pixel);
+        }
+        dispatch!(self.level, simd => composer.end(simd, constants, &mut picture));
+        picture
+    }
+}

@@ -132,8 +132,14 @@ impl Shape {
         let mut mean = point;
         if T::any(large) {
             let whole = match self.radius {
-                Some(radius) => self.disc(position, n, to, height, radius),
-                None => self.polygon(position, n, height),
+                Some(radius) => zero.apart(
+                    #[inline(always)]
+                    || self.disc(position, n, to, height, radius),
+                ),
+                None => zero.apart(
+                    #[inline(always)]
+                    || self.polygon(position, n, height),
+                ),
             };
             mean = T::select(large, whole, mean);
         }

@@ -56,6 +56,9 @@ pub trait Lanes:
     fn exp2_whole(self) -> Self;
     /// For a positive normal number: its exponent as a whole number, and its mantissa in `1..2`.
     fn split_exponent(self) -> (Self, Self);
+    /// What `f` gives, in a function of its own: for what is large and seldom needed. Functions in which everything is
+    /// inlined grow until compilers take minutes over one.
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 
     /// The larger; `other` if either is NaN.
     #[inline(always)]
@@ -190,6 +193,10 @@ impl Lanes for f32 {
         let bits = self.to_bits();
         (((bits >> 23) as i32 - 127) as f32, f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000))
     }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
 }
 
 impl<S: Simd> Lanes for F32x8<S> {
@@ -254,6 +261,15 @@ impl<S: Simd> Lanes for F32x8<S> {
         let exponent: Self = ((bits >> 23) - 127).to_float();
         (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
     }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        outlined(self.token(), f)
+    }
+}
+
+#[inline(never)]
+fn outlined<S: Simd, R>(simd: S, f: impl FnOnce() -> R) -> R {
+    simd.vectorize(f)
 }
 
 /// Whether the instruction for the larger (smaller) of two numbers gives the second where they do not compare, which is

@@ -63,13 +63,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
         samples.fill(color);
         return;
     }
-    for fragment in ranges.iter().map(of) {
-        let mut mask = fragment.mask;
-        while mask != 0 {
-            fragment.over(&mut samples[mask.trailing_zeros() as usize]);
-            mask &= mask - 1;
-        }
-    }
+    ranges.iter().for_each(|r| of(r).over_all(samples));
 }
 
 #[cfg(test)]

@@ -18,13 +18,7 @@ use super::Fragment;
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
-    for fragment in fragments {
-        let mut mask = fragment.mask;
-        while mask != 0 {
-            fragment.over(&mut samples[mask.trailing_zeros() as usize]);
-            mask &= mask - 1;
-        }
-    }
+    fragments.iter().for_each(|fragment| fragment.over_all(samples));
 }
 
 #[cfg(test)]

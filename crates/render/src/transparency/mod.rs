@@ -76,6 +76,16 @@ impl Fragment<'_> {
         *below = std::array::from_fn(|k| self.color[k] + passes[k] * behind[k]);
     }
 
+    /// Lays it over all samples that it covers.
+    #[inline]
+    fn over_all(&self, samples: &mut [[f32; 4]]) {
+        let mut mask = self.mask;
+        while mask != 0 {
+            self.over(&mut samples[mask.trailing_zeros() as usize]);
+            mask &= mask - 1;
+        }
+    }
+
     /// From far to near at a sample that both cover.
     #[inline]
     fn far_to_near(&self, other: &Self, sample: usize) -> Ordering {

@@ -1,8 +1,7 @@
 //! `BlitFramebuffer`.
 
 use super::copy_plane::{
-    Axis, Job, Resolve, average_colors, average_words, converted, copy, first_sample, resolved, scale_linear,
-    scale_nearest,
+    Axis, Job, average_colors, average_words, converted, copy, first_sample, resolved, scale_linear, scale_nearest,
 };
 use super::image::{Shared, lock};
 use super::target::Surfaces;
@@ -11,7 +10,7 @@ use crate::Context;
 use crate::enums::*;
 use std::sync::Arc;
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, Plane};
+use vitral_raster::forward::{ColorPlane, Plane, Resolve};
 
 /// The arguments.
 #[derive(Clone, Copy, Debug)]

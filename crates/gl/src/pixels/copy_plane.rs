@@ -2,11 +2,8 @@
 
 use super::mipmap::average4;
 use super::texels::{color_from_word, word_from_color};
-use vitral_raster::forward::{ColorPlane, Plane, PlaneTile};
-use vitral_raster::{TILE, TILE_PIXELS};
-
-/// Makes one value of a pixel's four samples, for a run of pixels.
-pub(crate) type Resolve<T> = fn([&[T]; 4], &mut [T]);
+use vitral_raster::TILE;
+use vitral_raster::forward::{ColorPlane, Plane, Resolve};
 
 /// The first sample: depth and stencil.
 pub(crate) fn first_sample<T: Copy>(samples: [&[T]; 4], out: &mut [T]) {
@@ -48,14 +45,6 @@ pub(crate) fn copy<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, job: Job, reso
     }
 }
 
-/// Four slices for the samples of a run; fewer samples are repeated.
-fn runs<T>(values: &[T], samples: usize, at: usize, len: usize) -> [&[T]; 4] {
-    std::array::from_fn(|s| {
-        let first = (s % samples) * TILE_PIXELS + at;
-        &values[first..first + len]
-    })
-}
-
 fn copy_tiles<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, [x0, y0, x1, y1]: [u32; 4], resolve: Resolve<T>) {
     let side = TILE as u32;
     let viewport = into.viewport();
@@ -65,34 +54,13 @@ fn copy_tiles<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, [x0, y0, x1, y1]: [
         for tx in x0 / side..x1.div_ceil(side) {
             let index = (ty * row + tx) as usize;
             let Some(source) = from.tiles.get(index) else { continue };
-            // The part of the tile to copy; all of it if only pixels outside the plane are left out.
             let (left, low) = (tx * side, ty * side);
-            let part = [x0.max(left) - left, y0.max(low) - low, x1.min(left + side) - left, y1.min(low + side) - low];
-            let whole = part[0] == 0
-                && part[1] == 0
-                && left + part[2] == viewport.width.min(left + side)
-                && low + part[3] == viewport.height.min(low + side);
-            if let (true, PlaneTile::Cleared(value)) = (whole, source) {
-                into.tiles[index] = PlaneTile::Cleared(*value);
-                continue;
-            }
-            let target = into.tiles[index].stored(samples);
-            let spans = if whole { 0..1 } else { part[1] as usize..part[3] as usize };
-            for y in spans {
-                let (at, len) =
-                    if whole { (0, TILE_PIXELS) } else { (y * TILE + part[0] as usize, (part[2] - part[0]) as usize) };
-                match source {
-                    PlaneTile::Cleared(value) => {
-                        (0..samples).for_each(|s| target[s * TILE_PIXELS + at..][..len].fill(*value));
-                    }
-                    PlaneTile::Stored(values) if source_samples == samples || source_samples == 1 => {
-                        let runs = runs(values, source_samples, at, len);
-                        (0..samples).for_each(|s| target[s * TILE_PIXELS + at..][..len].copy_from_slice(runs[s]));
-                    }
-                    PlaneTile::Stored(values) => {
-                        resolve(runs(values, source_samples, at, len), &mut target[at..at + len]);
-                    }
-                }
+            let clip = [x0.max(left), y0.max(low), x1.min(left + side), y1.min(low + side)];
+            // Pixels outside the plane do not count.
+            if clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)] {
+                source.copy_to(source_samples, &mut into.tiles[index], samples, resolve);
+            } else {
+                copy_rows(from, into, Job { clip, shift: [0, 0] }, resolve);
             }
         }
     }
@@ -131,10 +99,7 @@ pub(crate) fn converted(plane: &ColorPlane, bytes: bool) -> ColorPlane {
         let first = plane.get(0, 0, 0);
         let mut out = Plane::new(plane.viewport(), plane.samples(), f(first));
         for (tile, source) in out.tiles.iter_mut().zip(&plane.tiles) {
-            *tile = match source {
-                PlaneTile::Cleared(value) => PlaneTile::Cleared(f(*value)),
-                PlaneTile::Stored(values) => PlaneTile::Stored(values.iter().map(|&v| f(v)).collect()),
-            };
+            *tile = source.map(&f);
         }
         out
     }
@@ -241,8 +206,8 @@ mod tests {
         let mut into = plane(100, 70, 1);
         into.clear(1);
         copy(&from, &mut into, Job { clip: [0, 0, 100, 70], shift: [0, 0] }, average_words);
-        assert_eq!(into.tiles[0], PlaneTile::Cleared(7));
-        assert_eq!(into.tiles[3], PlaneTile::Cleared(7));
+        assert_eq!(into.tiles[0].uniform(), Some(7));
+        assert_eq!(into.tiles[3].uniform(), Some(7));
         assert_eq!((into.get(70, 3, 0), into.get(71, 3, 0)), (6, 7));
         // A part of a cleared tile.
         into.clear(1);

@@ -4,17 +4,18 @@
 //! what is left is done here in short loops, each over all samples of a block, with the same operations and the same
 //! results.
 
+use super::depth_ranges::{Verdict, verdict};
 use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored_depth};
 use super::fragment_ops::compare::compare;
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
-use super::plane::PlaneTile;
+use super::pending::stored;
 use super::state::{Compare, StencilFace, StencilOp};
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd, U32x8};
 
 /// Colours of a block, packed: one for all pixels, or one each.
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one block")]
@@ -42,12 +43,51 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
 }
 
+/// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
+#[derive(Clone, Copy)]
+struct Slope<S: Simd> {
+    across: F32x8<S>,
+    rows: [f32; BLOCK],
+}
+
+impl<S: Simd> Slope<S> {
+    #[inline(always)]
+    fn new(simd: S, setup: &Setup, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
+        let mut rows = [0.0; BLOCK];
+        upwards(simd, setup, bottom as i32 * SUBPIXEL + y).store_slice(&mut rows);
+        Self { across: across(simd, setup, left as i32 * SUBPIXEL + x), rows }
+    }
+
+    /// The depths of a row as stored.
+    #[inline(always)]
+    fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
+        stored_depth(simd, min(max(self.across + self.rows[row % BLOCK], low), high), scale)
+    }
+
+    /// The least and the largest depth of the block: sums are ordered as their terms are, however they are rounded.
+    #[inline(always)]
+    fn bounds(&self) -> [f32; 2] {
+        let across = self.across.to_array();
+        let sorted = |a: f32, b: f32| if a < b { [a, b] } else { [b, a] };
+        let (x, y) = (sorted(across[0], across[LANES - 1]), sorted(self.rows[0], self.rows[BLOCK - 1]));
+        [x[0] + y[0], x[1] + y[1]]
+    }
+}
+
+/// What a block's depth test works with.
+struct Test<'a, S: Simd> {
+    slopes: &'a [Slope<S>],
+    limits: [F32x8<S>; 2],
+    scale: f32,
+    write: bool,
+}
+
 /// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
 /// place in the pattern all samples have the depth there.
 pub(crate) fn depths<S: Simd>(
     simd: S,
     setup: &Setup,
-    (left, bottom): (usize, usize),
+    place: (usize, usize),
     block: &Block,
     pattern: &SamplePattern,
     planes: &mut TilePlanes<'_>,
@@ -56,49 +96,166 @@ pub(crate) fn depths<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some((tile, scale)) = &mut planes.depth else { return };
-    let scale = *scale;
-    let values = tile.stored(samples);
+    let (scale, ranges) = (*scale, &mut planes.ranges);
     simd.vectorize(
         #[inline(always)]
         || {
-            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate() {
-                if masks[s] == 0 {
-                    continue;
-                }
-                let [sx, sy] = pattern.position(if pattern.len() == samples { s } else { 0 });
-                let across = across(simd, setup, left as i32 * SUBPIXEL + sx);
-                let (low, high) = (splat(simd, setup.z_min), splat(simd, setup.z_max));
-                let mut rows = [0.0; BLOCK];
-                upwards(simd, setup, bottom as i32 * SUBPIXEL + sy).store_slice(&mut rows);
-                let mut passed = 0u64;
-                let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-                for row in block.rows.clone() {
-                    let bits = (masks[s] >> (8 * row)) as u32 & 0xff;
-                    if bits == 0 {
-                        continue;
-                    }
-                    let z = min(max(across + rows[row % BLOCK], low), high);
-                    let z = stored_depth(simd, z, scale);
-                    let at = row % BLOCK * TILE;
-                    let stored = &mut plane[at..at + LANES];
-                    let old = F32x8::from_slice(simd, stored);
-                    let pass = match rule.func {
-                        Compare::GreaterOrEqual => z.simd_ge(old),
-                        Compare::Less => z.simd_lt(old),
-                        Compare::LessOrEqual => z.simd_le(old),
-                        func => compare(simd, func, z, old),
-                    };
-                    let pass = bits_of(pass) & bits;
-                    passed |= u64::from(pass) << (8 * row);
-                    if rule.write && pass != 0 {
-                        let new = if pass == 0xff { z } else { select(mask_of(simd, pass), z, old) };
-                        new.store_slice(stored);
-                    }
-                }
-                masks[s] = passed;
+            let together = pattern.len() != samples && all_alike(masks, samples);
+            let count = pattern.len().min(samples).min(SAMPLES);
+            let mut slopes = [Slope::new(simd, setup, place, pattern.position(0)); SAMPLES];
+            for s in 1..count {
+                slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
             }
+            let test = Test {
+                slopes: &slopes[..count],
+                limits: [splat(simd, setup.z_min), splat(simd, setup.z_max)],
+                scale,
+                write: rule.write,
+            };
+            let touched = block.touched();
+            if !block.is_aligned() {
+                if rule.write {
+                    ranges.forget(touched);
+                }
+                let (count, values) = tile.open(touched, together, samples);
+                compare_rows(simd, block, values, count, &test, rule.func, masks);
+                return agree(masks, count, samples);
+            }
+
+            let old = ranges.of(simd, tile, block.index(), samples);
+            let new = bounds(setup, &slopes[..count], scale);
+            let full = (0..samples).all(|s| masks[s] == u64::MAX);
+            let verdict = verdict(rule.func, new, old);
+            if verdict == Verdict::AllFail {
+                *masks = [0; SAMPLES];
+                return;
+            }
+            if verdict == Verdict::AllPass && !rule.write {
+                return;
+            }
+            if verdict == Verdict::AllPass && full {
+                ranges.set(block.index(), new);
+                let count = if together { 1 } else { samples };
+                return fill(simd, block, tile.replace(touched, together, samples), count, &test);
+            }
+            if rule.write {
+                ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
+            }
+            let (count, values) = tile.open(touched, together, samples);
+            let func = if verdict == Verdict::AllPass { Compare::Always } else { rule.func };
+            compare_rows(simd, block, values, count, &test, func, masks);
+            agree(masks, count, samples);
         },
     );
+}
+
+/// Whether all samples have the same mask.
+#[inline(always)]
+pub(super) fn all_alike(masks: &[u64; SAMPLES], samples: usize) -> bool {
+    (1..samples.min(SAMPLES)).all(|s| masks[s] == masks[0])
+}
+
+/// After one sample stood for all, gives them its mask.
+#[inline(always)]
+fn agree(masks: &mut [u64; SAMPLES], count: usize, samples: usize) {
+    if count < samples {
+        *masks = [masks[0]; SAMPLES];
+    }
+}
+
+/// The least and the largest depth in a block, as stored.
+#[inline(always)]
+fn bounds<S: Simd>(setup: &Setup, slopes: &[Slope<S>], scale: f32) -> [f32; 2] {
+    let mut all = slopes[0].bounds();
+    for slope in &slopes[1..] {
+        let [low, high] = slope.bounds();
+        all = [all[0].min(low), all[1].max(high)];
+    }
+    all.map(|depth| stored(depth.max(setup.z_min).min(setup.z_max), scale))
+}
+
+/// Writes all depths of a block.
+#[inline(always)]
+fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test: &Test<'_, S>) {
+    for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
+        let slope = &test.slopes[s % test.slopes.len()];
+        let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
+        for row in 0..BLOCK {
+            let at = row * TILE;
+            slope.row(simd, row, test.limits, test.scale).store_slice(&mut plane[at..at + LANES]);
+        }
+    }
+}
+
+/// Compares the depths of the samples in `masks`, and leaves those that pass.
+#[inline(always)]
+fn compare_rows<S: Simd>(
+    simd: S,
+    block: &Block,
+    values: &mut [f32],
+    count: usize,
+    test: &Test<'_, S>,
+    func: Compare,
+    masks: &mut [u64; SAMPLES],
+) {
+    for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
+        if masks[s] == 0 {
+            continue;
+        }
+        let slope = &test.slopes[s % test.slopes.len()];
+        let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
+        masks[s] = match func {
+            Compare::GreaterOrEqual => pass_rows(
+                simd,
+                (block, plane, slope, test),
+                masks[s],
+                #[inline(always)]
+                |new, old| new.simd_ge(old),
+            ),
+            Compare::LessOrEqual => pass_rows(
+                simd,
+                (block, plane, slope, test),
+                masks[s],
+                #[inline(always)]
+                |new, old| new.simd_le(old),
+            ),
+            func => pass_rows(
+                simd,
+                (block, plane, slope, test),
+                masks[s],
+                #[inline(always)]
+                |new, old| compare(simd, func, new, old),
+            ),
+        };
+    }
+}
+
+/// The samples of `mask` for whose new and old depth `passes` holds.
+#[inline(always)]
+fn pass_rows<S: Simd>(
+    simd: S,
+    (block, plane, slope, test): (&Block, &mut [f32], &Slope<S>, &Test<'_, S>),
+    mask: u64,
+    passes: impl Fn(F32x8<S>, F32x8<S>) -> Mask8<S>,
+) -> u64 {
+    let mut passed = 0;
+    for row in block.rows.clone() {
+        let bits = (mask >> (8 * row)) as u32 & 0xff;
+        if bits == 0 {
+            continue;
+        }
+        let new = slope.row(simd, row, test.limits, test.scale);
+        let at = row % BLOCK * TILE;
+        let stored = &mut plane[at..at + LANES];
+        let old = F32x8::from_slice(simd, stored);
+        let pass = bits_of(passes(new, old)) & bits;
+        passed |= u64::from(pass) << (8 * row);
+        if test.write && pass != 0 {
+            let new = if pass == 0xff { new } else { select(mask_of(simd, pass), new, old) };
+            new.store_slice(stored);
+        }
+    }
+    passed
 }
 
 /// Leaves in `masks` the samples that pass a stencil test; what it writes is [`update_stencil`]'s.
@@ -111,22 +268,20 @@ pub(crate) fn stencil<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
-    let values = match tile {
-        PlaneTile::Stored(values) => values,
-        PlaneTile::Cleared(value) => {
-            // One value decides for all.
-            let stored = load_stencil(simd, &[*value; LANES]);
-            if bits_of(stencil_test(simd, face, stored)) == 0 {
-                *masks = [0; SAMPLES];
-            }
-            return;
+    if let Some(value) = tile.uniform() {
+        // One value decides for all.
+        let stored = load_stencil(simd, &[value; LANES]);
+        if bits_of(stencil_test(simd, face, stored)) == 0 {
+            *masks = [0; SAMPLES];
         }
-    };
-    debug_assert_eq!(values.len(), samples * TILE_PIXELS);
+        return;
+    }
+    let together = all_alike(masks, samples);
+    let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
         #[inline(always)]
         || {
-            for (s, plane) in values.chunks_exact(TILE_PIXELS).enumerate() {
+            for (s, plane) in values.chunks_exact(TILE_PIXELS).enumerate().take(count) {
                 for row in block.rows.clone() {
                     if (masks[s] >> (8 * row)) & 0xff != 0 {
                         let at = (block.y + row) * TILE + block.x;
@@ -136,6 +291,7 @@ pub(crate) fn stencil<S: Simd>(
                     }
                 }
             }
+            agree(masks, count, samples);
         },
     );
 }
@@ -167,14 +323,15 @@ pub(crate) fn update_stencil<S: Simd>(
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
     let replaces = face.write_mask == 0xff && face.pass == StencilOp::Replace && covered == passed;
-    if replaces && matches!(tile, PlaneTile::Cleared(value) if *value == face.reference) {
+    if replaces && tile.uniform() == Some(face.reference) {
         return;
     }
-    let values = tile.stored(samples);
+    let together = [covered, reached, passed].iter().all(|masks| all_alike(masks, samples));
+    let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
         #[inline(always)]
         || {
-            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate() {
+            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 for row in block.rows.clone() {
                     let [covered, reached, passed] =
                         [covered, reached, passed].map(|m| (m[s] >> (8 * row)) as u32 & 0xff);
@@ -219,11 +376,27 @@ pub(crate) fn colors<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(ColorTile::Rgba8(tile)) = &mut planes.color else { return };
-    let values = tile.stored(samples);
+    let together = all_alike(masks, samples);
+    let row_of = lanes::inlined(
+        #[inline(always)]
+        |row: usize| match words {
+            Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
+            Words::Each(words) => U32x8::from_slice(simd, &words[8 * row..8 * row + 8]),
+        },
+    );
     simd.vectorize(
         #[inline(always)]
         || {
-            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate() {
+            if mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned() {
+                let values = tile.replace(block.touched(), true, samples);
+                let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
+                for row in 0..BLOCK {
+                    row_of(row).store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+                }
+                return;
+            }
+            let (count, values) = tile.open(block.touched(), together, samples);
+            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 if masks[s] == 0 {
                     continue;
                 }
@@ -234,15 +407,7 @@ pub(crate) fn colors<S: Simd>(
                     }
                     let at = (block.y + row) * TILE + block.x;
                     let stored = &mut plane[at..at + LANES];
-                    let new = match words {
-                        Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
-                        Words::Each(words) => U32x8::from_slice(simd, &words[8 * row..8 * row + 8]),
-                    };
-                    if mixing == Mixing::Replace && bits == 0xff {
-                        new.store_slice(stored);
-                        continue;
-                    }
-                    let old = U32x8::from_slice(simd, stored);
+                    let (new, old) = (row_of(row % BLOCK), U32x8::from_slice(simd, stored));
                     let new = match mixing {
                         Mixing::Add => add_packed(new, old),
                         Mixing::AddScaled => add_scaled_packed(new, old),

@@ -5,9 +5,9 @@
 //!
 //! In:   a place in cells, for eight points. Out: eight colours.
 
-use super::wide::{Rgba, clamp, floor, max, min, splat};
+use super::wide::{Rgba, clamp, floor, max, min, select_rgba, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
 
 /// The grid's vertices that a picture needs, a part of all.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +41,20 @@ impl ColorGrid {
             fx = -fx + 1.0;
         }
         let across = fx.simd_ge(fy);
-        let middle = across.select(start + step, start + width);
         let (a, b) = (max(fx, fy), min(fx, fy));
-        let (start, middle, end) = (fetch(simd, colors, start), fetch(simd, colors, middle), fetch(simd, colors, end));
+        let first = start.to_array()[0];
+        let (start, middle, end) = if start.simd_eq(first).all_true() {
+            // Nearly always eight pixels lie in one cell: then its four corners are all that there is.
+            let each = lanes::inlined(
+                #[inline(always)]
+                |at: i32| splat_rgba(simd, colors.get(at as u32 as usize).copied().unwrap_or_default()),
+            );
+            let last = if self.rising { first + width + 1 } else { first + width - 1 };
+            (each(first), select_rgba(across, each(first + step), each(first + width)), each(last))
+        } else {
+            let middle = across.select(start + step, start + width);
+            (fetch(simd, colors, start), fetch(simd, colors, middle), fetch(simd, colors, end))
+        };
         let mut color = start;
         for k in 0..4 {
             color[k] = start[k] + (middle[k] - start[k]) * a + (end[k] - middle[k]) * b;

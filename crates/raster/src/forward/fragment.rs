@@ -4,6 +4,7 @@
 //! once before colours are computed, without writing, so that hidden fragments are not shaded; nothing can tell, because
 //! a fragment that fails the depth test changes at most the stencil.
 
+use super::depth_ranges::DepthRanges;
 use super::fragment_ops::blend::blend;
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
@@ -37,6 +38,8 @@ pub(crate) struct TilePlanes<'a> {
     pub stencil: Option<&'a mut PlaneTile<u8>>,
     /// Samples a pixel.
     pub samples: usize,
+    /// What is known of depths.
+    pub ranges: DepthRanges,
 }
 
 /// Most samples a pixel.
@@ -144,7 +147,9 @@ impl TilePlanes<'_> {
         depths: &Depths<S>,
     ) -> [u32; SAMPLES] {
         let mut visible = *bits;
-        let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &self.depth) else { return visible };
+        let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &mut self.depth) else {
+            return visible;
+        };
         if test.func == Compare::Always {
             return visible;
         }
@@ -153,9 +158,9 @@ impl TilePlanes<'_> {
                 continue;
             }
             let at = s * TILE_PIXELS + row.at;
-            let stored = match tile {
-                PlaneTile::Cleared(value) => splat(simd, *value),
-                PlaneTile::Stored(values) => F32x8::from_slice(simd, &values[at..at + LANES]),
+            let stored = match tile.uniform() {
+                Some(value) => splat(simd, value),
+                None => F32x8::from_slice(simd, &tile.stored(self.samples)[at..at + LANES]),
             };
             visible[s] &= bits_of(depth_test(simd, test, depths[s], stored));
         }
@@ -230,6 +235,7 @@ impl TilePlanes<'_> {
             return;
         }
         if let Some((tile, _)) = &mut self.depth {
+            self.ranges.forget(u64::MAX);
             let at = s * TILE_PIXELS + row.at;
             let values = &mut tile.stored(self.samples)[at..at + LANES];
             if bits == 0xff {
@@ -270,6 +276,7 @@ impl TilePlanes<'_> {
         if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
             let plain = test.func == Compare::Always;
             if !plain || test.write {
+                self.ranges.forget(u64::MAX);
                 let values = &mut tile.stored(samples)[at..at + LANES];
                 let stored = F32x8::from_slice(simd, values);
                 passed = reached & depth_test(simd, test, depth, stored);

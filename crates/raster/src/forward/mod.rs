@@ -7,6 +7,7 @@
 mod assemble;
 mod block;
 mod color_grid;
+mod depth_ranges;
 mod environment;
 mod fragment;
 mod fragment_ops;
@@ -25,7 +26,7 @@ mod wide;
 pub use assemble::{Assembler, Facet, FacetKind, NO_GRID, PrimitiveState, Primitives, Shape, Vertices};
 pub use color_grid::ColorGrid;
 pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageFragments, Pass, Runner, Target};
-pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, Resolve, StencilPlane};
 pub use project::{WindowTransform, project};
 pub use shade::Layout;
 pub use state::{

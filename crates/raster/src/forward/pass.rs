@@ -4,6 +4,7 @@
 //! walks clears, images and the jobs' facets in the order of the commands.
 
 use super::assemble::{Facet, Primitives, screen};
+use super::depth_ranges::DepthRanges;
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, pendable};
@@ -341,6 +342,7 @@ impl Runner {
                     depth: depths.next().map(|d| (d, scale)),
                     stencil: stencils.next(),
                     samples: target.samples,
+                    ranges: DepthRanges::new(),
                 };
                 TileRun::new(index, x * TILE as u32, y * TILE as u32, target.viewport, planes)
             })

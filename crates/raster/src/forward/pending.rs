@@ -10,12 +10,15 @@
 //! Cost: a lookup is linear in its tile's triangles, eight bounds a step.
 
 use super::assemble::Primitives;
+use super::depth_ranges::DepthRanges;
 use super::fragment::TilePlanes;
 use super::pass::{DrawContext, Item, Pass, pattern};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::tile::TileRun;
+use crate::kernel::traverse::center_edges;
 use crate::{BLOCK, SUBPIXEL, Setup, TILE};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
@@ -23,29 +26,38 @@ use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
 
-/// A job's triangles and what bounds them.
+/// A job's triangles, with the state and the allowed pixels of each draw.
 #[derive(Debug)]
 struct PendingJob {
     primitives: Primitives,
-    /// State and allowed pixels of each draw.
     draws: Vec<ClippedState>,
-    /// The largest of a tile's.
-    tile_bounds: Vec<f32>,
-    /// What searching a tile needs, made when it is first searched.
-    grids: Vec<OnceLock<Box<Grid>>>,
 }
+
+/// What may decide a tile's texels.
+#[derive(Debug)]
+struct PendingTile {
+    /// The largest bound of its triangles, as read; times the sign.
+    bound: f32,
+    /// The jobs that have triangles there, in [`PendingDepth::touching`].
+    jobs: Range<usize>,
+    /// Its triangles by blocks, made when it is first searched.
+    grid: OnceLock<Box<Grid>>,
+}
+
+/// A job, and an entry of its batch.
+type Entry = [u32; 2];
 
 /// A tile's triangles by blocks of 8x8 texels.
 #[derive(Debug)]
 struct Grid {
     /// One list for the whole tile.
     whole: bool,
-    /// Blocks of eight entries, the rows of [`candidate`].
-    candidates: Vec<f32>,
-    /// The entries that the candidates are.
-    entries: Vec<u32>,
-    /// Where each block's candidates begin, in eights.
+    /// Block by block.
+    entries: Vec<Entry>,
+    /// Where each block's entries begin.
     starts: [u32; BLOCKS * BLOCKS + 1],
+    /// Eights of a block's entries, the rows of [`candidate`], made when it is first searched.
+    candidates: [OnceLock<Box<[f32]>>; BLOCKS * BLOCKS],
 }
 
 /// Blocks along a tile's side.
@@ -61,8 +73,9 @@ pub(crate) struct PendingDepth {
     clear: f32,
     scale: f32,
     jobs: Vec<PendingJob>,
-    /// The largest bound of each tile over all jobs.
-    tile_bounds: Vec<f32>,
+    tiles: Vec<PendingTile>,
+    /// Numbers of jobs, tile by tile.
+    touching: Vec<u32>,
     tiles_x: i32,
 }
 
@@ -116,15 +129,27 @@ impl PendingDepth {
         tiles: usize,
         jobs: Vec<(Primitives, Vec<ClippedState>)>,
     ) -> Self {
-        let jobs: Vec<PendingJob> = jobs.into_iter().map(|(p, draws)| job(p, draws, sign, scale, tiles)).collect();
-        let mut tile_bounds = vec![f32::NEG_INFINITY; tiles];
-        for job in &jobs {
-            for (all, its) in tile_bounds.iter_mut().zip(&job.tile_bounds) {
-                *all = all.max(*its);
+        let jobs: Vec<PendingJob> =
+            jobs.into_iter().map(|(primitives, draws)| PendingJob { primitives, draws }).collect();
+        let mut touching = Vec::new();
+        let tiles = (0..tiles).map(|tile| {
+            let (first, mut most) = (touching.len(), f32::NEG_INFINITY);
+            for (number, job) in jobs.iter().enumerate() {
+                let batch = &job.primitives.batch;
+                let range = batch.tile_range(tile);
+                if !range.is_empty() {
+                    touching.push(number as u32);
+                    let its = |at| if sign > 0.0 { batch.item(at).z_max } else { -batch.item(at).z_min };
+                    most = range.map(its).fold(most, f32::max);
+                }
             }
-        }
+            // As read: stored and divided again. Both keep the order.
+            let bound = if most.is_finite() { stored(most.abs(), scale) / scale * sign } else { most };
+            PendingTile { bound, jobs: first..touching.len(), grid: OnceLock::new() }
+        });
+        let tiles = tiles.collect();
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, jobs, tile_bounds, tiles_x: tiles_x as i32 }
+        Self { sign, clear, scale, jobs, tiles, touching, tiles_x: tiles_x as i32 }
     }
 
     /// The primitives, to use their memory again.
@@ -148,8 +173,8 @@ impl PendingDepth {
         let tile = ((y >> SHIFT) * self.tiles_x + (x >> SHIFT)).to_array();
         let mut bounds = [f32::NEG_INFINITY; LANES];
         for lane in 0..LANES {
-            if let Some(bound) = self.tile_bounds.get(tile[lane] as u32 as usize) {
-                bounds[lane] = *bound;
+            if let Some(tile) = self.tiles.get(tile[lane] as u32 as usize) {
+                bounds[lane] = tile.bound;
             }
         }
         let best = self.clear / self.scale * self.sign;
@@ -187,26 +212,95 @@ impl PendingDepth {
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
         // Places within the tile, as the candidates' planes take them.
         let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
-        for job in self.jobs.iter().filter(|job| job.tile_bounds[tile] > floor) {
-            let grid = job.grid(tile, self.sign, self.scale, self.tiles_x as usize);
-            let block = if grid.whole { 0 } else { (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK };
-            let eights = grid.starts[block] as usize..grid.starts[block + 1] as usize;
-            let candidates = &grid.candidates[eights.start * ROWS * LANES..eights.end * ROWS * LANES];
-            let entries = &grid.entries[eights.start * LANES..eights.end * LANES];
-            for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
-                let mut bits = above(simd, block, u, v, best.max(floor));
-                while bits != 0 {
-                    let at = entries[number * LANES + bits.trailing_zeros() as usize] as usize;
-                    bits &= bits - 1;
-                    let setup = job.primitives.batch.item(at);
-                    let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
-                    if depth > best.max(floor) && setup.covers(px, py) && job.allows(setup, x, y) {
-                        best = depth;
-                    }
+        let grid = self.grid(tile);
+        let block = if grid.whole { 0 } else { (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK };
+        let entries = &grid.entries[grid.starts[block] as usize..grid.starts[block + 1] as usize];
+        let candidates = grid.candidates[block].get_or_init(|| self.candidates(entries, tile));
+        for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
+            let mut bits = above(simd, block, u, v, best.max(floor));
+            while bits != 0 {
+                let entry = entries[number * LANES + bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                let setup = self.setup(entry);
+                let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
+                let allowed = || self.jobs[entry[0] as usize].allows(setup, x, y);
+                if depth > best.max(floor) && setup.covers(px, py) && allowed() {
+                    best = depth;
                 }
             }
         }
         best
+    }
+
+    #[inline(always)]
+    fn setup(&self, [job, at]: Entry) -> &Setup {
+        self.jobs[job as usize].primitives.batch.item(at as usize)
+    }
+
+    /// The first pixel of a tile.
+    fn origin(&self, tile: usize) -> [i32; 2] {
+        [tile as i32 % self.tiles_x * TILE as i32, tile as i32 / self.tiles_x * TILE as i32]
+    }
+
+    /// The finer lists of a tile.
+    fn grid(&self, tile: usize) -> &Grid {
+        let pending = &self.tiles[tile];
+        pending.grid.get_or_init(|| {
+            let origin = self.origin(tile);
+            let mut all: Vec<Entry> = Vec::new();
+            for &job in &self.touching[pending.jobs.clone()] {
+                let range = self.jobs[job as usize].primitives.batch.tile_range(tile);
+                all.extend(range.map(|at| [job, at as u32]));
+            }
+            let mut starts = [0; BLOCKS * BLOCKS + 1];
+            let candidates = [const { OnceLock::new() }; BLOCKS * BLOCKS];
+            if all.len() <= FEW {
+                starts[1..].fill(all.len() as u32);
+                return Box::new(Grid { whole: true, entries: all, starts, candidates });
+            }
+            // Texels whose centres may lie within the box.
+            let span = |v: [i32; 3], origin: i32| {
+                let low = ((v[0].min(v[1]).min(v[2]) >> 8) - 1 - origin).clamp(0, TILE as i32 - 1);
+                let high = ((v[0].max(v[1]).max(v[2]) >> 8) + 1 - origin).clamp(0, TILE as i32 - 1);
+                [(low as usize / BLOCK) as u8, (high as usize / BLOCK) as u8]
+            };
+            let blocks = |[x, y]: [[u8; 2]; 2]| (y[0]..=y[1]).flat_map(move |y| (x[0]..=x[1]).map(move |x| (x, y)));
+            let number = |(x, y): (u8, u8)| usize::from(y) * BLOCKS + usize::from(x);
+            let mut spans = Vec::with_capacity(all.len());
+            for &entry in &all {
+                let setup = self.setup(entry);
+                let spanned = [span(setup.x, origin[0]), span(setup.y, origin[1])];
+                blocks(spanned).for_each(|block| starts[number(block) + 1] += 1);
+                spans.push(spanned);
+            }
+            for block in 0..BLOCKS * BLOCKS {
+                starts[block + 1] += starts[block];
+            }
+            let (mut next, mut entries) = (starts, vec![[0; 2]; starts[BLOCKS * BLOCKS] as usize]);
+            for (&entry, &spanned) in all.iter().zip(&spans) {
+                for block in blocks(spanned) {
+                    let next = &mut next[number(block)];
+                    entries[*next as usize] = entry;
+                    *next += 1;
+                }
+            }
+            Box::new(Grid { whole: false, entries, starts, candidates })
+        })
+    }
+
+    /// Eights of entries, row by row; what is missing to an eight is below everything.
+    fn candidates(&self, entries: &[Entry], tile: usize) -> Box<[f32]> {
+        let origin = self.origin(tile);
+        let mut rows = vec![f32::NEG_INFINITY; entries.len().div_ceil(LANES) * ROWS * LANES];
+        for (eight, rows) in entries.chunks(LANES).zip(rows.chunks_exact_mut(ROWS * LANES)) {
+            for (lane, &entry) in eight.iter().enumerate() {
+                let row = candidate(self.setup(entry), origin, self.sign, self.scale);
+                for k in 0..ROWS {
+                    rows[k * LANES + lane] = row[k];
+                }
+            }
+        }
+        rows.into_boxed_slice()
     }
 
     /// Which depth stays: 1 the larger, -1 the smaller.
@@ -231,9 +325,10 @@ impl PendingDepth {
             .collect();
         let one = pattern(1);
         for (index, tile) in plane.tiles.iter_mut().enumerate() {
-            *tile = PlaneTile::Cleared(self.clear);
+            *tile = PlaneTile::new(self.clear);
             let (x, y) = (index as u32 % tiles_x * TILE as u32, index as u32 / tiles_x * TILE as u32);
-            let planes = TilePlanes { color: None, depth: Some((tile, scale)), stencil: None, samples: 1 };
+            let ranges = DepthRanges::new();
+            let planes = TilePlanes { color: None, depth: Some((tile, scale)), stencil: None, samples: 1, ranges };
             let mut run = TileRun::new(index, x, y, viewport, planes);
             dispatch!(Level::new(), simd => run.walk(simd, &items, &one, &one));
         }
@@ -241,53 +336,6 @@ impl PendingDepth {
 }
 
 impl PendingJob {
-    /// The finer lists of a tile.
-    fn grid(&self, tile: usize, sign: f32, scale: f32, tiles_x: usize) -> &Grid {
-        self.grids[tile].get_or_init(|| {
-            let origin = [(tile % tiles_x * TILE) as i32, (tile / tiles_x * TILE) as i32];
-            let batch = &self.primitives.batch;
-            let mut lists: [Vec<u32>; BLOCKS * BLOCKS] = std::array::from_fn(|_| Vec::new());
-            let range = batch.tile_range(tile);
-            let whole = range.len() <= FEW;
-            for at in range {
-                let setup = batch.item(at);
-                if whole {
-                    lists[0].push(at as u32);
-                    continue;
-                }
-                // Texels whose centres may lie within the box.
-                let span = |v: [i32; 3], origin: i32| {
-                    let low = (v[0].min(v[1]).min(v[2]) / SUBPIXEL - 1 - origin).clamp(0, TILE as i32 - 1);
-                    let high = (v[0].max(v[1]).max(v[2]) / SUBPIXEL + 1 - origin).clamp(0, TILE as i32 - 1);
-                    low as usize / BLOCK..high as usize / BLOCK + 1
-                };
-                for y in span(setup.y, origin[1]) {
-                    for x in span(setup.x, origin[0]) {
-                        lists[y * BLOCKS + x].push(at as u32);
-                    }
-                }
-            }
-            let mut grid =
-                Grid { whole, candidates: Vec::new(), entries: Vec::new(), starts: [0; BLOCKS * BLOCKS + 1] };
-            for (block, list) in lists.iter().enumerate() {
-                for eight in list.chunks(LANES) {
-                    let rows = grid.candidates.len();
-                    grid.candidates.resize(rows + ROWS * LANES, f32::NEG_INFINITY);
-                    for (lane, &at) in eight.iter().enumerate() {
-                        let row = candidate(batch.item(at as usize), origin, sign, scale);
-                        for k in 0..ROWS {
-                            grid.candidates[rows + k * LANES + lane] = row[k];
-                        }
-                    }
-                    grid.entries.extend(eight);
-                    grid.entries.resize(grid.entries.len().next_multiple_of(LANES), 0);
-                }
-                grid.starts[block + 1] = (grid.entries.len() / LANES) as u32;
-            }
-            Box::new(grid)
-        })
-    }
-
     fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
         let draw = self.primitives.facets[setup.facet as usize].draw;
         let [x0, y0, x1, y1] = self.draws[draw as usize].1;
@@ -295,23 +343,10 @@ impl PendingJob {
     }
 }
 
-fn job(primitives: Primitives, draws: Vec<ClippedState>, sign: f32, scale: f32, tiles: usize) -> PendingJob {
-    let batch = &primitives.batch;
-    let bound = |s: &Setup| if sign > 0.0 { s.z_max } else { -s.z_min };
-    let tile_bounds = (0..tiles).map(|tile| {
-        let range = batch.tile_range(tile);
-        let most = range.clone().map(|at| bound(batch.item(at))).fold(f32::NEG_INFINITY, f32::max);
-        // As read: stored and divided again. Both keep the order.
-        if range.is_empty() { most } else { stored(most.abs(), scale) / scale * sign }
-    });
-    let tile_bounds = tile_bounds.collect();
-    let grids = (0..tiles).map(|_| OnceLock::new()).collect();
-    PendingJob { primitives, draws, tile_bounds, grids }
-}
-
 /// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the
-/// bound of its depths; times the sign.
-const ROWS: usize = 4;
+/// bound of its depths, all times the sign; and the change with x and y of its three edge functions, and their values there
+/// (with a margin).
+const ROWS: usize = 13;
 
 fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; ROWS] {
     let bound = if sign > 0.0 { stored(setup.z_max, scale) / scale } else { -stored(setup.z_min, scale) / scale };
@@ -322,14 +357,22 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
     // Half a step for rounding when stored, and what five roundings may be off.
     let margin = size * 1.8e-7 + if scale == 1.0 { 0.0 } else { 0.5 / scale };
     let corner = setup.z * sign + x + y + margin;
+    let mut row = [0.0; ROWS];
+    row[3] = bound;
     if corner.is_finite() && dx.is_finite() && dy.is_finite() {
-        [corner, dx, dy, bound]
+        [row[0], row[1], row[2]] = [corner, dx, dy];
     } else {
-        [f32::MAX, 0.0, 0.0, bound]
+        row[0] = f32::MAX;
     }
+    for (edge, row) in center_edges(setup, origin).iter().zip(row[4..].chunks_exact_mut(3)) {
+        let [a, b, c] = edge.map(|v| v as f32);
+        let margin = ((a.abs() + b.abs()) * TILE as f32 + c.abs()) * 4e-7;
+        row.copy_from_slice(&[a, b, c + margin]);
+    }
+    row
 }
 
-/// Which of a block's eight candidates may be above `floor` at a place of the tile.
+/// Which of a block's eight candidates may cover a place of the tile, and be above `floor` there.
 #[inline(always)]
 fn above<S: Simd>(simd: S, block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
     let row = lanes::inlined(
@@ -337,6 +380,15 @@ fn above<S: Simd>(simd: S, block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
         |k: usize| F32x8::from_slice(simd, &block[k * LANES..(k + 1) * LANES]),
     );
     let plane = row(0) + row(1) * u + row(2) * v;
-    let floor = <F32x8<S> as SimdBase<S>>::splat(simd, floor);
-    (plane.simd_gt(floor) & row(3).simd_gt(floor)).to_bitmask() as u32
+    let splat = |value| <F32x8<S> as SimdBase<S>>::splat(simd, value);
+    let nearer = plane.simd_gt(splat(floor)) & row(3).simd_gt(splat(floor));
+    if !nearer.any_true() {
+        return 0;
+    }
+    let edge = lanes::inlined(
+        #[inline(always)]
+        |k: usize| row(k) * u + row(k + 1) * v + row(k + 2),
+    );
+    let inside = lanes::Lanes::min(lanes::Lanes::min(edge(4), edge(7)), edge(10));
+    (nearer & inside.simd_ge(splat(0.0))).to_bitmask() as u32
 }

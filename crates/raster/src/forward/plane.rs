@@ -1,19 +1,24 @@
-//! Planes of samples, stored in tiles of 64x64 pixels that are cleared lazily.
+//! Planes of samples, stored in tiles of 64x64 pixels, which are cleared and compressed by blocks.
 
 use super::pending::PendingDepth;
-use crate::{TILE, TILE_PIXELS, Viewport};
+use crate::{BLOCK, TILE, TILE_PIXELS, Viewport};
 
-/// A tile's samples. Index: `sample * TILE_PIXELS + (y % 64) * TILE + x % 64`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PlaneTile<T> {
-    /// Every sample has this value.
-    Cleared(T),
-    /// One value a sample.
-    Stored(Box<[T]>),
+/// A tile's samples, 64x64 pixels. Its blocks of 8x8 pixels can be cleared without being written, and can hold one value for
+/// all samples of a pixel: most blocks lie inside one surface, where a colour is written, blended and read once.
+#[derive(Clone, Debug)]
+pub struct PlaneTile<T> {
+    /// Index: `sample * TILE_PIXELS + (y % 64) * TILE + x % 64`. Empty until the first sample is written.
+    values: Vec<T>,
+    /// What the cleared blocks hold.
+    clear: T,
+    /// Bit `8 * row + column` of blocks: nothing was written there since the tile was cleared.
+    cleared: u64,
+    /// Bits of blocks whose pixels have one value, stored as sample 0, for all samples.
+    single: u64,
 }
 
 /// A plane of `width x height` pixels with `samples` values each.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Plane<T> {
     viewport: Viewport,
     samples: usize,
@@ -25,7 +30,7 @@ impl<T: Copy> Plane<T> {
     /// A plane full of `value`; no memory is taken for samples until they are written.
     pub fn new(viewport: Viewport, samples: usize, value: T) -> Self {
         let count = (viewport.tiles_x() * viewport.tiles_y()) as usize;
-        Self { viewport, samples, tiles: (0..count).map(|_| PlaneTile::Cleared(value)).collect() }
+        Self { viewport, samples, tiles: (0..count).map(|_| PlaneTile::new(value)).collect() }
     }
 
     /// Size in pixels.
@@ -41,30 +46,30 @@ impl<T: Copy> Plane<T> {
     /// Sets every sample; frees the tiles' memory.
     pub fn clear(&mut self, value: T) {
         for tile in &mut self.tiles {
-            *tile = PlaneTile::Cleared(value);
+            *tile = PlaneTile::new(value);
         }
     }
 
-    fn locate(&self, x: u32, y: u32, sample: usize) -> (usize, usize) {
+    /// The tile of a pixel, and the pixel's place in it.
+    fn locate(&self, x: u32, y: u32) -> (usize, usize) {
         let side = TILE as u32;
-        debug_assert!(x < self.viewport.width && y < self.viewport.height && sample < self.samples);
+        debug_assert!(x < self.viewport.width && y < self.viewport.height);
         let tile = (y / side * self.viewport.tiles_x() + x / side) as usize;
-        (tile, sample * TILE_PIXELS + ((y % side) * side + x % side) as usize)
+        (tile, ((y % side) * side + x % side) as usize)
     }
 
     /// One sample.
     pub fn get(&self, x: u32, y: u32, sample: usize) -> T {
-        let (tile, at) = self.locate(x, y, sample);
-        match &self.tiles[tile] {
-            PlaneTile::Cleared(value) => *value,
-            PlaneTile::Stored(values) => values[at],
-        }
+        debug_assert!(sample < self.samples);
+        let (tile, at) = self.locate(x, y);
+        self.tiles[tile].get(sample, at)
     }
 
     /// Sets one sample.
     pub fn set(&mut self, x: u32, y: u32, sample: usize, value: T) {
-        let (tile, at) = self.locate(x, y, sample);
-        self.tiles[tile].stored(self.samples)[at] = value;
+        debug_assert!(sample < self.samples);
+        let (tile, at) = self.locate(x, y);
+        self.tiles[tile].stored(self.samples)[sample * TILE_PIXELS + at] = value;
     }
 
     /// Copies `out.len()` pixels' sample `sample` from row `y`, beginning at `x`.
@@ -73,11 +78,8 @@ impl<T: Copy> Plane<T> {
         while done < out.len() {
             let here = x + done as u32;
             let run = (TILE - here as usize % TILE).min(out.len() - done);
-            let (tile, at) = self.locate(here, y, sample);
-            match &self.tiles[tile] {
-                PlaneTile::Cleared(value) => out[done..done + run].fill(*value),
-                PlaneTile::Stored(values) => out[done..done + run].copy_from_slice(&values[at..at + run]),
-            }
+            let (tile, at) = self.locate(here, y);
+            self.tiles[tile].read(sample, at, &mut out[done..done + run]);
             done += run;
         }
     }
@@ -89,7 +91,7 @@ impl<T: Copy> Plane<T> {
         while done < values.len() {
             let here = x + done as u32;
             let run = (TILE - here as usize % TILE).min(values.len() - done);
-            let (tile, at) = self.locate(here, y, 0);
+            let (tile, at) = self.locate(here, y);
             let stored = self.tiles[tile].stored(samples);
             for s in 0..samples {
                 let at = at + s * TILE_PIXELS;
@@ -100,21 +102,177 @@ impl<T: Copy> Plane<T> {
     }
 }
 
+/// Makes one value of a pixel's four samples, for a run of pixels.
+pub type Resolve<T> = fn([&[T]; 4], &mut [T]);
+
 impl<T: Copy> PlaneTile<T> {
-    /// The samples, made from the clear value if there are none yet.
-    pub fn stored(&mut self, samples: usize) -> &mut [T] {
-        if let PlaneTile::Cleared(value) = *self {
-            *self = PlaneTile::Stored(vec![value; samples * TILE_PIXELS].into_boxed_slice());
+    /// A tile full of `value`.
+    pub fn new(value: T) -> Self {
+        Self { values: Vec::new(), clear: value, cleared: u64::MAX, single: 0 }
+    }
+
+    /// The value of all samples, where nothing was written since they were cleared.
+    pub fn uniform(&self) -> Option<T> {
+        (self.cleared == u64::MAX).then_some(self.clear)
+    }
+
+    /// Sets every sample. A tile that is drawn to in every frame keeps its memory.
+    pub fn clear(&mut self, value: T) {
+        (self.clear, self.cleared, self.single) = (value, u64::MAX, 0);
+    }
+
+    /// The value of a pixel's sample; `at` is the pixel's place `y * TILE + x` in the tile.
+    #[inline(always)]
+    pub fn get(&self, sample: usize, at: usize) -> T {
+        let block = block_of(at);
+        if self.cleared >> block & 1 == 1 {
+            return self.clear;
         }
-        match self {
-            PlaneTile::Stored(values) => values,
-            PlaneTile::Cleared(_) => unreachable!("just stored"),
+        let sample = if self.single >> block & 1 == 1 { 0 } else { sample };
+        self.values[sample * TILE_PIXELS + at]
+    }
+
+    /// Copies a sample of the pixels of a row from place `at` on.
+    pub fn read(&self, sample: usize, at: usize, out: &mut [T]) {
+        let mut done = 0;
+        while done < out.len() {
+            let here = at + done;
+            let run = (BLOCK - here % BLOCK).min(out.len() - done);
+            let (block, out) = (block_of(here), &mut out[done..done + run]);
+            if self.cleared >> block & 1 == 1 {
+                out.fill(self.clear);
+            } else {
+                let first = if self.single >> block & 1 == 1 { 0 } else { sample * TILE_PIXELS } + here;
+                out.copy_from_slice(&self.values[first..first + run]);
+            }
+            done += run;
+        }
+    }
+
+    /// All samples, as [`Self::read`] would give them, to read and write.
+    pub fn stored(&mut self, samples: usize) -> &mut [T] {
+        self.open(u64::MAX, false, samples).1
+    }
+
+    /// Makes the blocks of `bits` ready to be changed: cleared ones are filled. Gives how many samples of a pixel must be
+    /// written, and all samples of the tile. That is one sample if what is written is the same for all (`together`), and all
+    /// these blocks hold one value a pixel.
+    #[inline(always)]
+    pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
+        if self.values.is_empty() {
+            self.values = vec![self.clear; samples * TILE_PIXELS];
+        }
+        if bits & self.cleared != 0 {
+            self.fill(bits & self.cleared);
+        }
+        if together && bits & !self.single == 0 {
+            return (1, &mut self.values);
+        }
+        if bits & self.single != 0 {
+            self.spread(bits & self.single, samples);
+        }
+        (samples, &mut self.values)
+    }
+
+    /// Makes a block ready to be overwritten, whatever it holds: with one value for all samples of a pixel, or each.
+    #[inline(always)]
+    pub(crate) fn replace(&mut self, bit: u64, together: bool, samples: usize) -> &mut [T] {
+        if self.values.is_empty() {
+            self.values = vec![self.clear; samples * TILE_PIXELS];
+        }
+        self.cleared &= !bit;
+        self.single = if together { self.single | bit } else { self.single & !bit };
+        &mut self.values
+    }
+
+    /// The value of a cleared block.
+    #[inline(always)]
+    pub(crate) fn cleared(&self, bit: u64) -> Option<T> {
+        (self.cleared & bit != 0).then_some(self.clear)
+    }
+
+    #[inline(never)]
+    fn fill(&mut self, bits: u64) {
+        each_row(bits, |row| {
+            if let Some(eight) = self.values.get_mut(row..).and_then(|rest| rest.first_chunk_mut::<BLOCK>()) {
+                *eight = [self.clear; BLOCK];
+            }
+        });
+        self.cleared &= !bits;
+        self.single |= bits;
+    }
+
+    #[inline(never)]
+    fn spread(&mut self, bits: u64, samples: usize) {
+        let (first, others) = self.values.split_at_mut(TILE_PIXELS);
+        debug_assert_eq!(others.len(), (samples - 1) * TILE_PIXELS);
+        each_row(bits, |row| {
+            for plane in others.chunks_exact_mut(TILE_PIXELS) {
+                plane[row..row + BLOCK].copy_from_slice(&first[row..row + BLOCK]);
+            }
+        });
+        self.single &= !bits;
+    }
+
+    /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
+    pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
+        if samples == target_samples {
+            target.values.clone_from(&self.values);
+            (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
+            return;
+        }
+        if samples != 1 && target_samples != 1 {
+            let values = target.stored(target_samples);
+            for (at, value) in values.iter_mut().enumerate() {
+                *value = self.get(at / TILE_PIXELS % samples, at % TILE_PIXELS);
+            }
+            return;
+        }
+        target.clear(self.clear);
+        let written = !self.cleared;
+        if written == 0 {
+            return;
+        }
+        let plain = if samples == 1 { written } else { written & self.single };
+        let values = target.replace(written, true, target_samples);
+        each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
+        each_row(written & !plain, |row| {
+            let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
+            resolve(sources, &mut values[row..row + BLOCK]);
+        });
+    }
+
+    /// A tile with `f` of every value.
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> PlaneTile<U> {
+        let values = self.values.iter().map(|&v| f(v)).collect();
+        PlaneTile { values, clear: f(self.clear), cleared: self.cleared, single: self.single }
+    }
+}
+
+/// Blocks along a tile's side.
+const BLOCKS: usize = TILE / BLOCK;
+
+/// The number of the block that the pixel at `y * TILE + x` lies in.
+#[inline(always)]
+fn block_of(at: usize) -> usize {
+    at / (TILE * BLOCK) % BLOCKS * BLOCKS + at % TILE / BLOCK
+}
+
+/// Calls `f` with the places where the rows of eight pixels of the blocks of `bits` begin.
+#[inline(always)]
+fn each_row(mut bits: u64, mut f: impl FnMut(usize)) {
+    while bits != 0 {
+        let block = bits.trailing_zeros() as usize;
+        bits &= bits - 1;
+        let first = block / BLOCKS * BLOCK * TILE + block % BLOCKS * BLOCK;
+        for row in 0..BLOCK {
+            f(first + row * TILE);
         }
     }
 }
 
 /// Colour samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum ColorPlane {
     /// Red in the lowest byte, alpha in the highest.
     Rgba8(Plane<u32>),

@@ -177,9 +177,13 @@ impl Interpolation {
     }
 }
 
+/// From so many pixels of a block on all are coloured, which costs less for each.
+const MANY: u32 = 36;
+
 const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
 /// Perspective-correct barycentric coordinates at eight points.
+#[derive(Clone, Copy)]
 struct Weights<S: Simd> {
     b1: F32x8<S>,
     b2: F32x8<S>,
@@ -187,11 +191,11 @@ struct Weights<S: Simd> {
     w: F32x8<S>,
 }
 
-/// Eight pixels, and which of them matter.
-struct Eight<'a, S: Simd> {
-    weights: &'a Weights<S>,
-    x: F32x8<S>,
-    y: F32x8<S>,
+/// Groups of eight pixels: where, and which of them matter.
+struct Groups<'a, S: Simd, const N: usize> {
+    weights: [Weights<S>; N],
+    x: &'a [F32x8<S>; N],
+    y: &'a [F32x8<S>; N],
     active: u32,
 }
 
@@ -340,21 +344,51 @@ impl<'a> Shader<'a> {
     /// stipples let pass.
     #[inline(always)]
     pub(crate) fn row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, active: u32) -> (Rgba<S>, u32) {
-        let weights = self.weights(simd, x, y);
-        let primary = self.primary(simd, &weights);
-        let mut color = primary;
-        if !self.state.units.is_empty() {
-            color = self.textured(simd, &Eight { weights: &weights, x, y, active }, &primary);
+        let [color] = self.colors(simd, &[x], &[y], active);
+        self.covered(simd, x, y, color)
+    }
+
+    /// The colours of groups of eight pixels, before soft borders. Groups go through each step together, since what a step
+    /// needs of the facet is the same for all.
+    #[inline(always)]
+    fn colors<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        x: &[F32x8<S>; N],
+        y: &[F32x8<S>; N],
+        active: u32,
+    ) -> [Rgba<S>; N] {
+        let mut groups = Groups { weights: [self.weights(simd, x[0], y[0]); N], x, y, active };
+        for i in 1..N {
+            groups.weights[i] = self.weights(simd, x[i], y[i]);
         }
+        let mut colors = [self.primary(simd, &groups.weights[0]); N];
+        for i in 1..N {
+            colors[i] = self.primary(simd, &groups.weights[i]);
+        }
+        if !self.state.units.is_empty() {
+            self.textured(simd, &groups, &mut colors);
+        }
+        if self.state.color_sum || self.state.fog.is_some() {
+            for i in 0..N {
+                colors[i] = self.summed(simd, &groups.weights[i], colors[i]);
+            }
+        }
+        colors
+    }
+
+    /// Adds the secondary colour, and mixes with fog.
+    #[inline(always)]
+    fn summed<S: Simd>(&self, simd: S, weights: &Weights<S>, mut color: Rgba<S>) -> Rgba<S> {
         if self.state.color_sum
-            && let Some(secondary) = self.secondary(simd, &weights)
+            && let Some(secondary) = self.secondary(simd, weights)
         {
             color = color_sum(color, &secondary);
         }
         if let (Some(f), Some(at)) = (&self.state.fog, self.layout.fog) {
-            color = fog(simd, f, color, self.value(simd, &weights, at));
+            color = fog(simd, f, color, self.value(simd, weights, at));
         }
-        self.covered(simd, x, y, color)
+        color
     }
 
     /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
@@ -372,13 +406,8 @@ impl<'a> Shader<'a> {
         }
         self.prepare(simd, setup);
         let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
-        if any == u64::MAX {
-            let x = CENTERS.map(|c| c + left as f32);
-            for row in 0..BLOCK {
-                let out = &mut words[BLOCK * row..BLOCK * (row + 1)];
-                let y = [(bottom + row) as f32 + 0.5; LANES];
-                passed |= u64::from(self.eight(simd, &x, &y, 0xff, out)) << (8 * row);
-            }
+        if any.count_ones() > MANY {
+            passed = self.whole(simd, (left, bottom), &mut words) & any;
             return (Words::Each(words), passed);
         }
         // Small facets cover few pixels of a row: eight of any rows go together.
@@ -405,21 +434,63 @@ impl<'a> Shader<'a> {
         (Words::Each(words), passed)
     }
 
+    /// The packed colours of all pixels of a block, and which pass the alpha test.
+    #[inline(never)]
+    fn whole<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), words: &mut [u32; BLOCK * BLOCK]) -> u64 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
+                let mut y = [splat(simd, bottom as f32 + 0.5); BLOCK];
+                for row in 1..BLOCK {
+                    y[row] = splat(simd, (bottom + row) as f32 + 0.5);
+                }
+                self.packed(simd, &[x; BLOCK], &y, 0xff, words)
+            },
+        )
+    }
+
     /// The packed colours of eight pixels, and which of `active` pass the alpha test.
     #[inline(never)]
-    fn eight<S: Simd>(&self, simd: S, x: &[f32; LANES], y: &[f32; LANES], active: u32, out: &mut [u32]) -> u32 {
+    fn eight<S: Simd>(
+        &self,
+        simd: S,
+        x: &[f32; LANES],
+        y: &[f32; LANES],
+        active: u32,
+        words: &mut [u32; LANES],
+    ) -> u32 {
         simd.vectorize(
             #[inline(always)]
             || {
                 let (x, y) = (F32x8::from_slice(simd, x), F32x8::from_slice(simd, y));
-                let (color, mut passed) = self.row(simd, x, y, active);
-                if let Some(test) = self.state.alpha_test {
-                    passed &= bits_of(alpha_test(simd, test, color[3]));
-                }
-                pack(&saturate_rgba(color)).store_slice(out);
-                passed & active
+                self.packed(simd, &[x], &[y], active, words) as u32 & active
             },
         )
+    }
+
+    /// The packed colours of groups of pixels, eight words each, and which pass the alpha test.
+    #[inline(always)]
+    fn packed<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        x: &[F32x8<S>; N],
+        y: &[F32x8<S>; N],
+        active: u32,
+        words: &mut [u32],
+    ) -> u64 {
+        let colors = self.colors(simd, x, y, active);
+        for (color, words) in colors.iter().zip(words.chunks_exact_mut(LANES)) {
+            pack(color).store_slice(words);
+        }
+        let mut passed = u64::MAX;
+        if let Some(test) = self.state.alpha_test {
+            passed = 0;
+            for i in 0..N {
+                passed |= u64::from(bits_of(alpha_test(simd, test, colors[i][3])) & 0xff) << (8 * i);
+            }
+        }
+        passed
     }
 
     /// The colour of all pixels, where it is the same for all.

@@ -69,6 +69,7 @@ impl<'a> TileRun<'a> {
         if let (Some(depth), Some((tile, scale))) = (clear.depth, &mut self.planes.depth) {
             let scaled = depth.clamp(0.0, 1.0) * *scale;
             let value = if *scale == 1.0 { scaled } else { (f64::from(scaled) + 0.5).floor() as f32 };
+            self.planes.ranges.forget(u64::MAX);
             fill(tile, value, whole, area, samples, |_, new| new);
         }
         if let (Some((value, mask)), Some(tile)) = (clear.stencil, &mut self.planes.stencil) {
@@ -451,16 +452,9 @@ fn fill<T: Copy + PartialEq>(
     combine: impl Fn(T, T) -> T,
 ) {
     if whole {
-        // A tile that is drawn to in every frame keeps its memory.
-        match tile {
-            PlaneTile::Cleared(old) => *old = value,
-            PlaneTile::Stored(values) => values.fill(value),
-        }
-        return;
+        return tile.clear(value);
     }
-    if let PlaneTile::Cleared(old) = tile
-        && combine(*old, value) == *old
-    {
+    if tile.uniform().is_some_and(|old| combine(old, value) == old) {
         return;
     }
     let values = tile.stored(samples);

@@ -28,6 +28,22 @@ impl Block {
     pub fn index(&self) -> usize {
         self.y / BLOCK * (TILE / BLOCK) + self.x / BLOCK
     }
+
+    /// Whether it is one of the tile's blocks; others begin at any pixel, see [`traverse_anywhere`].
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn is_aligned(&self) -> bool {
+        (self.x | self.y).is_multiple_of(BLOCK)
+    }
+
+    /// The bits of those of the tile's blocks that its rows lie in.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn touched(&self) -> u64 {
+        let columns = 1u64 << (self.x / BLOCK) | 1 << ((self.x + BLOCK - 1) / BLOCK);
+        let (first, last) = ((self.y + self.rows.start) / BLOCK, (self.y + self.rows.end - 1) / BLOCK);
+        columns << (8 * first) | columns << (8 * last)
+    }
 }
 
 /// What to do with covered samples.
@@ -269,6 +285,24 @@ impl Placed {
         }
         (edges, corners)
     }
+}
+
+/// The edge functions of a triangle within the tile at pixel `origin`: `[a, b, c]` with `a x + b y + c >= 0` for all of them
+/// where the centre of the tile's pixel `(x, y)` is covered.
+#[cfg(any(test, feature = "forward"))]
+#[inline(always)]
+pub(crate) fn center_edges(setup: &Setup, origin: [i32; 2]) -> [[i32; 3]; 3] {
+    let (x, y) = (setup.x.map(|x| x - origin[0] * SUBPIXEL), setup.y.map(|y| y - origin[1] * SUBPIXEL));
+    let mut edges = [[0; 3]; 3];
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
+        let half = i64::from(SUBPIXEL / 2);
+        let corner = i64::from(dy) * (i64::from(x[i]) - half) - i64::from(dx) * (i64::from(y[i]) - half);
+        let c = (corner - i64::from(!is_top_left(dx, dy))) >> 8;
+        edges[i] = [-dy, dx, c.clamp(-FAR_AWAY, FAR_AWAY) as i32];
+    }
+    edges
 }
 
 /// [`traverse`] for the one block whose top left pixel within the tile is `(x, y)`.

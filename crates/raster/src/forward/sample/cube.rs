@@ -7,6 +7,7 @@
 
 use super::depth::{by_mode, compared};
 use super::fetch::{Image, Words, columns, interior, level_of, level_of_face};
+use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
 use super::wrap::{Axis, position};
 use crate::forward::texture::{Level, Texels, Texture, Wrap};
@@ -179,6 +180,9 @@ fn bilinear<S: Simd>(simd: S, words: Words<'_>, x: &Axis<S>, y: &Axis<S>, width:
             words.words(simd, upper + x.far),
         )
     };
+    if !words.is_encoded() {
+        return Halves::filter(simd, [a, b, c, d], [x.weight, y.weight]).unpack();
+    }
     let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
     let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
     mix_rgba(lower, upper, y.weight)
@@ -241,6 +245,16 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 #[inline(always)]
 fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place<S>) -> Rgba<S> {
     let index = place.index.to_array();
+    if let Some(first) = Words::new(spot.shape) {
+        let mut words = [0u32; LANES];
+        for lane in 0..LANES {
+            let shape = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level);
+            if let Some(texels) = shape.and_then(Words::new) {
+                words[lane] = texels.texels.get(index[lane] as u32 as usize).copied().unwrap_or_default();
+            }
+        }
+        return first.meaning(simd, U32x8::from_slice(simd, &words));
+    }
     let mut colors = [[0.0f32; 4]; LANES];
     for lane in 0..LANES {
         if spot.lanes >> lane & 1 == 1

@@ -4,7 +4,7 @@
 //! once a texel. [`Image::raw`] brings other colours to that scale.
 
 use crate::forward::fragment_ops::packed::unpack_bytes;
-use crate::forward::plane::{DepthPlane, PlaneTile};
+use crate::forward::plane::DepthPlane;
 use crate::forward::texture::{Level, Texels, Texture};
 use crate::forward::wide::{Rgba, splat};
 use crate::{TILE, TILE_PIXELS};
@@ -68,6 +68,12 @@ impl<'a> Words<'a> {
         }
     }
 
+    /// Bytes do not stand for equal steps of light.
+    #[inline(always)]
+    pub(super) fn is_encoded(&self) -> bool {
+        self.decode.is_some()
+    }
+
     /// The texels numbered `index`.
     #[inline(always)]
     pub(super) fn words<S: Simd>(&self, simd: S, index: I32x8<S>) -> U32x8<S> {
@@ -107,10 +113,12 @@ impl<'a> Words<'a> {
     /// From raw colours to colours.
     #[inline(always)]
     pub(super) fn finish<S: Simd>(&self, color: Rgba<S>) -> Rgba<S> {
+        // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte again.
+        const EACH: f32 = 1.0 / 255.0;
         let [r, g, b, a] = color;
         match self.decode {
-            None => [r / 255.0, g / 255.0, b / 255.0, a / 255.0],
-            Some(_) => [r, g, b, a / 255.0],
+            None => [r * EACH, g * EACH, b * EACH, a * EACH],
+            Some(_) => [r, g, b, a * EACH],
         }
     }
 }
@@ -283,11 +291,9 @@ fn plane_depths<S: Simd>(
     let mut out = [0.0f32; LANES];
     for lane in 0..LANES {
         if active >> lane & 1 == 1 {
-            out[lane] = match depth.plane.tiles.get(tile[lane] as usize) {
-                Some(PlaneTile::Cleared(value)) => *value,
-                Some(PlaneTile::Stored(values)) => values[at[lane] as usize % TILE_PIXELS],
-                None => 0.0,
-            };
+            if let Some(tile) = depth.plane.tiles.get(tile[lane] as usize) {
+                out[lane] = tile.get(0, at[lane] as usize % TILE_PIXELS);
+            }
         }
     }
     F32x8::from_slice(simd, &out) / splat(simd, depth.scale)

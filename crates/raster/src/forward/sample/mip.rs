@@ -5,7 +5,7 @@ use super::fetch::interior;
 use crate::forward::texture::{Filter, Sampler, Texture, TextureKind};
 use crate::forward::wide::{Rgba, bits_of, clamp, floor, mask_of, max, mix, select, splat};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, Simd};
+use vitral_math::lanes::{F32x8, Lanes as _, Simd};
 
 /// Whether the level of detail can matter: otherwise any number will do.
 pub(crate) fn needs_lod(texture: &Texture) -> bool {
@@ -26,13 +26,21 @@ pub(crate) fn lod<S: Simd>(
 ) -> F32x8<S> {
     let across = du_dx * du_dx + dv_dx * dv_dx + dw_dx * dw_dx;
     let up = du_dy * du_dy + dv_dy * dv_dy + dw_dy * dw_dy;
-    half_log2(across, up)
+    half_log2(max(across, up))
 }
 
-/// The logarithm to base 2 of the longer of two steps, given their squared lengths.
+/// The logarithm to base 2 of a step, given its squared length: exact for powers of 4, else within 2e-6.
 #[inline(always)]
-pub(crate) fn half_log2<S: Simd>(across: F32x8<S>, up: F32x8<S>) -> F32x8<S> {
-    lanes::Lanes::log2(max(across, up)) * 0.5
+pub(crate) fn half_log2<S: Simd>(square: F32x8<S>) -> F32x8<S> {
+    let simd = square.token();
+    let (exponent, mantissa) = max(square, splat(simd, f32::MIN_POSITIVE)).split_exponent();
+    let t = mantissa - 1.0;
+    // log2(1 + t) / t, with equal errors, right at both ends.
+    let mut p = t * -0.025_841_41;
+    for c in [0.121_797_8, -0.277_905_22, 0.457_549_13, -0.718_145_24] {
+        p = (p + c) * t;
+    }
+    (exponent + (p + 1.442_544_94) * t) * 0.5
 }
 
 /// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of

@@ -16,6 +16,7 @@ mod cube;
 mod depth;
 mod fetch;
 mod flat;
+mod halves;
 pub(crate) mod mip;
 pub(crate) mod packed;
 mod wrap;

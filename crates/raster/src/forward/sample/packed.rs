@@ -3,6 +3,7 @@
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
 use super::fetch::{Words, interior};
+use super::halves::{Halves, pairs, singles, split, weight};
 use super::mip::{Choice, choose, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
 use crate::forward::texture::{Filter, Sampler, Texture, TextureKind, Wrap};
@@ -18,8 +19,8 @@ const LEVELS: usize = 16;
 pub(crate) struct Packed<'a> {
     levels: [&'a [u32]; LEVELS],
     last: usize,
-    /// Of level 0, in texels.
-    size: [f32; 2],
+    /// Of each level, in texels.
+    sizes: [[f32; 2]; LEVELS],
     /// Level 0, for what bytes mean.
     first: Words<'a>,
     sampler: &'a Sampler,
@@ -40,15 +41,17 @@ impl<'a> Packed<'a> {
         }
         let [width, height, _] = interior(first, 2);
         let mut slices: [&[u32]; LEVELS] = [&[]; LEVELS];
+        let mut sizes = [[1.0; 2]; LEVELS];
         for (k, (slice, level)) in slices.iter_mut().zip(levels).enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
+            sizes[k] = size.map(|side| side as f32);
             if level.border != 0 || level.size[..2] != size {
                 return None;
             }
             *slice = Words::new(level)?.texels;
         }
-        let (last, size) = (levels.len() - 1, [width as f32, height as f32]);
-        Some(Self { levels: slices, last, size, first: Words::new(first)?, sampler: &texture.sampler })
+        let last = levels.len() - 1;
+        Some(Self { levels: slices, last, sizes, first: Words::new(first)?, sampler: &texture.sampler })
     }
 
     /// Whether the level of detail can matter.
@@ -60,7 +63,7 @@ impl<'a> Packed<'a> {
     /// Width and height of level 0.
     #[inline(always)]
     pub(crate) fn size(&self) -> [f32; 2] {
-        self.size
+        self.sizes[0]
     }
 
     /// The colours at (s, t), as [`super::sample`] tells.
@@ -85,12 +88,90 @@ impl<'a> Packed<'a> {
     /// Raw colours, all lanes with one filter within a level.
     #[inline(always)]
     fn filtered<S: Simd>(&self, simd: S, place: [F32x8<S>; 2], choice: &Choice<S>, linear: bool) -> Rgba<S> {
+        let several = bits_of(choice.fraction.simd_gt(splat(simd, 0.0))) != 0;
+        let next = min(choice.level + 1.0, splat(simd, self.last as f32));
+        if linear && !self.first.is_encoded() {
+            let color = self.halves(simd, place, choice.level);
+            if !several {
+                return color.unpack();
+            }
+            return color.mix(&self.halves(simd, place, next), weight(simd, choice.fraction)).unpack();
+        }
         let color = self.level(simd, place, choice.level, linear);
-        if bits_of(choice.fraction.simd_gt(splat(simd, 0.0))) == 0 {
+        if !several {
             return color;
         }
-        let next = min(choice.level + 1.0, splat(simd, self.last as f32));
         mix_rgba(color, self.level(simd, place, next, linear), choice.fraction)
+    }
+
+    /// Filtered bytes of one level a lane.
+    #[inline(always)]
+    fn halves<S: Simd>(&self, simd: S, place: [F32x8<S>; 2], level: F32x8<S>) -> Halves<S> {
+        let each: I32x8<S> = level.to_int();
+        let first = each.to_array()[0];
+        if !each.simd_eq(first).all_true() {
+            return self.mixed_halves(simd, place, level);
+        }
+        // Nearly always all lanes need the same level.
+        let level = first as usize % LEVELS;
+        let size = self.sizes[level];
+        let [wrap_s, wrap_t, _] = self.sampler.wrap;
+        let (width, height) = (splat(simd, size[0]), splat(simd, size[1]));
+        let x = linear_in(simd, position_in(simd, place[0], width, wrap_s), width, wrap_s);
+        let y = linear_in(simd, position_in(simd, place[1], height, wrap_t), height, wrap_t);
+        let (texels, stride): (_, I32x8<S>) = (self.levels[level], width.to_int());
+        let rows = [y.near * stride, y.far * stride];
+        let quads = if (x.near + 1).simd_eq(x.far).all_true() {
+            let ((a, b), (c, d)) = (pairs(simd, texels, rows[0] + x.near), pairs(simd, texels, rows[1] + x.near));
+            [a, b, c, d]
+        } else {
+            // The image wraps round or ends.
+            [
+                singles(simd, texels, rows[0] + x.near),
+                singles(simd, texels, rows[0] + x.far),
+                singles(simd, texels, rows[1] + x.near),
+                singles(simd, texels, rows[1] + x.far),
+            ]
+        };
+        Halves::filter(simd, quads, [x.weight, y.weight])
+    }
+
+    /// [`Self::halves`] where lanes need different levels.
+    #[inline(never)]
+    fn mixed_halves<S: Simd>(&self, simd: S, place: [F32x8<S>; 2], level: F32x8<S>) -> Halves<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (level, stride, [x, y]) = self.axes(simd, place, level);
+                let (x, y) = (self.along(simd, 0, x), self.along(simd, 1, y));
+                let quads = self.quads(simd, &level, &x, [y.near * stride, y.far * stride]);
+                Halves::filter(simd, quads, [x.weight, y.weight])
+            },
+        )
+    }
+
+    /// Of each lane's level: its number, its width, and along both axes the position and the size.
+    #[inline(always)]
+    fn axes<S: Simd>(
+        &self,
+        simd: S,
+        place: [F32x8<S>; 2],
+        level: F32x8<S>,
+    ) -> ([i32; LANES], I32x8<S>, [[F32x8<S>; 2]; 2]) {
+        let shrink = lanes::Lanes::exp2_whole(-level);
+        let one = splat(simd, 1.0);
+        let (width, height) = (max(floor(shrink * self.sizes[0][0]), one), max(floor(shrink * self.sizes[0][1]), one));
+        let [wrap_s, wrap_t, _] = self.sampler.wrap;
+        let x = position_in(simd, place[0], width, wrap_s);
+        let y = position_in(simd, place[1], height, wrap_t);
+        let (level, stride): (I32x8<S>, I32x8<S>) = (level.to_int(), width.to_int());
+        (level.to_array(), stride, [[x, width], [y, height]])
+    }
+
+    /// The texels round positions along an axis, given with sizes.
+    #[inline(always)]
+    fn along<S: Simd>(&self, simd: S, axis: usize, [position, size]: [F32x8<S>; 2]) -> Axis<S> {
+        linear_in(simd, position, size, self.sampler.wrap[axis])
     }
 
     /// Raw colours of one level a lane.
@@ -99,24 +180,18 @@ impl<'a> Packed<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let shrink = lanes::Lanes::exp2_whole(-level);
-                let [wrap_s, wrap_t, _] = self.sampler.wrap;
-                let one = splat(simd, 1.0);
-                let (width, height) = (max(floor(shrink * self.size[0]), one), max(floor(shrink * self.size[1]), one));
-                let x = position_in(simd, place[0], width, wrap_s);
-                let y = position_in(simd, place[1], height, wrap_t);
-                let (level, stride): (I32x8<S>, I32x8<S>) = (level.to_int(), width.to_int());
-                let level = level.to_array();
+                let (level, stride, [x, y]) = self.axes(simd, place, level);
+                let words = &self.first;
                 if filtered {
-                    let (x, y) = (linear_in(simd, x, width, wrap_s), linear_in(simd, y, height, wrap_t));
+                    let (x, y) = (self.along(simd, 0, x), self.along(simd, 1, y));
                     let [a, b, c, d] = self.quads(simd, &level, &x, [y.near * stride, y.far * stride]);
-                    let words = &self.first;
                     let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
                     let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
                     mix_rgba(lower, upper, y.weight)
                 } else {
-                    let (x, y) = (nearest_in(x, width, wrap_s), nearest_in(y, height, wrap_t));
-                    self.first.meaning(simd, self.words(simd, &level, y * stride + x))
+                    let [wrap_s, wrap_t, _] = self.sampler.wrap;
+                    let (x, y) = (nearest_in(x[0], x[1], wrap_s), nearest_in(y[0], y[1], wrap_t));
+                    words.meaning(simd, self.words(simd, &level, y * stride + x))
                 }
             },
         )
@@ -160,14 +235,6 @@ impl<'a> Packed<'a> {
         }
         U32x8::from_slice(simd, &words)
     }
-}
-
-/// The first texels of eight pairs, and the second ones.
-#[inline(always)]
-fn split<S: Simd>(simd: S, pairs: &[[u32; 2]; LANES]) -> (U32x8<S>, U32x8<S>) {
-    let flat: &[u32] = bytemuck::cast_slice(pairs);
-    let (low, high) = flat.split_at(LANES);
-    U32x8::from_slice(simd, low).deinterleave(U32x8::from_slice(simd, high))
 }
 
 /// As [`super::sample`].

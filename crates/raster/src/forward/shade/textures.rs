@@ -1,7 +1,7 @@
 //! What a facet's textures make of its colour: coordinates, level of detail, lookups and environments, eight pixels at a
 //! time.
 
-use super::{Eight, MOST, Shader, Weights};
+use super::{Groups, MOST, Shader, Weights};
 use crate::forward::assemble::Shape;
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
@@ -9,31 +9,50 @@ use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::sample;
 use crate::forward::state::{EnvironmentMode, Unit};
-use crate::forward::wide::{Rgba, splat, splat_rgba};
-use vitral_math::lanes::Simd;
+use crate::forward::wide::{Rgba, max, splat, splat_rgba};
+use vitral_math::lanes::{F32x8, Simd};
 
 impl Shader<'_> {
-    /// All units' textures and environments.
+    /// All units' textures and environments: `colors` are the primary colours before.
     #[inline(always)]
-    pub(super) fn textured<S: Simd>(&self, simd: S, eight: &Eight<'_, S>, primary: &Rgba<S>) -> Rgba<S> {
+    pub(super) fn textured<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, S, N>,
+        colors: &mut [Rgba<S>; N],
+    ) {
         // The mode that nearly all programs use needs no other unit's texture.
-        if self.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
-            let mut color = *primary;
-            for unit in &self.state.units {
-                let texture = self.texture(simd, eight, unit);
-                color = modulate(format_of(&unit.texture), &texture, color);
+        if !self.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
+            for i in 0..N {
+                colors[i] = self.combined(simd, groups, i, &colors[i]);
             }
-            return color;
+            return;
         }
-        self.combined(simd, eight, primary)
+        for unit in &self.state.units {
+            match self.common(unit) {
+                Some((packed, at)) => self.plain(simd, groups, (unit, packed, at), colors),
+                None => {
+                    let format = format_of(&unit.texture);
+                    for i in 0..N {
+                        colors[i] = modulate(format, &self.texture(simd, groups, i, unit), colors[i]);
+                    }
+                }
+            }
+        }
     }
 
     /// All units' textures and environments, where one may use another's texture.
     #[inline(never)]
-    fn combined<S: Simd>(&self, simd: S, eight: &Eight<'_, S>, primary: &Rgba<S>) -> Rgba<S> {
+    fn combined<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, S, N>,
+        i: usize,
+        primary: &Rgba<S>,
+    ) -> Rgba<S> {
         let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
         for unit in &self.state.units {
-            textures[unit.index % UNITS] = self.texture(simd, eight, unit);
+            textures[unit.index % UNITS] = self.texture(simd, groups, i, unit);
         }
         let mut color = *primary;
         for unit in &self.state.units {
@@ -42,24 +61,43 @@ impl Shader<'_> {
         color
     }
 
-    /// A unit's texture: the common kind has a path of its own.
+    /// The texture of a unit and where its coordinates are in records, if it is of the common kind: two dimensions, 8 bits
+    /// a component, no border in reach, no anisotropy, no sprites.
+    #[inline(always)]
+    fn common(&self, unit: &Unit) -> Option<(&Packed<'_>, usize)> {
+        let (_, packed) = self.plain.iter().find(|(index, _)| *index == unit.index)?;
+        Some((packed, self.layout.tex[unit.index % UNITS]?))
+    }
+
+    /// A unit's texture at a group of pixels.
     #[inline(never)]
-    fn texture<S: Simd>(&self, simd: S, eight: &Eight<'_, S>, unit: &Unit) -> Rgba<S> {
-        if let Some((_, packed)) = self.plain.iter().find(|(index, _)| *index == unit.index)
-            && let Some(at) = self.layout.tex[unit.index % UNITS]
-        {
-            return self.plain(simd, eight, packed, (at, unit.lod_bias));
+    fn texture<S: Simd, const N: usize>(&self, simd: S, groups: &Groups<'_, S, N>, i: usize, unit: &Unit) -> Rgba<S> {
+        let (weights, active) = (&groups.weights[i], groups.active);
+        if let Some((packed, at)) = self.common(unit) {
+            return simd.vectorize(
+                #[inline(always)]
+                || {
+                    let slopes = Slopes::new(self, packed, at);
+                    self.looked_up(simd, weights, active, (unit, packed, at), &slopes)
+                },
+            );
         }
         simd.vectorize(
             #[inline(always)]
-            || self.any(simd, eight, unit),
+            || self.any(simd, weights, (groups.x[i], groups.y[i]), active, unit),
         )
     }
 
     /// Any texture: sprites, borders, volumes, cubes, depth, anisotropy.
     #[inline(always)]
-    fn any<S: Simd>(&self, simd: S, eight: &Eight<'_, S>, unit: &Unit) -> Rgba<S> {
-        let &Eight { weights, x, y, active } = eight;
+    fn any<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        (x, y): (F32x8<S>, F32x8<S>),
+        active: u32,
+        unit: &Unit,
+    ) -> Rgba<S> {
         let texture = &*unit.texture;
         let mut coords = match self.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
@@ -113,48 +151,132 @@ impl Shader<'_> {
         steps
     }
 
-    /// The common kind of texture: two dimensions, 8 bits a component, no border in reach, no anisotropy.
+    /// Modulates colours with a texture of the common kind.
     #[inline(never)]
-    fn plain<S: Simd>(
+    fn plain<S: Simd, const N: usize>(
         &self,
         simd: S,
-        &Eight { weights, active, .. }: &Eight<'_, S>,
-        packed: &Packed<'_>,
-        (at, bias): (usize, f32),
+        groups: &Groups<'_, S, N>,
+        (unit, packed, at): (&Unit, &Packed<'_>, usize),
+        colors: &mut [Rgba<S>; N],
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (slopes, format) = (Slopes::new(self, packed, at), format_of(&unit.texture));
+                for i in 0..N {
+                    let weights = &groups.weights[i];
+                    let texture = self.looked_up(simd, weights, groups.active, (unit, packed, at), &slopes);
+                    colors[i] = modulate(format, &texture, colors[i]);
+                }
+            },
+        );
+    }
+
+    /// A texture of the common kind at eight pixels.
+    #[inline(always)]
+    fn looked_up<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        active: u32,
+        (unit, packed, at): (&Unit, &Packed<'_>, usize),
+        slopes: &Slopes,
     ) -> Rgba<S> {
+        let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
+        let bias = splat(simd, unit.lod_bias);
+        if slopes.divided {
+            let (place, level) = self.divided(simd, weights, packed.size(), at, place);
+            return packed.at(simd, place, level + bias, active);
+        }
+        let level = if packed.needs_lod() { slopes.level(simd, weights, &place) + bias } else { bias };
+        packed.at(simd, place, level, active)
+    }
+
+    /// Coordinates divided by q, and the level of detail.
+    #[inline(never)]
+    fn divided<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        size: [f32; 2],
+        at: usize,
+        place: [F32x8<S>; 2],
+    ) -> ([F32x8<S>; 2], F32x8<S>) {
         simd.vectorize(
             #[inline(always)]
             || {
                 let d = &self.scratch.differences;
-                let [mut s, mut t] = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
-                let (q_at, projected) = ((at + 3) % MOST, d.varies >> ((at + 3) % MOST) & 1 == 1);
-                let q = projected || d.base[q_at] != 1.0;
-                let inverse_q = if q { splat(simd, 1.0) / self.value(simd, weights, q_at) } else { splat(simd, 1.0) };
-                if q {
-                    (s, t) = (s * inverse_q, t * inverse_q);
-                }
-                let mut level = splat(simd, bias);
-                if packed.needs_lod() {
-                    let size = packed.size();
-                    let mut squares = [splat(simd, 0.0); 2];
-                    for axis in 0..2 {
-                        let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
-                        for (k, place) in [s, t].into_iter().enumerate() {
-                            let mut step = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
-                            if projected {
-                                step -= place * (db1 * d.d1[q_at] + db2 * d.d2[q_at]);
-                            }
-                            if q {
-                                step *= inverse_q;
-                            }
-                            let step = step * size[k];
-                            squares[axis] += step * step;
-                        }
+                let q_at = (at + 3) % MOST;
+                let inverse_q = splat(simd, 1.0) / self.value(simd, weights, q_at);
+                let place = [place[0] * inverse_q, place[1] * inverse_q];
+                let mut squares = [splat(simd, 0.0); 2];
+                for axis in 0..2 {
+                    let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
+                    let dq = db1 * d.d1[q_at] + db2 * d.d2[q_at];
+                    for k in 0..2 {
+                        let n = (at + k) % MOST;
+                        let step = (db1 * d.d1[n] + db2 * d.d2[n] - place[k] * dq) * inverse_q * size[k];
+                        squares[axis] += step * step;
                     }
-                    level += half_log2(squares[0], squares[1]);
                 }
-                packed.at(simd, [s, t], level, active)
+                (place, half_log2(max(squares[0], squares[1])))
             },
         )
+    }
+}
+
+/// How the coordinates of a texture of the common kind change over a facet. With `s` a coordinate less corner 0's,
+/// `ds/dx = (d(Σ s l / w)/dx - s d(Σ l / w)/dx) w`.
+struct Slopes {
+    /// For x and y, for s and t: `d(Σ s l / w)` and `d(Σ l / w)`, times the size in texels.
+    numerator: [[f32; 2]; 2],
+    sum: [[f32; 2]; 2],
+    /// The coordinates of corner 0.
+    base: [f32; 2],
+    /// All corners have one w: `ds/dx` is the numerator.
+    flat: bool,
+    /// Coordinates must be divided by q.
+    divided: bool,
+}
+
+impl Slopes {
+    #[inline(always)]
+    fn new(shader: &Shader<'_>, packed: &Packed<'_>, at: usize) -> Self {
+        let (i, d) = (&shader.scratch.interpolation, &shader.scratch.differences);
+        let (size, q_at) = (packed.size(), (at + 3) % MOST);
+        let (mut numerator, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+        for axis in 0..2 {
+            for k in 0..2 {
+                let n = (at + k) % MOST;
+                numerator[axis][k] = (i.first[axis + 1] * d.d1[n] + i.second[axis + 1] * d.d2[n]) * size[k];
+                sum[axis][k] = i.sum[axis + 1] * size[k];
+            }
+        }
+        Self {
+            numerator,
+            sum,
+            base: [d.base[at % MOST], d.base[(at + 1) % MOST]],
+            flat: i.flat_w.is_some(),
+            divided: d.varies >> q_at & 1 == 1 || d.base[q_at] != 1.0,
+        }
+    }
+
+    /// The level of detail.
+    #[inline(always)]
+    fn level<S: Simd>(&self, simd: S, weights: &Weights<S>, place: &[F32x8<S>; 2]) -> F32x8<S> {
+        let mut squares = [splat(simd, 0.0); 2];
+        for axis in 0..2 {
+            for k in 0..2 {
+                let mut step = splat(simd, self.numerator[axis][k]);
+                if !self.flat {
+                    step -= (place[k] - self.base[k]) * self.sum[axis][k];
+                }
+                squares[axis] += step * step;
+            }
+        }
+        let longer = max(squares[0], squares[1]);
+        let longer = if self.flat { longer } else { longer * weights.w * weights.w };
+        half_log2(longer)
     }
 }

@@ -4,6 +4,9 @@
 use super::*;
 use crate::forward::sample::packed::Packed;
 
+/// How far a colour of bytes, filtered as bytes, may be from the exact one: three roundings, of weights too.
+const FILTERED: f32 = 3.0 / 255.0;
+
 /// A sequence that looks random.
 struct Noise(u32);
 
@@ -180,7 +183,7 @@ fn the_lanes_agree_with_the_scalar_sampler() {
                         let expected = scalar(&texture, coords[lane], lods[lane], dimensions);
                         for k in 0..4 {
                             assert!(
-                                (out[lane][k] - expected[k]).abs() < 1e-4,
+                                (out[lane][k] - expected[k]).abs() < FILTERED,
                                 "{kind:?} {size:?} {:?} at {:?} lod {}: {:?}, expected {expected:?}",
                                 texture.sampler,
                                 coords[lane],
@@ -224,7 +227,9 @@ fn the_packed_path_agrees_with_the_general_one() {
                     });
                     for k in 0..4 {
                         for lane in 0..8 {
-                            assert!((a[k][lane] - b[k][lane]).abs() < 1e-6, "{name} {min:?} {wrap:?}");
+                            // Bytes that are no light are filtered as bytes.
+                            let most = if srgb { 1e-6 } else { FILTERED };
+                            assert!((a[k][lane] - b[k][lane]).abs() < most, "{name} {min:?} {wrap:?}");
                         }
                     }
                 }

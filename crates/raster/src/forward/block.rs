@@ -104,7 +104,9 @@ pub(crate) fn depths<S: Simd>(
             let count = pattern.len().min(samples).min(SAMPLES);
             let mut slopes = [Slope::new(simd, setup, place, pattern.position(0)); SAMPLES];
             for s in 1..count {
-                slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
+                if masks[s] != 0 || block.is_aligned() {
+                    slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
+                }
             }
             let test = Test {
                 slopes: &slopes[..count],

@@ -404,6 +404,20 @@ impl<'a> Shader<'a> {
             let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
             return (Words::One(word), if passed { any } else { 0 });
         }
+        simd.vectorize(
+            #[inline(always)]
+            || self.block_inlined(simd, setup, (left, bottom), any),
+        )
+    }
+
+    #[inline(always)]
+    fn block_inlined<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        (left, bottom): (usize, usize),
+        any: u64,
+    ) -> (Words, u64) {
         self.prepare(simd, setup);
         let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
         if any.count_ones() > MANY {

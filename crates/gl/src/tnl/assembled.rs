@@ -126,35 +126,37 @@ fn add_triangles(p: &Primitive, out: &mut Vec<[u32; 3]>) {
 }
 
 fn piece(triangles: &[[u32; 3]], positions: &[[f32; 4]]) -> Piece {
-    let mut triangles = triangles.to_vec();
-    let bounds = bounds(triangles.iter().flatten().map(|&v| positions[v as usize]));
-    let all = || triangles.iter().flatten().copied();
-    let (low, high) = (all().min().unwrap_or(0), all().max().map_or(0, |v| v + 1));
+    let (mut low, mut high) = (u32::MAX, 0);
+    for &v in triangles.iter().flatten() {
+        (low, high) = (low.min(v), high.max(v + 1));
+    }
+    let low = low.min(high);
     if (high - low) as usize <= 4 * triangles.len() + 64 {
-        triangles.iter_mut().flatten().for_each(|v| *v -= low);
+        // Vertices between that no triangle uses may widen the bounds: they only ever save work.
+        let bounds = bounds(positions[low as usize..high as usize].iter().copied());
+        let triangles = triangles.iter().map(|t| t.map(|v| v - low)).collect();
         return Piece { triangles, vertices: PieceVertices::Range(low, high), bounds };
     }
-    let mut list: Vec<u32> = all().collect();
+    let mut list: Vec<u32> = triangles.iter().flatten().copied().collect();
     list.sort_unstable();
     list.dedup();
-    for v in triangles.iter_mut().flatten() {
-        *v = list.binary_search(v).unwrap_or(0) as u32;
-    }
+    let number = |v: u32| list.binary_search(&v).unwrap_or(0) as u32;
+    let triangles = triangles.iter().map(|t| t.map(number)).collect();
+    let bounds = bounds(list.iter().map(|&v| positions[v as usize]));
     Piece { triangles, vertices: PieceVertices::List(list), bounds }
 }
 
 pub(super) fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
-    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let (mut low, mut high, mut regular) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4], true);
     for p in positions {
-        if p[3] != 1.0 || !(p[0] + p[1] + p[2]).is_finite() {
-            return None;
-        }
-        for k in 0..3 {
-            bounds[0][k] = bounds[0][k].min(p[k]);
-            bounds[1][k] = bounds[1][k].max(p[k]);
+        regular &= p[3] == 1.0 && (p[0] + p[1] + p[2]).is_finite();
+        for k in 0..4 {
+            low[k] = if p[k] < low[k] { p[k] } else { low[k] };
+            high[k] = if p[k] > high[k] { p[k] } else { high[k] };
         }
     }
-    Some(bounds)
+    let three = |v: [f32; 4]| [v[0], v[1], v[2]];
+    regular.then_some([three(low), three(high)])
 }
 
 impl Piece {

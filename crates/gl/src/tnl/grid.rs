@@ -139,6 +139,9 @@ fn axes(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
         for k in 0..3 {
             varies[k] |= p[k] != first[k];
         }
+        if varies == [true; 3] {
+            return None;
+        }
     }
     match varies {
         [true, true, false] => Some([0, 1]),

@@ -17,7 +17,7 @@ use super::state::FragmentState;
 use super::wide::{Rgba, bits_of, clamp, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd, U32x8};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -425,27 +425,24 @@ impl<'a> Shader<'a> {
             return (Words::Each(words), passed);
         }
         // Small facets cover few pixels of a row: eight of any rows go together.
-        let mut rest = any;
+        let (mut rest, tested) = (any, self.state.alpha_test.is_some());
         while rest != 0 {
-            let (mut places, mut x, mut y, mut count) = ([0; LANES], [0.0; LANES], [0.0; LANES], 0);
+            let (mut places, mut count) = ([rest.trailing_zeros(); LANES], 0);
             while rest != 0 && count < LANES {
                 places[count] = rest.trailing_zeros();
                 rest &= rest - 1;
                 count += 1;
             }
-            for lane in 0..LANES {
-                let place = places[lane.min(count - 1)] as usize;
-                x[lane] = (left + place % BLOCK) as f32 + 0.5;
-                y[lane] = (bottom + place / BLOCK) as f32 + 0.5;
-            }
             let mut out = [0; LANES];
-            let pass = self.eight(simd, &x, &y, (1 << count) - 1, &mut out);
+            let pass = self.eight(simd, &places, (left, bottom), (1 << count) - 1, &mut out);
             for lane in 0..count {
-                words[places[lane] as usize] = out[lane];
-                passed |= u64::from(pass >> lane & 1) << places[lane];
+                words[places[lane] as usize % words.len()] = out[lane];
+                if tested {
+                    passed |= u64::from(pass >> lane & 1) << places[lane];
+                }
             }
         }
-        (Words::Each(words), passed)
+        (Words::Each(words), if tested { passed } else { any })
     }
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
@@ -464,21 +461,24 @@ impl<'a> Shader<'a> {
         )
     }
 
-    /// The packed colours of eight pixels, and which of `active` pass the alpha test.
+    /// The packed colours of eight pixels of a block, each at `8 * row + column`, and which pass the alpha test. `active` says
+    /// which matter.
     #[inline(never)]
     fn eight<S: Simd>(
         &self,
         simd: S,
-        x: &[f32; LANES],
-        y: &[f32; LANES],
+        places: &[u32; LANES],
+        (left, bottom): (usize, usize),
         active: u32,
         words: &mut [u32; LANES],
     ) -> u32 {
         simd.vectorize(
             #[inline(always)]
             || {
-                let (x, y) = (F32x8::from_slice(simd, x), F32x8::from_slice(simd, y));
-                self.packed(simd, &[x], &[y], active, words) as u32 & active
+                let places: I32x8<S> = U32x8::from_slice(simd, places).bitcast();
+                let (column, row): (F32x8<S>, F32x8<S>) = ((places & 7).to_float(), (places >> 3).to_float());
+                let (x, y) = (column + (left as f32 + 0.5), row + (bottom as f32 + 0.5));
+                self.packed(simd, &[x], &[y], active, words) as u32
             },
         )
     }

@@ -303,9 +303,17 @@ impl FragmentSink<'_, '_, '_> {
         self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
     }
 
-    /// The common kinds of fragments, see [`super::block`].
-    #[inline(always)]
+    /// The common kinds of fragments, see [`super::block`]. One function, since traversals come in several kinds.
+    #[inline(never)]
     fn block<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.block_inlined(simd, setup, block, masks),
+        );
+    }
+
+    #[inline(always)]
+    fn block_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
         let mut bits = [0; SAMPLES];
@@ -363,8 +371,17 @@ impl FragmentSink<'_, '_, '_> {
         block::depths(simd, setup, place, block, self.pattern, &mut self.run.planes, rule, bits);
     }
 
+    /// A row of eight pixels, with all operations that there are.
+    #[inline(never)]
+    fn row<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, bits: [u32; SAMPLES]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.row_inlined(simd, setup, block, row, bits),
+        );
+    }
+
     #[inline(always)]
-    fn row<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
+    fn row_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let y = block.y + row;
         let (left, top) = (self.run.x as usize + block.x, self.run.y as usize + y);

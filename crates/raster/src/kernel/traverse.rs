@@ -132,7 +132,22 @@ pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
-    use crate::samples::MOST_SAMPLES;
+    if pattern.len() == 1 {
+        traverse_small::<S, K, 1>(simd, setup, tile, pattern, sink);
+    } else {
+        traverse_small::<S, K, { crate::samples::MOST_SAMPLES }>(simd, setup, tile, pattern, sink);
+    }
+}
+
+#[cfg(any(test, feature = "forward"))]
+#[inline(always)]
+fn traverse_small<S: Simd, K: BlockSink<S>, const MOST: usize>(
+    simd: S,
+    setup: &Setup,
+    tile: (u32, u32),
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
     let window = [0..TILE, 0..TILE];
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
@@ -149,8 +164,9 @@ pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
     let (edges, corners) = place.edges();
     let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
     let [xs, ys] = pattern.axes();
-    let (mut masks, mut any) = ([0; MOST_SAMPLES], 0);
-    for s in 0..pattern.len().min(MOST_SAMPLES) {
+    let (mut masks, mut any) = ([0; MOST], 0);
+    let samples = if MOST == 1 { 1 } else { pattern.len().min(MOST) };
+    for s in 0..samples {
         let mut at_block = [0; 3];
         for i in 0..3 {
             let Edge { a, b } = edges[i];
@@ -160,7 +176,7 @@ pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
         any |= masks[s];
     }
     if any != 0 {
-        sink.cover(simd, setup, &block, &masks[..pattern.len()]);
+        sink.cover(simd, setup, &block, &masks[..samples]);
     }
 }
 

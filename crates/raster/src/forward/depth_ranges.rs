@@ -1,7 +1,7 @@
 //! Between which depths a tile's blocks lie, found where it is asked for: what lies wholly before or behind all of a block
 //! need not be compared sample by sample.
 //!
-//! Source: [Greene 1993], with one level and both bounds.
+//! Source: [Greene et al. 1993], with one level and both bounds.
 
 use super::plane::PlaneTile;
 use super::state::Compare;

@@ -40,7 +40,7 @@ impl Block {
     #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
     pub(crate) fn touched(&self) -> u64 {
-        let columns = 1u64 << (self.x / BLOCK) | 1 << ((self.x + BLOCK - 1) / BLOCK);
+        let columns = 1u64 << (self.x / BLOCK) | 1 << self.x.div_ceil(BLOCK);
         let (first, last) = ((self.y + self.rows.start) / BLOCK, (self.y + self.rows.end - 1) / BLOCK);
         columns << (8 * first) | columns << (8 * last)
     }

@@ -290,10 +290,10 @@ fn plane_depths<S: Simd>(
     let at = ((y & INSIDE) * TILE as i32 + (x & INSIDE)).to_array();
     let mut out = [0.0f32; LANES];
     for lane in 0..LANES {
-        if active >> lane & 1 == 1 {
-            if let Some(tile) = depth.plane.tiles.get(tile[lane] as usize) {
-                out[lane] = tile.get(0, at[lane] as usize % TILE_PIXELS);
-            }
+        if active >> lane & 1 == 1
+            && let Some(tile) = depth.plane.tiles.get(tile[lane] as usize)
+        {
+            out[lane] = tile.get(0, at[lane] as usize % TILE_PIXELS);
         }
     }
     F32x8::from_slice(simd, &out) / splat(simd, depth.scale)

@@ -60,7 +60,7 @@ fn a_furnace_is_the_same_everywhere() {
     }
     let radiosity = gather::solve(&room, &rows, 1e-12);
     assert!(radiosity.iter().step_by(2).flatten().all(|b| (b - 2.0).abs() < 1e-9));
-    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-6, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, &[hemicube()], 1e-6, u64::MAX, &Execution::default()).unwrap();
     let mean = |k: usize| {
         let area: f64 = room.elements.iter().map(|e| e.area).sum();
         room.elements.iter().zip(progress.irradiance.iter().step_by(2)).map(|(e, i)| i[k] * e.area).sum::<f64>() / area
@@ -71,7 +71,7 @@ fn a_furnace_is_the_same_everywhere() {
 #[test]
 fn light_is_neither_made_nor_lost() {
     let room = enclosure(room(dvec3(1.0, 0.8, 1.2), 0.6, [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]), 0.3);
-    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-5, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, &[hemicube()], 1e-5, u64::MAX, &Execution::default()).unwrap();
     assert!(
         (progress.absorbed + progress.emitted * progress.residual - progress.emitted).abs() < 1e-9 * progress.emitted
     );
@@ -114,7 +114,7 @@ fn shooting_and_gathering_agree() {
     let (hemicube, execution) = (hemicube(), Execution::default());
     let rows = gather::rows(&room, &hemicube, &execution).unwrap();
     let gathered = gather::solve(&room, &rows, 1e-12);
-    let shot = progressive::solve(&room, [&hemicube; 2], 1e-6, u64::MAX, &execution).unwrap();
+    let shot = progressive::solve(&room, &[hemicube], 1e-6, u64::MAX, &execution).unwrap();
     let mut difference = 0.0;
     for (side, radiosity) in gathered.iter().enumerate().step_by(2) {
         let own = room.emission[side][0] + 0.5 * shot.irradiance[side][0];
@@ -128,7 +128,7 @@ fn shooting_and_gathering_agree() {
 #[test]
 fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     let room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.7, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), 0.4);
-    let solve = |most| progressive::solve(&room, [&hemicube(); 2], 1e-6, most, &Execution::default()).unwrap();
+    let solve = |most| progressive::solve(&room, &[hemicube()], 1e-6, most, &Execution::default()).unwrap();
     let mean = |p: &progressive::Progress| {
         let sum: f64 =
             room.elements.iter().zip(p.irradiance.iter().step_by(2)).map(|(e, i)| (i[0] + p.ambient[0]) * e.area).sum();
@@ -163,8 +163,8 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let trees = Trees::new(session.world().facet_count, corners, 0.06, 1 << 20).unwrap();
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
-    let [coarse, fine] = [128, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
-    let progress = progressive::solve(&room, [&coarse, &fine], 0.002, u64::MAX, &execution).unwrap();
+    let hemicubes = [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let progress = progressive::solve(&room, &hemicubes, 0.002, u64::MAX, &execution).unwrap();
     for (wall, expected) in PATH_TRACED.iter().enumerate() {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
         for (e, element) in room.elements.iter().enumerate() {
@@ -286,7 +286,7 @@ fn interpolated_light_has_no_steps_at_hanging_vertices() {
     let session =
         Session::new(Arc::new(self::room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))).unwrap();
     let room = Enclosure::new(room.trees, &session, &[], &Settings::default(), &Execution::default()).unwrap();
-    let progress = progressive::solve(&room, [&hemicube(); 2], 0.05, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, &[hemicube()], 0.05, u64::MAX, &Execution::default()).unwrap();
     let solution = Solution::new(&room, &progress);
     let light = |w: [f32; 3]| solution.irradiance(6, w, true)[0];
     let mut hanging = 0;

@@ -9,10 +9,14 @@
 //! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
 //! light is added in their order: so the result does not depend on threads.
 //!
+//! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of any of them carries about
+//! the same, and its error shows as much. All light together then goes through about as many pixels, into however many
+//! patches a scene is cut.
+//!
 //! In:   an enclosure. Out: irradiance of each side of each element.
 //! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
 //! multiplications a shot for each element that it shows.
-//! Source: \[Cohen et al. 1988\].
+//! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
 use super::enclosure::{Color, Enclosure, turned};
 use super::gather::Row;
@@ -20,14 +24,15 @@ use super::hemicube::Hemicube;
 use crate::Execution;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_math::DVec3;
 
 /// Form factors that are kept for a patch's next shot: 256 MiB.
 const MOST_KNOWN: usize = 16 << 20;
 /// Bytes that they take.
 pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f64)>()) as u64;
-/// Patches that shoot in one step.
-const VOLLEY: usize = 16;
+/// Patches that shoot in one step: one in so many,
+const PATCHES_A_SHOOTER: usize = 128;
+/// but at least and at most these.
+const VOLLEY: [usize; 2] = [16, 256];
 
 /// How far a solution is.
 #[derive(Clone, Debug, Default)]
@@ -48,14 +53,14 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Patches that send at least this part of all light use the finer hemicube.
+/// Patches that send at least this part of all light use the finest hemicube.
 const STRONG: f64 = 1.0 / 64.0;
 
-/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the two hemicubes the second, finer
-/// one is for the patches with the most light, whose errors show the most.
+/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the `hemicubes`, at least one, from
+/// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
 pub fn solve(
     enclosure: &Enclosure,
-    hemicubes: [&Hemicube; 2],
+    hemicubes: &[Hemicube],
     residual: f64,
     most: u64,
     execution: &Execution,
@@ -71,6 +76,7 @@ pub fn solve(
     }
     progress.emitted = unsent.iter().map(power).sum();
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
+    let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
     loop {
         let left: f64 = unsent.iter().map(power).sum();
         progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
@@ -81,26 +87,23 @@ pub fn solve(
         execution.budget.check("radiosity")?;
 
         // Choose the patches with the most light, and see whom they see.
-        let shooters = strongest(&unsent, VOLLEY.min((most - progress.shots) as usize));
+        let shooters = strongest(&unsent, volley.min((most - progress.shots).try_into().unwrap_or(usize::MAX)));
         let seen = execution.workers.map(shooters.len(), |i| {
-            if let Some(row) = &known.rows[shooters[i]] {
-                return Ok(Arc::clone(row));
+            let shooter = shooters[i];
+            let fineness = fineness(hemicubes, power(&unsent[shooter]) / progress.emitted);
+            match &known.rows[shooter] {
+                Some(seen) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
+                _ => Ok(Arc::new(Seen { fineness, row: look(enclosure, &hemicubes[fineness], shooter, execution)? })),
             }
-            let patch = &enclosure.patches[shooters[i] / 2];
-            let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
-            let hemicube = hemicubes[usize::from(strong)];
-            let normal = patch.normal * turned(shooters[i]);
-            hemicube.look(&enclosure.targets, &enclosure.trees, patch.center, normal, execution).map(Arc::new)
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
             let (mut arrived, seen) = (0.0, seen?);
-            known.keep(*shooter, &seen);
-            for &(number, factor) in &*seen {
-                let at = enclosure.patches[shooter / 2].center;
-                receive(enclosure, number, at, factor, sent, &mut unsent, &mut progress);
+            for &(side, factor) in &seen.row {
+                receive(enclosure, side as usize, factor, sent, &mut unsent, &mut progress);
                 arrived += factor;
             }
+            known.keep(*shooter, seen);
             progress.escaped += power(&sent) * (1.0 - arrived);
             progress.shots += 1;
         }
@@ -109,36 +112,60 @@ pub fn solve(
     Ok(progress)
 }
 
+/// The coarsest hemicube with enough pixels for this part of all light.
+fn fineness(hemicubes: &[Hemicube], part: f64) -> usize {
+    let pixels = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side());
+    let last = hemicubes.len() - 1;
+    let needed = pixels(&hemicubes[last]) * (part / STRONG);
+    hemicubes.iter().position(|hemicube| pixels(hemicube) >= needed).unwrap_or(last)
+}
+
+/// What a side of a patch sees: sides of elements.
+fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &Execution) -> Result<Row, Limit> {
+    let patch = &enclosure.patches[shooter / 2];
+    let from = (patch.center, patch.normal * turned(shooter));
+    let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
+    Ok(enclosure.sides(seen, patch.center))
+}
+
+/// What a side of a patch was found to see.
+struct Seen {
+    /// The number of the hemicube.
+    fineness: usize,
+    row: Row,
+}
+
 /// What patches were found to see, for as long as there is room.
 struct Known {
-    rows: Vec<Option<Arc<Row>>>,
+    rows: Vec<Option<Arc<Seen>>>,
     /// Factors that may still be kept.
     room: usize,
 }
 
 impl Known {
-    fn keep(&mut self, shooter: usize, row: &Arc<Row>) {
-        if self.rows[shooter].is_none() && row.len() <= self.room {
-            self.room -= row.len();
-            self.rows[shooter] = Some(Arc::clone(row));
+    fn keep(&mut self, shooter: usize, seen: Arc<Seen>) {
+        let known = self.rows[shooter].as_ref();
+        let (finer, room) =
+            (known.is_none_or(|k| k.fineness < seen.fineness), known.map_or(0, |k| k.row.len()) + self.room);
+        if finer && seen.row.len() <= room {
+            self.room = room - seen.row.len();
+            self.rows[shooter] = Some(seen);
         }
     }
 }
 
-/// An element takes its part of what is sent from `at`.
+/// A side of an element takes its part of what is sent.
 fn receive(
     enclosure: &Enclosure,
-    number: u32,
-    at: DVec3,
+    side: usize,
     factor: f64,
     sent: Color,
     unsent: &mut [Color],
     progress: &mut Progress,
 ) {
-    let element = &enclosure.elements[number as usize];
-    let side = usize::from(element.normal.dot(at - element.center) < 0.0);
-    let irradiance = &mut progress.irradiance[2 * number as usize + side];
-    let to_send = &mut unsent[2 * element.patch as usize + side];
+    let element = &enclosure.elements[side / 2];
+    let irradiance = &mut progress.irradiance[side];
+    let to_send = &mut unsent[2 * element.patch as usize + side % 2];
     for k in 0..3 {
         let arriving = sent[k] * factor;
         irradiance[k] += arriving / element.area;

@@ -185,6 +185,29 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     }
 }
 
+#[test]
+fn hemicubes_by_the_light_that_is_sent_are_as_good_as_fine_ones_for_all() {
+    let scene = builtin::scene("cornell").unwrap();
+    let session = Session::new(Arc::new(scene)).unwrap();
+    let all = Triangles::of_world(session.world(), &Workers::single());
+    let corners = |f: u32| Some(all.corners[f as usize].map(|c| c.as_dvec3()));
+    let trees = Trees::new(session.world().facet_count, corners, 0.14, 1 << 20).unwrap();
+    let execution = Execution::default();
+    let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
+    assert!((500..700).contains(&room.patches.len()), "{}", room.patches.len());
+    let hemicubes = [16, 32, 64, 128, 256].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let solve = |hemicubes| progressive::solve(&room, hemicubes, 0.01, u64::MAX, &execution).unwrap();
+    let [by_light, fine] = [&hemicubes[..], &hemicubes[4..]].map(solve);
+    assert_eq!(by_light.shots / 16, fine.shots / 16, "as many volleys");
+    let (mut difference, mut sum) = (0.0, 0.0);
+    for (side, (a, b)) in by_light.irradiance.iter().zip(&fine.irradiance).enumerate() {
+        let area = room.elements[side / 2].area;
+        difference += (a[1] - b[1]).abs() * area;
+        sum += b[1] * area;
+    }
+    assert!(difference / sum < 0.01, "{}", difference / sum);
+}
+
 fn look_in(scene: &Scene) -> (Session, Camera) {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let camera = session.world().cameras[0];

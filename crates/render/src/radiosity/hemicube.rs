@@ -15,7 +15,7 @@
 //! drawn in place of elements.
 
 use super::patch::Trees;
-use super::targets::Targets;
+use super::targets::{Sums, Targets};
 use crate::stats::CullCounters;
 use crate::visible::{TileSink, zbuffer::resolve_in_passing};
 use crate::{Execution, PreparedView, Settings};
@@ -31,6 +31,9 @@ use vitral_scene::{Camera, Projection};
 const FIRST_TURN: f64 = 0.35;
 /// By which the next one is turned further: the golden section, which spreads any number of them evenly.
 const NEXT_TURN: f64 = 0.618_033_988_749_895;
+
+/// Borders of elements that a pixel's width crosses, from which on pixels are looked at one by one.
+const DENSE: f64 = 0.7;
 
 /// A hemicube of some resolution.
 #[derive(Debug)]
@@ -95,7 +98,7 @@ impl Hemicube {
         let (u, v) = (u * cos + v * sin, v * cos - u * sin);
         // Points look from different threads: each draws alone.
         let execution = Execution { workers: Workers::single(), observer: None, ..execution.clone() };
-        let mut seen = vec![0.0; targets.leaves];
+        let mut seen = targets.sums();
         for (face, [towards, up]) in
             [[normal, u], [u, normal], [-u, normal], [v, normal], [-v, normal]].into_iter().enumerate()
         {
@@ -108,7 +111,7 @@ impl Hemicube {
             };
             self.face((targets, trees), &camera, &self.sums[usize::from(face > 0)], &execution, &mut seen)?;
         }
-        Ok((0..).zip(seen).filter(|(_, factor)| *factor > 0.0).collect())
+        Ok(targets.finish(seen))
     }
 
     fn face(
@@ -117,7 +120,7 @@ impl Hemicube {
         camera: &Camera,
         sums: &[f64],
         execution: &Execution,
-        seen: &mut Vec<f64>,
+        seen: &mut Sums,
     ) -> Result<(), Limit> {
         let side = self.settings.width;
         let viewport = Viewport { width: side, height: side };
@@ -125,11 +128,8 @@ impl Hemicube {
         let view = PreparedView::new(&targets.session, camera, &self.settings, viewport, pattern, execution, counters);
         let (eye, forward, up) = (camera.position, camera.focal_point - camera.position, camera.view_up);
         let axes = [forward.cross(up), up, forward];
-        let seen_here = Mutex::new(std::mem::take(seen));
-        let sink = Collector { sums, side: side as usize, targets, trees, eye, axes, seen: seen_here };
-        resolve_in_passing(&view, execution, &sink)?;
-        *seen = sink.seen.into_inner().expect("no thread panics while it collects");
-        Ok(())
+        let sink = Collector { sums, side: side as usize, targets, trees, eye, axes, seen: Mutex::new(seen) };
+        resolve_in_passing(&view, execution, &sink)
     }
 }
 
@@ -143,13 +143,13 @@ struct Collector<'a> {
     /// Right, up, forward.
     axes: [DVec3; 3],
     /// A sum for each leaf.
-    seen: Mutex<Vec<f64>>,
+    seen: Mutex<&'a mut Sums>,
 }
 
 impl Collector<'_> {
     /// Adds the factors of neighbours in a row, from this column on, that show one facet. `sums` has one more than there are
     /// pixels.
-    fn add(&self, facet: u32, [column, row]: [usize; 2], sums: &[f64], seen: &mut [f64]) {
+    fn add(&self, facet: u32, [column, row]: [usize; 2], sums: &[f64], seen: &mut Sums) {
         // A ray's direction is a sum of the corners as seen from the eye, with these weights times some number. Along a
         // row they change evenly, and so do the weights within any node.
         let [a, b, c] = self.targets.corners(facet).map(|corner| corner - self.eye);
@@ -162,14 +162,22 @@ impl Collector<'_> {
             (start, slopes) = (start.map(|w| -w), slopes.map(|w| -w));
         }
         let (mut done, count) = (0, sums.len() - 1);
+        let after = |pixels: usize| [0, 1, 2].map(|k| start[k] + pixels as f64 * slopes[k]);
+        if self.targets.borders_crossed(facet, start, slopes) > DENSE {
+            // Nearly every pixel shows another element: how far each goes on need not be known.
+            for (i, factors) in sums.windows(2).enumerate() {
+                seen.add(self.targets.leaf_at(self.trees, facet, after(i)), factors[1] - factors[0]);
+            }
+            return;
+        }
         while done < count {
-            let here = [0, 1, 2].map(|k| start[k] + done as f64 * slopes[k]);
+            let here = after(done);
             let (leaf, weights, slopes) = self.targets.leaf_along(self.trees, facet, here, slopes);
             // As far as no weight falls below 0.
             let ends = [0, 1, 2].map(|k| if slopes[k] < 0.0 { weights[k] / -slopes[k] } else { f64::INFINITY });
             let length = ends[0].min(ends[1]).min(ends[2]).max(0.0) as usize;
             let next = done.saturating_add(length).saturating_add(1).min(count);
-            seen[leaf as usize] += sums[next] - sums[done];
+            seen.add(leaf, sums[next] - sums[done]);
             done = next;
         }
     }

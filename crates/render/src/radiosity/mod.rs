@@ -31,9 +31,9 @@ use vitral_exec::Limit;
 use vitral_light::Light;
 
 /// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
-const HEMICUBES: [u32; 9] = [32, 48, 64, 96, 128, 192, 256, 384, 512];
+const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 /// How many of them, the coarsest, are used to find out where elements are to be cut.
-const ROUGH_HEMICUBES: usize = 5;
+const ROUGH_HEMICUBES: usize = 7;
 /// The part of the light that may be left.
 pub const RESIDUAL: f64 = 0.01;
 /// The part that may be left before elements are cut again.
@@ -127,7 +127,7 @@ fn enclosed(
 ) -> Result<Enclosure, Limit> {
     // A node, a vertex, an element with two sides, its triangle, what the solution keeps of it; and form factors.
     let count = trees.nodes.len() as u64;
-    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(16));
+    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(8));
     execution.budget.charge(bytes, "radiosity")?;
     execution.budget.release(bytes);
     Enclosure::new(trees, session, lights, settings, execution)

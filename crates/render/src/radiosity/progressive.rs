@@ -18,7 +18,7 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::enclosure::{Color, Enclosure, turned};
+use super::enclosure::{Color, Element, Enclosure, turned};
 use super::gather::Row;
 use super::hemicube::Hemicube;
 use crate::Execution;
@@ -26,9 +26,9 @@ use std::sync::Arc;
 use vitral_exec::Limit;
 
 /// Form factors that are kept for a patch's next shot: 256 MiB.
-const MOST_KNOWN: usize = 16 << 20;
+const MOST_KNOWN: usize = 32 << 20;
 /// Bytes that they take.
-pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f64)>()) as u64;
+pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f32)>()) as u64;
 /// Patches that shoot in one step: one in so many,
 const PATCHES_A_SHOOTER: usize = 128;
 /// but at least and at most these.
@@ -75,6 +75,8 @@ pub fn solve(
         (0..3).for_each(|k| to[k] += emission[k] * element.area);
     }
     progress.emitted = unsent.iter().map(power).sum();
+    let receiver = |e: &Element| Receiver { patch: e.patch, per_area: 1.0 / e.area, reflectance: e.reflectance };
+    let receivers: Vec<Receiver> = enclosure.elements.iter().map(receiver).collect();
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
     let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
     loop {
@@ -93,19 +95,29 @@ pub fn solve(
             let fineness = fineness(hemicubes, power(&unsent[shooter]) / progress.emitted);
             match &known.rows[shooter] {
                 Some(seen) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
-                _ => Ok(Arc::new(Seen { fineness, row: look(enclosure, &hemicubes[fineness], shooter, execution)? })),
+                _ => Ok(Arc::new(Seen::new(fineness, &look(enclosure, &hemicubes[fineness], shooter, execution)?))),
             }
         });
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
-            let (mut arrived, seen) = (0.0, seen?);
+            let seen = seen?;
+            let all = sent.map(|s| s * seen.scale);
             for &(side, factor) in &seen.row {
-                receive(enclosure, side as usize, factor, sent, &mut unsent, &mut progress);
-                arrived += factor;
+                let (side, factor) = (side as usize, f64::from(factor));
+                let receiver = &receivers[side / 2];
+                let (irradiance, to_send) =
+                    (&mut progress.irradiance[side], &mut unsent[receiver.patch as usize * 2 + side % 2]);
+                for k in 0..3 {
+                    let arriving = all[k] * factor;
+                    let reflected = arriving * receiver.reflectance[k];
+                    irradiance[k] += arriving * receiver.per_area;
+                    to_send[k] += reflected;
+                    progress.absorbed += arriving - reflected;
+                }
             }
-            known.keep(*shooter, seen);
-            progress.escaped += power(&sent) * (1.0 - arrived);
+            progress.escaped += power(&sent) * (1.0 - seen.whole);
             progress.shots += 1;
+            known.keep(*shooter, seen);
         }
     }
     progress.ambient = ambient(enclosure, &unsent);
@@ -132,7 +144,28 @@ fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &
 struct Seen {
     /// The number of the hemicube.
     fineness: usize,
-    row: Row,
+    /// Sides of elements, and form factors divided by `scale`.
+    row: Vec<(u32, f32)>,
+    /// So that rounding makes no light.
+    scale: f64,
+    /// The sum of the form factors.
+    whole: f64,
+}
+
+impl Seen {
+    fn new(fineness: usize, row: &Row) -> Self {
+        let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
+        let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
+        let rounded: f64 = row.iter().map(|(_, factor)| f64::from(*factor)).sum();
+        Self { fineness, row, scale: if rounded > 0.0 { whole / rounded } else { 1.0 }, whole }
+    }
+}
+
+/// What is asked of an element when light arrives.
+struct Receiver {
+    patch: u32,
+    per_area: f64,
+    reflectance: Color,
 }
 
 /// What patches were found to see, for as long as there is room.
@@ -151,26 +184,6 @@ impl Known {
             self.room = room - seen.row.len();
             self.rows[shooter] = Some(seen);
         }
-    }
-}
-
-/// A side of an element takes its part of what is sent.
-fn receive(
-    enclosure: &Enclosure,
-    side: usize,
-    factor: f64,
-    sent: Color,
-    unsent: &mut [Color],
-    progress: &mut Progress,
-) {
-    let element = &enclosure.elements[side / 2];
-    let irradiance = &mut progress.irradiance[side];
-    let to_send = &mut unsent[2 * element.patch as usize + side % 2];
-    for k in 0..3 {
-        let arriving = sent[k] * factor;
-        irradiance[k] += arriving / element.area;
-        to_send[k] += arriving * element.reflectance[k];
-        progress.absorbed += arriving * (1.0 - element.reflectance[k]);
     }
 }
 

@@ -8,7 +8,8 @@
 
 use super::patch::{Cell, NONE, Trees};
 use crate::Session;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
+use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Mesh, Part, Scene};
 
 /// See the module.
@@ -23,7 +24,42 @@ pub struct Targets {
     /// The number of each node that is a leaf.
     numbers: Vec<u32>,
     /// How many leaves there are.
-    pub(super) leaves: usize,
+    leaves: usize,
+    /// Sums that are not in use.
+    spare: Mutex<Vec<Sums>>,
+}
+
+/// A sum for each leaf. Most are 0: those that are not are known without a look at all.
+#[derive(Debug)]
+pub(super) struct Sums {
+    sums: Vec<f64>,
+    /// A bit for each sum that something was added to.
+    touched: Vec<u64>,
+}
+
+impl Sums {
+    #[inline]
+    pub(super) fn add(&mut self, leaf: u32, factor: f64) {
+        self.sums[leaf as usize] += factor;
+        self.touched[leaf as usize / 64] |= 1 << (leaf % 64);
+    }
+
+    /// The sums that are above 0, with their leaves, in the order of leaves; all are 0 afterwards.
+    fn take(&mut self) -> Vec<(u32, f64)> {
+        let count: u32 = self.touched.iter().map(|bits| bits.count_ones()).sum();
+        let mut found = Vec::with_capacity(count as usize);
+        for (word, bits) in (0..).zip(&mut self.touched) {
+            while *bits != 0 {
+                let leaf = 64 * word + bits.trailing_zeros();
+                *bits &= *bits - 1;
+                let sum = std::mem::take(&mut self.sums[leaf as usize]);
+                if sum > 0.0 {
+                    found.push((leaf, sum));
+                }
+            }
+        }
+        found
+    }
 }
 
 /// Cells of a facet.
@@ -68,17 +104,53 @@ impl Targets {
         let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
         let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
         let session = Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound");
-        Self { session, grids, cells, numbers, leaves: leaves.len() }
+        Self { session, grids, cells, numbers, leaves: leaves.len(), spare: Mutex::default() }
+    }
+
+    /// Sums that are all 0.
+    pub(super) fn sums(&self) -> Sums {
+        let spare = self.spare.lock().expect("spare sums").pop();
+        spare.unwrap_or_else(|| Sums { sums: vec![0.0; self.leaves], touched: vec![0; self.leaves.div_ceil(64)] })
+    }
+
+    /// The sums that are above 0, with their leaves, in the order of leaves.
+    pub(super) fn finish(&self, mut sums: Sums) -> Vec<(u32, f64)> {
+        let found = sums.take();
+        self.spare.lock().expect("spare sums").push(sums);
+        found
     }
 
     /// Corners of a facet, by its number in the scene that is drawn.
-    pub(super) fn corners(&self, facet: u32) -> [vitral_math::DVec3; 3] {
+    pub(super) fn corners(&self, facet: u32) -> [DVec3; 3] {
         let positions = &self.session.world.instances[0].mesh.positions;
-        [0, 1, 2].map(|k| vitral_math::Vec3::from(positions[(3 * facet + k) as usize]).as_dvec3())
+        [0, 1, 2].map(|k| Vec3::from(positions[(3 * facet + k) as usize]).as_dvec3())
     }
 
-    /// The leaf at a point of a facet, by its number. The weights of the facet's corners there, of which the sum is above 0,
-    /// and how they change along some line, come in, those of the leaf's corners go out, times any positive number.
+    /// How many borders of a facet's cells a line crosses in its first step, about; `slopes` tells how the weights change.
+    #[inline]
+    pub(super) fn borders_crossed(&self, facet: u32, weights: [f64; 3], slopes: [f64; 3]) -> f64 {
+        let [sum, slope] = [weights, slopes].map(|values| values[0] + values[1] + values[2]);
+        let changes = [0, 1, 2].map(|k| (slopes[k] * sum - weights[k] * slope).abs());
+        f64::from(self.grids[facet as usize].side) * (changes[0] + changes[1] + changes[2]) / (sum * sum)
+    }
+
+    /// The leaf at a point of a facet, by its number; the sum of the weights is above 0.
+    #[inline]
+    pub(super) fn leaf_at(&self, trees: &Trees, facet: u32, weights: [f64; 3]) -> u32 {
+        let Grid { first, side } = self.grids[facet as usize];
+        let scale = f64::from(side) / (weights[0] + weights[1] + weights[2]);
+        let cell = Cell::at(weights.map(|w| w * scale), side);
+        match self.cells[(first + cell.number(side)) as usize] {
+            Content::Leaf(number) => number,
+            Content::Node(node) => {
+                let (leaf, ..) = trees.leaf_along(node, cell.inside(weights, side), [0.0; 3]);
+                self.numbers[leaf as usize]
+            }
+        }
+    }
+
+    /// The same, and the way on: how the weights change along some line comes in, those of the leaf's corners and how they
+    /// change go out, times any positive number.
     #[inline]
     pub(super) fn leaf_along(
         &self,
@@ -125,7 +197,7 @@ fn fill(trees: &Trees, numbers: &[u32], (node, cell): (u32, Cell), side: u32, ce
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::{DVec3, dvec3};
+    use vitral_math::dvec3;
 
     #[test]
     fn points_are_found_in_their_leaf() {
@@ -148,6 +220,7 @@ mod tests {
                 let (w, step) = (w.map(|w| 3.0 * w), [0.02, -0.03, 0.01]);
                 let (leaf, inside, along) = targets.leaf_along(&trees, facet, w, step);
                 met[leaf as usize] = true;
+                assert_eq!(targets.leaf_at(&trees, facet, w), leaf);
                 let place = |corners: [DVec3; 3], w: [f64; 3]| {
                     (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / w.iter().sum::<f64>()
                 };
@@ -158,6 +231,26 @@ mod tests {
                 assert!(inside.iter().all(|w| *w > -1e-12), "{inside:?}");
             }
             assert!(met.iter().all(|met| *met));
+        }
+    }
+
+    #[test]
+    fn lines_cross_as_many_borders_as_is_said() {
+        let trees = Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.36, 1 << 10).unwrap();
+        let targets = Targets::new(&trees);
+        // Along an edge of the facet four borders of either other direction begin, those of the corners with them.
+        assert_eq!((trees.leaves().len(), targets.borders_crossed(0, [1.0, 0.0, 0.0], [-1.0, 1.0, 0.0])), (16, 8.0));
+        assert_eq!(targets.borders_crossed(0, [3.0, 0.0, 0.0], [-1.5, 1.5, 0.0]), 4.0);
+    }
+
+    #[test]
+    fn sums_are_given_in_order_and_begin_anew() {
+        let trees = Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.1, 1 << 10).unwrap();
+        let targets = Targets::new(&trees);
+        for _ in 0..2 {
+            let mut sums = targets.sums();
+            [(70, 0.5), (3, 0.25), (70, 0.25), (64, 0.0)].into_iter().for_each(|(leaf, factor)| sums.add(leaf, factor));
+            assert_eq!(targets.finish(sums), [(3, 0.25), (70, 0.75)]);
         }
     }
 }

@@ -9,7 +9,7 @@ use vitral::scene::builtin;
 use vitral::{Renderer, Scene};
 
 /// Longest edges of patches.
-const PATCH_SIZES: [f64; 7] = [0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175];
+const PATCH_SIZES: [f64; 7] = [0.15, 0.1, 0.09, 0.055, 0.045, 0.025, 0.0225];
 
 /// A renderer that knows no solution yet. Its picture is as good as nothing: looking up light is not what is measured.
 fn renderer(scene: &Scene, patch_size: f64) -> Renderer {

@@ -11,8 +11,7 @@
 //!
 //! In:   quadtrees over facets; point and normal. Out: elements and factors.
 //! Cost: five small pictures of the facets, and a step for each element that a row of pixels crosses.
-//! Source: \[Cohen & Greenberg 1985\]. Departs from it: sides are drawn whole, their lower halves unused; facets are
-//! drawn in place of elements.
+//! Source: \[Cohen & Greenberg 1985\]. Departs from it: facets are drawn in place of elements.
 
 use super::patch::Trees;
 use super::targets::{Sums, Targets};
@@ -129,7 +128,9 @@ impl Hemicube {
         let (eye, forward, up) = (camera.position, camera.focal_point - camera.position, camera.view_up);
         let axes = [forward.cross(up), up, forward];
         let sink = Collector { sums, side: side as usize, targets, trees, eye, axes, seen: Mutex::new(seen) };
-        resolve_in_passing(&view, execution, &sink)
+        // Of sides the upper half.
+        let rows = (sums.len() / (side as usize + 1)).div_ceil(TILE) as u32;
+        resolve_in_passing(&view, rows, execution, &sink)
     }
 }
 

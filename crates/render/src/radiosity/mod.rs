@@ -32,8 +32,8 @@ use vitral_light::Light;
 
 /// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
 const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
-/// How many of them, the coarsest, are used to find out where elements are to be cut.
-const ROUGH_HEMICUBES: usize = 7;
+/// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
+const ROUGH_HEMICUBES: usize = 9;
 /// The part of the light that may be left.
 pub const RESIDUAL: f64 = 0.01;
 /// The part that may be left before elements are cut again.

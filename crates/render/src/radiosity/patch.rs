@@ -373,4 +373,27 @@ mod tests {
         let sum: f64 = trees.leaves().iter().map(|&l| area(&trees, l)).sum();
         assert!((sum - 1.0).abs() < 1e-12);
     }
+
+    #[test]
+    fn facets_are_cut_in_three_where_fewer_patches_come_of_it() {
+        // The diagonal of 1.41 in three parts, not in four.
+        let trees = square(0.5);
+        assert_eq!((trees.cuts, trees.leaves().len(), trees.patches), (3, 18, 18));
+        assert_eq!(trees.vertices.len(), 16, "those on the diagonal belong to both facets");
+        for leaf in trees.leaves() {
+            let [a, b, c] = trees.places(leaf);
+            assert!(((b - a).cross(c - a).z - 1.0 / 9.0).abs() < 1e-12, "all of one size, and turned alike");
+        }
+        assert_eq!(square(0.25).leaves().len(), 72, "in three parts and these in two");
+        assert_eq!(square(2.0).cuts, 1);
+        for i in 0..60 {
+            let w = [i as f32 / 60.0 + 0.003, (59 - i) as f32 / 120.0 + 0.001];
+            let w = [w[0], w[1], 1.0 - w[0] - w[1]];
+            let (root, inside) = within(w, 3);
+            let place = |corners: [DVec3; 3], w: [f32; 3]| (0..3).map(|k| corners[k] * f64::from(w[k])).sum::<DVec3>();
+            assert!(inside.iter().all(|w| *w > -1e-6), "{inside:?}");
+            let (root, facet) = (trees.places(trees.roots[1] + root), trees.corners_of(1));
+            assert!(place(root, inside).abs_diff_eq(place(facet, w), 1e-6));
+        }
+    }
 }

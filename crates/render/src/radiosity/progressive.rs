@@ -101,7 +101,7 @@ pub fn solve(
         let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
         for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
             let seen = seen?;
-            let all = sent.map(|s| s * seen.scale);
+            let (all, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
             for &(side, factor) in &seen.row {
                 let (side, factor) = (side as usize, f64::from(factor));
                 let receiver = &receivers[side / 2];
@@ -112,9 +112,10 @@ pub fn solve(
                     let reflected = arriving * receiver.reflectance[k];
                     irradiance[k] += arriving * receiver.per_area;
                     to_send[k] += reflected;
-                    progress.absorbed += arriving - reflected;
+                    kept[k] += arriving - reflected;
                 }
             }
+            progress.absorbed += power(&kept);
             progress.escaped += power(&sent) * (1.0 - seen.whole);
             progress.shots += 1;
             known.keep(*shooter, seen);

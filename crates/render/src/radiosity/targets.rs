@@ -203,7 +203,7 @@ mod tests {
     fn points_are_found_in_their_leaf() {
         let p = [DVec3::ZERO, DVec3::X, dvec3(1.0, 1.0, 0.0), DVec3::Y];
         let corners = |f: u32| Some(if f == 0 { [p[0], p[1], p[2]] } else { [p[0], p[2], p[3]] });
-        for (longest, cuts, roots) in [(0.5, 3, 9), (0.8, 1, 1), (2.0, 1, 1)] {
+        for (longest, cuts, roots) in [(0.25, 3, 9), (0.5, 3, 9), (0.8, 1, 1), (2.0, 1, 1)] {
             let mut trees = Trees::new(2, corners, longest, 1 << 20).unwrap();
             assert_eq!((trees.cuts, trees.roots_of(1).len()), (cuts, roots), "{longest}");
             for k in [1, 5, 1] {

@@ -271,7 +271,7 @@ impl Cell {
     pub(super) fn numbered(number: u32, n: u32) -> Self {
         let row = number.isqrt();
         let along = number - row * row;
-        let (j, upright) = (along / 2, along % 2 == 0);
+        let (j, upright) = (along / 2, along.is_multiple_of(2));
         Self { steps: [n - 1 - row, j, row - j - u32::from(!upright)], upright }
     }
 

@@ -7,7 +7,8 @@
 //! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance.
 //!
 //! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
-//! light is added in their order: so the result does not depend on threads.
+//! light is added in their order: so the result does not depend on threads. While it is added, those that shoot next look
+//! what they see; they were chosen before.
 //!
 //! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of any of them carries about
 //! the same, and its error shows as much. All light together then goes through about as many pixels, into however many
@@ -79,6 +80,24 @@ pub fn solve(
     let receivers: Vec<Receiver> = enclosure.elements.iter().map(receiver).collect();
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
     let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
+    let emitted = progress.emitted;
+    // The sides with the most light, and the hemicubes that they need.
+    let choose = |unsent: &[Color], shots: u64| -> Vec<(usize, usize)> {
+        let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
+        sides.into_iter().map(|side| (side, fineness(hemicubes, power(&unsent[side]) / emitted))).collect()
+    };
+    // Whom they see.
+    let look = |shooters: &[(usize, usize)], known: &Known| -> Result<Vec<Arc<Seen>>, Limit> {
+        let seen = execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
+            (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
+            (_, (side, fineness)) => {
+                let row = look(enclosure, &hemicubes[fineness], side, execution)?;
+                Ok(Arc::new(Seen::new(fineness, &row)))
+            }
+        });
+        seen.into_iter().collect()
+    };
+    let (mut shooters, mut seen) = (Vec::new(), Vec::new());
     loop {
         let left: f64 = unsent.iter().map(power).sum();
         progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
@@ -87,42 +106,45 @@ pub fn solve(
             break;
         }
         execution.budget.check("radiosity")?;
-
-        // Choose the patches with the most light, and see whom they see.
-        let shooters = strongest(&unsent, volley.min((most - progress.shots).try_into().unwrap_or(usize::MAX)));
-        let seen = execution.workers.map(shooters.len(), |i| {
-            let shooter = shooters[i];
-            let fineness = fineness(hemicubes, power(&unsent[shooter]) / progress.emitted);
-            match &known.rows[shooter] {
-                Some(seen) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
-                _ => Ok(Arc::new(Seen::new(fineness, &look(enclosure, &hemicubes[fineness], shooter, execution)?))),
-            }
-        });
-        let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
-        for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
-            let seen = seen?;
-            let (all, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
-            for &(side, factor) in &seen.row {
-                let (side, factor) = (side as usize, f64::from(factor));
-                let receiver = &receivers[side / 2];
-                let (irradiance, to_send) =
-                    (&mut progress.irradiance[side], &mut unsent[receiver.patch as usize * 2 + side % 2]);
-                for k in 0..3 {
-                    let arriving = all[k] * factor;
-                    let reflected = arriving * receiver.reflectance[k];
-                    irradiance[k] += arriving * receiver.per_area;
-                    to_send[k] += reflected;
-                    kept[k] += arriving - reflected;
-                }
-            }
-            progress.absorbed += power(&kept);
-            progress.escaped += power(&sent) * (1.0 - seen.whole);
-            progress.shots += 1;
-            known.keep(*shooter, seen);
+        if shooters.is_empty() {
+            shooters = choose(&unsent, progress.shots);
+            seen = look(&shooters, &known)?;
         }
+        let powers: Vec<Color> = shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
+        let next = choose(&unsent, progress.shots + shooters.len() as u64);
+        let receive = || {
+            powers
+                .iter()
+                .zip(&seen)
+                .for_each(|(sent, seen)| receive(&receivers, seen, sent, &mut unsent, &mut progress));
+        };
+        let ((), next_seen) = execution.workers.join(receive, || look(&next, &known));
+        shooters.iter().zip(seen).for_each(|(&(side, _), seen)| known.keep(side, seen));
+        (shooters, seen) = (next, next_seen?);
     }
     progress.ambient = ambient(enclosure, &unsent);
     Ok(progress)
+}
+
+/// Elements take their parts of what is sent to those that are seen.
+fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
+    let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
+    for &(side, factor) in &seen.row {
+        let (side, factor) = (side as usize, f64::from(factor));
+        let receiver = &receivers[side / 2];
+        let irradiance = &mut progress.irradiance[side];
+        let to_send = &mut unsent[2 * receiver.patch as usize + side % 2];
+        for k in 0..3 {
+            let arriving = scaled[k] * factor;
+            let reflected = arriving * receiver.reflectance[k];
+            irradiance[k] += arriving * receiver.per_area;
+            to_send[k] += reflected;
+            kept[k] += arriving - reflected;
+        }
+    }
+    progress.absorbed += power(&kept);
+    progress.escaped += power(sent) * (1.0 - seen.whole);
+    progress.shots += 1;
 }
 
 /// The coarsest hemicube with enough pixels for this part of all light.
@@ -165,6 +187,7 @@ impl Seen {
 /// What is asked of an element when light arrives.
 struct Receiver {
     patch: u32,
+    /// 1 through the area.
     per_area: f64,
     reflectance: Color,
 }
@@ -219,4 +242,43 @@ fn tell(progress: &Progress, residual: f64, execution: &Execution) {
     let ratio =
         vitral_math::func::ln(progress.residual.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
     execution.budget.progress("radiosity", (ratio.clamp(0.0, 1.0) * 1000.0) as u64, 1000);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hemicubes_have_pixels_in_proportion_to_the_light() {
+        let hemicubes = [16, 32, 64].map(|side| Hemicube::new(side, 1.0));
+        for (part, expected) in
+            [(1.0, 2), (STRONG, 2), (STRONG / 3.9, 2), (STRONG / 4.0, 1), (STRONG / 16.0, 0), (0.0, 0)]
+        {
+            assert_eq!(fineness(&hemicubes, part), expected, "{part}");
+        }
+        assert_eq!(fineness(&hemicubes[..1], 1.0), 0, "there is no finer one");
+    }
+
+    #[test]
+    fn rounded_form_factors_have_the_sum_of_exact_ones() {
+        let row: Row = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
+        let seen = Seen::new(0, &row);
+        let rounded: f64 = seen.row.iter().map(|(_, factor)| f64::from(*factor) * seen.scale).sum();
+        let exact: f64 = row.iter().map(|(_, factor)| factor).sum();
+        assert!((rounded - exact).abs() < 1e-13 * exact && seen.whole == exact);
+        assert_eq!(Seen::new(0, &Row::new()).whole, 0.0);
+    }
+
+    #[test]
+    fn what_is_seen_is_kept_while_there_is_room_and_replaced_by_finer() {
+        let seen = |fineness, count: u32| Arc::new(Seen::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
+        let mut known = Known { rows: vec![None, None], room: 10 };
+        known.keep(0, seen(1, 6));
+        known.keep(1, seen(1, 5));
+        assert!(known.rows[1].is_none() && known.room == 4, "five do not fit");
+        known.keep(0, seen(0, 2));
+        assert_eq!(known.rows[0].as_ref().map(|s| s.fineness), Some(1), "finer than the new one");
+        known.keep(0, seen(2, 9));
+        assert_eq!((known.rows[0].as_ref().map(|s| s.row.len()), known.room), (Some(9), 1));
+    }
 }

@@ -42,8 +42,8 @@ pub struct Trees {
     pub vertices: Vec<DVec3>,
     /// All nodes, parents before children.
     pub nodes: Vec<Node>,
-    /// The first root of each facet, `u32::MAX` for those that take no part. All of a facet follow each other as the
-    /// cells of a [`Cell`] with `cuts` along an edge.
+    /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots follow: rows from corner 0
+    /// on, each from corner 2 to corner 1, every second one upside down.
     pub roots: Vec<u32>,
     /// Parts of each facet's edges before quadtrees begin, at least 1.
     pub cuts: u32,

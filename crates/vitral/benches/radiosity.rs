@@ -26,8 +26,10 @@ fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("radiosity");
     group.sample_size(10);
     for patch_size in PATCH_SIZES {
-        let solved = renderer(&scene, patch_size).render().expect("nothing limits it");
-        let patches = solved.stats.radiosity.patches;
+        // One shot, to know how many patches there are.
+        let mut one = renderer(&scene, patch_size);
+        one.settings.iterations = Some(1);
+        let patches = one.render().expect("nothing limits it").stats.radiosity.patches;
         group.throughput(Throughput::Elements(patches));
         group.bench_function(BenchmarkId::from_parameter(patches), |b| {
             let fresh = || renderer(&scene, patch_size);

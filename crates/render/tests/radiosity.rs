@@ -60,7 +60,7 @@ fn a_furnace_is_the_same_everywhere() {
     }
     let radiosity = gather::solve(&room, &rows, 1e-12);
     assert!(radiosity.iter().step_by(2).flatten().all(|b| (b - 2.0).abs() < 1e-9));
-    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-6, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, &[hemicube()], 1e-6, u64::MAX, &Execution::default()).unwrap();
     let mean = |k: usize| {
         let area: f64 = room.elements.iter().map(|e| e.area).sum();
         room.elements.iter().zip(progress.irradiance.iter().step_by(2)).map(|(e, i)| i[k] * e.area).sum::<f64>() / area
@@ -71,7 +71,7 @@ fn a_furnace_is_the_same_everywhere() {
 #[test]
 fn light_is_neither_made_nor_lost() {
     let room = enclosure(room(dvec3(1.0, 0.8, 1.2), 0.6, [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]), 0.3);
-    let progress = progressive::solve(&room, [&hemicube(); 2], 1e-5, u64::MAX, &Execution::default()).unwrap();
+    let progress = progressive::solve(&room, &[hemicube()], 1e-5, u64::MAX, &Execution::default()).unwrap();
     assert!(
         (progress.absorbed + progress.emitted * progress.residual - progress.emitted).abs() < 1e-9 * progress.emitted
     );
@@ -114,7 +114,7 @@ fn shooting_and_gathering_agree() {
     let (hemicube, execution) = (hemicube(), Execution::default());
     let rows = gather::rows(&room, &hemicube, &execution).unwrap();
     let gathered = gather::solve(&room, &rows, 1e-12);
-    let shot = progressive::solve(&room, [&hemicube; 2], 1e-6, u64::MAX, &execution).unwrap();
+    let shot = progressive::solve(&room, &[hemicube], 1e-6, u64::MAX, &execution).unwrap();
     let mut difference = 0.0;
     for (side, radiosity) in gathered.iter().enumerate().step_by(2) {
         let own = room.emission[side][0] + 0.5 * shot.irradiance[side][0];
@@ -128,7 +128,7 @@ fn shooting_and_gathering_agree() {
 #[test]
 fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     let room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.7, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), 0.4);
-    let solve = |most| progressive::solve(&room, [&hemicube(); 2], 1e-6, most, &Execution::default()).unwrap();
+    let solve = |most| progressive::solve(&room, &[hemicube()], 1e-6, most, &Execution::default()).unwrap();
     let mean = |p: &progressive::Progress| {
         let sum: f64 =
             room.elements.iter().zip(p.irradiance.iter().step_by(2)).map(|(e, i)| (i[0] + p.ambient[0]) * e.area).sum();
@@ -163,8 +163,8 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let trees = Trees::new(session.world().facet_count, corners, 0.06, 1 << 20).unwrap();
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
-    let [coarse, fine] = [128, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
-    let progress = progressive::solve(&room, [&coarse, &fine], 0.002, u64::MAX, &execution).unwrap();
+    let hemicubes = [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let progress = progressive::solve(&room, &hemicubes, 0.002, u64::MAX, &execution).unwrap();
     for (wall, expected) in PATH_TRACED.iter().enumerate() {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
         for (e, element) in room.elements.iter().enumerate() {
@@ -183,6 +183,30 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
             );
         }
     }
+}
+
+#[test]
+fn hemicubes_by_the_light_that_is_sent_are_as_good_as_fine_ones_for_all() {
+    let scene = builtin::scene("cornell").unwrap();
+    let session = Session::new(Arc::new(scene)).unwrap();
+    let all = Triangles::of_world(session.world(), &Workers::single());
+    let corners = |f: u32| Some(all.corners[f as usize].map(|c| c.as_dvec3()));
+    let trees = Trees::new(session.world().facet_count, corners, 0.14, 1 << 20).unwrap();
+    let execution = Execution::default();
+    let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
+    assert!((500..700).contains(&room.patches.len()), "{}", room.patches.len());
+    let hemicubes = [16, 32, 64, 128, 256].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let solve = |hemicubes| progressive::solve(&room, hemicubes, 0.01, u64::MAX, &execution).unwrap();
+    let fine = solve(&hemicubes[4..]);
+    // The mean difference of irradiance, as a part of the mean irradiance.
+    let difference = |other: &progressive::Progress| {
+        let areas = room.elements.iter().flat_map(|e| [e.area; 2]);
+        let pairs = areas.zip(fine.irradiance.iter().zip(&other.irradiance));
+        let of = |value: fn(f64, f64) -> f64| pairs.clone().map(|(area, (a, b))| value(a[1], b[1]) * area).sum::<f64>();
+        of(|a, b| (a - b).abs()) / of(|a, _| a)
+    };
+    let (by_light, coarse) = (difference(&solve(&hemicubes)), difference(&solve(&hemicubes[..1])));
+    assert!(by_light < 0.003 && by_light < 0.1 * coarse, "{by_light} {coarse}");
 }
 
 fn look_in(scene: &Scene) -> (Session, Camera) {
@@ -276,31 +300,33 @@ fn what_lamps_light_lights_the_rest() {
 
 #[test]
 fn interpolated_light_has_no_steps_at_hanging_vertices() {
-    // One leaf of the floor is cut twice; along all edges, both sides must show the same light.
-    let mut room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), 0.8);
-    for _ in 0..3 {
-        let leaf = *room.trees.leaves().iter().find(|&&l| room.trees.nodes[l as usize].facet == 6).unwrap();
-        room.trees.split(leaf as usize);
-    }
-    room.trees.balance();
-    let session =
-        Session::new(Arc::new(self::room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))).unwrap();
-    let room = Enclosure::new(room.trees, &session, &[], &Settings::default(), &Execution::default()).unwrap();
-    let progress = progressive::solve(&room, [&hemicube(); 2], 0.05, u64::MAX, &Execution::default()).unwrap();
-    let solution = Solution::new(&room, &progress);
-    let light = |w: [f32; 3]| solution.irradiance(6, w, true)[0];
-    let mut hanging = 0;
-    for leaf in room.trees.leaves() {
-        hanging += room.trees.middles(leaf).iter().flatten().count();
-    }
-    assert!(hanging > 0);
-    for step in 1..400 {
-        let along = step as f32 / 400.0;
-        for edge in [0.125f32, 0.25, 0.5] {
-            let rest = 1.0 - edge;
-            let (hair, w) = (1e-5, [edge, rest * along, rest * (1.0 - along)]);
-            let [a, b] = [hair, -hair].map(|h| light([w[0] + h, w[1] - h, w[2]]));
-            assert!((a - b).abs() < 2e-3 * (a + b), "{edge} {along}: {a} {b}");
+    // One leaf of the floor is cut twice, or a third of its edge once; along all edges, both sides must show the same light.
+    for (longest, edges) in [(0.8, [0.125f32, 0.25, 0.5]), (0.5, [1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0])] {
+        let scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        let mut trees = enclosure(scene.clone(), longest).trees;
+        for _ in 0..3 {
+            let leaf = *trees.leaves().iter().find(|&&l| trees.nodes[l as usize].facet == 6).unwrap();
+            trees.split(leaf as usize);
+        }
+        trees.balance();
+        let session = Session::new(Arc::new(scene)).unwrap();
+        let room = Enclosure::new(trees, &session, &[], &Settings::default(), &Execution::default()).unwrap();
+        let progress = progressive::solve(&room, &[hemicube()], 0.05, u64::MAX, &Execution::default()).unwrap();
+        let solution = Solution::new(&room, &progress);
+        let light = |w: [f32; 3]| solution.irradiance(6, w, true)[0];
+        let mut hanging = 0;
+        for leaf in room.trees.leaves() {
+            hanging += room.trees.middles(leaf).iter().flatten().count();
+        }
+        assert!(hanging > 0);
+        for step in 1..400 {
+            let along = step as f32 / 400.0;
+            for edge in edges {
+                let rest = 1.0 - edge;
+                let (hair, w) = (1e-5, [edge, rest * along, rest * (1.0 - along)]);
+                let [a, b] = [hair, -hair].map(|h| light([w[0] + h, w[1] - h, w[2]]));
+                assert!((a - b).abs() < 2e-3 * (a + b), "{edge} {along}: {a} {b}");
+            }
         }
     }
 }

@@ -10,8 +10,9 @@
 //! Cost: linear in elements, times lights.
 //! Source: \[Goral et al. 1984\].
 
-use super::hemicube::Targets;
+use super::gather::Row;
 use super::patch::Trees;
+use super::targets::Targets;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::DecodeTables;
 use crate::shadow::{Place, Shadows, facet as facet_of, ray::RayShadows, texel};
@@ -133,6 +134,15 @@ impl Enclosure {
         let mut enclosure = Self { trees, elements, patches, emission: own.into_flattened(), targets };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
+    }
+
+    /// The sides of elements that a place sees, for the elements that it sees.
+    pub(super) fn sides(&self, mut seen: Row, place: DVec3) -> Row {
+        for (number, _) in &mut seen {
+            let element = &self.elements[*number as usize];
+            *number = 2 * *number + u32::from(element.normal.dot(place - element.center) < 0.0);
+        }
+        seen
     }
 
     /// Adds what the elements reflect of light sources.

@@ -22,14 +22,9 @@ const MOST_PASSES: usize = 1000;
 pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -> Result<Vec<Row>, Limit> {
     let row = |side: usize| {
         let element = &enclosure.elements[side / 2];
-        let (targets, trees) = (&enclosure.targets, &enclosure.trees);
-        let seen = hemicube.look(targets, trees, element.center, element.normal * turned(side), execution)?;
-        let sides = seen.into_iter().map(|(number, factor)| {
-            let other = &enclosure.elements[number as usize];
-            let back = u32::from(other.normal.dot(element.center - other.center) < 0.0);
-            (2 * number + back, factor)
-        });
-        Ok(sides.collect())
+        let from = (element.center, element.normal * turned(side));
+        let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, side / 2, execution)?;
+        Ok(enclosure.sides(seen, element.center))
     };
     execution.workers.map(enclosure.emission.len(), row).into_iter().collect()
 }

@@ -5,34 +5,42 @@
 //! `ΔF = ΔA / (π (x² + y² + 1)²)` on the top and `z ΔA / (π (y² + z² + 1)²)` on a side. The factor to an element is the sum
 //! over the pixels that show it. The factors of all pixels are scaled to the sum 1, so that no light is lost or made.
 //!
-//! The z-buffer draws the facets, not the elements that they are cut into: where the pixel's ray meets the facet, the
-//! quadtree says which element it is. So what a hemicube costs hardly grows with the number of elements.
+//! The z-buffer draws the facets, not the elements that they are cut into: where the pixel's ray meets the facet,
+//! [`Targets`] say which element it is. So what a hemicube costs hardly grows with the number of elements. Each hemicube is
+//! turned about the normal by another angle, so that the steps of its pixels do not add up to patterns.
 //!
 //! In:   quadtrees over facets; point and normal. Out: elements and factors.
-//! Cost: five small pictures of the facets, and a step for each pixel and level of the quadtrees.
-//! Source: \[Cohen & Greenberg 1985\]. Departs from it: sides are drawn whole, their lower halves unused; facets are
-//! drawn in place of elements.
+//! Cost: five small pictures of the facets, and a step for each element that a row of pixels crosses.
+//! Source: \[Cohen & Greenberg 1985\]. Departs from it: facets are drawn in place of elements.
 
-use super::patch::{NONE, Trees};
+use super::patch::Trees;
+use super::targets::{Sums, Targets};
 use crate::stats::CullCounters;
-use crate::visible::{TileSink, VisibleSurface, zbuffer::ZBuffer};
-use crate::{Execution, PreparedView, Session, Settings};
+use crate::visible::{TileSink, zbuffer::resolve_in_passing};
+use crate::{Execution, PreparedView, Settings};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use vitral_exec::{Limit, Workers};
 use vitral_math::{DVec3, func};
-use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, Tile, TileGrid, Viewport};
-use vitral_scene::{Camera, Mesh, Part, Projection, Scene};
+use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, Tile, Viewport};
+use vitral_scene::{Camera, Projection};
 
-/// Radians by which a hemicube is turned about the normal.
-const TURN: f64 = 0.55;
+/// The part of a quarter turn by which the first hemicube is turned about the normal, lest edges along the axes pass
+/// through the middles of a whole row of pixels.
+const FIRST_TURN: f64 = 0.35;
+/// By which the next one is turned further: the golden section, which spreads any number of them evenly.
+const NEXT_TURN: f64 = 0.618_033_988_749_895;
+
+/// Borders of elements that a pixel's width crosses, from which on pixels are looked at one by one.
+const DENSE: f64 = 0.7;
 
 /// A hemicube of some resolution.
 #[derive(Debug)]
 pub struct Hemicube {
     settings: Settings,
-    /// Form factors of the pixels of the top, and of the upper half of a side.
-    factors: [Vec<f64>; 2],
+    /// Form factors of the pixels of the top, and of the upper half of a side. Each row begins with 0, and has for each
+    /// pixel the sum up to it.
+    sums: [Vec<f64>; 2],
     /// Distances of the near and far planes.
     clip: (f64, f64),
 }
@@ -42,39 +50,54 @@ impl Hemicube {
     pub fn new(side: u32, diagonal: f64) -> Self {
         let step = 2.0 / f64::from(side);
         let at = |i: u32| (f64::from(i) + 0.5) * step - 1.0;
-        let (mut top, mut wall) = (Vec::new(), Vec::new());
-        for row in 0..side {
-            for column in 0..side {
-                let (x, y) = (at(column), -at(row));
+        let row = |wall: bool, row: u32| {
+            let y = -at(row);
+            let factors = (0..side).map(|column| {
+                let (x, height) = (at(column), if wall { y } else { 1.0 });
                 let square = x * x + y * y + 1.0;
-                let factor = step * step / (PI * square * square);
-                top.push(factor);
-                if row < side / 2 {
-                    wall.push(y * factor);
-                }
-            }
-        }
-        let whole = top.iter().sum::<f64>() + 4.0 * wall.iter().sum::<f64>();
-        top.iter_mut().chain(&mut wall).for_each(|f| *f /= whole);
+                height * step * step / (PI * square * square)
+            });
+            factors.collect::<Vec<f64>>()
+        };
+        let top: Vec<_> = (0..side).map(|i| row(false, i)).collect();
+        let wall: Vec<_> = (0..side / 2).map(|i| row(true, i)).collect();
+        let sum = |rows: &[Vec<f64>]| rows.iter().flatten().sum::<f64>();
+        let whole = sum(&top) + 4.0 * sum(&wall);
+        let sums = [top, wall].map(|rows| {
+            let up_to = rows.iter().flat_map(|row| {
+                let mut sum = 0.0;
+                let sums = row.iter().map(move |factor| {
+                    sum += factor / whole;
+                    sum
+                });
+                std::iter::once(0.0).chain(sums)
+            });
+            up_to.collect()
+        });
         let settings = Settings { width: side, height: side, samples: 1, ..Settings::default() };
-        Self { settings, factors: [top, wall], clip: (diagonal * 1e-4, diagonal * 2.0) }
+        Self { settings, sums, clip: (diagonal * 1e-4, diagonal * 2.0) }
     }
 
-    /// What a point with unit normal sees: leaves of `trees`, by number, and form factors, in the order of leaves.
+    /// Pixels along an edge of the top.
+    pub fn side(&self) -> u32 {
+        self.settings.width
+    }
+
+    /// What a point with unit normal sees: leaves of `trees`, by number, and form factors, in the order of leaves. The
+    /// hemicube is turned as that of this `number`.
     pub fn look(
         &self,
-        targets: &Targets,
-        trees: &Trees,
-        point: DVec3,
-        normal: DVec3,
+        (targets, trees): (&Targets, &Trees),
+        (point, normal): (DVec3, DVec3),
+        number: usize,
         execution: &Execution,
     ) -> Result<Vec<(u32, f64)>, Limit> {
-        // Turned, lest edges along the axes pass through the middles of a whole row of pixels.
-        let ((u, v), (sin, cos)) = (normal.any_orthonormal_pair(), func::sin_cos(TURN));
+        let turn = (FIRST_TURN + NEXT_TURN * number as f64).fract();
+        let ((u, v), (sin, cos)) = (normal.any_orthonormal_pair(), func::sin_cos(turn * FRAC_PI_2));
         let (u, v) = (u * cos + v * sin, v * cos - u * sin);
         // Points look from different threads: each draws alone.
         let execution = Execution { workers: Workers::single(), observer: None, ..execution.clone() };
-        let mut seen = vec![0.0; targets.leaves];
+        let mut seen = targets.sums();
         for (face, [towards, up]) in
             [[normal, u], [u, normal], [-u, normal], [v, normal], [-v, normal]].into_iter().enumerate()
         {
@@ -85,65 +108,35 @@ impl Hemicube {
                 projection: Projection::Perspective { view_angle: FRAC_PI_2 },
                 clip: Some(self.clip),
             };
-            self.face((targets, trees), &camera, &self.factors[usize::from(face > 0)], &execution, &mut seen)?;
+            self.face((targets, trees), &camera, &self.sums[usize::from(face > 0)], &execution, &mut seen)?;
         }
-        Ok((0..).zip(seen).filter(|(_, factor)| *factor > 0.0).collect())
+        Ok(targets.finish(seen))
     }
 
     fn face(
         &self,
         (targets, trees): (&Targets, &Trees),
         camera: &Camera,
-        factors: &[f64],
+        sums: &[f64],
         execution: &Execution,
-        seen: &mut Vec<f64>,
+        seen: &mut Sums,
     ) -> Result<(), Limit> {
         let side = self.settings.width;
         let viewport = Viewport { width: side, height: side };
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
         let view = PreparedView::new(&targets.session, camera, &self.settings, viewport, pattern, execution, counters);
-        let mut grid = TileGrid::new(viewport, 1);
         let (eye, forward, up) = (camera.position, camera.focal_point - camera.position, camera.view_up);
         let axes = [forward.cross(up), up, forward];
-        let seen_here = Mutex::new(std::mem::take(seen));
-        let sink = Collector { factors, side: side as usize, targets, trees, eye, axes, seen: seen_here };
-        ZBuffer.resolve(&view, None, &mut grid, execution, &sink)?;
-        *seen = sink.seen.into_inner().expect("no thread panics while it collects");
-        Ok(())
-    }
-}
-
-/// What hemicubes look at: facets, each the root of a quadtree.
-#[derive(Debug)]
-pub struct Targets {
-    /// The facets as a scene of their own.
-    session: Session,
-    /// The root of each of the scene's facets.
-    roots: Vec<u32>,
-    /// The number of each node that is a leaf.
-    numbers: Vec<u32>,
-    leaves: usize,
-}
-
-impl Targets {
-    /// The leaves of `trees`, in their order.
-    pub fn new(trees: &Trees) -> Self {
-        let roots: Vec<u32> = trees.roots.iter().copied().filter(|&root| root != NONE).collect();
-        let mut numbers = vec![NONE; trees.nodes.len()];
-        let leaves = trees.leaves();
-        (0..).zip(&leaves).for_each(|(number, &leaf)| numbers[leaf as usize] = number);
-        let positions = roots.iter().flat_map(|&root| trees.places(root)).map(|v| v.as_vec3().to_array()).collect();
-        let triangles: Vec<_> = (0..roots.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
-        let parts = vec![Part { name: String::new(), triangles: 0..roots.len() as u32, material: None }];
-        let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
-        let session = Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound");
-        Self { session, roots, numbers, leaves: leaves.len() }
+        let sink = Collector { sums, side: side as usize, targets, trees, eye, axes, seen: Mutex::new(seen) };
+        // Of sides the upper half.
+        let rows = (sums.len() / (side as usize + 1)).div_ceil(TILE) as u32;
+        resolve_in_passing(&view, rows, execution, &sink)
     }
 }
 
 /// Adds up the factors of the pixels that show each leaf.
 struct Collector<'a> {
-    factors: &'a [f64],
+    sums: &'a [f64],
     side: usize,
     targets: &'a Targets,
     trees: &'a Trees,
@@ -151,20 +144,16 @@ struct Collector<'a> {
     /// Right, up, forward.
     axes: [DVec3; 3],
     /// A sum for each leaf.
-    seen: Mutex<Vec<f64>>,
+    seen: Mutex<&'a mut Sums>,
 }
 
 impl Collector<'_> {
-    /// Adds the factors of neighbours in a row, from this column on, that show one facet.
-    fn add(&self, facet: u32, [column, row]: [usize; 2], factors: &[f64], seen: &mut [f64]) {
-        let (root, trees) = (self.targets.roots[facet as usize], self.trees);
-        if trees.nodes[root as usize].children == NONE {
-            seen[self.targets.numbers[root as usize] as usize] += factors.iter().sum::<f64>();
-            return;
-        }
+    /// Adds the factors of neighbours in a row, from this column on, that show one facet. `sums` has one more than there are
+    /// pixels.
+    fn add(&self, facet: u32, [column, row]: [usize; 2], sums: &[f64], seen: &mut Sums) {
         // A ray's direction is a sum of the corners as seen from the eye, with these weights times some number. Along a
         // row they change evenly, and so do the weights within any node.
-        let [a, b, c] = trees.places(root).map(|corner| corner - self.eye);
+        let [a, b, c] = self.targets.corners(facet).map(|corner| corner - self.eye);
         let (step, [right, up, forward]) = (2.0 / self.side as f64, self.axes);
         let at = |i: usize| (i as f64 + 0.5) * step - 1.0;
         let first = forward + right * at(column) - up * at(row);
@@ -173,15 +162,23 @@ impl Collector<'_> {
         if start.iter().sum::<f64>() < 0.0 {
             (start, slopes) = (start.map(|w| -w), slopes.map(|w| -w));
         }
-        let mut done = 0;
-        while done < factors.len() {
-            let here = [0, 1, 2].map(|k| start[k] + done as f64 * slopes[k]);
-            let (leaf, weights, slopes) = trees.leaf_along(root, here, slopes);
+        let (mut done, count) = (0, sums.len() - 1);
+        let after = |pixels: usize| [0, 1, 2].map(|k| start[k] + pixels as f64 * slopes[k]);
+        if self.targets.borders_crossed(facet, start, slopes) > DENSE {
+            // Nearly every pixel shows another element: how far each goes on need not be known.
+            for (i, factors) in sums.windows(2).enumerate() {
+                seen.add(self.targets.leaf_at(self.trees, facet, after(i)), factors[1] - factors[0]);
+            }
+            return;
+        }
+        while done < count {
+            let here = after(done);
+            let (leaf, weights, slopes) = self.targets.leaf_along(self.trees, facet, here, slopes);
             // As far as no weight falls below 0.
-            let ends = (0..3).filter(|&k| slopes[k] < 0.0).map(|k| weights[k] / -slopes[k]);
-            let length = ends.fold(f64::INFINITY, f64::min).max(0.0) as usize;
-            let next = done.saturating_add(length).saturating_add(1).min(factors.len());
-            seen[self.targets.numbers[leaf as usize] as usize] += factors[done..next].iter().sum::<f64>();
+            let ends = [0, 1, 2].map(|k| if slopes[k] < 0.0 { weights[k] / -slopes[k] } else { f64::INFINITY });
+            let length = ends[0].min(ends[1]).min(ends[2]).max(0.0) as usize;
+            let next = done.saturating_add(length).saturating_add(1).min(count);
+            seen.add(leaf, sums[next] - sums[done]);
             done = next;
         }
     }
@@ -193,13 +190,13 @@ impl TileSink for Collector<'_> {
         let (left, top) = (tile.x as usize, tile.y as usize);
         let (columns, rows) = (TILE.min(self.side - left), TILE.min(self.side - top));
         for row in 0..rows {
-            let at = (top + row) * self.side + left;
-            let Some(factors) = self.factors.get(at..at + columns) else { break };
+            let at = (top + row) * (self.side + 1) + left;
+            let Some(sums) = self.sums.get(at..at + columns + 1) else { break };
             let mut column = 0;
             for run in tile.facet[row * TILE..row * TILE + columns].chunk_by(|a, b| a == b) {
                 if run[0] != NO_FACET {
                     let place = [left + column, top + row];
-                    self.add(run[0], place, &factors[column..column + run.len()], &mut seen);
+                    self.add(run[0], place, &sums[column..column + run.len() + 1], &mut seen);
                 }
                 column += run.len();
             }
@@ -229,7 +226,7 @@ mod tests {
         let at = |i: u32| (f64::from(i) + 0.5) / f64::from(steps);
         let points = execution.workers.map((steps * steps) as usize, |i| {
             let point = dvec3(at(i as u32 % steps), at(i as u32 / steps), 0.0);
-            let seen = hemicube.look(&targets, trees, point, DVec3::Z, &execution).unwrap();
+            let seen = hemicube.look((&targets, trees), (point, DVec3::Z), i, &execution).unwrap();
             seen.iter().map(|(_, f)| f).sum::<f64>()
         });
         points.iter().sum::<f64>() / f64::from(steps * steps)
@@ -248,7 +245,8 @@ mod tests {
         // Seen from outside the middle, so that nothing is symmetric.
         let (point, trees) = (dvec3(0.2, 0.35, 0.0), square(DVec3::Z * 0.5, DVec3::Y, DVec3::X, 0.4));
         let hemicube = Hemicube::new(512, 2.0);
-        let seen = hemicube.look(&Targets::new(&trees), &trees, point, DVec3::Z, &Execution::default()).unwrap();
+        let targets = Targets::new(&trees);
+        let seen = hemicube.look((&targets, &trees), (point, DVec3::Z), 0, &Execution::default()).unwrap();
         let leaves = trees.leaves();
         assert_eq!(seen.len(), leaves.len());
         for (number, factor) in seen {
@@ -263,7 +261,9 @@ mod tests {
     fn all_pixels_together_are_one() {
         for side in [2, 64, 130] {
             let hemicube = Hemicube::new(side, 1.0);
-            let sum: f64 = hemicube.factors[0].iter().sum::<f64>() + 4.0 * hemicube.factors[1].iter().sum::<f64>();
+            let sum =
+                |face: usize| hemicube.sums[face].iter().skip(side as usize).step_by(side as usize + 1).sum::<f64>();
+            let sum = sum(0) + 4.0 * sum(1);
             assert!((sum - 1.0).abs() < 1e-12);
         }
     }

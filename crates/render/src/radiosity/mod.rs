@@ -18,6 +18,7 @@ pub mod hemicube;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
+pub mod targets;
 
 pub use solution::Solution;
 
@@ -29,8 +30,10 @@ use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
 
-/// Pixels along an edge of hemicubes, and of those of strong patches.
-const HEMICUBE: [u32; 2] = [128, 512];
+/// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
+const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
+/// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
+const ROUGH_HEMICUBES: usize = 9;
 /// The part of the light that may be left.
 pub const RESIDUAL: f64 = 0.01;
 /// The part that may be left before elements are cut again.
@@ -82,13 +85,12 @@ fn solve(
 ) -> Result<Solution, Limit> {
     let start = execution.budget.elapsed();
     let diagonal = session.world.bounds.diagonal();
-    let [coarse, fine] = HEMICUBE.map(|side| Hemicube::new(side, diagonal));
-    let hemicubes = [&coarse, &fine];
+    let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
     let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
     let most = settings.iterations.unwrap_or(u64::MAX);
     let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
     for _ in 0..ROUNDS {
-        let rough = progressive::solve(&enclosure, hemicubes, ROUGH, most, execution)?;
+        let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, execution)?;
         let contrasts = Solution::new(&enclosure, &rough).contrasts();
         let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
@@ -100,7 +102,7 @@ fn solve(
         trees.balance();
         enclosure = enclosed(trees, session, lights, settings, execution)?;
     }
-    let progress = progressive::solve(&enclosure, hemicubes, RESIDUAL, most, execution)?;
+    let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, execution)?;
     let solution = Solution::new(&enclosure, &progress);
     *counters = RadiosityCounters {
         patches: enclosure.patches.len() as u64,
@@ -125,7 +127,7 @@ fn enclosed(
 ) -> Result<Enclosure, Limit> {
     // A node, a vertex, an element with two sides, its triangle, what the solution keeps of it; and form factors.
     let count = trees.nodes.len() as u64;
-    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(16));
+    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(8));
     execution.budget.charge(bytes, "radiosity")?;
     execution.budget.release(bytes);
     Enclosure::new(trees, session, lights, settings, execution)

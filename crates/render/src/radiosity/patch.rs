@@ -1,10 +1,11 @@
 //! Patches and elements: the surfaces of a scene, cut into small triangles.
 //!
 //! A facet is cut in four at the middles of its edges, and its parts again, until no edge is longer than asked for: the
-//! *patches*, which send light. Where light changes fast they are cut further, into the *elements*, which receive it. So
-//! each facet is the root of a quadtree. Middles of edges are shared by all facets that share the edge, and the trees are
-//! kept balanced: across an edge, levels differ by one at most. A leaf whose neighbour is finer has a vertex in the middle
-//! of its edge; whoever interpolates cuts it there, so that there are no T-junctions.
+//! *patches*, which send light. Where fewer patches come of it, the edges of all facets are first cut in three. Where light
+//! changes fast patches are cut further, into the *elements*, which receive it. So each facet is a small grid of quadtrees.
+//! Vertices on edges are shared by all facets that share the edge, and the trees are kept balanced: across an edge, levels
+//! differ by one at most. A leaf whose neighbour is finer has a vertex in the middle of its edge; whoever interpolates cuts
+//! it there, so that there are no T-junctions.
 //!
 //! In:   facets, world space less the scene's middle. Out: the trees.
 //! Cost: linear in leaves.
@@ -15,6 +16,10 @@ use vitral_math::DVec3;
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
+/// In how many parts the edges of facets may be cut before they are halved: sizes half-way between those of halving.
+const CUTS: [u32; 2] = [1, MOST_CUTS];
+/// Most of these parts.
+pub(super) const MOST_CUTS: u32 = 3;
 
 /// A triangle of some size.
 #[derive(Clone, Copy, Debug)]
@@ -37,19 +42,29 @@ pub struct Trees {
     pub vertices: Vec<DVec3>,
     /// All nodes, parents before children.
     pub nodes: Vec<Node>,
-    /// The root of each facet, `u32::MAX` for those that take no part.
+    /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots follow: rows from corner 0
+    /// on, each from corner 2 to corner 1, every second one upside down.
     pub roots: Vec<u32>,
+    /// Parts of each facet's edges before quadtrees begin, at least 1.
+    pub cuts: u32,
     /// How many patches there are.
     pub patches: u32,
     middles: HashMap<[u32; 2], u32>,
 }
 
 impl Trees {
-    /// A tree for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
+    /// Trees for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
     /// would be more than `most` leaves.
     pub fn new(facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>, longest: f64, most: usize) -> Option<Self> {
-        let mut trees = Self { roots: vec![NONE; facets as usize], ..Self::default() };
+        let lengths: Vec<f64> = (0..facets).filter_map(|f| Some(longest_edge(corners(f)?))).collect();
+        let leaves = |cuts: u32| lengths.iter().map(|length| leaves(length / longest, cuts)).sum::<f64>();
+        let cuts = CUTS.into_iter().fold(CUTS[0], |best, cuts| if leaves(cuts) < leaves(best) { cuts } else { best });
+        if leaves(cuts) > most as f64 {
+            return None;
+        }
+        let mut trees = Self { roots: vec![NONE; facets as usize], cuts, ..Self::default() };
         let mut welded: HashMap<[u64; 3], u32> = HashMap::new();
+        let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
         for facet in 0..facets {
             let Some(corners) = corners(facet) else { continue };
             let corners = corners.map(|p| {
@@ -61,11 +76,11 @@ impl Trees {
                 })
             });
             trees.roots[facet as usize] = trees.nodes.len() as u32;
-            trees.nodes.push(Node { corners, children: NONE, facet, patch: NONE });
+            trees.plant(facet, corners, &mut edges);
         }
         let mut at = 0;
         while at < trees.nodes.len() {
-            if trees.longest_edge(at) > longest {
+            if longest_edge(trees.places(at as u32)) > longest * (1.0 + ROUNDING) {
                 trees.split(at);
             }
             at += 1;
@@ -88,6 +103,22 @@ impl Trees {
         (0..self.nodes.len() as u32).filter(|&n| self.nodes[n as usize].children == NONE).collect()
     }
 
+    /// The roots of a facet that takes part.
+    pub(super) fn roots_of(&self, facet: u32) -> std::ops::Range<u32> {
+        let first = self.roots[facet as usize];
+        first..first + self.cuts * self.cuts
+    }
+
+    /// Places of the corners of a facet that takes part.
+    pub(super) fn corners_of(&self, facet: u32) -> [DVec3; 3] {
+        [0, 1, 2].map(|k| {
+            let mut steps = [0; 3];
+            steps[k] = self.cuts - 1;
+            let root = self.roots[facet as usize] + Cell { steps, upright: true }.number(self.cuts);
+            self.places(root)[k]
+        })
+    }
+
     /// Places of a node's corners.
     pub fn places(&self, node: u32) -> [DVec3; 3] {
         self.nodes[node as usize].corners.map(|v| self.vertices[v as usize])
@@ -103,9 +134,36 @@ impl Trees {
         self.middles.get(&[a.min(b), a.max(b)]).copied()
     }
 
-    fn longest_edge(&self, node: usize) -> f64 {
-        let [a, b, c] = self.places(node as u32);
-        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    /// Makes a facet's roots; `edges` has the first of the vertices that cut an edge, from its lower end on.
+    fn plant(&mut self, facet: u32, corners: [u32; 3], edges: &mut HashMap<[u32; 2], u32>) {
+        let n = self.cuts;
+        let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut vertex = |trees: &mut Self, steps: [u32; 3]| {
+            let on = (0..3).filter(|&k| steps[k] > 0).map(|k| (corners[k], steps[k]));
+            let mut on: Vec<(u32, u32)> = on.collect();
+            on.sort_unstable();
+            match on[..] {
+                [(corner, _)] => corner,
+                [(low, _), (high, along)] => {
+                    let first = *edges.entry([low, high]).or_insert_with(|| {
+                        let [a, b] = [low, high].map(|v| trees.vertices[v as usize]);
+                        trees.vertices.extend((1..n).map(|i| a.lerp(b, f64::from(i) / f64::from(n))));
+                        trees.vertices.len() as u32 - (n - 1)
+                    });
+                    first + along - 1
+                }
+                _ => *vertices.entry(steps).or_insert_with(|| {
+                    let parts = (0..3).map(|k| trees.vertices[corners[k] as usize] * f64::from(steps[k]));
+                    let sum: DVec3 = parts.sum();
+                    trees.vertices.push(sum / f64::from(n));
+                    trees.vertices.len() as u32 - 1
+                }),
+            }
+        };
+        for number in 0..n * n {
+            let corners = Cell::numbered(number, n).corners().map(|steps| vertex(self, steps));
+            self.nodes.push(Node { corners, children: NONE, facet, patch: NONE });
+        }
     }
 
     /// Cuts a leaf in four.
@@ -153,10 +211,10 @@ impl Trees {
         })
     }
 
-    /// The leaf at a point of the tree from `root` on. The weights of the root's corners there, and how they change along
+    /// The leaf at a point of the tree from `node` on. The weights of the node's corners there, and how they change along
     /// some line, come in, those of the leaf's go out; all may be times any positive number.
-    pub fn leaf_along(&self, root: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
-        let mut at = root;
+    pub fn leaf_along(&self, node: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
+        let mut at = node;
         while self.nodes[at as usize].children != NONE {
             let half = 0.5 * (weights[0] + weights[1] + weights[2]);
             let child = (0..3).find(|&k| weights[k] >= half).unwrap_or(3);
@@ -175,6 +233,89 @@ impl Trees {
         }
         (at, weights, slopes)
     }
+}
+
+/// What lengths may be too long by, as a part: that of rounding.
+const ROUNDING: f64 = 1e-12;
+
+fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
+/// Leaves of a facet whose longest edge is this many times the longest that is wanted.
+fn leaves(length: f64, cuts: u32) -> f64 {
+    let mut pieces = f64::from(cuts);
+    while length > pieces * (1.0 + ROUNDING) && pieces < 1e9 {
+        pieces *= 2.0;
+    }
+    pieces * pieces
+}
+
+/// A cell of a triangle whose edges are cut in `n` parts: upright as the triangle, or upside down between others. Corner k
+/// of a cell upside down lies opposite to where corner k of an upright one is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cell {
+    /// Of the n-ths of the weights in the cell, the whole numbers; their sum is `n - 1`, or `n - 2` upside down.
+    pub steps: [u32; 3],
+    pub upright: bool,
+}
+
+impl Cell {
+    /// Where the cell comes: rows from corner 0 on, each from corner 2 to corner 1.
+    pub(super) fn number(&self, n: u32) -> u32 {
+        let row = n - 1 - self.steps[0];
+        row * row + 2 * self.steps[1] + u32::from(!self.upright)
+    }
+
+    /// The cell of this number.
+    pub(super) fn numbered(number: u32, n: u32) -> Self {
+        let row = number.isqrt();
+        let along = number - row * row;
+        let (j, upright) = (along / 2, along.is_multiple_of(2));
+        Self { steps: [n - 1 - row, j, row - j - u32::from(!upright)], upright }
+    }
+
+    /// The cell at the point whose weights are these n-ths; outside the triangle some cell near it.
+    #[inline]
+    pub(super) fn at(weights: [f64; 3], n: u32) -> Self {
+        // Casts take what is below 0 to 0.
+        let i = (weights[0] as u32).min(n - 1);
+        let j = (weights[1] as u32).min(n - 1 - i);
+        let k = n - 1 - i - j;
+        let upright = k == 0 || weights[2] >= f64::from(k);
+        Self { steps: [i, j, k - u32::from(!upright)], upright }
+    }
+
+    /// Weights within the cell of a point with these weights in the triangle, both times the same number.
+    #[inline]
+    pub(super) fn inside(&self, weights: [f64; 3], n: u32) -> [f64; 3] {
+        let sum = weights[0] + weights[1] + weights[2];
+        [0, 1, 2].map(|k| {
+            let (w, steps) = (f64::from(n) * weights[k], f64::from(self.steps[k]));
+            if self.upright { w - steps * sum } else { (steps + 1.0) * sum - w }
+        })
+    }
+
+    /// The child of this number, where edges are cut in twice as many parts.
+    pub(super) fn child(&self, child: usize) -> Self {
+        let steps = [0, 1, 2].map(|k| 2 * self.steps[k] + u32::from(self.upright == (child == k)));
+        Self { steps, upright: self.upright == (child != 3) }
+    }
+
+    /// The n-ths of the triangle's corners in each corner.
+    fn corners(&self) -> [[u32; 3]; 3] {
+        [0, 1, 2].map(|corner| [0, 1, 2].map(|k| self.steps[k] + u32::from(self.upright == (k == corner))))
+    }
+}
+
+/// Which of a facet's roots holds the point with these weights, and its weights there.
+pub(super) fn within(w: [f32; 3], cuts: u32) -> (u32, [f32; 3]) {
+    if cuts == 1 {
+        return (0, w);
+    }
+    let weights = w.map(f64::from);
+    let cell = Cell::at(weights.map(|w| w * f64::from(cuts)), cuts);
+    (cell.number(cuts), cell.inside(weights, cuts).map(|w| w as f32))
 }
 
 /// Which child holds the point with these weights, and its weights there.
@@ -234,23 +375,25 @@ mod tests {
     }
 
     #[test]
-    fn points_are_found_in_their_leaf() {
-        let mut trees = square(0.8);
-        trees.split(trees.leaves()[3] as usize);
-        for i in 0..200u32 {
-            let (u, v) = (f64::from(i % 14) / 14.0 + 0.01, f64::from(i / 14) / 15.0 + 0.02);
-            let w = if u + v < 1.0 { [u, v, 1.0 - u - v] } else { [1.0 - u, 1.0 - v, u + v - 1.0] };
-            // Any scale will do.
-            let (w, step) = (w.map(|w| 3.0 * w), [0.2, -0.3, 0.1]);
-            let (leaf, inside, along) = trees.leaf_along(trees.roots[i as usize % 2], w, step);
-            let place = |corners: [DVec3; 3], w: [f64; 3]| {
-                (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / w.iter().sum::<f64>()
-            };
-            let root = trees.places(trees.roots[i as usize % 2]);
-            let ahead = |w: [f64; 3], step: [f64; 3]| [0, 1, 2].map(|k| w[k] + 0.7 * step[k]);
-            assert!(place(trees.places(leaf), inside).abs_diff_eq(place(root, w), 1e-12));
-            assert!(place(trees.places(leaf), ahead(inside, along)).abs_diff_eq(place(root, ahead(w, step)), 1e-12));
-            assert!(inside.iter().all(|w| *w > -1e-12));
+    fn facets_are_cut_in_three_where_fewer_patches_come_of_it() {
+        // The diagonal of 1.41 in three parts, not in four.
+        let trees = square(0.5);
+        assert_eq!((trees.cuts, trees.leaves().len(), trees.patches), (3, 18, 18));
+        assert_eq!(trees.vertices.len(), 16, "those on the diagonal belong to both facets");
+        for leaf in trees.leaves() {
+            let [a, b, c] = trees.places(leaf);
+            assert!(((b - a).cross(c - a).z - 1.0 / 9.0).abs() < 1e-12, "all of one size, and turned alike");
+        }
+        assert_eq!(square(0.25).leaves().len(), 72, "in three parts and these in two");
+        assert_eq!(square(2.0).cuts, 1);
+        for i in 0..60 {
+            let w = [i as f32 / 60.0 + 0.003, (59 - i) as f32 / 120.0 + 0.001];
+            let w = [w[0], w[1], 1.0 - w[0] - w[1]];
+            let (root, inside) = within(w, 3);
+            let place = |corners: [DVec3; 3], w: [f32; 3]| (0..3).map(|k| corners[k] * f64::from(w[k])).sum::<DVec3>();
+            assert!(inside.iter().all(|w| *w > -1e-6), "{inside:?}");
+            let (root, facet) = (trees.places(trees.roots[1] + root), trees.corners_of(1));
+            assert!(place(root, inside).abs_diff_eq(place(facet, w), 1e-6));
         }
     }
 }

@@ -7,27 +7,33 @@
 //! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance.
 //!
 //! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
-//! light is added in their order: so the result does not depend on threads.
+//! light is added in their order: so the result does not depend on threads. While it is added, those that shoot next look
+//! what they see; they were chosen before.
+//!
+//! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of any of them carries about
+//! the same, and its error shows as much. All light together then goes through about as many pixels, into however many
+//! patches a scene is cut.
 //!
 //! In:   an enclosure. Out: irradiance of each side of each element.
 //! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
 //! multiplications a shot for each element that it shows.
-//! Source: \[Cohen et al. 1988\].
+//! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::enclosure::{Color, Enclosure, turned};
+use super::enclosure::{Color, Element, Enclosure, turned};
 use super::gather::Row;
 use super::hemicube::Hemicube;
 use crate::Execution;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_math::DVec3;
 
 /// Form factors that are kept for a patch's next shot: 256 MiB.
-const MOST_KNOWN: usize = 16 << 20;
+const MOST_KNOWN: usize = 32 << 20;
 /// Bytes that they take.
-pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f64)>()) as u64;
-/// Patches that shoot in one step.
-const VOLLEY: usize = 16;
+pub(super) const MOST_BYTES: u64 = (MOST_KNOWN * size_of::<(u32, f32)>()) as u64;
+/// Patches that shoot in one step: one in so many,
+const PATCHES_A_SHOOTER: usize = 128;
+/// but at least and at most these.
+const VOLLEY: [usize; 2] = [16, 256];
 
 /// How far a solution is.
 #[derive(Clone, Debug, Default)]
@@ -48,14 +54,14 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Patches that send at least this part of all light use the finer hemicube.
+/// Patches that send at least this part of all light use the finest hemicube.
 const STRONG: f64 = 1.0 / 64.0;
 
-/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the two hemicubes the second, finer
-/// one is for the patches with the most light, whose errors show the most.
+/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the `hemicubes`, at least one, from
+/// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
 pub fn solve(
     enclosure: &Enclosure,
-    hemicubes: [&Hemicube; 2],
+    hemicubes: &[Hemicube],
     residual: f64,
     most: u64,
     execution: &Execution,
@@ -70,7 +76,28 @@ pub fn solve(
         (0..3).for_each(|k| to[k] += emission[k] * element.area);
     }
     progress.emitted = unsent.iter().map(power).sum();
+    let receiver = |e: &Element| Receiver { patch: e.patch, per_area: 1.0 / e.area, reflectance: e.reflectance };
+    let receivers: Vec<Receiver> = enclosure.elements.iter().map(receiver).collect();
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
+    let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
+    let emitted = progress.emitted;
+    // The sides with the most light, and the hemicubes that they need.
+    let choose = |unsent: &[Color], shots: u64| -> Vec<(usize, usize)> {
+        let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
+        sides.into_iter().map(|side| (side, fineness(hemicubes, power(&unsent[side]) / emitted))).collect()
+    };
+    // Whom they see.
+    let look = |shooters: &[(usize, usize)], known: &Known| -> Result<Vec<Arc<Seen>>, Limit> {
+        let seen = execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
+            (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
+            (_, (side, fineness)) => {
+                let row = look(enclosure, &hemicubes[fineness], side, execution)?;
+                Ok(Arc::new(Seen::new(fineness, &row)))
+            }
+        });
+        seen.into_iter().collect()
+    };
+    let (mut shooters, mut seen) = (Vec::new(), Vec::new());
     loop {
         let left: f64 = unsent.iter().map(power).sum();
         progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
@@ -79,71 +106,108 @@ pub fn solve(
             break;
         }
         execution.budget.check("radiosity")?;
-
-        // Choose the patches with the most light, and see whom they see.
-        let shooters = strongest(&unsent, VOLLEY.min((most - progress.shots) as usize));
-        let seen = execution.workers.map(shooters.len(), |i| {
-            if let Some(row) = &known.rows[shooters[i]] {
-                return Ok(Arc::clone(row));
-            }
-            let patch = &enclosure.patches[shooters[i] / 2];
-            let strong = power(&unsent[shooters[i]]) >= STRONG * progress.emitted;
-            let hemicube = hemicubes[usize::from(strong)];
-            let normal = patch.normal * turned(shooters[i]);
-            hemicube.look(&enclosure.targets, &enclosure.trees, patch.center, normal, execution).map(Arc::new)
-        });
-        let powers: Vec<Color> = shooters.iter().map(|&s| std::mem::take(&mut unsent[s])).collect();
-        for ((shooter, sent), seen) in shooters.iter().zip(powers).zip(seen) {
-            let (mut arrived, seen) = (0.0, seen?);
-            known.keep(*shooter, &seen);
-            for &(number, factor) in &*seen {
-                let at = enclosure.patches[shooter / 2].center;
-                receive(enclosure, number, at, factor, sent, &mut unsent, &mut progress);
-                arrived += factor;
-            }
-            progress.escaped += power(&sent) * (1.0 - arrived);
-            progress.shots += 1;
+        if shooters.is_empty() {
+            shooters = choose(&unsent, progress.shots);
+            seen = look(&shooters, &known)?;
         }
+        let powers: Vec<Color> = shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
+        let next = choose(&unsent, progress.shots + shooters.len() as u64);
+        let receive = || {
+            powers
+                .iter()
+                .zip(&seen)
+                .for_each(|(sent, seen)| receive(&receivers, seen, sent, &mut unsent, &mut progress));
+        };
+        let ((), next_seen) = execution.workers.join(receive, || look(&next, &known));
+        shooters.iter().zip(seen).for_each(|(&(side, _), seen)| known.keep(side, seen));
+        (shooters, seen) = (next, next_seen?);
     }
     progress.ambient = ambient(enclosure, &unsent);
     Ok(progress)
 }
 
+/// Elements take their parts of what is sent to those that are seen.
+fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
+    let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
+    for &(side, factor) in &seen.row {
+        let (side, factor) = (side as usize, f64::from(factor));
+        let receiver = &receivers[side / 2];
+        let irradiance = &mut progress.irradiance[side];
+        let to_send = &mut unsent[2 * receiver.patch as usize + side % 2];
+        for k in 0..3 {
+            let arriving = scaled[k] * factor;
+            let reflected = arriving * receiver.reflectance[k];
+            irradiance[k] += arriving * receiver.per_area;
+            to_send[k] += reflected;
+            kept[k] += arriving - reflected;
+        }
+    }
+    progress.absorbed += power(&kept);
+    progress.escaped += power(sent) * (1.0 - seen.whole);
+    progress.shots += 1;
+}
+
+/// The coarsest hemicube with enough pixels for this part of all light.
+fn fineness(hemicubes: &[Hemicube], part: f64) -> usize {
+    let pixels = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side());
+    let last = hemicubes.len() - 1;
+    let needed = pixels(&hemicubes[last]) * (part / STRONG);
+    hemicubes.iter().position(|hemicube| pixels(hemicube) >= needed).unwrap_or(last)
+}
+
+/// What a side of a patch sees: sides of elements.
+fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &Execution) -> Result<Row, Limit> {
+    let patch = &enclosure.patches[shooter / 2];
+    let from = (patch.center, patch.normal * turned(shooter));
+    let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
+    Ok(enclosure.sides(seen, patch.center))
+}
+
+/// What a side of a patch was found to see.
+struct Seen {
+    /// The number of the hemicube.
+    fineness: usize,
+    /// Sides of elements, and form factors divided by `scale`.
+    row: Vec<(u32, f32)>,
+    /// So that rounding makes no light.
+    scale: f64,
+    /// The sum of the form factors.
+    whole: f64,
+}
+
+impl Seen {
+    fn new(fineness: usize, row: &Row) -> Self {
+        let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
+        let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
+        let rounded: f64 = row.iter().map(|(_, factor)| f64::from(*factor)).sum();
+        Self { fineness, row, scale: if rounded > 0.0 { whole / rounded } else { 1.0 }, whole }
+    }
+}
+
+/// What is asked of an element when light arrives.
+struct Receiver {
+    patch: u32,
+    /// 1 through the area.
+    per_area: f64,
+    reflectance: Color,
+}
+
 /// What patches were found to see, for as long as there is room.
 struct Known {
-    rows: Vec<Option<Arc<Row>>>,
+    rows: Vec<Option<Arc<Seen>>>,
     /// Factors that may still be kept.
     room: usize,
 }
 
 impl Known {
-    fn keep(&mut self, shooter: usize, row: &Arc<Row>) {
-        if self.rows[shooter].is_none() && row.len() <= self.room {
-            self.room -= row.len();
-            self.rows[shooter] = Some(Arc::clone(row));
+    fn keep(&mut self, shooter: usize, seen: Arc<Seen>) {
+        let known = self.rows[shooter].as_ref();
+        let (finer, room) =
+            (known.is_none_or(|k| k.fineness < seen.fineness), known.map_or(0, |k| k.row.len()) + self.room);
+        if finer && seen.row.len() <= room {
+            self.room = room - seen.row.len();
+            self.rows[shooter] = Some(seen);
         }
-    }
-}
-
-/// An element takes its part of what is sent from `at`.
-fn receive(
-    enclosure: &Enclosure,
-    number: u32,
-    at: DVec3,
-    factor: f64,
-    sent: Color,
-    unsent: &mut [Color],
-    progress: &mut Progress,
-) {
-    let element = &enclosure.elements[number as usize];
-    let side = usize::from(element.normal.dot(at - element.center) < 0.0);
-    let irradiance = &mut progress.irradiance[2 * number as usize + side];
-    let to_send = &mut unsent[2 * element.patch as usize + side];
-    for k in 0..3 {
-        let arriving = sent[k] * factor;
-        irradiance[k] += arriving / element.area;
-        to_send[k] += arriving * element.reflectance[k];
-        progress.absorbed += arriving * (1.0 - element.reflectance[k]);
     }
 }
 
@@ -178,4 +242,43 @@ fn tell(progress: &Progress, residual: f64, execution: &Execution) {
     let ratio =
         vitral_math::func::ln(progress.residual.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
     execution.budget.progress("radiosity", (ratio.clamp(0.0, 1.0) * 1000.0) as u64, 1000);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hemicubes_have_pixels_in_proportion_to_the_light() {
+        let hemicubes = [16, 32, 64].map(|side| Hemicube::new(side, 1.0));
+        for (part, expected) in
+            [(1.0, 2), (STRONG, 2), (STRONG / 3.9, 2), (STRONG / 4.0, 1), (STRONG / 16.0, 0), (0.0, 0)]
+        {
+            assert_eq!(fineness(&hemicubes, part), expected, "{part}");
+        }
+        assert_eq!(fineness(&hemicubes[..1], 1.0), 0, "there is no finer one");
+    }
+
+    #[test]
+    fn rounded_form_factors_have_the_sum_of_exact_ones() {
+        let row: Row = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
+        let seen = Seen::new(0, &row);
+        let rounded: f64 = seen.row.iter().map(|(_, factor)| f64::from(*factor) * seen.scale).sum();
+        let exact: f64 = row.iter().map(|(_, factor)| factor).sum();
+        assert!((rounded - exact).abs() < 1e-13 * exact && seen.whole == exact);
+        assert_eq!(Seen::new(0, &Row::new()).whole, 0.0);
+    }
+
+    #[test]
+    fn what_is_seen_is_kept_while_there_is_room_and_replaced_by_finer() {
+        let seen = |fineness, count: u32| Arc::new(Seen::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
+        let mut known = Known { rows: vec![None, None], room: 10 };
+        known.keep(0, seen(1, 6));
+        known.keep(1, seen(1, 5));
+        assert!(known.rows[1].is_none() && known.room == 4, "five do not fit");
+        known.keep(0, seen(0, 2));
+        assert_eq!(known.rows[0].as_ref().map(|s| s.fineness), Some(1), "finer than the new one");
+        known.keep(0, seen(2, 9));
+        assert_eq!((known.rows[0].as_ref().map(|s| s.row.len()), known.room), (Some(9), 1));
+    }
 }

@@ -11,14 +11,14 @@
 //! Source: \[Cohen & Wallace 1993\], chapter 9.
 
 use super::enclosure::{Color, Enclosure};
-use super::patch::{NONE, Node, Trees, descend};
+use super::patch::{MOST_CUTS, NONE, Node, Trees, descend, within};
 use super::progressive::Progress;
 use crate::Error;
 use vitral_light::Rgb;
 use vitral_math::DVec3;
 
 /// First bytes of a stored solution.
-const MAGIC: &[u8; 20] = b"vitral radiosity 1\n\0";
+const MAGIC: &[u8; 20] = b"vitral radiosity 2\n\0";
 /// Elements whose normals are apart by less than 30 degrees are one surface.
 const SAME_SURFACE: f64 = 0.866;
 
@@ -30,6 +30,8 @@ type Six = [Rgb; 6];
 pub struct Solution {
     nodes: Vec<Node>,
     roots: Vec<u32>,
+    /// Parts of each facet's edges before quadtrees begin.
+    cuts: u32,
     /// For each leaf in the order of nodes, front and back.
     light: Vec<[Six; 2]>,
     /// For each node its place among the leaves.
@@ -57,22 +59,23 @@ impl Solution {
             })
             .collect();
         let ambient = progress.ambient.map(|c| c as f32);
-        Self::assemble(trees.nodes.clone(), trees.roots.clone(), light, ambient)
+        Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient)
     }
 
-    fn assemble(nodes: Vec<Node>, roots: Vec<u32>, light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
+    fn assemble(nodes: Vec<Node>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
         let mut leaves = 0;
         let leaf = nodes.iter().map(|n| {
             leaves += u32::from(n.children == NONE);
             leaves.wrapping_sub(1)
         });
-        Self { leaf: leaf.collect(), nodes, roots, light, ambient }
+        Self { leaf: leaf.collect(), nodes, roots, cuts, light, ambient }
     }
 
     /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take no part.
     pub fn irradiance(&self, facet: u32, weights: [f32; 3], front: bool) -> Rgb {
         let Some(&root) = self.roots.get(facet as usize).filter(|&&root| root != NONE) else { return [0.0; 3] };
-        let (mut at, mut weights) = (root, weights);
+        let (root_in_facet, mut weights) = within(weights, self.cuts);
+        let mut at = root + root_in_facet;
         while self.nodes[at as usize].children != NONE {
             let (child, inside) = descend(weights);
             (at, weights) = (self.nodes[at as usize].children + child, inside);
@@ -105,6 +108,7 @@ impl Solution {
         for count in [self.nodes.len(), self.roots.len(), self.light.len()] {
             bytes.extend((count as u32).to_le_bytes());
         }
+        bytes.extend(self.cuts.to_le_bytes());
         let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
         let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
@@ -124,16 +128,20 @@ impl Solution {
             return Err(bad("the solution belongs to another scene, or to other materials"));
         }
         let (words, extra) = rest.as_chunks::<4>();
-        if words.len() < 6 || !extra.is_empty() {
+        if words.len() < 7 || !extra.is_empty() {
             return Err(bad("the file is cut off"));
         }
         let word = |i: usize| u32::from_le_bytes(words[i]);
         let [nodes, roots, leaves] = [word(0), word(1), word(2)].map(|n| n as usize);
-        if nodes.saturating_mul(3).saturating_add(roots).saturating_add(leaves.saturating_mul(36)) != words.len() - 6 {
+        if nodes.saturating_mul(3).saturating_add(roots).saturating_add(leaves.saturating_mul(36)) != words.len() - 7 {
             return Err(bad("the file's length is not that of its contents"));
         }
+        let cuts = word(3);
+        if !(1..=MOST_CUTS).contains(&cuts) {
+            return Err(bad("facets cannot be cut in so many parts"));
+        }
         let node = |i: usize| {
-            let [children, facet, patch] = [0, 1, 2].map(|k| word(3 + 3 * i + k));
+            let [children, facet, patch] = [0, 1, 2].map(|k| word(4 + 3 * i + k));
             Node { corners: [NONE; 3], children, facet, patch }
         };
         let nodes: Vec<Node> = (0..nodes).map(node).collect();
@@ -147,17 +155,17 @@ impl Solution {
         if nodes.iter().filter(|n| n.children == NONE).count() != leaves {
             return Err(bad("the number of leaves is wrong"));
         }
-        let start = 3 + 3 * nodes.len();
+        let start = 4 + 3 * nodes.len();
         let roots: Vec<u32> = (0..roots).map(|i| word(start + i)).collect();
-        if roots.iter().any(|&r| r != NONE && r as usize >= nodes.len()) {
-            return Err(bad("a facet's tree is not there"));
+        if roots.iter().any(|&r| r != NONE && u64::from(r) + u64::from(cuts * cuts) > count) {
+            return Err(bad("a facet's trees are not there"));
         }
         let start = start + roots.len();
         let float = |i: usize| f32::from_le_bytes(words[start + i]);
         let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
         let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
         let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
-        Ok(Self::assemble(nodes, roots, light, color(12 * leaves)))
+        Ok(Self::assemble(nodes, (roots, cuts), light, color(12 * leaves)))
     }
 }
 
@@ -219,7 +227,7 @@ mod tests {
         let node = |children| Node { corners: [NONE; 3], children, facet: 0, patch: 0 };
         let nodes = vec![node(1), node(NONE), node(NONE), node(NONE), node(NONE)];
         let light = (0..4).map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32]))).collect();
-        Solution::assemble(nodes, vec![NONE, 0], light, [0.0, 0.0, 0.5])
+        Solution::assemble(nodes, (vec![NONE, 0], 1), light, [0.0, 0.0, 0.5])
     }
 
     #[test]
@@ -239,7 +247,7 @@ mod tests {
             assert!(Solution::from_bytes(&bytes[..cut], 77).is_err());
         }
         let mut circle = bytes.clone();
-        circle[MAGIC.len() + 8 + 12] = 0;
+        circle[MAGIC.len() + 8 + 16] = 0;
         assert!(Solution::from_bytes(&circle, 77).is_err(), "a node that is its own child");
     }
 }

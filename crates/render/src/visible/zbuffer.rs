@@ -135,9 +135,11 @@ impl VisibleSurface for ZBuffer {
 }
 
 /// Resolves a view whose tiles nobody needs afterwards, without marks: each is filled in memory that the next one uses again,
-/// and handed to `sink` unless nothing is in it. The samples are those that [`ZBuffer`] finds.
+/// and handed to `sink` unless nothing is in it. The samples are those that [`ZBuffer`] finds. Only the top `rows` of tiles
+/// need be.
 pub(crate) fn resolve_in_passing(
     view: &PreparedView<'_>,
+    rows: u32,
     execution: &Execution,
     sink: &dyn TileSink,
 ) -> Result<(), Limit> {
@@ -155,8 +157,8 @@ pub(crate) fn resolve_in_passing(
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
     let batches = set_up(view, &jobs, &vertices, execution);
     let spare: Mutex<Vec<Tile>> = Mutex::default();
-    let (columns, rows) = (view.viewport.tiles_x(), view.viewport.tiles_y());
-    execution.workers.for_each((0..columns * rows).collect(), |number| {
+    let columns = view.viewport.tiles_x();
+    execution.workers.for_each((0..columns * rows.min(view.viewport.tiles_y())).collect(), |number| {
         let index = number as usize;
         if batches.iter().all(|(_, batch)| batch.tile(index).next().is_none()) {
             return;

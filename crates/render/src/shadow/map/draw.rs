@@ -47,7 +47,7 @@ impl Map {
         let columns = viewport.tiles_x() as usize;
         let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| Mutex::default()).collect();
         let sink = DepthSink { lens: &lens, session, occluders, center, tiles };
-        resolve_in_passing(&view, execution, &sink)?;
+        resolve_in_passing(&view, viewport.tiles_y(), execution, &sink)?;
         let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile")).collect();
         Ok(Self { lens, columns, tiles })
     }

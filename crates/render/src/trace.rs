@@ -40,6 +40,8 @@ pub enum SpanVerdict {
     Only,
     /// One hides the others at both ends, hence throughout.
     Hides,
+    /// One hides the others on its side of the line where they penetrate each other.
+    ImpliedEdge,
     /// Sample by sample.
     Samples,
 }
@@ -204,6 +206,7 @@ impl Step {
                         let how = match span.verdict {
                             SpanVerdict::Only => "one polygon is in",
                             SpanVerdict::Hides => "one hides the others at both ends",
+                            SpanVerdict::ImpliedEdge => "one hides the others on its side of an implied edge",
                             SpanVerdict::Samples => "decided sample by sample",
                         };
                         let [from, to] = span.pixels;

@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::{DVec3, func};
 use vitral::raster::{LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
-use vitral::render::PreparedView;
+use vitral::render::{Coherence, PreparedView};
 use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
@@ -270,6 +270,51 @@ fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
         let threads = |n| Execution { workers: Workers::new(n), ..Execution::default() };
         let [one, three] = [1, 3].map(|n| find(&renderer, algorithm, 4, &threads(n)).unwrap());
         assert!(one == three, "{}: threads change samples or counters", algorithm.name);
+    }
+}
+
+#[test]
+fn p7_without_a_kind_of_coherence_every_sample_of_the_traps_is_the_same() {
+    let kinds = [Coherence::Face, Coherence::Edge, Coherence::ImpliedEdge, Coherence::ScanLine, Coherence::Area];
+    let kinds = [&kinds[..], &[Coherence::Depth]].concat();
+    let saved = |kind: Coherence, c: &VisibilityCounters| match kind {
+        Coherence::Face => c.saved_by_face,
+        Coherence::Edge => c.saved_by_edge,
+        Coherence::ImpliedEdge => c.saved_by_implied_edge,
+        Coherence::ScanLine => c.saved_by_scan_line,
+        Coherence::Area => c.saved_by_area,
+        _ => c.saved_by_depth,
+    };
+    for algorithm in VISIBILITY {
+        let used: Vec<_> = kinds.iter().copied().filter(|kind| algorithm.coherence.contains(kind)).collect();
+        let mut sums = vec![0; used.len()];
+        for (name, scene) in traps::all() {
+            let mut renderer = exact(scene, WIDTH, HEIGHT);
+            for (camera, from) in cameras(DVec3::ZERO, 2.2).into_iter().skip(2).take(2) {
+                renderer.camera = Some(camera);
+                let mut run = |coherence, samples| {
+                    renderer.settings.visibility = algorithm.name.to_owned();
+                    renderer.settings.coherence = coherence;
+                    find(&renderer, algorithm, samples, renderer.execution()).unwrap()
+                };
+                for samples in [1, 3] {
+                    let all = run(None, samples);
+                    for (kind, sum) in used.iter().zip(&mut sums) {
+                        *sum += saved(*kind, &all.counters);
+                        let others = algorithm.coherence.iter().copied().filter(|k| k != kind).collect();
+                        let without = run(Some(others), samples);
+                        let what = format!("{}, {name}, {from}, without {}", algorithm.name, kind.name());
+                        assert!(all.samples == without.samples && all.layers == without.layers, "{what}");
+                        assert_eq!(saved(*kind, &without.counters), 0, "{what}");
+                    }
+                    let none = run(Some(Vec::new()), samples);
+                    assert!(all.samples == none.samples, "{}, {name}, {from}, without any", algorithm.name);
+                }
+            }
+        }
+        for (kind, sum) in used.iter().zip(sums) {
+            assert!(sum > 0, "{}: {} saves work", algorithm.name, kind.name());
+        }
     }
 }
 

@@ -8,14 +8,15 @@ use std::sync::Mutex;
 use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::{DVec3, func};
 use vitral::raster::{LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
-use vitral::render::{Coherence, PreparedView};
 use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
+use vitral::render::{Coherence, PreparedView};
 use vitral::{Camera, Execution, Frame, Projection, Renderer, load_builtin, override_material};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
+const SMALL: [u32; 2] = [21, 17];
 
 /// Approach 1 of the course, `O(n p)`: for each pixel centre, the nearest of all facets that cover it, of equal ones
 /// the lower. Gives surface and depth.
@@ -148,8 +149,20 @@ fn find(
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
+    find_at([renderer.settings.width, renderer.settings.height], renderer, algorithm, samples, execution)
+}
+
+/// [`find`] in a picture of another size.
+fn find_at(
+    [width, height]: [u32; 2],
+    renderer: &Renderer,
+    algorithm: &VisibilityAlgorithm,
+    samples: usize,
+    execution: &Execution,
+) -> Result<Found, Limit> {
     // The kinds of coherence are the algorithm's own.
     let mut settings = renderer.settings.clone();
+    (settings.width, settings.height) = (width, height);
     algorithm.name.clone_into(&mut settings.visibility);
     let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
@@ -175,12 +188,15 @@ fn find(
 /// Compares every algorithm with the first, with one and four samples a pixel; lists disagreements with both facets.
 fn all_agree(renderer: &Renderer, what: &str) {
     for samples in [1, 4] {
-        let run = |algorithm| find(renderer, algorithm, samples, renderer.execution()).unwrap();
-        let first = run(&VISIBILITY[0]);
-        // Asking every facet for every sample is slow: large scenes go without it (but see `brute_force` above).
-        let large = renderer.world().facet_count > 1000;
-        for algorithm in VISIBILITY[1..].iter().filter(|a| !large || a.name != "brute-force") {
-            let other = run(algorithm);
+        let run = |size, algorithm| find_at(size, renderer, algorithm, samples, renderer.execution()).unwrap();
+        let whole = [renderer.settings.width, renderer.settings.height];
+        // Asking every facet for every sample is slow: of large scenes it makes a small picture.
+        let small = if renderer.world().facet_count > 1000 { SMALL } else { whole };
+        let (first, first_small) = (run(whole, &VISIBILITY[0]), run(small, &VISIBILITY[0]));
+        for algorithm in &VISIBILITY[1..] {
+            let asks_all = algorithm.name == "brute-force";
+            let (size, first) = if asks_all { (small, &first_small) } else { (whole, &first) };
+            let other = run(size, algorithm);
             let pairs = first.samples.iter().zip(&other.samples);
             let wrong: Vec<_> = pairs.filter(|(a, b)| a != b).collect();
             for (([x, y, s], facet, depth), (_, other_facet, other_depth)) in wrong.iter().take(20) {

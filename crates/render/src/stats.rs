@@ -89,7 +89,7 @@ impl GeometryStats {
 pub struct VisibilityCounters {
     /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
     pub depth_comparisons: u64,
-    /// Saved by face coherence: depths that were one step from a depth of the same face on the same line.
+    /// Saved by face coherence: looks at a face whose depth had been brought to the line for another.
     pub saved_by_face: u64,
     /// Saved by edge coherence: crossings stepped from the line before.
     pub saved_by_edge: u64,

@@ -27,6 +27,11 @@ use vitral_raster::{
     Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
 };
 
+/// Samples in the box of a triangle that are asked one by one.
+const FEW: usize = 16;
+/// Samples of a block that are asked without a look at the block's corners first.
+const CORNERS: u32 = 4;
+
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
@@ -80,9 +85,11 @@ impl Cut {
 }
 
 /// The step that gives a piece its place in the list, the smallest from the back.
-pub(super) fn piece_step(order: u32, facet: u32, cuts: usize, outline: &[[f64; 2]]) -> Step {
+pub(super) fn piece_step(order: u32, setup: &Setup, cuts: &[Cut]) -> Step {
+    let (mut outline, mut scratch) = (corners(setup).to_vec(), Vec::new());
+    cuts.iter().for_each(|cut| clip_outline(&mut outline, &mut scratch, cut));
     let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
-    Step::Piece { order, facet, cuts: cuts as u32, outline }
+    Step::Piece { order, facet: setup.facet, cuts: cuts.len() as u32, outline }
 }
 
 /// The corners of a triangle on the screen.
@@ -146,18 +153,24 @@ pub(super) struct Pieces {
 
 /// What bounds the pixels of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Raster {
+pub(super) struct Raster<'p> {
     viewport: Viewport,
+    pattern: &'p SamplePattern,
     samples: [[i32; 2]; 2],
 }
 
-impl Raster {
-    pub(super) fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
-        Self { viewport, samples: extent(pattern) }
+impl<'p> Raster<'p> {
+    pub(super) fn new(viewport: Viewport, pattern: &'p SamplePattern) -> Self {
+        Self { viewport, pattern, samples: extent(pattern) }
     }
 
     pub(super) fn viewport(&self) -> Viewport {
         self.viewport
+    }
+
+    /// Whether it takes less to ask each sample of these pixels than to clip an outline.
+    fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
+        usize::from(x1 - x0 + 1) * usize::from(y1 - y0 + 1) * self.pattern.len() <= FEW
     }
 
     /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
@@ -188,15 +201,69 @@ impl Raster {
 }
 
 impl Pieces {
-    /// Adds the next piece of the list, if it can have samples, and gives its outline.
-    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster) -> Option<&[[f64; 2]]> {
+    /// Adds the next piece of the list, if it can have samples; whether it can.
+    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster<'_>) -> bool {
+        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
+        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
+        let around = [[x0, y0], [x1, y1]];
+        let Some(pixels) = raster.pixels(around) else { return false };
+        let first = self.cuts.len();
+        let pixels = match cuts {
+            [] => Some(pixels),
+            _ if raster.are_few(pixels) && cuts.len() <= 64 => self.cut_samples(pixels, cuts, raster),
+            _ => self.cut_outline(setup, around, cuts, raster),
+        };
+        let Some(pixels) = pixels else {
+            self.cuts.truncate(first);
+            return false;
+        };
+        let piece = self.pieces.len() as u32;
+        self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32 });
+        let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);
+        let tiles_x = raster.viewport.tiles_x();
+        for ty in ty0..=ty1 {
+            self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
+        }
+        true
+    }
+
+    /// Asks each sample of a few pixels: first and last column and row of those with a sample that all cuts keep. Adds
+    /// the cuts that take a sample away, 64 at most.
+    fn cut_samples(&mut self, pixels: [u16; 4], cuts: &[Cut], raster: &Raster<'_>) -> Option<[u16; 4]> {
+        let (mut kept, mut taking): (Option<[u16; 4]>, u64) = (None, 0);
+        let place = |pixel: u16, offset: i32| f64::from(i32::from(pixel) * SUBPIXEL + offset);
+        for y in pixels[1]..=pixels[3] {
+            for x in pixels[0]..=pixels[2] {
+                for s in 0..raster.pattern.len() {
+                    let [dx, dy] = raster.pattern.position(s);
+                    let sample = [place(x, dx), place(y, dy)];
+                    match cuts.iter().position(|cut| !cut.keeps(sample)) {
+                        Some(cut) => taking |= 1 << cut,
+                        None => {
+                            let [x0, y0, x1, _] = kept.unwrap_or([x, y, x, y]);
+                            kept = Some([x0.min(x), y0, x1.max(x), y]);
+                        }
+                    }
+                }
+            }
+        }
+        self.cuts.extend(cuts.iter().enumerate().filter(|(i, _)| taking >> i & 1 == 1).map(|(_, cut)| *cut));
+        kept
+    }
+
+    /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
+    /// the cuts that matter.
+    fn cut_outline(
+        &mut self,
+        setup: &Setup,
+        mut around: [[f64; 2]; 2],
+        cuts: &[Cut],
+        raster: &Raster<'_>,
+    ) -> Option<[u16; 4]> {
         let [outline, scratch] = &mut self.outline;
         outline.clear();
         outline.extend(corners(setup));
         let first = self.cuts.len();
-        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
-        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
-        let mut around = [[x0, y0], [x1, y1]];
         for cut in cuts {
             if !cut.holds_box(around) && !cut.holds(outline) {
                 clip_outline(outline, scratch, cut);
@@ -204,10 +271,7 @@ impl Pieces {
                 self.cuts.push(*cut);
             }
         }
-        let Some(pixels) = raster.pixels(around) else {
-            self.cuts.truncate(first);
-            return None;
-        };
+        let pixels = raster.pixels(around)?;
 
         // Forget the cuts that later ones made superfluous.
         let mut kept = first;
@@ -218,15 +282,7 @@ impl Pieces {
             }
         }
         self.cuts.truncate(kept);
-        let first = first as u32;
-        let piece = self.pieces.len() as u32;
-        self.pieces.push(Piece { setup: index, pixels, cuts: first..self.cuts.len() as u32 });
-        let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);
-        let tiles_x = raster.viewport.tiles_x();
-        for ty in ty0..=ty1 {
-            self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
-        }
-        Some(&self.outline[0])
+        Some(pixels)
     }
 
     /// Sorts the pieces into tiles, keeping their order. Call it once, at the end.
@@ -388,19 +444,24 @@ fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &
             if *mask == 0 {
                 break;
             }
-            // The value is monotonic: the corners of the block decide for all, where they agree.
-            let last = BLOCK - 1;
-            let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
-            if keeps == [false; 4] {
-                *mask = 0;
-            } else if keeps != [true; 4] {
-                let mut left = *mask;
-                while left != 0 {
-                    let bit = left.trailing_zeros() as usize;
-                    left &= left - 1;
-                    if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
-                        *mask &= !(1 << bit);
-                    }
+            // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes
+            // no more to ask them.
+            if mask.count_ones() > CORNERS {
+                let last = BLOCK - 1;
+                let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
+                if keeps == [false; 4] {
+                    *mask = 0;
+                }
+                if keeps[1..].iter().all(|&k| k == keeps[0]) {
+                    continue;
+                }
+            }
+            let mut left = *mask;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
+                    *mask &= !(1 << bit);
                 }
             }
         }
@@ -441,7 +502,8 @@ mod tests {
 
     #[test]
     fn an_outline_holds_the_samples_of_its_piece() {
-        let raster = Raster::new(Viewport::new(10, 10).unwrap(), &SamplePattern::new(1));
+        let pattern = SamplePattern::new(1);
+        let raster = Raster::new(Viewport::new(10, 10).unwrap(), &pattern);
         let mut pieces = Pieces::default();
         let cut = Cut { a: 1.0, b: 0.0, c: -1280.0, positive: false };
         for cuts in [&[][..], &[cut], &[cut.opposite()], &[cut, cut.opposite()]] {
@@ -452,5 +514,54 @@ mod tests {
         assert_eq!(bounds, [[0, 0, 9, 9], [0, 0, 4, 9], [5, 0, 9, 4]]);
         pieces.finish(raster.viewport);
         assert_eq!((pieces.items.as_slice(), pieces.starts.as_slice()), (&[0, 1, 2][..], &[0, 3, 3][..]));
+    }
+    #[test]
+    fn a_piece_has_the_samples_that_all_its_cuts_keep() {
+        let mut state = 3u32;
+        let mut next = |size: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % size
+        };
+        let (mut few, mut gone) = (0, 0);
+        for round in 0..600 {
+            let pattern = SamplePattern::new([1, 3][round % 2]);
+            let raster = Raster::new(Viewport::new(12, 12).unwrap(), &pattern);
+            let size = [700, 3000][round / 2 % 2];
+            let corners = [(); 3].map(|()| [next(size) as i32, next(size) as i32]);
+            let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
+            let area = Setup::doubled_area(a, b, c);
+            if area == 0 {
+                continue;
+            }
+            let setup = Setup::new([a, b, c], area, 0);
+            let cuts: Vec<_> = (0..next(5))
+                .map(|i| {
+                    let [a, b] = [(); 2].map(|()| f64::from(next(200)) - 100.0);
+                    let [x, y] = [(); 2].map(|()| f64::from(next(size)));
+                    Cut { a, b, c: -(a * x + b * y), positive: i % 2 == 0 }
+                })
+                .collect();
+            let mut pieces = Pieces::default();
+            let added = pieces.add(0, &setup, &cuts, &raster);
+            few += usize::from(raster.pixels([[0.0; 2], [f64::from(size); 2]]).is_some_and(|p| raster.are_few(p)));
+            gone += usize::from(!added);
+            for (x, y, s) in (0..12u16).flat_map(|y| (0..12u16).flat_map(move |x| (0..3).map(move |s| (x, y, s)))) {
+                if s >= pattern.len() {
+                    continue;
+                }
+                let offset = pattern.position(s);
+                let [px, py] = [i32::from(x) * 256 + offset[0], i32::from(y) * 256 + offset[1]];
+                let expected = setup.covers(px, py) && cuts.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]));
+                let within = pieces.pieces.iter().any(|p| {
+                    let [x0, y0, x1, y1] = p.pixels;
+                    let own = &pieces.cuts[p.cuts.start as usize..p.cuts.end as usize];
+                    // Without cuts the whole triangle is drawn.
+                    let inside = own.is_empty() || ((x0..=x1).contains(&x) && (y0..=y1).contains(&y));
+                    inside && own.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]))
+                });
+                assert_eq!(setup.covers(px, py) && within, expected, "{setup:?} {cuts:?} {x} {y} {s}");
+            }
+        }
+        assert!(few > 100 && gone > 50, "{few} {gone}");
     }
 }

@@ -96,6 +96,12 @@ impl<'f> Polygon<'f> {
     fn new(setup: &'f Setup) -> Self {
         Self { setup, slot: OUT, line: i32::MIN, start: 0.0 }
     }
+
+    /// On the line to which it was brought.
+    #[inline(always)]
+    fn on_line(&self) -> OnLine<'f> {
+        OnLine { setup: self.setup, start: self.start }
+    }
 }
 
 /// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
@@ -408,7 +414,7 @@ impl<'f> Spans<'_, 'f> {
         self.divide(right, without(rivals, right_loser), line);
     }
 
-    /// Takes the nearest of `rivals` at each sample.
+    /// Takes the nearest of `rivals`, whose depths were brought to the line when they were found, at each sample.
     fn fill_by_samples(&mut self, pixels: Range<usize>, rivals: &[(f32, u32)], line: &Line) {
         if pixels.is_empty() {
             return;
@@ -416,13 +422,10 @@ impl<'f> Spans<'_, 'f> {
         self.tell(&pixels, SpanVerdict::Samples, None);
         self.counters.penetrated_spans += 1;
         self.counters.depth_comparisons += (pixels.len() * (rivals.len() - 1)) as u64;
-        for &(_, p) in rivals {
-            self.bring(p, line, pixels.len());
-        }
         for x in pixels {
             let sample_x = x as i32 * SUBPIXEL + line.sample_x;
             let seen = rivals.iter().map(|&(_, p)| {
-                let face = self.on_line(p, line);
+                let face = self.polygons[p as usize].on_line();
                 (face.depth(sample_x), face.setup.facet)
             });
             let Some(seen) = seen.reduce(|a, b| if nearer(b, a) { b } else { a }) else { continue };
@@ -430,24 +433,16 @@ impl<'f> Spans<'_, 'f> {
         }
     }
 
-    /// Brings a polygon's depth to the line, unless it is there already, for so many depths of it.
-    fn bring(&mut self, polygon: u32, line: &Line, depths: usize) -> OnLine<'f> {
-        if self.coherence.has(Coherence::Face) {
-            let known = &mut self.polygons[polygon as usize];
-            let fresh = known.line != line.y;
-            if fresh {
-                (known.line, known.start) = (line.y, face::start(known.setup, line.y));
-            }
-            self.counters.saved_by_face += (depths - usize::from(fresh)) as u64;
+    /// Brings a polygon's depth to the line, unless it is there already.
+    #[inline]
+    fn bring(&mut self, polygon: u32, line: &Line) -> OnLine<'f> {
+        let polygon = &mut self.polygons[polygon as usize];
+        if polygon.line == line.y && self.coherence.has(Coherence::Face) {
+            self.counters.saved_by_face += 1;
+        } else {
+            (polygon.line, polygon.start) = (line.y, face::start(polygon.setup, line.y));
         }
-        self.on_line(polygon, line)
-    }
-
-    /// A polygon on the line to which its depth was brought.
-    #[inline(always)]
-    fn on_line(&self, polygon: u32, line: &Line) -> OnLine<'f> {
-        let Polygon { setup, start, .. } = self.polygons[polygon as usize];
-        OnLine { setup, y: line.y, start: self.coherence.has(Coherence::Face).then_some(start) }
+        polygon.on_line()
     }
 
     /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
@@ -456,7 +451,7 @@ impl<'f> Spans<'_, 'f> {
         let by_depth = self.coherence.has(Coherence::Depth);
         let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
         // Some polygon is nowhere farther than `floor`.
-        let (mut floor, near) = self.bring(lucky, line, 2).range(ends);
+        let (mut floor, near) = self.bring(lucky, line).range(ends);
         self.rivals.clear();
         self.rivals.push((near, lucky));
         for i in 0..self.inside.len() {
@@ -469,7 +464,7 @@ impl<'f> Spans<'_, 'f> {
                 continue;
             }
             self.counters.depth_comparisons += 1;
-            let (far, near) = self.bring(p, line, 2).range(ends);
+            let (far, near) = self.bring(p, line).range(ends);
             if near >= floor {
                 self.rivals.push((near, p));
                 floor = floor.max(far);
@@ -480,7 +475,7 @@ impl<'f> Spans<'_, 'f> {
 
     /// Fills a span with one polygon.
     fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
-        let face = self.bring(polygon, line, pixels.len());
+        let face = self.bring(polygon, line);
         let mut x = pixels.start;
         while x < pixels.end {
             let end = pixels.end.min((x / TILE + 1) * TILE);

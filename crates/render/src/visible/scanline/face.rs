@@ -1,27 +1,25 @@
 //! The depths of a face along a line.
 //!
 //! The law's depth function goes from the origin of a face's plane first down to the line, then along it. The way down is
-//! the same for all samples of the face on the line: it is gone once, and each depth, at a sample or at the end of a span,
+//! the same for all spans of the face on the line: it is gone once, and each depth, at a sample or at the end of a span,
 //! is one step from there. Every rounding is that of [`Setup::depth`], so the depths are the same bits.
 //!
 //! In:   a set-up triangle and a line (screen space). Out: depths.
-//! Cost: a product and a sum a depth, instead of two of each.
+//! Cost: a product and a sum a depth, once the face is on the line.
 //! Source: face coherence after [Foley et al. 1990], section 15.2. Departs from it: the step along the line is a product,
 //!       since adding up steps would round otherwise.
 
 use vitral_raster::{SUBPIXEL, Setup};
 
-/// A face on one line.
+/// A face that was brought to a line.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<'f> {
     pub(super) setup: &'f Setup,
-    /// The line, 1/256 pixel.
-    pub(super) y: i32,
-    /// [`start`] of the line if it is carried along, else each depth begins at the plane's origin.
-    pub(super) start: Option<f32>,
+    /// The plane's depth on the line, straight above or below its origin.
+    pub(super) start: f32,
 }
 
-/// Depth of a face's plane on the line at `y`, straight above or below the plane's origin.
+/// [`OnLine::start`] on the line at `y`, 1/256 pixel.
 #[inline(always)]
 pub(super) fn start(setup: &Setup, y: i32) -> f32 {
     let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
@@ -33,8 +31,7 @@ impl OnLine<'_> {
     #[inline(always)]
     pub(super) fn depth(&self, x: i32) -> f32 {
         let setup = self.setup;
-        let Some(start) = self.start else { return setup.depth(x, self.y) };
-        let z = start + (x - setup.origin[0]) as f32 / SUBPIXEL as f32 * setup.dz_dx;
+        let z = self.start + (x - setup.origin[0]) as f32 / SUBPIXEL as f32 * setup.dz_dx;
         // The order of comparisons is that of the depth function.
         let z = if setup.z_min < z { z } else { setup.z_min };
         if z < setup.z_max { z } else { setup.z_max }
@@ -60,7 +57,7 @@ mod tests {
     use crate::visible::scanline::tests::triangle;
 
     fn on_line(setup: &Setup, y: i32) -> OnLine<'_> {
-        OnLine { setup, y, start: Some(start(setup, y)) }
+        OnLine { setup, start: start(setup, y) }
     }
 
     #[test]

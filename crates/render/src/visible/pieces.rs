@@ -27,8 +27,8 @@ use vitral_raster::{
     Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
 };
 
-/// Samples in the box of a triangle that are asked one by one.
-const FEW: usize = 16;
+/// Samples in the box of a triangle that are asked one by one, in at most 8x8 pixels.
+const FEW: usize = 64;
 /// Samples of a block that are asked without a look at the block's corners first.
 const CORNERS: u32 = 4;
 
@@ -136,13 +136,20 @@ struct Piece {
     /// First and last pixel column and row that may have samples of it.
     pixels: [u16; 4],
     cuts: Range<u32>,
+    /// Where its own samples are listed, if they are: then no cut is needed.
+    samples: u32,
 }
+
+/// The samples of a piece are not listed.
+const UNLISTED: u32 = u32::MAX;
 
 /// A run of the list, sorted into tiles.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
     pieces: Vec<Piece>,
     cuts: Vec<Cut>,
+    /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the piece's, 8 a row.
+    samples: Vec<u64>,
     /// Tile and piece, in the order of the list.
     entries: Vec<[u32; 2]>,
     starts: Vec<u32>,
@@ -170,7 +177,8 @@ impl<'p> Raster<'p> {
 
     /// Whether it takes less to ask each sample of these pixels than to clip an outline.
     fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
-        usize::from(x1 - x0 + 1) * usize::from(y1 - y0 + 1) * self.pattern.len() <= FEW
+        let [width, height] = [x1 - x0 + 1, y1 - y0 + 1].map(usize::from);
+        width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= FEW
     }
 
     /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
@@ -207,19 +215,22 @@ impl Pieces {
         let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
         let around = [[x0, y0], [x1, y1]];
         let Some(pixels) = raster.pixels(around) else { return false };
-        let first = self.cuts.len();
-        let pixels = match cuts {
-            [] => Some(pixels),
-            _ if raster.are_few(pixels) && cuts.len() <= 64 => self.cut_samples(pixels, cuts, raster),
-            _ => self.cut_outline(setup, around, cuts, raster),
+        let (first, listed) = (self.cuts.len(), self.samples.len());
+        let (found, samples) = match cuts {
+            [] => (Some(pixels), UNLISTED),
+            _ if raster.are_few(pixels) => (self.list_samples(setup, pixels, cuts, raster), listed as u32),
+            _ => (self.cut_outline(setup, around, cuts, raster), UNLISTED),
         };
-        let Some(pixels) = pixels else {
+        let Some(found) = found else {
             self.cuts.truncate(first);
+            self.samples.truncate(listed);
             return false;
         };
+        // A list counts from where it began.
+        let pixels = if samples == UNLISTED { found } else { [pixels[0], pixels[1], found[2], found[3]] };
         let piece = self.pieces.len() as u32;
-        self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32 });
-        let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);
+        self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32, samples });
+        let [tx0, ty0, tx1, ty1] = found.map(|p| u32::from(p) / TILE as u32);
         let tiles_x = raster.viewport.tiles_x();
         for ty in ty0..=ty1 {
             self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
@@ -227,28 +238,26 @@ impl Pieces {
         true
     }
 
-    /// Asks each sample of a few pixels: first and last column and row of those with a sample that all cuts keep. Adds
-    /// the cuts that take a sample away, 64 at most.
-    fn cut_samples(&mut self, pixels: [u16; 4], cuts: &[Cut], raster: &Raster<'_>) -> Option<[u16; 4]> {
-        let (mut kept, mut taking): (Option<[u16; 4]>, u64) = (None, 0);
-        let place = |pixel: u16, offset: i32| f64::from(i32::from(pixel) * SUBPIXEL + offset);
-        for y in pixels[1]..=pixels[3] {
-            for x in pixels[0]..=pixels[2] {
-                for s in 0..raster.pattern.len() {
-                    let [dx, dy] = raster.pattern.position(s);
+    /// Lists the samples of a few pixels that the triangle covers and all cuts keep. First and last column and row of
+    /// pixels with such a sample.
+    fn list_samples(&mut self, setup: &Setup, pixels: [u16; 4], cuts: &[Cut], raster: &Raster<'_>) -> Option<[u16; 4]> {
+        let mut found: Option<[u16; 4]> = None;
+        let place = |pixel: u16, offset: i32| i32::from(pixel) * SUBPIXEL + offset;
+        for s in 0..raster.pattern.len() {
+            let ([dx, dy], mut list) = (raster.pattern.position(s), 0u64);
+            for y in pixels[1]..=pixels[3] {
+                for x in pixels[0]..=pixels[2] {
                     let sample = [place(x, dx), place(y, dy)];
-                    match cuts.iter().position(|cut| !cut.keeps(sample)) {
-                        Some(cut) => taking |= 1 << cut,
-                        None => {
-                            let [x0, y0, x1, _] = kept.unwrap_or([x, y, x, y]);
-                            kept = Some([x0.min(x), y0, x1.max(x), y]);
-                        }
+                    if setup.covers(sample[0], sample[1]) && cuts.iter().all(|cut| cut.keeps(sample.map(f64::from))) {
+                        list |= 1 << (usize::from(y - pixels[1]) * BLOCK + usize::from(x - pixels[0]));
+                        let [x0, y0, x1, y1] = found.unwrap_or([x, y, x, y]);
+                        found = Some([x0.min(x), y0.min(y), x1.max(x), y1.max(y)]);
                     }
                 }
             }
+            self.samples.push(list);
         }
-        self.cuts.extend(cuts.iter().enumerate().filter(|(i, _)| taking >> i & 1 == 1).map(|(_, cut)| *cut));
-        kept
+        found
     }
 
     /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
@@ -313,7 +322,7 @@ impl Pieces {
     /// Bytes it takes.
     pub(super) fn bytes(&self) -> u64 {
         let cuts = self.cuts.len() * size_of::<Cut>() + (self.starts.len() + self.items.len()) * 4;
-        (self.pieces.len() * size_of::<Piece>() + cuts) as u64
+        (self.pieces.len() * size_of::<Piece>() + self.samples.len() * 8 + cuts) as u64
     }
 }
 
@@ -390,6 +399,10 @@ fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
 ) {
     let setup = list.setups[piece.setup as usize];
     let (place, pattern) = (sink.place, sink.pattern);
+    if piece.samples != UNLISTED {
+        let samples = &run.samples[piece.samples as usize..][..pattern.len()];
+        return draw_samples(simd, setup, piece.pixels, samples, sink);
+    }
     sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
     if sink.cuts.is_empty() {
         traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
@@ -402,6 +415,46 @@ fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
     };
     let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
     traverse_window(simd, setup, place, &window, pattern, sink);
+}
+
+/// Draws the samples that a piece has in the tile, block by block.
+#[inline(always)]
+fn draw_samples<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    pixels: [u16; 4],
+    samples: &[u64],
+    sink: &mut PieceSink<'_, K>,
+) {
+    let [left, top] = [sink.place.0, sink.place.1].map(|v| v as i32);
+    let [x0, y0, x1, y1] = pixels.map(i32::from);
+    let ([x0, x1], [y0, y1]) = ([x0 - left, x1 - left], [y0 - top, y1 - top]);
+    let (side, last) = (BLOCK as i32, TILE as i32 - 1);
+    for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
+        for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
+            let mut masks = [0; 16];
+            let masks = &mut masks[..samples.len()];
+            let mut any = 0;
+            for (mask, &list) in masks.iter_mut().zip(samples) {
+                *mask = moved(list, x0 - bx, y0 - by);
+                any |= *mask;
+            }
+            let rows = (y0 - by).max(0) as usize..(y1 - by + 1).min(side) as usize;
+            let block = Block { x: bx as usize, y: by as usize, rows };
+            if any != 0 && !sink.inner.rejects(setup, &block) {
+                sink.inner.cover(simd, setup, &block, masks);
+            }
+        }
+    }
+}
+
+/// What of 8x8 pixels is left when they are moved by `dx` to the right and `dy` down, less than 8 either way.
+#[inline(always)]
+fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
+    let shifted = |v: u64, by: i32| if by >= 0 { v << by } else { v >> -by };
+    // Those that enter a row of 8 from the next one are not meant.
+    let columns = shifted(0xff, dx) & 0xff;
+    shifted(shifted(pixels, 8 * dy), dx) & (columns * 0x0101_0101_0101_0101)
 }
 
 /// Narrows a triangle's coverage to one of its pieces.
@@ -554,6 +607,14 @@ mod tests {
                 let expected = setup.covers(px, py) && cuts.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]));
                 let within = pieces.pieces.iter().any(|p| {
                     let [x0, y0, x1, y1] = p.pixels;
+                    if p.samples != UNLISTED {
+                        // Seen from a block about the sample.
+                        let corner = [x & !7, y & !7].map(i32::from);
+                        let [dx, dy] = [i32::from(x0) - corner[0], i32::from(y0) - corner[1]];
+                        let list = pieces.samples[p.samples as usize + s];
+                        let near = dx.abs() < 8 && dy.abs() < 8;
+                        return near && moved(list, dx, dy) >> ((y & 7) * 8 + (x & 7)) & 1 == 1;
+                    }
                     let own = &pieces.cuts[p.cuts.start as usize..p.cuts.end as usize];
                     // Without cuts the whole triangle is drawn.
                     let inside = own.is_empty() || ((x0..=x1).contains(&x) && (y0..=y1).contains(&y));

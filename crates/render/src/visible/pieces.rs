@@ -3,7 +3,8 @@
 //! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
 //! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
 //! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
-//! with rounding; it only bounds the pixels where samples are looked for, a little too far out.
+//! with rounding; it only bounds the pixels where samples are looked for, a little too far out. A triangle of few samples
+//! needs no outline: each sample is asked, and the piece is the list of those that belong to it.
 //!
 //! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
 //! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function

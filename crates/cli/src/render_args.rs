@@ -105,7 +105,8 @@ pub(crate) struct AlgorithmArgs {
     /// What finds the triangles near a ray, where --visibility casts rays [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
-    /// Kinds of coherence to use: a list, or none; `vitral algorithms` says which an algorithm exploits [default: all]
+    /// Kinds of coherence to use: a list, or none; `vitral algorithms` explains them and says which an algorithm exploits
+    /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = values::coherence)]
     pub(crate) coherence: Option<values::CoherenceList>,
     /// What is thrown away early: a list of frustum, back-face; or none [default: frustum,back-face]

@@ -5,8 +5,8 @@ use crate::report::{self, Failure};
 use clap::CommandFactory;
 use serde_json::json;
 use std::fmt::Write;
-use vitral::render::registry;
 use vitral::render::transparency::registry as transparency;
+use vitral::render::{Coherence, registry};
 use vitral::{Illumination, Shading};
 
 /// `vitral algorithms`.
@@ -47,7 +47,11 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|b| json!({"global": b.global, "description": b.description, "source": b.source}))
             .collect();
-        let all = json!({"visibility": visibility, "acceleration": acceleration, "shadows": shadows, "global": global, "illumination": illumination,
+        let coherence: Vec<_> = Coherence::ALL
+            .iter()
+            .map(|(kind, name)| json!({"name": name, "description": kind.description()}))
+            .collect();
+        let all = json!({"visibility": visibility, "coherence": coherence, "acceleration": acceleration, "shadows": shadows, "global": global, "illumination": illumination,
             "shading": shading, "transparency": models, "transparency-order": orders,
             "translucency": translucency});
         return report::print_json(&all).map(|()| 0);
@@ -60,6 +64,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     for a in registry::VISIBILITY {
         let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
         let _ = writeln!(text, "  {:<14} {}", a.name, kinds.join(", "));
+    }
+    text.push_str("\nKinds of coherence\n");
+    for (kind, name) in Coherence::ALL {
+        let _ = writeln!(text, "  {name:<14} {}", kind.description());
     }
     text.push_str("\nStructures for rays (--acceleration)\n");
     for a in registry::ACCELERATION {

@@ -3,14 +3,7 @@
 //! The names are those of the course. An algorithm lists in the [`registry`](crate::registry) the kinds that it exploits
 //! and that can be switched off: the picture stays the same, and the work that was saved is done.
 //!
-//! - `object`: what is true of an object's box is true of its polygons (culling of what lies outside the view volume).
-//! - `edge`: where an edge crosses a line follows from where it crossed the line before.
-//! - `scan-line`: the edges that cross a line are nearly those that cross the line before.
-//! - `area`: neighbouring pixels show the same surface (spans, windows, packets of rays).
-//! - `depth`: what is nearest in a place is nearest around it, and hides what is farther with all of its polygon.
-//! - `frame`: the next picture shows the same scene (trees and what is known of meshes are kept).
-//!
-//! No algorithm here exploits `face` and `implied-edge` in a way that could be switched off.
+//! What each kind means here is in [`Coherence::description`].
 
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +45,22 @@ impl Coherence {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| name)
+    }
+
+    /// What it means, in a line.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Object => "what is true of an object's box is true of its polygons: outside the view volume, all are",
+            Self::Face => "the depth of a face in one place follows from its depth in a place beside",
+            Self::Edge => "where an edge crosses a line follows from where it crossed the line before",
+            Self::ImpliedEdge => {
+                "two points fix the line where two faces penetrate each other; it cuts the spans of area"
+            }
+            Self::ScanLine => "the edges that cross a line are nearly those that cross the line before",
+            Self::Area => "neighbouring pixels show the same surface: spans, windows, packets of rays",
+            Self::Depth => "what is nearest in a place is so around it, and hides whole polygons that are farther",
+            Self::Frame => "the next picture shows the same scene: trees and what is known of meshes are kept",
+        }
     }
 }
 

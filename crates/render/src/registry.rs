@@ -54,7 +54,9 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         casts_rays: false,
         coherence: &[
             Coherence::Object,
+            Coherence::Face,
             Coherence::Edge,
+            Coherence::ImpliedEdge,
             Coherence::ScanLine,
             Coherence::Area,
             Coherence::Depth,

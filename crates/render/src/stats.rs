@@ -89,8 +89,13 @@ impl GeometryStats {
 pub struct VisibilityCounters {
     /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
     pub depth_comparisons: u64,
+    /// Saved by face coherence: looks at a face whose depth had been brought to the line for another.
+    pub saved_by_face: u64,
     /// Saved by edge coherence: crossings stepped from the line before.
     pub saved_by_edge: u64,
+    /// Saved by implied-edge coherence: samples at which two depths were not compared, since the line where their faces
+    /// penetrate each other lies beside.
+    pub saved_by_implied_edge: u64,
     /// Saved by scan-line coherence: edges that stayed in the table.
     pub saved_by_scan_line: u64,
     /// Saved by area coherence: pixels decided with their neighbours, inherited surrounders, rays that went together or met
@@ -104,8 +109,10 @@ pub struct VisibilityCounters {
     pub active_edges: u64,
     /// Scan-line: spans with a polygon in.
     pub spans: u64,
-    /// Scan-line: spans that had to be decided sample by sample.
+    /// Scan-line: spans, or parts of them, that had to be decided sample by sample.
     pub penetrated_spans: u64,
+    /// Scan-line: lines found along which two polygons penetrate each other, or would if they went on.
+    pub implied_edges: u64,
     /// Area subdivision: windows looked at.
     pub windows: u64,
     /// Area subdivision: windows of one pixel, decided sample by sample.
@@ -165,7 +172,9 @@ pub struct VisibilityCounters {
 impl VisibilityCounters {
     pub(crate) fn add(&mut self, o: &Self) {
         self.depth_comparisons += o.depth_comparisons;
+        self.saved_by_face += o.saved_by_face;
         self.saved_by_edge += o.saved_by_edge;
+        self.saved_by_implied_edge += o.saved_by_implied_edge;
         self.saved_by_scan_line += o.saved_by_scan_line;
         self.saved_by_area += o.saved_by_area;
         self.saved_by_depth += o.saved_by_depth;
@@ -173,6 +182,7 @@ impl VisibilityCounters {
         self.active_edges += o.active_edges;
         self.spans += o.spans;
         self.penetrated_spans += o.penetrated_spans;
+        self.implied_edges += o.implied_edges;
         self.windows += o.windows;
         self.pixel_windows += o.pixel_windows;
         self.window_tests += o.window_tests;

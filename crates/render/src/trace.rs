@@ -2,7 +2,7 @@
 //!
 //! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any thread: in one tile or
 //! band they come in order, those of different tiles mix. Nobody listening costs nothing that can be measured: the
-//! question is asked once for a window, a line, a polygon of a list or a block of rays, never in a loop over samples.
+//! question is asked once for a window, a line, a polygon of a list, a ray or a block of rays, never in a loop within.
 //!
 //! [`picture`] draws the steps over the image.
 
@@ -40,6 +40,8 @@ pub enum SpanVerdict {
     Only,
     /// One hides the others at both ends, hence throughout.
     Hides,
+    /// One hides the others on its side of the line where they penetrate each other.
+    ImpliedEdge,
     /// Sample by sample.
     Samples,
 }
@@ -55,6 +57,57 @@ pub struct Span {
     pub verdict: SpanVerdict,
     /// The facet that fills it, where one does.
     pub facet: Option<u32>,
+}
+
+/// The parts of a structure that rays went through, in the order in which they came to them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Passed {
+    /// There is no structure.
+    Nowhere,
+    /// Nodes of a tree of boxes that were opened, numbered from the root, 0, each before those below it.
+    Nodes(Vec<u32>),
+    /// Cells of an octree that were opened, by the way down from the root, which has no name: a digit a level, the sum
+    /// of 1 for the larger x, 2 for the larger y, 4 for the larger z.
+    Octants(Vec<String>),
+    /// Cells of a grid along x, y and z.
+    Cells(Vec<[u32; 3]>),
+}
+
+impl Passed {
+    /// In words: how many, and the first few.
+    fn tell(&self) -> String {
+        const MOST: usize = 16;
+        let (what, mut names): (_, Vec<String>) = match self {
+            Self::Nowhere => return String::new(),
+            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MOST).map(u32::to_string).collect()),
+            Self::Octants(cells) => ("octant(s)", cells.iter().take(MOST).map(|c| format!("\"{c}\"")).collect()),
+            Self::Cells(cells) => {
+                let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
+                ("cell(s)", cells.iter().take(MOST).map(name).collect())
+            }
+        };
+        let count = self.len();
+        if count > MOST {
+            names.push("...".to_owned());
+        }
+        format!("; through {count} {what}: {}", names.join(" "))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Nowhere => 0,
+            Self::Nodes(nodes) => nodes.len(),
+            Self::Octants(cells) => cells.len(),
+            Self::Cells(cells) => cells.len(),
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 }
 
 /// A step. Places are pixels from the top left.
@@ -90,6 +143,15 @@ pub enum Step {
         /// The spans with something in, from left to right.
         spans: Vec<Span>,
     },
+    /// Ray casting: the box that a structure divides, before any ray is followed.
+    Space {
+        /// Smallest x, y, z, world space.
+        min: [f64; 3],
+        /// Largest x, y, z.
+        max: [f64; 3],
+        /// A grid's cells along x, y and z, all of one size.
+        cells: Option<[u32; 3]>,
+    },
     /// Ray casting and brute force: the rays through some pixels were followed.
     Rays {
         /// Left, top, width, height.
@@ -100,6 +162,8 @@ pub enum Step {
         boxes: u64,
         /// Facets tested.
         facets: u64,
+        /// What they went through, each part once.
+        through: Passed,
     },
     /// BSP, while the tree is built: a facet, or a part of one, crosses a plane and is split.
     TreeSplit {
@@ -176,7 +240,7 @@ impl Step {
             }
             Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
             Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::Clip { .. } => false,
+            Self::Clip { .. } | Self::Space { .. } => false,
         }
     }
 
@@ -204,6 +268,7 @@ impl Step {
                         let how = match span.verdict {
                             SpanVerdict::Only => "one polygon is in",
                             SpanVerdict::Hides => "one hides the others at both ends",
+                            SpanVerdict::ImpliedEdge => "one hides the others on its side of an implied edge",
                             SpanVerdict::Samples => "decided sample by sample",
                         };
                         let [from, to] = span.pixels;
@@ -212,8 +277,9 @@ impl Step {
                     None => format!("{line}; no polygon is in here"),
                 }
             }
-            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets } => {
-                format!("{rays} ray(s) of {width} x {height} pixel(s): {boxes} box(es), {facets} facet(s) tested")
+            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, through } => {
+                let tested = format!("{boxes} box(es), {facets} facet(s) tested");
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {tested}{}", through.tell())
             }
             Self::Piece { order, facet, cuts, .. } => {
                 format!("place {order} in the list, from the back: facet {facet}, cut {cuts} time(s)")

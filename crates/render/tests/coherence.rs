@@ -7,7 +7,7 @@ use vitral_render::{Acceleration, Channels, Coherence, Execution, Rendered, Sess
 use vitral_scene::builtin::solids;
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, framing};
 
-/// Three rings that penetrate each other, and one that the camera does not see.
+/// Three rings and two boards that penetrate each other, and a ring that the camera does not see.
 fn scene() -> Arc<Scene> {
     let mut scene = Scene::default();
     for i in 0..3 {
@@ -15,11 +15,14 @@ fn scene() -> Arc<Scene> {
         let place = DMat4::from_rotation_translation(turn, DVec3::new(0.3 * f64::from(i), 0.0, 0.0));
         scene.add_mesh(solids::torus(1.0, 0.4, 24, 12), place);
     }
+    for turn in [DQuat::from_rotation_x(0.9), DQuat::from_rotation_z(0.7)] {
+        scene.add_mesh(solids::plane(4.0, 4.0, 1, 1), DMat4::from_quat(turn));
+    }
     scene.add_mesh(solids::torus(1.0, 0.4, 24, 12), DMat4::from_translation(DVec3::new(500.0, 0.0, 0.0)));
     Arc::new(scene)
 }
 
-/// A camera that looks at the three rings from an angle.
+/// A camera that looks at what penetrates from an angle.
 fn camera(angle: f64) -> Camera {
     let near = World::new(&{
         let mut scene = Scene::default();
@@ -42,12 +45,13 @@ fn saved(rendered: &Rendered, kind: Coherence) -> u64 {
     let counters = &rendered.stats.visibility;
     match kind {
         Coherence::Object => rendered.stats.cull.triangles_culled,
+        Coherence::Face => counters.saved_by_face,
         Coherence::Edge => counters.saved_by_edge,
+        Coherence::ImpliedEdge => counters.saved_by_implied_edge,
         Coherence::ScanLine => counters.saved_by_scan_line,
         Coherence::Area => counters.saved_by_area,
         Coherence::Depth => counters.saved_by_depth,
         Coherence::Frame => rendered.stats.reused,
-        Coherence::Face | Coherence::ImpliedEdge => 0,
     }
 }
 

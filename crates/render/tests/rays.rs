@@ -6,17 +6,22 @@ use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::{LayerList, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
 use vitral_render::stats::{CullCounters, VisibilityCounters};
+use vitral_render::trace::{Observer, Passed, Step};
 use vitral_render::visible::TileSink;
 use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
 use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
 
-const WIDTH: u32 = 68;
-const HEIGHT: u32 = 66;
+const SIZE: [u32; 2] = [68, 66];
+/// Where every facet is asked and there are many, pictures are small.
+const SMALL: [u32; 2] = [19, 15];
 
 /// For each sample inside the picture: depth as bits, facet, layers sorted.
 type Picture = Vec<(u32, u32, Vec<(u32, u32)>)>;
 
-struct Collect(Mutex<Vec<(usize, Picture)>>);
+struct Collect {
+    size: [u32; 2],
+    tiles: Mutex<Vec<(usize, Picture)>>,
+}
 
 impl TileSink for Collect {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
@@ -27,12 +32,12 @@ impl TileSink for Collect {
         }
         for (at, sample) in picture.iter_mut().enumerate() {
             let (x, y) = (at % TILE_PIXELS % TILE, at % TILE_PIXELS / TILE);
-            if tile.x + x as u32 >= WIDTH || tile.y + y as u32 >= HEIGHT {
+            if tile.x + x as u32 >= self.size[0] || tile.y + y as u32 >= self.size[1] {
                 *sample = (0, 0, Vec::new());
             }
             sample.2.sort_unstable();
         }
-        self.0.lock().unwrap().push((index, picture));
+        self.tiles.lock().unwrap().push((index, picture));
     }
 }
 
@@ -48,47 +53,44 @@ const RAYS: [Choice; 4] = [
     ("ray-cast", Some(Acceleration::None)),
 ];
 
-fn settings(samples: usize, (visibility, acceleration): Choice) -> Settings {
+fn settings([width, height]: [u32; 2], samples: usize, (visibility, acceleration): Choice) -> Settings {
     let visibility = visibility.to_owned();
-    Settings { width: WIDTH, height: HEIGHT, samples: samples as u32, visibility, acceleration, ..Settings::default() }
+    Settings { width, height, samples: samples as u32, visibility, acceleration, ..Settings::default() }
 }
 
 fn resolve(
     session: &Session,
     camera: &Camera,
-    samples: usize,
-    choice: Choice,
+    settings: &Settings,
     execution: &Execution,
 ) -> Result<(Vec<Picture>, VisibilityCounters), Limit> {
-    let settings = settings(samples, choice);
-    let viewport = settings.check().unwrap();
+    let (viewport, samples) = (settings.check().unwrap(), settings.samples as usize);
     let pattern = SamplePattern::new(samples);
     let counters = &mut CullCounters::default();
-    let view = PreparedView::new(session, camera, &settings, viewport, pattern, execution, counters);
+    let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
-    let sink = Collect(Mutex::default());
-    let algorithm = registry::visibility(choice.0).unwrap().algorithm;
+    let sink = Collect { size: [settings.width, settings.height], tiles: Mutex::default() };
+    let algorithm = registry::visibility(&settings.visibility).unwrap().algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
-    let mut tiles = sink.0.into_inner().unwrap();
+    let mut tiles = sink.tiles.into_inner().unwrap();
     tiles.sort_by_key(|t| t.0);
     assert!(tiles.iter().map(|t| t.0).eq(0..grid.tiles.len()), "each tile is handed on once");
     Ok((tiles.into_iter().map(|t| t.1).collect(), resolved.counters))
 }
 
-/// Compares ray casting with the z-buffer.
+/// Compares ray casting and brute force with the z-buffer.
 fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
     let execution = Execution { workers: Workers::new(2), ..Execution::default() };
-    let (expected, _) = resolve(session, camera, samples, Z_BUFFER, &execution).unwrap();
-    let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
-    assert!(seen > 0, "{what}: something is seen");
+    let found = |size, choice| resolve(session, camera, &settings(size, samples, choice), &execution).unwrap();
+    let z_buffers = [SIZE, SMALL].map(|size| found(size, Z_BUFFER).0);
     for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
-        // Asking every facet is slow: large scenes go without it.
         let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::None);
-        if asks_all && session.world().facet_count > 400 {
-            continue;
-        }
-        let (picture, counters) = resolve(session, camera, samples, choice, &execution).unwrap();
-        assert_eq!(counters.rays, u64::from(WIDTH * HEIGHT) * samples as u64);
+        let small = asks_all && session.world().facet_count > 400;
+        let (size, expected) = if small { (SMALL, &z_buffers[1]) } else { (SIZE, &z_buffers[0]) };
+        let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
+        assert!(seen > 0, "{what}: something is seen");
+        let (picture, counters) = found(size, choice);
+        assert_eq!(counters.rays, u64::from(size[0] * size[1]) * samples as u64);
         assert!(counters.triangle_tests > 0 && asks_all == (counters.box_tests == 0), "{choice:?}: {counters:?}");
         let pairs = || picture.iter().flatten().zip(expected.iter().flatten());
         let wrong: Vec<_> = (0..).zip(pairs()).filter(|(_, (a, b))| a != b).collect();
@@ -237,11 +239,144 @@ fn structures_are_built_once_and_save_work() {
     assert!(Arc::ptr_eq(&session.bvh(&execution).unwrap(), &session.bvh(&execution).unwrap()));
     assert!(Arc::ptr_eq(&session.octree(&execution).unwrap(), &session.octree(&execution).unwrap()));
     assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
-    let all = resolve(&session, &camera, 1, RAYS[3], &execution).unwrap().1;
+    let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
+    let all = count(RAYS[3]);
     for choice in &RAYS[..3] {
-        let counters = resolve(&session, &camera, 1, *choice, &execution).unwrap().1;
+        let counters = count(*choice);
         assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
         assert!(counters.tests_saved + counters.triangle_tests >= all.rays * 500, "{choice:?}: {counters:?}");
+    }
+}
+
+/// Keeps the steps.
+#[derive(Debug, Default)]
+struct Steps(Mutex<Vec<Step>>);
+
+impl Observer for Steps {
+    fn step(&self, step: &Step) {
+        self.0.lock().unwrap().push(step.clone());
+    }
+}
+
+/// What was told of a picture.
+struct Told {
+    steps: Vec<Step>,
+    /// The box that the structure divides, and its cells.
+    space: [[f64; 3]; 2],
+    cells: Option<[u32; 3]>,
+    /// The picture's middle, world space, and the size of a pixel.
+    center: DVec3,
+    pixel: f64,
+}
+
+impl Told {
+    /// From a place on the screen, in pixels, to x and y in the world.
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let half = SIZE.map(|s| f64::from(s) * 0.5);
+        [self.center.x + (x - half[0]) * self.pixel, self.center.y - (y - half[1]) * self.pixel]
+    }
+}
+
+/// Looks at the teapot along -z, and on.
+fn looked_on(settings: &Settings) -> Told {
+    let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
+    let bounds = session.world().bounds;
+    let (center, height) = (bounds.center(), bounds.diagonal() * 0.7);
+    let camera = Camera {
+        position: center + DVec3::Z * bounds.diagonal(),
+        focal_point: center,
+        view_up: DVec3::Y,
+        projection: Projection::Parallel { height },
+        clip: None,
+    };
+    let observer = Arc::new(Steps::default());
+    let watched = Execution { observer: Some(Arc::clone(&observer) as Arc<dyn Observer>), ..Execution::default() };
+    let told = resolve(&session, &camera, settings, &watched).unwrap();
+    assert!(told == resolve(&session, &camera, settings, &Execution::default()).unwrap(), "looking on changes nothing");
+    let mut steps = std::mem::take(&mut *observer.0.lock().unwrap());
+    let Step::Space { min, max, cells } = steps.remove(0) else { panic!("the space is told first") };
+    Told { steps, space: [min, max], cells, center, pixel: height / f64::from(SIZE[1]) }
+}
+
+#[test]
+fn p15_the_trace_tells_the_cells_of_a_grid_that_each_ray_goes_through() {
+    let settings = settings(SIZE, 1, RAYS[2]);
+    let told = looked_on(&settings);
+    let ([min, max], cells) = (told.space, told.cells.unwrap());
+    assert_eq!(told.steps.len(), (SIZE[0] * SIZE[1]) as usize, "a step a pixel");
+    let (mut through_all, mut stopped) = (0, 0);
+    for step in &told.steps {
+        let Step::Rays { pixels: [x, y, 1, 1], rays: 1, boxes, through: Passed::Cells(through), .. } = step else {
+            panic!("{step:?}")
+        };
+        assert_eq!(*boxes, through.len().max(1) as u64, "each cell is looked at once");
+        // The ray has one x and one y, and comes from the largest z.
+        let middle = told.place([f64::from(*x) + 0.5, f64::from(*y) + 0.5]);
+        let at = [0, 1].map(|k| (middle[k] - min[k]) / (max[k] - min[k]) * f64::from(cells[k]));
+        if at.iter().any(|a| (a - a.round()).abs() < 1e-3) {
+            continue;
+        }
+        let inside = (0..2).all(|k| (0.0..f64::from(cells[k])).contains(&at[k]));
+        assert_eq!(inside, !through.is_empty(), "{step:?}");
+        let expected = (0..cells[2]).rev().map(|z| [at[0] as u32, at[1] as u32, z]);
+        assert!(through.iter().copied().eq(expected.take(through.len())), "{at:?}, {step:?}");
+        through_all += u32::from(through.len() == cells[2] as usize);
+        stopped += u32::from(inside && through.len() < cells[2] as usize);
+    }
+    assert!(through_all > 50 && stopped > 500, "{through_all} {stopped}");
+}
+
+#[test]
+fn p15_p16_the_trace_tells_the_cells_of_an_octree_and_the_nodes_of_a_tree_of_boxes() {
+    for blocks in [true, false] {
+        let settings = |choice| {
+            let mut settings = settings(SIZE, 1, choice);
+            settings.coherence = (!blocks).then(Vec::new);
+            settings
+        };
+        let side = if blocks { 8 } else { 1 };
+        let count = (SIZE[0].div_ceil(side) * SIZE[1].div_ceil(side)) as usize;
+        let told = looked_on(&settings(RAYS[1]));
+        let [min, max] = told.space;
+        assert_eq!(told.steps.len(), count);
+        let mut deepest = 0;
+        for step in &told.steps {
+            let Step::Rays { pixels, through: Passed::Octants(through), .. } = step else { panic!("{step:?}") };
+            // At the picture's edge whole blocks are followed, too.
+            let [x, y, width, height] = [pixels[0], pixels[1], side, side].map(f64::from);
+            let ([left, top], [right, bottom]) = (told.place([x, y]), told.place([x + width, y + height]));
+            for (i, name) in through.iter().enumerate() {
+                assert!(!through[..i].contains(name), "{name} is told once");
+                assert!(
+                    name.is_empty() || through[..i].contains(&name[..name.len() - 1].to_owned()),
+                    "{name} has a parent"
+                );
+                // Follow the name down; the cell is where the pixels are.
+                let (mut low, mut high) = (min, max);
+                for digit in name.bytes().map(|d| d - b'0') {
+                    for k in 0..3 {
+                        let middle = (low[k] + high[k]) * 0.5;
+                        if digit >> k & 1 == 1 { low[k] = middle } else { high[k] = middle }
+                    }
+                }
+                let room = (max[0] - min[0]) * 1e-4;
+                let met =
+                    low[0] - room < right && left < high[0] + room && low[1] - room < top && bottom < high[1] + room;
+                assert!(met, "{name}: {step:?}");
+                deepest = deepest.max(name.len());
+            }
+        }
+        assert!(deepest >= 4, "{deepest}");
+
+        let steps = looked_on(&settings(RAYS[0])).steps;
+        assert_eq!(steps.len(), count);
+        let mut opened = std::collections::BTreeSet::<u32>::new();
+        for step in &steps {
+            let Step::Rays { boxes, through: Passed::Nodes(through), .. } = step else { panic!("{step:?}") };
+            assert!(through.first().is_none_or(|&root| root == 0) && through.len() as u64 <= *boxes, "{step:?}");
+            opened.extend(through);
+        }
+        assert!(opened.len() > 500 && opened.last().is_some_and(|last| *last < 20_000), "{}", opened.len());
     }
 }
 
@@ -252,18 +387,18 @@ fn what_is_too_much_is_refused_and_limits_hold() {
     for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
         let limited = Budget::default().with_memory_limit(Some(1000));
         let execution = Execution { budget: limited, ..Execution::default() };
-        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        let error = resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap_err();
         assert!(matches!(error, Limit::Memory { .. }), "{choice:?}: {error}");
         let execution = Execution::default();
         execution.budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-        let error = resolve(&session, &camera, 1, choice, &execution).unwrap_err();
+        let error = resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap_err();
         assert!(matches!(error, Limit::Cancelled { .. }), "{choice:?}: {error}");
     }
 }
 
 #[test]
 fn a_structure_without_rays_is_refused() {
-    let settings = settings(1, ("warnock", Some(Acceleration::Grid)));
+    let settings = settings(SIZE, 1, ("warnock", Some(Acceleration::Grid)));
     let error = settings.check().unwrap_err().to_string();
     assert!(error.contains("`warnock` casts no rays: choose ray-cast"), "{error}");
 }

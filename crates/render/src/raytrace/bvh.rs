@@ -13,7 +13,8 @@
 
 use super::beam::Beam;
 use super::triangles::{Triangles, bounds_of};
-use super::{Probe, Structure, Tree, Visitor};
+use super::{Probe, Structure, Tree, Visitor, space_step};
+use crate::trace::{Passed, Step};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
 
@@ -154,6 +155,15 @@ impl Structure for Bvh {
         values
     }
 
+    fn step(&self) -> Option<Step> {
+        let [min, max] = self.root()?.map(Vec3::from_array);
+        Some(space_step(&self.triangles, [min, max], None))
+    }
+
+    fn names(&self, parts: &[u32]) -> Passed {
+        Passed::Nodes(parts.to_vec())
+    }
+
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {
         self.descend(beam, visitor)
     }
@@ -179,6 +189,7 @@ impl Tree for Bvh {
                 if visitor.skips(index, near) {
                     break;
                 }
+                visitor.passes(index);
                 let node = &self.nodes[index];
                 if node.count > 0 {
                     for place in node.link..node.link + node.count {

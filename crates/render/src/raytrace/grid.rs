@@ -16,7 +16,8 @@
 
 use super::beam::Beam;
 use super::triangles::{Triangles, bounds_of};
-use super::{Structure, Visitor};
+use super::{Structure, Visitor, space_step};
+use crate::trace::{Passed, Step};
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit};
 use vitral_math::Vec3;
@@ -158,6 +159,7 @@ impl Grid {
     #[inline(always)]
     fn show(&self, cell: [i32; 3], near: f32, visitor: &mut impl Visitor) {
         let index = self.index(cell);
+        visitor.passes(index);
         let (start, end) = (self.starts[index] as usize, self.starts[index + 1] as usize);
         if start < end && !visitor.skips(index, near) {
             self.entries[start..end].iter().for_each(|&place| visitor.triangle(place as usize));
@@ -285,6 +287,17 @@ impl Structure for Grid {
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
         let largest = |places: &[u32]| places.iter().map(|&p| value(p as usize)).fold(f32::NEG_INFINITY, f32::max);
         self.starts.windows(2).map(|w| largest(&self.entries[w[0] as usize..w[1] as usize])).collect()
+    }
+
+    fn step(&self) -> Option<Step> {
+        let cells = self.count.map(|c| c as u32);
+        let size = self.cell * Vec3::from_array(self.count.map(|c| c as f32));
+        Some(space_step(&self.triangles, [self.min, self.min + size], Some(cells)))
+    }
+
+    fn names(&self, parts: &[u32]) -> Passed {
+        let [columns, rows, _] = self.count.map(|c| c as u32);
+        Passed::Cells(parts.iter().map(|p| [p % columns, p / columns % rows, p / (columns * rows)]).collect())
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {

@@ -14,9 +14,11 @@ pub mod pyramid;
 pub mod shaft;
 pub mod triangles;
 
+use crate::trace::{Passed, Step};
 use beam::Beam;
 use intersect::Ray;
 use triangles::Triangles;
+use vitral_math::Vec3;
 
 /// Something that boxes are tested against: a ray, a beam, rays through a block of pixels.
 pub trait Probe {
@@ -32,6 +34,33 @@ pub trait Visitor {
     fn done(&self, near: f32) -> bool;
     /// A triangle near the ray, by its place in [`Structure::triangles`].
     fn triangle(&mut self, place: usize);
+    /// The ray goes through `part`: a node that is opened, a cell of a grid whether or not something is in it.
+    #[inline(always)]
+    fn passes(&mut self, _part: usize) {}
+}
+
+/// Keeps the parts that rays go through, for who looks on; another visitor decides.
+pub(crate) struct Watched<'v> {
+    pub(crate) visitor: &'v mut dyn Visitor,
+    pub(crate) passed: &'v mut Vec<u32>,
+}
+
+impl Visitor for Watched<'_> {
+    fn skips(&self, part: usize, near: f32) -> bool {
+        self.visitor.skips(part, near)
+    }
+
+    fn done(&self, near: f32) -> bool {
+        self.visitor.done(near)
+    }
+
+    fn triangle(&mut self, place: usize) {
+        self.visitor.triangle(place);
+    }
+
+    fn passes(&mut self, part: usize) {
+        self.passed.push(part as u32);
+    }
 }
 
 /// Finds the triangles near a ray.
@@ -44,6 +73,12 @@ pub trait Structure: Sync {
 
     /// For each part the largest value of the triangles in it; -∞ for an empty one.
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32>;
+
+    /// The step that tells what space the parts divide; none where there are none.
+    fn step(&self) -> Option<Step>;
+
+    /// The names of parts, those above a part before it.
+    fn names(&self, parts: &[u32]) -> Passed;
 
     /// Shows `visitor` the triangles of all parts that the beam meets and it does not skip. Returns the number of boxes
     /// or cells looked at.
@@ -83,6 +118,12 @@ pub trait Tree: Structure {
         let Some([min, max]) = self.root() else { return 0 };
         1 + probe.enters(min, max).map_or(0, |near| self.descend_from(near, probe, visitor))
     }
+}
+
+/// The step that tells the space of a structure, a box less [`Triangles::center`].
+fn space_step(triangles: &Triangles, [min, max]: [Vec3; 2], cells: Option<[u32; 3]>) -> Step {
+    let [min, max] = [min, max].map(|p| (p.as_dvec3() + triangles.center).to_array());
+    Step::Space { min, max, cells }
 }
 
 /// What following rays took.

@@ -15,7 +15,9 @@
 
 use super::beam::Beam;
 use super::triangles::{Triangles, bounds_of};
-use super::{Probe, Structure, Tree, Visitor};
+use super::{Probe, Structure, Tree, Visitor, space_step};
+use crate::trace::{Passed, Step};
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
@@ -224,6 +226,28 @@ impl Structure for Octree {
         values
     }
 
+    fn step(&self) -> Option<Step> {
+        let [min, max] = self.root()?.map(Vec3::from_array);
+        Some(space_step(&self.triangles, [min, max], None))
+    }
+
+    fn names(&self, parts: &[u32]) -> Passed {
+        // The names of cells by the first of their children.
+        let mut parents: BTreeMap<u32, String> = BTreeMap::new();
+        let name = |&part: &u32| {
+            let name = match parents.range(..=part).next_back() {
+                Some((first, parent)) => format!("{parent}{}", part - first),
+                None => String::new(),
+            };
+            let children = self.cells[part as usize].children;
+            if children > 0 {
+                parents.insert(children, name.clone());
+            }
+            name
+        };
+        Passed::Octants(parts.iter().map(name).collect())
+    }
+
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {
         self.descend(beam, visitor)
     }
@@ -247,6 +271,7 @@ impl Tree for Octree {
             if visitor.skips(index, near) {
                 continue;
             }
+            visitor.passes(index);
             let cell = &self.cells[index];
             if cell.children == 0 {
                 let entries = &self.entries[cell.first as usize..(cell.first + cell.count) as usize];

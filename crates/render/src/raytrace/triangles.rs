@@ -12,6 +12,7 @@
 
 use super::beam::Beam;
 use super::{Structure, Visitor};
+use crate::trace::{Passed, Step};
 use vitral_exec::Workers;
 use vitral_math::{DVec3, Vec3, vec3};
 use vitral_scene::World;
@@ -87,6 +88,14 @@ impl Structure for Triangles {
 
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
         vec![(0..self.count()).map(value).fold(f32::NEG_INFINITY, f32::max)]
+    }
+
+    fn step(&self) -> Option<Step> {
+        None
+    }
+
+    fn names(&self, _: &[u32]) -> Passed {
+        Passed::Nowhere
     }
 
     fn traverse(&self, _: &Beam, visitor: &mut impl Visitor) -> u64 {

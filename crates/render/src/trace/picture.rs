@@ -192,7 +192,7 @@ impl Observer for Recorder {
                 }
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
-            Step::Clip { .. } => {}
+            Step::Clip { .. } | Step::Space { .. } => {}
         }
     }
 }
@@ -209,6 +209,7 @@ fn ramp(t: f32) -> [u8; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Passed;
     use super::*;
 
     #[test]
@@ -229,7 +230,8 @@ mod tests {
     #[test]
     fn costs_add_up_and_windows_have_sides() {
         let recorder = Recorder::new(4, 2);
-        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2 });
+        let through = Passed::Cells(vec![[0; 3]; 5]);
+        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2, through });
         recorder.step(&Step::Tile { pixels: [0, 0, 4, 1], facets: vec![0, 1, 1, 3] });
         recorder.step(&Step::Window { pixels: [0, 0, 4, 2], polygons: 1, verdict: WindowVerdict::One, facet: Some(0) });
         let planes = recorder.planes.lock().unwrap();

@@ -13,7 +13,7 @@ use super::facets::nearer;
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
-use crate::trace::Step;
+use crate::trace::{Passed, Step};
 use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
@@ -152,6 +152,7 @@ fn look(
     let rays = (rows * columns * view.pattern.len()) as u64;
     let triangle_tests = rays * facets.setups.len() as u64;
     let pixels = [tile.x, tile.y, columns as u32, rows as u32];
-    execution.tell(|| Step::Rays { pixels, rays, boxes: 0, facets: facets.setups.len() as u64 });
+    let (facets, through) = (facets.setups.len() as u64, Passed::Nowhere);
+    execution.tell(|| Step::Rays { pixels, rays, boxes: 0, facets, through });
     Ok(VisibilityCounters { rays, triangle_tests, ..VisibilityCounters::default() })
 }

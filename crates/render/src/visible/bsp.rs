@@ -23,8 +23,8 @@ use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_math::DVec4;
-use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, Tile, TileGrid};
+use vitral_math::{DMat4, DVec3, DVec4};
+use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, Tile, TileGrid, Viewport};
 
 pub(crate) use tree::Tree;
 
@@ -88,7 +88,7 @@ fn picture(
     let opaque = setups.len();
     setups.extend(facets.listed_layers());
     let facet_count = view.session.world.facet_count;
-    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + tree.node_count() * size_of::<DVec4>() as u64;
+    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + size_of_val(tree.cutters()) as u64;
     execution.budget.charge(bytes, "BSP fragments on the screen")?;
 
     // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
@@ -110,10 +110,11 @@ fn picture(
         for (&fragment, place) in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
             for at in places.of(tree.facet(fragment), &setups) {
                 let setup = setups[at as usize];
+                let plane = Depth::of(setup);
                 cuts.clear();
-                cuts.extend(tree.cuts(fragment).map(|(node, positive)| lines.cut(node, positive, setup)));
-                if let Some(outline) = pieces.add(at, setup, &cuts, &raster) {
-                    execution.tell(|| piece_step(place, setup.facet, cuts.len(), outline));
+                cuts.extend(tree.cuts(fragment).map(|(cutter, positive)| lines.cut(cutter, positive, plane)));
+                if pieces.add(at, setup, &cuts, &raster) {
+                    execution.tell(|| piece_step(place, setup, &cuts));
                 }
             }
         }
@@ -166,46 +167,57 @@ impl Places {
 
 /// Turns planes of the world into lines on the screen.
 struct Lines {
-    /// The planes of the tree's nodes, in ndc.
+    /// The planes that cut fragments, in the space of the screen: 1/256 pixel, depth.
     planes: Vec<DVec4>,
-    /// Screen coordinate = ndc coordinate * scale + center, in 1/256 pixel.
-    scale: [f64; 2],
-    center: [f64; 2],
+}
+
+/// A facet's depth: `at_zero + slope . (x, y)` at a place in 1/256 pixel.
+#[derive(Clone, Copy)]
+struct Depth {
+    slope: [f64; 2],
+    at_zero: f64,
+}
+
+impl Depth {
+    fn of(setup: &Setup) -> Self {
+        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
+        let origin = setup.origin.map(f64::from);
+        Self { slope, at_zero: f64::from(setup.z) - slope[0] * origin[0] - slope[1] * origin[1] }
+    }
 }
 
 impl Lines {
     fn new(view: &PreparedView<'_>, tree: &Tree, execution: &Execution) -> Self {
-        let mut planes = vec![DVec4::ZERO; tree.node_count() as usize];
-        let ndc_from_world = view.view.clip_from_world().inverse().transpose();
+        let mut planes = vec![DVec4::ZERO; tree.cutters().len()];
+        let screen_from_world = screen_from_world(&view.view.clip_from_world(), view.viewport);
         execution.workers.for_each_chunk(&mut planes, PLANES_A_JOB, |job, planes| {
-            for (plane, node) in planes.iter_mut().zip(job * PLANES_A_JOB..) {
-                *plane = ndc_from_world * tree.plane(node as u32);
+            for (plane, cutter) in planes.iter_mut().zip(&tree.cutters()[job * PLANES_A_JOB..]) {
+                *plane = screen_from_world * *cutter;
             }
         });
-        let half = [view.viewport.width, view.viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
-        Self { planes, scale: [half[0], -half[1]], center: half }
+        Self { planes }
     }
 
-    /// Where a facet meets a node's plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
-    fn cut(&self, node: u32, positive: bool, setup: &Setup) -> Cut {
-        let p = self.planes[node as usize];
-        let (gx, gy) = (p.x / self.scale[0], p.y / self.scale[1]);
-        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        let at_zero =
-            f64::from(setup.z) - slope[0] * f64::from(setup.origin[0]) - slope[1] * f64::from(setup.origin[1]);
-        Cut {
-            a: gx + p.z * slope[0],
-            b: gy + p.z * slope[1],
-            c: p.w - gx * self.center[0] - gy * self.center[1] + p.z * at_zero,
-            positive,
-        }
+    /// Where a facet meets a cutter's plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
+    #[inline]
+    fn cut(&self, cutter: u32, positive: bool, Depth { slope, at_zero }: Depth) -> Cut {
+        let p = self.planes[cutter as usize];
+        Cut { a: p.x + p.z * slope[0], b: p.y + p.z * slope[1], c: p.w + p.z * at_zero, positive }
     }
+}
+
+/// Brings planes from the world to the screen.
+fn screen_from_world(clip_from_world: &DMat4, viewport: Viewport) -> DMat4 {
+    let half = [viewport.width, viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
+    let scale = DVec3::new(1.0 / half[0], -1.0 / half[1], 1.0);
+    let ndc_from_screen = DMat4::from_scale(scale) * DMat4::from_translation(DVec3::new(-half[0], -half[1], 0.0));
+    // Planes go the way back, transposed.
+    (clip_from_world.inverse() * ndc_from_screen).transpose()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::DMat4;
 
     #[test]
     fn a_plane_becomes_the_line_where_it_meets_the_facet() {
@@ -216,22 +228,19 @@ mod tests {
             DVec4::new(0.0, 0.0, 0.5, 0.0),
             DVec4::new(0.0, 0.0, 0.5, 1.0),
         );
-        let ndc_from_world = clip_from_world.inverse().transpose();
+        let screen_from_world = screen_from_world(&clip_from_world, Viewport::new(4, 2).unwrap());
         let planes = [DVec4::new(0.0, 0.0, 1.0, -0.5), DVec4::new(0.0, 1.0, 0.0, 0.0)];
-        let lines = Lines {
-            planes: planes.map(|plane| ndc_from_world * plane).to_vec(),
-            scale: [512.0, -256.0],
-            center: [512.0, 256.0],
-        };
+        let lines = Lines { planes: planes.map(|plane| screen_from_world * plane).to_vec() };
         // The facet has depth 0 on the left and 1 on the right: z = x.
         let corner = |x, y, z| vitral_raster::CornerPosition { x, y, z };
         let [a, b, c] = [corner(0, 0, 0.0), corner(1024, 0, 1.0), corner(0, 512, 0.0)];
         let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
         // z = 1/2 is there where x = 1/2, at 768.
-        let cut = lines.cut(0, true, &setup);
+        let depth = Depth::of(&setup);
+        let cut = lines.cut(0, true, depth);
         assert!(cut.keeps([769.0, 100.0]) && !cut.keeps([767.0, 400.0]), "{cut:?}");
         // y = 0 is the middle row, y upwards.
-        let cut = lines.cut(1, true, &setup);
+        let cut = lines.cut(1, true, depth);
         assert!(cut.keeps([5.0, 255.0]) && !cut.keeps([900.0, 257.0]), "{cut:?}");
     }
 }

@@ -12,7 +12,7 @@ use super::zbuffer::{jobs, retire_vertices, rounds, set_up, transform_vertices, 
 use super::{Peel, Resolved, TileSink};
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
 use vitral_raster::{Batch, LayerList, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid};
 
@@ -25,8 +25,8 @@ pub(super) struct Facets<'v, 'a> {
     execution: &'v Execution,
     opaque: Vec<Batch>,
     layered: Vec<Batch>,
-    /// For each row of tiles the opaque triangles that may have samples in it: batch and index in the batch.
-    rows: Vec<Vec<[u32; 2]>>,
+    /// For each row of tiles the opaque triangles that may have samples in it: batch and index in the batch. Once asked.
+    rows: OnceLock<Vec<Vec<[u32; 2]>>>,
     charged: u64,
 }
 
@@ -42,7 +42,8 @@ impl<'v, 'a> Facets<'v, 'a> {
         let triangles: u64 = draws.flat_map(|d| &d.ranges).map(|r| u64::from(r.end - r.start)).sum();
         let charged = triangles * BYTES_A_TRIANGLE;
         execution.budget.charge(charged, "the view's facets")?;
-        let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows: Vec::new(), charged };
+        let rows = OnceLock::new();
+        let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows, charged };
         let jobs = jobs(view);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
         for round in rounds(&jobs) {
@@ -59,15 +60,14 @@ impl<'v, 'a> Facets<'v, 'a> {
         let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
         spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
         drop(spare);
-        facets.sort_by_row();
         resolved.geometry_seconds = execution.budget.elapsed() - start;
         Ok(facets)
     }
 
     /// Lists the opaque triangles by the rows of tiles that their box touches.
-    fn sort_by_row(&mut self) {
+    fn sort_by_row(&self) -> Vec<Vec<[u32; 2]>> {
         let tile_rows = self.view.viewport.tiles_y() as i32;
-        self.rows = vec![Vec::new(); tile_rows as usize];
+        let mut rows = vec![Vec::new(); tile_rows as usize];
         // A sample lies below the top of its pixel and above its bottom: the tile of its y is the tile of its pixel.
         let row = |y: i32| y.div_euclid(TILE as i32 * SUBPIXEL);
         for (b, batch) in self.opaque.iter().enumerate() {
@@ -75,15 +75,17 @@ impl<'v, 'a> Facets<'v, 'a> {
                 let [y0, y1, y2] = setup.y;
                 let (first, last) = (row(y0.min(y1).min(y2)).max(0), row(y0.max(y1).max(y2)).min(tile_rows - 1));
                 for r in first..=last {
-                    self.rows[r as usize].push([b as u32, i as u32]);
+                    rows[r as usize].push([b as u32, i as u32]);
                 }
             }
         }
+        rows
     }
 
     /// The opaque triangles that may have samples in a row of tiles.
     pub(super) fn in_row(&self, row: usize) -> impl ExactSizeIterator<Item = &Setup> {
-        self.rows[row].iter().map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
+        let rows = self.rows.get_or_init(|| self.sort_by_row());
+        rows[row].iter().map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
     }
 
     /// The opaque triangles that touch a tile.

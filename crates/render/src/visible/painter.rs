@@ -142,7 +142,7 @@ const BYTES_A_POLYGON: u64 = (size_of::<Polygon>() + 3 * 16 + size_of::<Place>()
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
     setups: &'f [&'f Setup],
-    raster: Raster,
+    raster: Raster<'f>,
     execution: &'f Execution,
     counters: &'c mut VisibilityCounters,
     polygons: Vec<Polygon>,
@@ -167,7 +167,7 @@ struct Sorting<'f, 'c> {
 impl<'f, 'c> Sorting<'f, 'c> {
     fn new(
         setups: &'f [&'f Setup],
-        raster: Raster,
+        raster: Raster<'f>,
         execution: &'f Execution,
         counters: &'c mut VisibilityCounters,
     ) -> Result<Self, Limit> {
@@ -418,8 +418,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
             let cuts = &self.cuts[polygon.cuts.start as usize..polygon.cuts.end as usize];
             let setup = self.setups[polygon.setup as usize];
             let order = list.len() as u32;
-            if let Some(outline) = list.add(polygon.setup, setup, cuts, &self.raster) {
-                self.execution.tell(|| piece_step(order, setup.facet, cuts.len(), outline));
+            if list.add(polygon.setup, setup, cuts, &self.raster) {
+                self.execution.tell(|| piece_step(order, setup, cuts));
             }
         }
         list.finish(self.raster.viewport());
@@ -441,7 +441,8 @@ mod tests {
     fn order(setups: &[Setup]) -> (Vec<u32>, VisibilityCounters) {
         let setups: Vec<_> = setups.iter().collect();
         let (execution, mut counters) = (Execution::default(), VisibilityCounters::default());
-        let raster = Raster::new(Viewport::new(64, 64).unwrap(), &SamplePattern::new(1));
+        let pattern = SamplePattern::new(1);
+        let raster = Raster::new(Viewport::new(64, 64).unwrap(), &pattern);
         let mut sorting = Sorting::new(&setups, raster, &execution, &mut counters).unwrap();
         sorting.sort().unwrap();
         let painted = sorting.painted.iter().map(|&p| setups[sorting.polygons[p as usize].setup as usize].facet);

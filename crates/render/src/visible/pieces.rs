@@ -3,7 +3,8 @@
 //! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
 //! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
 //! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
-//! with rounding; it only bounds the pixels where samples are looked for, a little too far out.
+//! with rounding; it only bounds the pixels where samples are looked for, a little too far out. A triangle of few samples
+//! needs no outline: each sample is asked, and the piece is the list of those that belong to it.
 //!
 //! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
 //! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
@@ -26,6 +27,11 @@ use vitral_raster::{
     BLOCK, Block, BlockSink, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL, SamplePattern,
     Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
 };
+
+/// Samples in the box of a triangle that are asked one by one, in at most 8x8 pixels.
+const FEW: usize = 64;
+/// Samples of a block that are asked without a look at the block's corners first.
+const CORNERS: u32 = 4;
 
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,9 +86,11 @@ impl Cut {
 }
 
 /// The step that gives a piece its place in the list, the smallest from the back.
-pub(super) fn piece_step(order: u32, facet: u32, cuts: usize, outline: &[[f64; 2]]) -> Step {
+pub(super) fn piece_step(order: u32, setup: &Setup, cuts: &[Cut]) -> Step {
+    let (mut outline, mut scratch) = (corners(setup).to_vec(), Vec::new());
+    cuts.iter().for_each(|cut| clip_outline(&mut outline, &mut scratch, cut));
     let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
-    Step::Piece { order, facet, cuts: cuts as u32, outline }
+    Step::Piece { order, facet: setup.facet, cuts: cuts.len() as u32, outline }
 }
 
 /// The corners of a triangle on the screen.
@@ -129,13 +137,20 @@ struct Piece {
     /// First and last pixel column and row that may have samples of it.
     pixels: [u16; 4],
     cuts: Range<u32>,
+    /// Where its own samples are listed, if they are: then no cut is needed.
+    samples: u32,
 }
+
+/// The samples of a piece are not listed.
+const UNLISTED: u32 = u32::MAX;
 
 /// A run of the list, sorted into tiles.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
     pieces: Vec<Piece>,
     cuts: Vec<Cut>,
+    /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the piece's, 8 a row.
+    samples: Vec<u64>,
     /// Tile and piece, in the order of the list.
     entries: Vec<[u32; 2]>,
     starts: Vec<u32>,
@@ -146,18 +161,25 @@ pub(super) struct Pieces {
 
 /// What bounds the pixels of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Raster {
+pub(super) struct Raster<'p> {
     viewport: Viewport,
+    pattern: &'p SamplePattern,
     samples: [[i32; 2]; 2],
 }
 
-impl Raster {
-    pub(super) fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
-        Self { viewport, samples: extent(pattern) }
+impl<'p> Raster<'p> {
+    pub(super) fn new(viewport: Viewport, pattern: &'p SamplePattern) -> Self {
+        Self { viewport, pattern, samples: extent(pattern) }
     }
 
     pub(super) fn viewport(&self) -> Viewport {
         self.viewport
+    }
+
+    /// Whether it takes less to ask each sample of these pixels than to clip an outline.
+    fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
+        let [width, height] = [x1 - x0 + 1, y1 - y0 + 1].map(usize::from);
+        width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= FEW
     }
 
     /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
@@ -188,15 +210,70 @@ impl Raster {
 }
 
 impl Pieces {
-    /// Adds the next piece of the list, if it can have samples, and gives its outline.
-    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster) -> Option<&[[f64; 2]]> {
+    /// Adds the next piece of the list, if it can have samples; whether it can.
+    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster<'_>) -> bool {
+        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
+        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
+        let around = [[x0, y0], [x1, y1]];
+        let Some(pixels) = raster.pixels(around) else { return false };
+        let (first, listed) = (self.cuts.len(), self.samples.len());
+        let (found, samples) = match cuts {
+            [] => (Some(pixels), UNLISTED),
+            _ if raster.are_few(pixels) => (self.list_samples(setup, pixels, cuts, raster), listed as u32),
+            _ => (self.cut_outline(setup, around, cuts, raster), UNLISTED),
+        };
+        let Some(found) = found else {
+            self.cuts.truncate(first);
+            self.samples.truncate(listed);
+            return false;
+        };
+        // A list counts from where it began.
+        let pixels = if samples == UNLISTED { found } else { [pixels[0], pixels[1], found[2], found[3]] };
+        let piece = self.pieces.len() as u32;
+        self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32, samples });
+        let [tx0, ty0, tx1, ty1] = found.map(|p| u32::from(p) / TILE as u32);
+        let tiles_x = raster.viewport.tiles_x();
+        for ty in ty0..=ty1 {
+            self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
+        }
+        true
+    }
+
+    /// Lists the samples of a few pixels that the triangle covers and all cuts keep. First and last column and row of
+    /// pixels with such a sample.
+    fn list_samples(&mut self, setup: &Setup, pixels: [u16; 4], cuts: &[Cut], raster: &Raster<'_>) -> Option<[u16; 4]> {
+        let mut found: Option<[u16; 4]> = None;
+        let place = |pixel: u16, offset: i32| i32::from(pixel) * SUBPIXEL + offset;
+        for s in 0..raster.pattern.len() {
+            let ([dx, dy], mut list) = (raster.pattern.position(s), 0u64);
+            for y in pixels[1]..=pixels[3] {
+                for x in pixels[0]..=pixels[2] {
+                    let sample = [place(x, dx), place(y, dy)];
+                    if setup.covers(sample[0], sample[1]) && cuts.iter().all(|cut| cut.keeps(sample.map(f64::from))) {
+                        list |= 1 << (usize::from(y - pixels[1]) * BLOCK + usize::from(x - pixels[0]));
+                        let [x0, y0, x1, y1] = found.unwrap_or([x, y, x, y]);
+                        found = Some([x0.min(x), y0.min(y), x1.max(x), y1.max(y)]);
+                    }
+                }
+            }
+            self.samples.push(list);
+        }
+        found
+    }
+
+    /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
+    /// the cuts that matter.
+    fn cut_outline(
+        &mut self,
+        setup: &Setup,
+        mut around: [[f64; 2]; 2],
+        cuts: &[Cut],
+        raster: &Raster<'_>,
+    ) -> Option<[u16; 4]> {
         let [outline, scratch] = &mut self.outline;
         outline.clear();
         outline.extend(corners(setup));
         let first = self.cuts.len();
-        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
-        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
-        let mut around = [[x0, y0], [x1, y1]];
         for cut in cuts {
             if !cut.holds_box(around) && !cut.holds(outline) {
                 clip_outline(outline, scratch, cut);
@@ -204,10 +281,7 @@ impl Pieces {
                 self.cuts.push(*cut);
             }
         }
-        let Some(pixels) = raster.pixels(around) else {
-            self.cuts.truncate(first);
-            return None;
-        };
+        let pixels = raster.pixels(around)?;
 
         // Forget the cuts that later ones made superfluous.
         let mut kept = first;
@@ -218,15 +292,7 @@ impl Pieces {
             }
         }
         self.cuts.truncate(kept);
-        let first = first as u32;
-        let piece = self.pieces.len() as u32;
-        self.pieces.push(Piece { setup: index, pixels, cuts: first..self.cuts.len() as u32 });
-        let [tx0, ty0, tx1, ty1] = pixels.map(|p| u32::from(p) / TILE as u32);
-        let tiles_x = raster.viewport.tiles_x();
-        for ty in ty0..=ty1 {
-            self.entries.extend((tx0..=tx1).map(|tx| [ty * tiles_x + tx, piece]));
-        }
-        Some(&self.outline[0])
+        Some(pixels)
     }
 
     /// Sorts the pieces into tiles, keeping their order. Call it once, at the end.
@@ -257,7 +323,7 @@ impl Pieces {
     /// Bytes it takes.
     pub(super) fn bytes(&self) -> u64 {
         let cuts = self.cuts.len() * size_of::<Cut>() + (self.starts.len() + self.items.len()) * 4;
-        (self.pieces.len() * size_of::<Piece>() + cuts) as u64
+        (self.pieces.len() * size_of::<Piece>() + self.samples.len() * 8 + cuts) as u64
     }
 }
 
@@ -334,6 +400,10 @@ fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
 ) {
     let setup = list.setups[piece.setup as usize];
     let (place, pattern) = (sink.place, sink.pattern);
+    if piece.samples != UNLISTED {
+        let samples = &run.samples[piece.samples as usize..][..pattern.len()];
+        return draw_samples(simd, setup, piece.pixels, samples, sink);
+    }
     sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
     if sink.cuts.is_empty() {
         traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
@@ -346,6 +416,46 @@ fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
     };
     let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
     traverse_window(simd, setup, place, &window, pattern, sink);
+}
+
+/// Draws the samples that a piece has in the tile, block by block.
+#[inline(always)]
+fn draw_samples<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    pixels: [u16; 4],
+    samples: &[u64],
+    sink: &mut PieceSink<'_, K>,
+) {
+    let [left, top] = [sink.place.0, sink.place.1].map(|v| v as i32);
+    let [x0, y0, x1, y1] = pixels.map(i32::from);
+    let ([x0, x1], [y0, y1]) = ([x0 - left, x1 - left], [y0 - top, y1 - top]);
+    let (side, last) = (BLOCK as i32, TILE as i32 - 1);
+    for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
+        for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
+            let mut masks = [0; 16];
+            let masks = &mut masks[..samples.len()];
+            let mut any = 0;
+            for (mask, &list) in masks.iter_mut().zip(samples) {
+                *mask = moved(list, x0 - bx, y0 - by);
+                any |= *mask;
+            }
+            let rows = (y0 - by).max(0) as usize..(y1 - by + 1).min(side) as usize;
+            let block = Block { x: bx as usize, y: by as usize, rows };
+            if any != 0 && !sink.inner.rejects(setup, &block) {
+                sink.inner.cover(simd, setup, &block, masks);
+            }
+        }
+    }
+}
+
+/// What of 8x8 pixels is left when they are moved by `dx` to the right and `dy` down, less than 8 either way.
+#[inline(always)]
+fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
+    let shifted = |v: u64, by: i32| if by >= 0 { v << by } else { v >> -by };
+    // Those that enter a row of 8 from the next one are not meant.
+    let columns = shifted(0xff, dx) & 0xff;
+    shifted(shifted(pixels, 8 * dy), dx) & (columns * 0x0101_0101_0101_0101)
 }
 
 /// Narrows a triangle's coverage to one of its pieces.
@@ -388,19 +498,24 @@ fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &
             if *mask == 0 {
                 break;
             }
-            // The value is monotonic: the corners of the block decide for all, where they agree.
-            let last = BLOCK - 1;
-            let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
-            if keeps == [false; 4] {
-                *mask = 0;
-            } else if keeps != [true; 4] {
-                let mut left = *mask;
-                while left != 0 {
-                    let bit = left.trailing_zeros() as usize;
-                    left &= left - 1;
-                    if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
-                        *mask &= !(1 << bit);
-                    }
+            // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes
+            // no more to ask them.
+            if mask.count_ones() > CORNERS {
+                let last = BLOCK - 1;
+                let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
+                if keeps == [false; 4] {
+                    *mask = 0;
+                }
+                if keeps[1..].iter().all(|&k| k == keeps[0]) {
+                    continue;
+                }
+            }
+            let mut left = *mask;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
+                    *mask &= !(1 << bit);
                 }
             }
         }
@@ -441,7 +556,8 @@ mod tests {
 
     #[test]
     fn an_outline_holds_the_samples_of_its_piece() {
-        let raster = Raster::new(Viewport::new(10, 10).unwrap(), &SamplePattern::new(1));
+        let pattern = SamplePattern::new(1);
+        let raster = Raster::new(Viewport::new(10, 10).unwrap(), &pattern);
         let mut pieces = Pieces::default();
         let cut = Cut { a: 1.0, b: 0.0, c: -1280.0, positive: false };
         for cuts in [&[][..], &[cut], &[cut.opposite()], &[cut, cut.opposite()]] {
@@ -452,5 +568,62 @@ mod tests {
         assert_eq!(bounds, [[0, 0, 9, 9], [0, 0, 4, 9], [5, 0, 9, 4]]);
         pieces.finish(raster.viewport);
         assert_eq!((pieces.items.as_slice(), pieces.starts.as_slice()), (&[0, 1, 2][..], &[0, 3, 3][..]));
+    }
+    #[test]
+    fn a_piece_has_the_samples_that_all_its_cuts_keep() {
+        let mut state = 3u32;
+        let mut next = |size: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % size
+        };
+        let (mut few, mut gone) = (0, 0);
+        for round in 0..600 {
+            let pattern = SamplePattern::new([1, 3][round % 2]);
+            let raster = Raster::new(Viewport::new(12, 12).unwrap(), &pattern);
+            let size = [700, 3000][round / 2 % 2];
+            let corners = [(); 3].map(|()| [next(size) as i32, next(size) as i32]);
+            let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
+            let area = Setup::doubled_area(a, b, c);
+            if area == 0 {
+                continue;
+            }
+            let setup = Setup::new([a, b, c], area, 0);
+            let cuts: Vec<_> = (0..next(5))
+                .map(|i| {
+                    let [a, b] = [(); 2].map(|()| f64::from(next(200)) - 100.0);
+                    let [x, y] = [(); 2].map(|()| f64::from(next(size)));
+                    Cut { a, b, c: -(a * x + b * y), positive: i % 2 == 0 }
+                })
+                .collect();
+            let mut pieces = Pieces::default();
+            let added = pieces.add(0, &setup, &cuts, &raster);
+            few += usize::from(raster.pixels([[0.0; 2], [f64::from(size); 2]]).is_some_and(|p| raster.are_few(p)));
+            gone += usize::from(!added);
+            for (x, y, s) in (0..12u16).flat_map(|y| (0..12u16).flat_map(move |x| (0..3).map(move |s| (x, y, s)))) {
+                if s >= pattern.len() {
+                    continue;
+                }
+                let offset = pattern.position(s);
+                let [px, py] = [i32::from(x) * 256 + offset[0], i32::from(y) * 256 + offset[1]];
+                let expected = setup.covers(px, py) && cuts.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]));
+                let within = pieces.pieces.iter().any(|p| {
+                    let [x0, y0, x1, y1] = p.pixels;
+                    if p.samples != UNLISTED {
+                        // Seen from a block about the sample.
+                        let corner = [x & !7, y & !7].map(i32::from);
+                        let [dx, dy] = [i32::from(x0) - corner[0], i32::from(y0) - corner[1]];
+                        let list = pieces.samples[p.samples as usize + s];
+                        let near = dx.abs() < 8 && dy.abs() < 8;
+                        return near && moved(list, dx, dy) >> ((y & 7) * 8 + (x & 7)) & 1 == 1;
+                    }
+                    let own = &pieces.cuts[p.cuts.start as usize..p.cuts.end as usize];
+                    // Without cuts the whole triangle is drawn.
+                    let inside = own.is_empty() || ((x0..=x1).contains(&x) && (y0..=y1).contains(&y));
+                    inside && own.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]))
+                });
+                assert_eq!(setup.covers(px, py) && within, expected, "{setup:?} {cuts:?} {x} {y} {s}");
+            }
+        }
+        assert!(few > 100 && gone > 50, "{few} {gone}");
     }
 }

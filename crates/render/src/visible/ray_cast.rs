@@ -28,8 +28,10 @@ use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Structure, Tree};
 use crate::stats::VisibilityCounters;
+use crate::trace::Passed;
 use crate::{Acceleration, Coherence, Execution, PreparedView};
 use eye::Eye;
+use std::collections::HashSet;
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
@@ -110,6 +112,9 @@ impl Job<'_> {
             return Err(Limit::Work { needed: all, limit: MOST_TESTS, stage: "ray casting without a structure" });
         }
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;
+        if let (Some(observer), Some(step)) = (&execution.observer, structure.step()) {
+            observer.step(&step);
+        }
         let look = |tile: &mut Tile, layers: &mut LayerList| look(&cast, tile, layers);
         resolved.counters = each_tile(view, self.marks, grid, execution, self.sink, look)?;
         resolved.counters.tests_saved = all.saturating_sub(resolved.counters.triangle_tests);
@@ -184,6 +189,15 @@ impl<'a, T: Structure> Cast<'a, T> {
     fn give_stamps(&self, stamps: Stamps) {
         self.stamps.lock().expect("no thread panics while it holds stamps").push(stamps);
     }
+}
+
+/// Names what rays went through, each part once, and empties the list.
+fn names(structure: &impl Structure, passed: &mut Vec<u32>) -> Passed {
+    let mut seen = HashSet::new();
+    passed.retain(|part| seen.insert(*part));
+    let names = structure.names(passed);
+    passed.clear();
+    names
 }
 
 /// What a triangle is on the screen: little enough to be looked at before its setups are.

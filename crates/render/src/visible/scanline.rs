@@ -5,8 +5,10 @@
 //! right: edges join where they begin, leave where they end, and in between move by a constant step, so the order hardly
 //! changes. Walking along the active edges, the in-out flag of an edge's polygon in the polygon table turns: between two
 //! edges, the polygons that are in do not change, and one decision serves the whole span. With one polygon in there is
-//! nothing to decide. With several, their depths at the two ends of the span show which are hidden throughout; if more
-//! than one is left (they penetrate each other, or touch), the depths at the samples of the span decide.
+//! nothing to decide. With several, their depths at the two ends of the span show which are hidden throughout. If two are
+//! left (they penetrate each other, or touch), the span is cut where their planes meet: along an implied edge, which two
+//! points fix for all lines to come (`scanline/implied_edge.rs`). What is left near it, and where it cannot be told, is
+//! decided by the depths at the samples.
 //!
 //! Each row of samples is a line, so a picture with four samples a pixel has four lines a row of pixels. Bands of 64
 //! rows of pixels are swept independently, by as many threads as there are.
@@ -15,18 +17,27 @@
 //! Cost: edges crossed on all lines, plus spans times the polygons that are in, plus covered samples.
 //! Source: [Wylie et al. 1967], [Bouknight 1970], [Watkins 1970]. Departs from them: where an edge crosses a line is
 //! kept as an exact fraction (a whole number and a remainder), so that spans begin and end where the integer edge
-//! functions say; depth is not stepped along the span but taken from the facet's one depth function.
+//! functions say; depth is not added up along the span but taken from the facet's one depth function.
 //! Coherence: of edges (the sorted table is carried from line to line, crossings are stepped), of spans (the winner of the
-//! last span is tried first, and whatever is farther with all of its facet is passed over without a look).
+//! last span is tried first, and whatever is farther with all of its facet is passed over without a look), of faces (their
+//! depth is brought to a line once, for all of their spans and samples there: `scanline/face.rs`), of implied edges.
+
+mod face;
+mod implied_edge;
 
 use super::facets::{Facets, fill_tiles, nearer};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::trace::{Span, SpanVerdict, Step};
 use crate::{Coherence, CoherenceSet, Execution, PreparedView};
+use face::OnLine;
+use implied_edge::ImpliedEdges;
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_raster::{Batch, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
+
+/// Parts of spans that are shorter are decided at their samples without asking for an implied edge.
+const LONG: usize = 4;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -72,10 +83,26 @@ struct Polygon<'f> {
     setup: &'f Setup,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     slot: u32,
+    /// The last line to which the face's depth was brought, and the depth there: [`face::start`].
+    line: i32,
+    start: f32,
 }
 
 /// The in-out flag of polygons that are out.
 const OUT: u32 = u32::MAX;
+
+impl<'f> Polygon<'f> {
+    /// One that is out, on no line yet.
+    fn new(setup: &'f Setup) -> Self {
+        Self { setup, slot: OUT, line: i32::MIN, start: 0.0 }
+    }
+
+    /// On the line to which it was brought.
+    #[inline(always)]
+    fn on_line(&self) -> OnLine<'f> {
+        OnLine { setup: self.setup, start: self.start }
+    }
+}
 
 /// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
 struct Edge {
@@ -116,7 +143,7 @@ fn sweep(
     let (coherence, execution) = (view.coherence, facets.execution());
     // Without edge coherence each crossing is found anew, as if lines had no common distance.
     let spacing = if coherence.has(Coherence::Edge) { spacing(&lines) } else { 0 };
-    let mut polygons: Vec<_> = facets.in_row(row).map(|setup| Polygon { setup, slot: OUT }).collect();
+    let mut polygons: Vec<_> = facets.in_row(row).map(Polygon::new).collect();
     let edges = edge_table(&polygons, &lines);
     let mut starting = edges.as_slice();
     let mut active: Vec<ActiveEdge> = Vec::new();
@@ -125,6 +152,7 @@ fn sweep(
         inside: Vec::new(),
         last: 0,
         rivals: Vec::new(),
+        implied: ImpliedEdges::default(),
         coherence,
         told: None,
         tiles,
@@ -167,6 +195,7 @@ fn sweep(
             execution.tell(|| Step::Line { row, sample, active_edges: active.len() as u32, spans: told });
         }
     }
+    spans.counters.implied_edges += spans.implied.found;
     Ok(())
 }
 
@@ -281,6 +310,7 @@ struct Spans<'s, 'f> {
     last: u32,
     /// Workspace: polygons that may be visible somewhere in the span, with their nearest depth in it.
     rivals: Vec<(f32, u32)>,
+    implied: ImpliedEdges,
     coherence: CoherenceSet,
     /// The spans of the line, if somebody wants to know.
     told: Option<Vec<Span>>,
@@ -288,7 +318,7 @@ struct Spans<'s, 'f> {
     counters: &'s mut VisibilityCounters,
 }
 
-impl Spans<'_, '_> {
+impl<'f> Spans<'_, 'f> {
     /// Walks along the active edges and fills the spans between them.
     fn walk(&mut self, active: &[ActiveEdge], line: &Line) {
         let mut from = 0;
@@ -349,20 +379,70 @@ impl Spans<'_, '_> {
             self.tell(&pixels, SpanVerdict::Hides, Some(winner));
             return self.fill_with(winner, pixels, line);
         }
+        let mut rivals = std::mem::take(&mut self.rivals);
+        self.divide(pixels, &mut rivals, line);
+        self.rivals = rivals;
+    }
+
+    /// Fills a span in which any of `rivals` may be seen: cuts it at the implied edge of the first two, and decides what
+    /// no edge tells sample by sample.
+    fn divide(&mut self, pixels: Range<usize>, rivals: &mut [(f32, u32)], line: &Line) {
+        if pixels.is_empty() {
+            return;
+        }
+        if let [(_, winner)] = *rivals {
+            self.last = winner;
+            self.tell(&pixels, SpanVerdict::ImpliedEdge, Some(winner));
+            return self.fill_with(winner, pixels, line);
+        }
+        if pixels.len() < LONG || !self.coherence.has(Coherence::ImpliedEdge) {
+            return self.fill_by_samples(pixels, rivals, line);
+        }
+        // The lower polygon first, so that a pair has one edge however it is found.
+        if rivals[1].1 < rivals[0].1 {
+            rivals.swap(0, 1);
+        }
+        let pair = [rivals[0].1, rivals[1].1];
+        let setups = pair.map(|p| self.polygons[p as usize].setup);
+        let parts = self.implied.divide(pair, setups, pixels.clone(), line.sample_x, line.y);
+        let (left, right) = (pixels.start..parts.undecided.start, parts.undecided.end..pixels.end);
+        self.counters.saved_by_implied_edge += (left.len() + right.len()) as u64;
+        // Beside the edge, who is farther is no rival any more.
+        let [left_loser, right_loser] = if parts.first_on_left { [pair[1], pair[0]] } else { pair };
+        self.divide(left, without(rivals, left_loser), line);
+        self.fill_by_samples(parts.undecided, rivals, line);
+        self.divide(right, without(rivals, right_loser), line);
+    }
+
+    /// Takes the nearest of `rivals`, whose depths were brought to the line when they were found, at each sample.
+    fn fill_by_samples(&mut self, pixels: Range<usize>, rivals: &[(f32, u32)], line: &Line) {
+        if pixels.is_empty() {
+            return;
+        }
         self.tell(&pixels, SpanVerdict::Samples, None);
         self.counters.penetrated_spans += 1;
-        self.counters.depth_comparisons += (pixels.len() * (self.rivals.len() - 1)) as u64;
-        let rivals = std::mem::take(&mut self.rivals);
+        self.counters.depth_comparisons += (pixels.len() * (rivals.len() - 1)) as u64;
         for x in pixels {
             let sample_x = x as i32 * SUBPIXEL + line.sample_x;
             let seen = rivals.iter().map(|&(_, p)| {
-                let setup = self.polygons[p as usize].setup;
-                (setup.depth(sample_x, line.y), setup.facet)
+                let face = self.polygons[p as usize].on_line();
+                (face.depth(sample_x), face.setup.facet)
             });
             let Some(seen) = seen.reduce(|a, b| if nearer(b, a) { b } else { a }) else { continue };
             super::facets::put(&mut self.tiles[x / TILE], place(x, line), seen);
         }
-        self.rivals = rivals;
+    }
+
+    /// Brings a polygon's depth to the line, unless it is there already.
+    #[inline]
+    fn bring(&mut self, polygon: u32, line: &Line) -> OnLine<'f> {
+        let polygon = &mut self.polygons[polygon as usize];
+        if polygon.line == line.y && self.coherence.has(Coherence::Face) {
+            self.counters.saved_by_face += 1;
+        } else {
+            (polygon.line, polygon.start) = (line.y, face::start(polygon.setup, line.y));
+        }
+        polygon.on_line()
     }
 
     /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
@@ -371,17 +451,20 @@ impl Spans<'_, '_> {
         let by_depth = self.coherence.has(Coherence::Depth);
         let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
         // Some polygon is nowhere farther than `floor`.
-        let (mut floor, near) = depth_range(self.polygons[lucky as usize].setup, ends, line.y);
+        let (mut floor, near) = self.bring(lucky, line).range(ends);
         self.rivals.clear();
         self.rivals.push((near, lucky));
-        for &p in self.inside.iter().filter(|&&p| p != lucky) {
-            let setup = self.polygons[p as usize].setup;
-            if by_depth && setup.z_max < floor {
+        for i in 0..self.inside.len() {
+            let p = self.inside[i];
+            if p == lucky {
+                continue;
+            }
+            if by_depth && self.polygons[p as usize].setup.z_max < floor {
                 self.counters.saved_by_depth += 1;
                 continue;
             }
             self.counters.depth_comparisons += 1;
-            let (far, near) = depth_range(setup, ends, line.y);
+            let (far, near) = self.bring(p, line).range(ends);
             if near >= floor {
                 self.rivals.push((near, p));
                 floor = floor.max(far);
@@ -392,19 +475,26 @@ impl Spans<'_, '_> {
 
     /// Fills a span with one polygon.
     fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
-        let setup = self.polygons[polygon as usize].setup;
+        let face = self.bring(polygon, line);
         let mut x = pixels.start;
         while x < pixels.end {
             let end = pixels.end.min((x / TILE + 1) * TILE);
             let (tile, at) = (&mut self.tiles[x / TILE], place(x, line));
             tile.touched = true;
-            tile.facet[at..at + (end - x)].fill(setup.facet);
+            tile.facet[at..at + (end - x)].fill(face.setup.facet);
             for (depth, x) in tile.depth[at..].iter_mut().zip(x..end) {
-                *depth = setup.depth(x as i32 * SUBPIXEL + line.sample_x, line.y);
+                *depth = face.depth(x as i32 * SUBPIXEL + line.sample_x);
             }
             x = end;
         }
     }
+}
+
+/// The rivals but one, who is put first.
+fn without(rivals: &mut [(f32, u32)], loser: u32) -> &mut [(f32, u32)] {
+    let at = rivals.iter().position(|&(_, p)| p == loser).unwrap_or(0);
+    rivals.swap(0, at);
+    &mut rivals[1..]
 }
 
 /// Where a sample lies in its tile's planes.
@@ -412,23 +502,12 @@ fn place(x: usize, line: &Line) -> usize {
     line.sample * TILE_PIXELS + line.row * TILE + x % TILE
 }
 
-/// Farthest and nearest depth along a line: [`Setup::depth`] is monotonic in x, rounding included, so they are at the ends.
-/// Needles so steep that the sums overflow give the facet's whole range.
-fn depth_range(setup: &Setup, ends: [i32; 2], y: i32) -> (f32, f32) {
-    const STEEP: f32 = 1e30;
-    if !(setup.dz_dx.abs() < STEEP && setup.dz_dy.abs() < STEEP) {
-        return (setup.z_min, setup.z_max);
-    }
-    let [a, b] = ends.map(|x| setup.depth(x, y));
-    (a.min(b), a.max(b))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use vitral_raster::CornerPosition;
 
-    fn triangle(corners: [[i32; 2]; 3], z: [f32; 3]) -> Setup {
+    pub(super) fn triangle(corners: [[i32; 2]; 3], z: [f32; 3]) -> Setup {
         let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
     }
@@ -437,7 +516,7 @@ mod tests {
     fn covered(setup: &Setup, pattern: &SamplePattern, width: u32) -> Vec<(i32, Range<u32>)> {
         let lines = lines(pattern, 0, 16);
         let spacing = spacing(&lines);
-        let edges = edge_table(&[Polygon { setup, slot: OUT }], &lines);
+        let edges = edge_table(&[Polygon::new(setup)], &lines);
         let mut active: Vec<ActiveEdge> = Vec::new();
         let mut spans = Vec::new();
         for (number, line) in lines.iter().enumerate() {
@@ -475,15 +554,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn p19_depths_at_the_ends_bound_the_span() {
-        let slope = triangle([[0, 0], [4096, 0], [0, 4096]], [0.1, 0.9, 0.3]);
-        let (far, near) = depth_range(&slope, [128, 2000], 640);
-        let depths = (128..=2000).map(|x| slope.depth(x, 640));
-        assert!(depths.into_iter().all(|z| (far..=near).contains(&z)));
-        let needle = Setup { dz_dx: f32::INFINITY, ..slope };
-        assert_eq!(depth_range(&needle, [0, 9], 0), (needle.z_min, needle.z_max));
     }
 }

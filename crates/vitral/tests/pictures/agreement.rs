@@ -8,14 +8,15 @@ use std::sync::Mutex;
 use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::{DVec3, func};
 use vitral::raster::{LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
-use vitral::render::PreparedView;
 use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
+use vitral::render::{Coherence, PreparedView};
 use vitral::{Camera, Execution, Frame, Projection, Renderer, load_builtin, override_material};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
+const SMALL: [u32; 2] = [21, 17];
 
 /// Approach 1 of the course, `O(n p)`: for each pixel centre, the nearest of all facets that cover it, of equal ones
 /// the lower. Gives surface and depth.
@@ -148,8 +149,20 @@ fn find(
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
+    find_at([renderer.settings.width, renderer.settings.height], renderer, algorithm, samples, execution)
+}
+
+/// [`find`] in a picture of another size.
+fn find_at(
+    [width, height]: [u32; 2],
+    renderer: &Renderer,
+    algorithm: &VisibilityAlgorithm,
+    samples: usize,
+    execution: &Execution,
+) -> Result<Found, Limit> {
     // The kinds of coherence are the algorithm's own.
     let mut settings = renderer.settings.clone();
+    (settings.width, settings.height) = (width, height);
     algorithm.name.clone_into(&mut settings.visibility);
     let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
@@ -175,12 +188,15 @@ fn find(
 /// Compares every algorithm with the first, with one and four samples a pixel; lists disagreements with both facets.
 fn all_agree(renderer: &Renderer, what: &str) {
     for samples in [1, 4] {
-        let run = |algorithm| find(renderer, algorithm, samples, renderer.execution()).unwrap();
-        let first = run(&VISIBILITY[0]);
-        // Asking every facet for every sample is slow: large scenes go without it (but see `brute_force` above).
-        let large = renderer.world().facet_count > 1000;
-        for algorithm in VISIBILITY[1..].iter().filter(|a| !large || a.name != "brute-force") {
-            let other = run(algorithm);
+        let run = |size, algorithm| find_at(size, renderer, algorithm, samples, renderer.execution()).unwrap();
+        let whole = [renderer.settings.width, renderer.settings.height];
+        // Asking every facet for every sample is slow: of large scenes it makes a small picture.
+        let small = if renderer.world().facet_count > 1000 { SMALL } else { whole };
+        let (first, first_small) = (run(whole, &VISIBILITY[0]), run(small, &VISIBILITY[0]));
+        for algorithm in &VISIBILITY[1..] {
+            let asks_all = algorithm.name == "brute-force";
+            let (size, first) = if asks_all { (small, &first_small) } else { (whole, &first) };
+            let other = run(size, algorithm);
             let pairs = first.samples.iter().zip(&other.samples);
             let wrong: Vec<_> = pairs.filter(|(a, b)| a != b).collect();
             for (([x, y, s], facet, depth), (_, other_facet, other_depth)) in wrong.iter().take(20) {
@@ -270,6 +286,51 @@ fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
         let threads = |n| Execution { workers: Workers::new(n), ..Execution::default() };
         let [one, three] = [1, 3].map(|n| find(&renderer, algorithm, 4, &threads(n)).unwrap());
         assert!(one == three, "{}: threads change samples or counters", algorithm.name);
+    }
+}
+
+#[test]
+fn p7_without_a_kind_of_coherence_every_sample_of_the_traps_is_the_same() {
+    let kinds = [Coherence::Face, Coherence::Edge, Coherence::ImpliedEdge, Coherence::ScanLine, Coherence::Area];
+    let kinds = [&kinds[..], &[Coherence::Depth]].concat();
+    let saved = |kind: Coherence, c: &VisibilityCounters| match kind {
+        Coherence::Face => c.saved_by_face,
+        Coherence::Edge => c.saved_by_edge,
+        Coherence::ImpliedEdge => c.saved_by_implied_edge,
+        Coherence::ScanLine => c.saved_by_scan_line,
+        Coherence::Area => c.saved_by_area,
+        _ => c.saved_by_depth,
+    };
+    for algorithm in VISIBILITY {
+        let used: Vec<_> = kinds.iter().copied().filter(|kind| algorithm.coherence.contains(kind)).collect();
+        let mut sums = vec![0; used.len()];
+        for (name, scene) in traps::all() {
+            let mut renderer = exact(scene, WIDTH, HEIGHT);
+            for (camera, from) in cameras(DVec3::ZERO, 2.2).into_iter().skip(2).take(2) {
+                renderer.camera = Some(camera);
+                let mut run = |coherence, samples| {
+                    renderer.settings.visibility = algorithm.name.to_owned();
+                    renderer.settings.coherence = coherence;
+                    find(&renderer, algorithm, samples, renderer.execution()).unwrap()
+                };
+                for samples in [1, 3] {
+                    let all = run(None, samples);
+                    for (kind, sum) in used.iter().zip(&mut sums) {
+                        *sum += saved(*kind, &all.counters);
+                        let others = algorithm.coherence.iter().copied().filter(|k| k != kind).collect();
+                        let without = run(Some(others), samples);
+                        let what = format!("{}, {name}, {from}, without {}", algorithm.name, kind.name());
+                        assert!(all.samples == without.samples && all.layers == without.layers, "{what}");
+                        assert_eq!(saved(*kind, &without.counters), 0, "{what}");
+                    }
+                    let none = run(Some(Vec::new()), samples);
+                    assert!(all.samples == none.samples, "{}, {name}, {from}, without any", algorithm.name);
+                }
+            }
+        }
+        for (kind, sum) in used.iter().zip(sums) {
+            assert!(sum > 0, "{}: {} saves work", algorithm.name, kind.name());
+        }
     }
 }
 

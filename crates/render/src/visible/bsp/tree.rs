@@ -129,9 +129,10 @@ struct Fragment {
     cuts: u32,
 }
 
-/// The plane of a node, and on which side of it a fragment lies.
+/// A plane that cuts a fragment, and on which side of it that lies.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
+    /// The node with the plane; in a finished tree its number among the cutters.
     node: u32,
     positive: bool,
 }
@@ -167,6 +168,8 @@ pub(crate) struct Tree {
     nodes: Vec<Node>,
     fragments: Vec<Fragment>,
     cuts: Vec<Cut>,
+    /// The planes that cut fragments, in the order of the first: far fewer than nodes.
+    cutters: Vec<DVec4>,
     /// Facets without finite corners; on the screen they are nothing, or clipped beyond recognition.
     loose: Range<u32>,
     splits: u64,
@@ -205,7 +208,7 @@ impl Tree {
     /// Bytes it takes.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = size_of_val(self.nodes.as_slice()) + size_of_val(self.fragments.as_slice());
-        (bytes + size_of_val(self.cuts.as_slice())) as u64
+        (bytes + size_of_val(self.cuts.as_slice()) + size_of_val(self.cutters.as_slice())) as u64
     }
 
     /// The facet that a fragment is part of.
@@ -213,12 +216,12 @@ impl Tree {
         self.fragments[fragment as usize].facet
     }
 
-    /// A node's plane, world space.
-    pub(crate) fn plane(&self, node: u32) -> DVec4 {
-        self.nodes[node as usize].plane
+    /// The planes that cut fragments, world space.
+    pub(crate) fn cutters(&self) -> &[DVec4] {
+        &self.cutters
     }
 
-    /// The nodes whose planes cut a fragment, and whether it lies on the positive side of each.
+    /// The cutters of a fragment by their numbers, and whether it lies on the positive side of each.
     pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (u32, bool)> + '_ {
         let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
         let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
@@ -233,6 +236,11 @@ impl Tree {
         loop {
             while node != NONE {
                 let n = &self.nodes[node as usize];
+                if n.front == NONE && n.back == NONE {
+                    // A leaf: its plane divides nothing.
+                    n.fragments.clone().for_each(&mut f);
+                    break;
+                }
                 let in_front = n.plane.dot(viewer) >= 0.0;
                 let (far, near) = if in_front { (n.back, n.front) } else { (n.front, n.back) };
                 waiting.push((node, near));
@@ -328,6 +336,7 @@ impl<'t> Builder<'t> {
         for (job, branch) in jobs.iter().zip(branches) {
             tree.attach(job, branch?);
         }
+        tree.number_cutters();
         Ok(tree)
     }
 
@@ -556,6 +565,19 @@ impl Tree {
         self.fragments.extend(branch.fragments.into_iter().map(placed));
         self.cuts.extend(branch.cuts.into_iter().map(|c| Cut { node: node(c.node), ..c }));
         self.splits += branch.splits;
+    }
+
+    /// Lists the planes that cut fragments, and lets cuts refer to that list.
+    fn number_cutters(&mut self) {
+        let mut numbers = vec![NONE; self.nodes.len()];
+        for cut in &mut self.cuts {
+            let number = &mut numbers[cut.node as usize];
+            if *number == NONE {
+                *number = self.cutters.len() as u32;
+                self.cutters.push(self.nodes[cut.node as usize].plane);
+            }
+            cut.node = *number;
+        }
     }
 }
 

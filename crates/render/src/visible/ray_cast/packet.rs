@@ -11,8 +11,8 @@
 //! Cost: one way down for each block and kind.
 //! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
 
-use super::{Cast, Place, Stamps};
-use crate::raytrace::{Structure, Tree, Visitor};
+use super::{Cast, Place, Stamps, names};
+use crate::raytrace::{Probe, Structure, Tree, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::visible::brute_force::size_in_picture;
@@ -139,6 +139,7 @@ pub(super) fn look<T: Tree>(
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
     let mut stamps = cast.take_stamps();
+    let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for y in (0..rows).step_by(BLOCK) {
         cast.execution.budget.check("ray casting")?;
@@ -146,15 +147,16 @@ pub(super) fn look<T: Tree>(
             let pixels = (rows - y).min(BLOCK) * (columns - x).min(BLOCK);
             let rays = (pixels * cast.view.pattern.len()) as u64;
             let [boxes, tests] = dispatch!(cast.execution.level, simd =>
-                look_at_block(simd, cast, tile, (x, y), layers, &mut stamps));
+                look_at_block(simd, cast, tile, (x, y), layers, &mut stamps, passed.as_mut()));
             counters.rays += rays;
             counters.saved_by_area += rays - 1;
             counters.box_tests += boxes;
-            cast.execution.tell(|| {
+            if let Some(passed) = &mut passed {
                 let size = [columns - x, rows - y].map(|s| s.min(BLOCK) as u32);
                 let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
-                Step::Rays { pixels, rays, boxes, facets: tests }
-            });
+                let through = names(cast.structure, passed);
+                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets: tests, through });
+            }
             counters.triangle_tests += tests * rays;
         }
     }
@@ -171,6 +173,7 @@ fn look_at_block<S: Simd, T: Tree>(
     block: (usize, usize),
     layers: &mut LayerList,
     stamps: &mut Stamps,
+    mut passed: Option<&mut Vec<u32>>,
 ) -> [u64; 2] {
     // The pyramid round the block's samples.
     let samples = extent(&cast.view.pattern);
@@ -181,13 +184,22 @@ fn look_at_block<S: Simd, T: Tree>(
 
     stamps.next();
     let mut opaque = Search { simd, cast, taker: Opaque(tile), block, stamps, tests: 0 };
-    let mut boxes = cast.structure.descend(&pyramid, &mut opaque);
+    let mut boxes = descend(cast.structure, &pyramid, &mut opaque, passed.as_deref_mut());
     let mut tests = opaque.tests;
     if !cast.slack[1].is_empty() {
         stamps.next();
         let mut visitor = Search { simd, cast, taker: Layers(tile, layers), block, stamps, tests: 0 };
-        boxes += cast.structure.descend(&pyramid, &mut visitor);
+        boxes += descend(cast.structure, &pyramid, &mut visitor, passed);
         tests += visitor.tests;
     }
     [boxes, tests]
+}
+
+/// [`Tree::descend`], with the parts gone through if somebody wants to know.
+#[inline(always)]
+fn descend(tree: &impl Tree, probe: &impl Probe, visitor: &mut impl Visitor, passed: Option<&mut Vec<u32>>) -> u64 {
+    match passed {
+        None => tree.descend(probe, visitor),
+        Some(passed) => tree.descend(probe, &mut Watched { visitor, passed }),
+    }
 }

@@ -7,9 +7,9 @@
 //! Cost: one walk a sample.
 //! Source: [Appel 1968].
 
-use super::{Cast, NONE, Stamps};
+use super::{Cast, NONE, Stamps, names};
 use crate::Coherence;
-use crate::raytrace::{Structure, Visitor};
+use crate::raytrace::{Structure, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::visible::brute_force::size_in_picture;
@@ -87,6 +87,7 @@ pub(super) fn look<T: Structure>(
         Search { cast, sample: [0; 2], nearest: background, setups: none, layers: layer_list, stamps, tests: 0 };
     let pattern = &cast.view.pattern;
     let try_before = cast.view.coherence.has(Coherence::Area);
+    let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
@@ -105,7 +106,11 @@ pub(super) fn look<T: Structure>(
                     search.test(before);
                     counters.saved_by_area += u64::from(search.setups != none);
                 }
-                counters.box_tests += cast.structure.traverse(&cast.eye.beam(x, y), &mut search);
+                let beam = cast.eye.beam(x, y);
+                counters.box_tests += match &mut passed {
+                    None => cast.structure.traverse(&beam, &mut search),
+                    Some(passed) => cast.structure.traverse(&beam, &mut Watched { visitor: &mut search, passed }),
+                };
                 counters.rays += 1;
 
                 // Keep the nearest, and the layers in front of it.
@@ -116,10 +121,12 @@ pub(super) fn look<T: Structure>(
                 let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
                 seen.for_each(|(depth, facet)| layers.push(Layer { at: at as u32, depth, facet }));
             }
-            let (rays, boxes) = (pattern.len() as u64, counters.box_tests - before_pixel.0);
-            let facets = search.tests - before_pixel.1;
-            let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
-            cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets });
+            if let Some(passed) = &mut passed {
+                let (rays, boxes) = (pattern.len() as u64, counters.box_tests - before_pixel.0);
+                let (facets, through) = (search.tests - before_pixel.1, names(cast.structure, passed));
+                let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
+                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, through });
+            }
         }
     }
     counters.triangle_tests = search.tests;

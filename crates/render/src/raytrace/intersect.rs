@@ -3,8 +3,8 @@
 //! The triangle is moved so that the ray starts at the origin, its axes are renamed so that the ray runs mostly along z,
 //! and it is sheared so that the ray *is* the z axis. Whether the ray hits is then a question in the plane: is the
 //! origin inside the triangle? Three edge functions answer it, and since an edge that two triangles share gives both
-//! the same number with opposite signs, no ray slips between them. An edge function that rounds to zero is computed
-//! again in double precision.
+//! the same number with opposite signs, no ray slips between them. Where one is so small that rounding may have decided
+//! its sign, they are computed again in double precision, which gets signs right.
 //!
 //! In:   a ray and three corners in one space. Out: the ray's parameter at the hit.
 //! Cost: some 40 operations; the shear is computed once for each ray.
@@ -50,12 +50,17 @@ impl Ray {
         };
         let (a, b, c) = (place(corners[0]), place(corners[1]), place(corners[2]));
 
-        // Ask each edge on which side the origin lies; a zero deserves a closer look.
-        let mut sides = [edge(c, b), edge(a, c), edge(b, a)];
-        if sides.contains(&0.0) {
-            sides = [precise_edge(c, b), precise_edge(a, c), precise_edge(b, a)];
+        // Ask each edge on which side the origin lies. What rounding may have decided deserves a closer look.
+        let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
+        let (least, largest) = (smaller(smaller(u, v), w), larger(larger(u, v), w));
+        if least < 0.0 && largest > 0.0 {
+            let size = |p: [f32; 3]| larger(p[0].abs(), p[1].abs());
+            let size = larger(larger(size(a), size(b)), size(c));
+            if smaller(-least, largest) > size * size * ROUNDING {
+                return None;
+            }
         }
-        let [u, v, w] = sides;
+        let [u, v, w] = [precise_edge(c, b), precise_edge(a, c), precise_edge(b, a)];
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
@@ -64,10 +69,26 @@ impl Ray {
             return None;
         }
 
-        // The corners' distances, weighted by the opposite areas, are the distance of the hit.
-        let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
-        (t >= 0.0).then_some(t)
+        // The corners' distances, weighted by the opposite areas, are the distance of the hit. Of a needle the areas are small
+        // differences of large products: rounded ones would move the hit by more than the boxes round triangles allow for.
+        let t = (u * f64::from(a[2]) + v * f64::from(b[2]) + w * f64::from(c[2])) / determinant;
+        (t >= 0.0).then_some(t as f32)
     }
+}
+
+/// Three roundings of an edge function, as a part of the square of the largest coordinate: 2 of half a unit for the products,
+/// and one for a difference of at most twice that square.
+const ROUNDING: f32 = 2.0 * f32::EPSILON;
+
+// With comparisons, since `f32::min` and `f32::max` take several instructions for the sake of NaN.
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// Doubled area of the triangle from the origin to `p` and `q`.
@@ -76,8 +97,8 @@ fn edge(p: [f32; 3], q: [f32; 3]) -> f32 {
 }
 
 /// [`edge`], whose sign is right: products of two `f32` are exact in `f64`.
-fn precise_edge(p: [f32; 3], q: [f32; 3]) -> f32 {
-    (f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])) as f32
+fn precise_edge(p: [f32; 3], q: [f32; 3]) -> f64 {
+    f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])
 }
 
 #[cfg(test)]
@@ -116,6 +137,16 @@ mod tests {
                 assert!(hits >= 1, "edge {i}, step {step}");
             }
         }
+    }
+
+    #[test]
+    fn a_needle_is_hit_where_the_ray_is_in_its_plane() {
+        // From a model: 0.71 wide, 1520 long. The ray reaches its plane, y = 77.05, at 0.77913.
+        let needle = [vec3(115.03, 77.05, -1023.725), vec3(115.74, 77.05, 496.41498), vec3(115.74, 77.05, -1023.725)];
+        let (origin, direction) = (vec3(1146.2803, -1215.408, 1492.9237), vec3(-1322.7184, 1658.8336, -2134.9873));
+        let t = Ray::new(origin, direction).hit(&needle).unwrap();
+        let expected = (77.05 - f64::from(origin.y)) / f64::from(direction.y);
+        assert!((f64::from(t) - expected).abs() < 1e-6, "{t} {expected}");
     }
 
     #[test]

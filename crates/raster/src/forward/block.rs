@@ -5,11 +5,10 @@
 //! results.
 
 use super::depth_ranges::{Verdict, verdict};
-use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored_depth};
+use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
 use super::fragment_ops::compare::compare;
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
-use super::pending::stored;
 use super::state::{Compare, StencilFace, StencilOp};
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;

@@ -60,6 +60,16 @@ pub(crate) fn stored_depth<S: Simd>(simd: S, depth: F32x8<S>, scale: f32) -> F32
     floor(scaled + half)
 }
 
+/// [`stored_depth`] of one depth.
+pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
+    if scale == 1.0 {
+        return depth;
+    }
+    let scaled = depth * scale;
+    // From 2^23 on every number is whole, and adding a half would round again.
+    if scaled < 8_388_608.0 { (scaled + 0.5) as u32 as f32 } else { scaled as u32 as f32 }
+}
+
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mixing {

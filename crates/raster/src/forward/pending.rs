@@ -7,11 +7,11 @@
 //! triangles, and a bound of all the tile's most lookups. Whoever needs all texels draws them: [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
-//! Cost: a lookup is linear in its tile's triangles, eight bounds a step.
+//! Cost: a lookup is linear in the triangles of its block of 8x8 texels, eight a step.
 
 use super::assemble::Primitives;
 use super::depth_ranges::DepthRanges;
-use super::fragment::TilePlanes;
+use super::fragment::{TilePlanes, stored};
 use super::pass::{DrawContext, Item, Pass, pattern};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
@@ -108,16 +108,6 @@ pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
         sign = its;
     }
     Some((if sign == 0.0 { 1.0 } else { sign }, clear.depth?))
-}
-
-/// A depth in `0..=1` as stored.
-pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
-    if scale == 1.0 {
-        return depth;
-    }
-    let scaled = depth * scale;
-    // From 2^23 on every number is whole, and adding a half would round again.
-    if scaled < 8_388_608.0 { (scaled + 0.5) as u32 as f32 } else { scaled as u32 as f32 }
 }
 
 impl PendingDepth {

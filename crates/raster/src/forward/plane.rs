@@ -223,13 +223,6 @@ impl<T: Copy> PlaneTile<T> {
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
             return;
         }
-        if samples != 1 && target_samples != 1 {
-            let values = target.stored(target_samples);
-            for (at, value) in values.iter_mut().enumerate() {
-                *value = self.get(at / TILE_PIXELS % samples, at % TILE_PIXELS);
-            }
-            return;
-        }
         target.clear(self.clear);
         let written = !self.cleared;
         if written == 0 {

@@ -302,16 +302,14 @@ impl<'a> Shader<'a> {
     /// Primary colour, before textures.
     #[inline(always)]
     fn primary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Rgba<S> {
-        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
         if self.state.flat {
-            let r = &self.records[self.facet.provoking as usize + at..][..4];
-            return splat_rgba(simd, [r[0], r[1], r[2], r[3]]);
+            return splat_rgba(simd, self.provoking_color());
         }
         if let (Some(at), Some(grid)) = (self.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
             return self.grid_color(simd, weights, grid, at);
         }
         // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
-        saturate_rgba(self.four(simd, weights, at))
+        saturate_rgba(self.four(simd, weights, self.color_at()))
     }
 
     #[inline(never)]
@@ -513,9 +511,19 @@ impl<'a> Shader<'a> {
         if !(plain && self.state.flat) {
             return None;
         }
-        let at = if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color };
-        let r = &self.records[self.facet.provoking as usize + at..][..4];
-        Some([r[0], r[1], r[2], r[3]].map(|c| c.clamp(0.0, 1.0)))
+        Some(self.provoking_color().map(|c| c.clamp(0.0, 1.0)))
+    }
+
+    /// Where the colour of the facet's side begins in a record.
+    #[inline(always)]
+    fn color_at(&self) -> usize {
+        if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color }
+    }
+
+    #[inline(always)]
+    fn provoking_color(&self) -> [f32; 4] {
+        let r = &self.records[self.facet.provoking as usize + self.color_at()..][..4];
+        [r[0], r[1], r[2], r[3]]
     }
 
     /// Stipples and the soft borders of smooth primitives.

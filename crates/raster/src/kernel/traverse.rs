@@ -77,6 +77,28 @@ struct Edge {
     b: i32,
 }
 
+impl Edge {
+    /// The constant of a sample at `(x, y)` in its pixel: `corner` is the edge function's value at the tile's origin.
+    #[inline(always)]
+    fn constant(self, corner: i32, [x, y]: [i32; 2]) -> i32 {
+        (corner + (self.b * y + self.a * x)) >> 8
+    }
+}
+
+/// An edge of a triangle of any size, with corners in the tile's coordinates, and the function that gives [`Edge::constant`].
+#[inline(always)]
+fn far_edge(x: &[i32; 3], y: &[i32; 3], i: usize) -> (Edge, impl Fn([i32; 2]) -> i32) {
+    let j = (i + 1) % 3;
+    let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
+    let bias = i64::from(!is_top_left(dx, dy));
+    let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) - bias;
+    let constant = move |[x, y]: [i32; 2]| {
+        let c = corner + i64::from(dx) * i64::from(y) - i64::from(dy) * i64::from(x);
+        (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32
+    };
+    (Edge { a: -dy, b: dx }, constant)
+}
+
 /// Larger constants decide the sign by themselves: `|a x + b y| < 2^30` inside a tile.
 const FAR_AWAY: i64 = 1 << 30;
 
@@ -170,7 +192,7 @@ fn traverse_small<S: Simd, K: BlockSink<S>, const MOST: usize>(
         let mut at_block = [0; 3];
         for i in 0..3 {
             let Edge { a, b } = edges[i];
-            at_block[i] = ((corners[i] + (b * ys[s] + a * xs[s])) >> 8) + a * x as i32 + b * y as i32;
+            at_block[i] = edges[i].constant(corners[i], [xs[s], ys[s]]) + a * x as i32 + b * y as i32;
         }
         masks[s] = mask_rows(simd, &edges, &across, at_block, block.rows.clone());
         any |= masks[s];
@@ -234,7 +256,7 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
     for s in 0..samples {
         let mut e = across;
         for i in 0..3 {
-            let at_sample = (corners[i] + (edges[i].b * ys[s] + edges[i].a * xs[s])) >> 8;
+            let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
             e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
         }
         for y in y0..=y1 {
@@ -309,16 +331,10 @@ impl Placed {
 #[inline(always)]
 pub(crate) fn center_edges(setup: &Setup, origin: [i32; 2]) -> [[i32; 3]; 3] {
     let (x, y) = (setup.x.map(|x| x - origin[0] * SUBPIXEL), setup.y.map(|y| y - origin[1] * SUBPIXEL));
-    let mut edges = [[0; 3]; 3];
-    for i in 0..3 {
-        let j = (i + 1) % 3;
-        let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-        let half = i64::from(SUBPIXEL / 2);
-        let corner = i64::from(dy) * (i64::from(x[i]) - half) - i64::from(dx) * (i64::from(y[i]) - half);
-        let c = (corner - i64::from(!is_top_left(dx, dy))) >> 8;
-        edges[i] = [-dy, dx, c.clamp(-FAR_AWAY, FAR_AWAY) as i32];
-    }
-    edges
+    [0, 1, 2].map(|i: usize| {
+        let (edge, constant) = far_edge(&x, &y, i);
+        [edge.a, edge.b, constant([SUBPIXEL / 2; 2])]
+    })
 }
 
 /// [`traverse`] for the one block whose top left pixel within the tile is `(x, y)`.
@@ -375,19 +391,15 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
         (edges, corners) = place.edges();
         for i in 0..3 {
             for s in 0..MOST {
-                constants[i][s] = (corners[i] + (edges[i].b * ys[s] + edges[i].a * xs[s])) >> 8;
+                constants[i][s] = edges[i].constant(corners[i], [xs[s], ys[s]]);
             }
         }
     } else {
         for i in 0..3 {
-            let (j, [x, y]) = ((i + 1) % 3, [place.x, place.y]);
-            let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-            edges[i] = Edge { a: -dy, b: dx };
-            let bias = i64::from(!is_top_left(dx, dy));
-            let corner = i64::from(dy) * i64::from(x[i]) - i64::from(dx) * i64::from(y[i]) - bias;
+            let constant;
+            (edges[i], constant) = far_edge(&place.x, &place.y, i);
             for s in 0..samples {
-                let c = corner + i64::from(dx) * i64::from(ys[s]) - i64::from(dy) * i64::from(xs[s]);
-                constants[i][s] = (c >> 8).clamp(-FAR_AWAY, FAR_AWAY) as i32;
+                constants[i][s] = constant([xs[s], ys[s]]);
             }
         }
     }

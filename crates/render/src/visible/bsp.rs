@@ -17,7 +17,7 @@
 mod tree;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, List, Pieces, Raster, draw, draw_layers, piece_step};
+use super::pieces::{Cut, Depth, List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
@@ -169,21 +169,6 @@ impl Places {
 struct Lines {
     /// The planes that cut fragments, in the space of the screen: 1/256 pixel, depth.
     planes: Vec<DVec4>,
-}
-
-/// A facet's depth: `at_zero + slope . (x, y)` at a place in 1/256 pixel.
-#[derive(Clone, Copy)]
-struct Depth {
-    slope: [f64; 2],
-    at_zero: f64,
-}
-
-impl Depth {
-    fn of(setup: &Setup) -> Self {
-        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        let origin = setup.origin.map(f64::from);
-        Self { slope, at_zero: f64::from(setup.z) - slope[0] * origin[0] - slope[1] * origin[1] }
-    }
 }
 
 impl Lines {

@@ -33,6 +33,30 @@ const FEW: usize = 64;
 /// Samples of a block that are asked without a look at the block's corners first.
 const CORNERS: u32 = 4;
 
+/// A facet's depth as a linear function of the place, not clamped: `at_zero + slope . (x, y)` in 1/256 pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Depth {
+    pub(super) slope: [f64; 2],
+    pub(super) at_zero: f64,
+}
+
+impl Depth {
+    pub(super) fn of(setup: &Setup) -> Self {
+        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
+        let origin = setup.origin.map(f64::from);
+        Self { slope, at_zero: f64::from(setup.z) - slope[0] * origin[0] - slope[1] * origin[1] }
+    }
+
+    pub(super) fn minus(self, other: Self) -> Self {
+        let slope = [self.slope[0] - other.slope[0], self.slope[1] - other.slope[1]];
+        Self { slope, at_zero: self.at_zero - other.at_zero }
+    }
+
+    pub(super) fn at(self, [x, y]: [f64; 2]) -> f64 {
+        self.at_zero + self.slope[0] * x + self.slope[1] * y
+    }
+}
+
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {

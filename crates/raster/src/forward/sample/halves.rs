@@ -5,41 +5,7 @@
 
 use crate::forward::wide::Rgba;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U16x16, U32x8};
-
-/// Eight pairs of texels that are neighbours in memory, from `at` on: the first ones and the second ones; 0 where there are
-/// none.
-#[inline(always)]
-pub(super) fn pairs<S: Simd>(simd: S, texels: &[u32], at: I32x8<S>) -> (U32x8<S>, U32x8<S>) {
-    let at = at.to_array();
-    let mut pairs = [[0u32; 2]; LANES];
-    for lane in 0..LANES {
-        let at = at[lane] as u32 as usize;
-        if let Some(pair) = texels.get(at..at + 2) {
-            pairs[lane] = [pair[0], pair[1]];
-        }
-    }
-    split(simd, &pairs)
-}
-
-/// The texels numbered `at`; 0 where there is none.
-#[inline(always)]
-pub(super) fn singles<S: Simd>(simd: S, texels: &[u32], at: I32x8<S>) -> U32x8<S> {
-    let at = at.to_array();
-    let mut words = [0u32; LANES];
-    for lane in 0..LANES {
-        words[lane] = texels.get(at[lane] as u32 as usize).copied().unwrap_or_default();
-    }
-    U32x8::from_slice(simd, &words)
-}
-
-/// The first texels of eight pairs, and the second ones.
-#[inline(always)]
-pub(super) fn split<S: Simd>(simd: S, pairs: &[[u32; 2]; LANES]) -> (U32x8<S>, U32x8<S>) {
-    let flat: &[u32] = bytemuck::cast_slice(pairs);
-    let (low, high) = flat.split_at(LANES);
-    U32x8::from_slice(simd, low).deinterleave(U32x8::from_slice(simd, high))
-}
+use vitral_math::lanes::{F32x8, I32x8, Simd, U16x16, U32x8};
 
 /// Colours of bytes, two in the 16-bit halves of each word: they are filtered together, with weights of 8 bits.
 pub(super) struct Halves<S: Simd> {
@@ -95,7 +61,7 @@ pub(super) fn weight<S: Simd>(simd: S, weight: F32x8<S>) -> [U16x16<S>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::lanes::{available_levels, dispatch};
+    use vitral_math::lanes::{LANES, available_levels, dispatch};
 
     /// The mix of bytes, rounded to nearest after each axis, with weights of 8 bits.
     fn by_hand(texels: [u32; 4], [x, y]: [u32; 2], shift: u32) -> u32 {

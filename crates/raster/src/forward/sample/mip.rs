@@ -29,18 +29,10 @@ pub(crate) fn lod<S: Simd>(
     half_log2(max(across, up))
 }
 
-/// The logarithm to base 2 of a step, given its squared length: exact for powers of 4, else within 2e-6.
+/// The logarithm to base 2 of a step, given its squared length.
 #[inline(always)]
 pub(crate) fn half_log2<S: Simd>(square: F32x8<S>) -> F32x8<S> {
-    let simd = square.token();
-    let (exponent, mantissa) = max(square, splat(simd, f32::MIN_POSITIVE)).split_exponent();
-    let t = mantissa - 1.0;
-    // log2(1 + t) / t, with equal errors, right at both ends.
-    let mut p = t * -0.025_841_41;
-    for c in [0.121_797_8, -0.277_905_22, 0.457_549_13, -0.718_145_24] {
-        p = (p + c) * t;
-    }
-    (exponent + (p + 1.442_544_94) * t) * 0.5
+    square.log2() * 0.5
 }
 
 /// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of

@@ -2,8 +2,8 @@
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
-use super::fetch::{Words, interior};
-use super::halves::{Halves, pairs, singles, split, weight};
+use super::fetch::{Words, interior, pairs, singles, split};
+use super::halves::{Halves, weight};
 use super::mip::{Choice, choose, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
 use crate::forward::texture::{Filter, Sampler, Texture, TextureKind, Wrap};

@@ -5,10 +5,10 @@
 //! Source: [Newell, Newell & Sancha 1972]. Departs from it: depths closer than 2^-22 count as equal, and polygons that are
 //! equally far over their whole overlap are ordered by their facets.
 
-use super::super::pieces::Cut;
+use super::super::pieces::{Cut, Depth};
 use crate::stats::VisibilityCounters;
 use std::ops::Range;
-use vitral_raster::{SUBPIXEL, Setup};
+use vitral_raster::Setup;
 
 /// Depths this close are equal.
 const EQUAL: f64 = 1.0 / (1 << 22) as f64;
@@ -109,30 +109,6 @@ impl Polygon {
             }
         }
         halves.iter().all(|h| h.len() >= 3).then_some(halves)
-    }
-}
-
-/// A facet's depth as a linear function of the place on the screen, not clamped.
-#[derive(Clone, Copy)]
-struct Depth {
-    slope: [f64; 2],
-    at_zero: f64,
-}
-
-impl Depth {
-    fn of(setup: &Setup) -> Self {
-        let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        let origin = setup.origin.map(f64::from);
-        Self { slope, at_zero: f64::from(setup.z) - slope[0] * origin[0] - slope[1] * origin[1] }
-    }
-
-    fn minus(self, other: Self) -> Self {
-        let slope = [self.slope[0] - other.slope[0], self.slope[1] - other.slope[1]];
-        Self { slope, at_zero: self.at_zero - other.at_zero }
-    }
-
-    fn at(self, [x, y]: [f64; 2]) -> f64 {
-        self.at_zero + self.slope[0] * x + self.slope[1] * y
     }
 }
 

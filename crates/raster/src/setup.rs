@@ -114,8 +114,19 @@ impl Setup {
     /// Depth at `(x, y)` in 1/256 pixel.
     #[inline]
     pub fn depth(&self, x: i32, y: i32) -> f32 {
-        let (dx, dy) = ((x - self.origin[0]) as f32 / SUBPIXEL as f32, (y - self.origin[1]) as f32 / SUBPIXEL as f32);
-        let z = (self.z + dy * self.dz_dy) + dx * self.dz_dx;
+        self.depth_along(self.depth_of_line(y), x)
+    }
+
+    /// The plane's depth on the line at `y` in 1/256 pixel, straight above or below its origin; not clamped.
+    #[inline]
+    pub fn depth_of_line(&self, y: i32) -> f32 {
+        self.z + (y - self.origin[1]) as f32 / SUBPIXEL as f32 * self.dz_dy
+    }
+
+    /// Depth at `x` in 1/256 pixel, on the line of [`Self::depth_of_line`].
+    #[inline]
+    pub fn depth_along(&self, line: f32, x: i32) -> f32 {
+        let z = line + (x - self.origin[0]) as f32 / SUBPIXEL as f32 * self.dz_dx;
         // The order of comparisons is the lanes': a NaN plane (overflow on a needle) falls to z_min.
         let z = if self.z_min < z { z } else { self.z_min };
         if z < self.z_max { z } else { self.z_max }

@@ -83,7 +83,7 @@ struct Polygon<'f> {
     setup: &'f Setup,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     slot: u32,
-    /// The last line to which the face's depth was brought, and the depth there: [`face::start`].
+    /// The last line to which the face's depth was brought, and the depth there: [`Setup::depth_of_line`].
     line: i32,
     start: f32,
 }
@@ -440,7 +440,7 @@ impl<'f> Spans<'_, 'f> {
         if polygon.line == line.y && self.coherence.has(Coherence::Face) {
             self.counters.saved_by_face += 1;
         } else {
-            (polygon.line, polygon.start) = (line.y, face::start(polygon.setup, line.y));
+            (polygon.line, polygon.start) = (line.y, polygon.setup.depth_of_line(line.y));
         }
         polygon.on_line()
     }

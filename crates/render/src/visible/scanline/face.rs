@@ -2,39 +2,28 @@
 //!
 //! The law's depth function goes from the origin of a face's plane first down to the line, then along it. The way down is
 //! the same for all spans of the face on the line: it is gone once, and each depth, at a sample or at the end of a span,
-//! is one step from there. Every rounding is that of [`Setup::depth`], so the depths are the same bits.
+//! is one step from there: [`Setup::depth_of_line`] and [`Setup::depth_along`], which make up [`Setup::depth`].
 //!
 //! In:   a set-up triangle and a line (screen space). Out: depths.
 //! Cost: a product and a sum a depth, once the face is on the line.
 //! Source: face coherence after [Foley et al. 1990], section 15.2. Departs from it: the step along the line is a product,
 //!       since adding up steps would round otherwise.
 
-use vitral_raster::{SUBPIXEL, Setup};
+use vitral_raster::Setup;
 
 /// A face that was brought to a line.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<'f> {
     pub(super) setup: &'f Setup,
-    /// The plane's depth on the line, straight above or below its origin.
+    /// [`Setup::depth_of_line`].
     pub(super) start: f32,
-}
-
-/// [`OnLine::start`] on the line at `y`, 1/256 pixel.
-#[inline(always)]
-pub(super) fn start(setup: &Setup, y: i32) -> f32 {
-    let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
-    setup.z + dy * setup.dz_dy
 }
 
 impl OnLine<'_> {
     /// The depth at `x`, 1/256 pixel: [`Setup::depth`].
     #[inline(always)]
     pub(super) fn depth(&self, x: i32) -> f32 {
-        let setup = self.setup;
-        let z = self.start + (x - setup.origin[0]) as f32 / SUBPIXEL as f32 * setup.dz_dx;
-        // The order of comparisons is that of the depth function.
-        let z = if setup.z_min < z { z } else { setup.z_min };
-        if z < setup.z_max { z } else { setup.z_max }
+        self.setup.depth_along(self.start, x)
     }
 
     /// Farthest and nearest depth between two ends: the depth is monotonic in x, rounding included, so they are at the
@@ -57,7 +46,7 @@ mod tests {
     use crate::visible::scanline::tests::triangle;
 
     fn on_line(setup: &Setup, y: i32) -> OnLine<'_> {
-        OnLine { setup, start: start(setup, y) }
+        OnLine { setup, start: setup.depth_of_line(y) }
     }
 
     #[test]

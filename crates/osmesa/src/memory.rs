@@ -50,6 +50,36 @@ impl ClientMemory for ProcessMemory {
     }
 }
 
+/// An argument of an entry point, and what the state machine is given of it.
+pub(crate) trait Argument {
+    type Given;
+    fn given(self) -> Self::Given;
+}
+
+macro_rules! by_value {
+    ($($kind:ty)+) => {
+        $(impl Argument for $kind {
+            type Given = Self;
+            #[inline(always)]
+            fn given(self) -> Self {
+                self
+            }
+        })+
+    };
+}
+
+by_value! { u8 i8 u16 i16 u32 i32 u64 i64 usize isize f32 f64 }
+
+/// A pointer at a few numbers: what it points at, none for null.
+impl<T: Copy, const N: usize> Argument for *const [T; N] {
+    type Given = Option<[T; N]>;
+    #[inline(always)]
+    fn given(self) -> Option<[T; N]> {
+        // SAFETY: OpenGL's contract: the client gave an address from which so many numbers can be read, aligned or not.
+        (!self.is_null()).then(|| unsafe { self.read_unaligned() })
+    }
+}
+
 impl Drop for ProcessMemory {
     fn drop(&mut self) {
         let addresses: Vec<usize> =

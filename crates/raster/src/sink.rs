@@ -156,7 +156,7 @@ fn block_of([x, y]: [usize; 2]) -> Block {
 
 impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         hides_box(self.tile, setup, low, high)
     }
 
@@ -251,7 +251,7 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
 
 impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIRST> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         FRONT_FIRST && hides_box(self.tile, setup, low, high)
     }
 
@@ -311,7 +311,7 @@ impl LayerSink<'_> {
 
 impl<S: Simd> RowSink<S> for LayerSink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         hides_box(self.tile, setup, low, high)
     }
 
@@ -337,7 +337,6 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::traverse::traverse_anywhere;
     use crate::{CornerPosition, TileGrid, Viewport, traverse, traverse_by_rows};
     use vitral_math::lanes::{Level, dispatch};
 
@@ -404,24 +403,22 @@ mod tests {
     }
 
     #[test]
-    fn rows_and_blocks_anywhere_give_each_layer_once() {
+    fn rows_and_blocks_give_each_layer_once() {
         let pattern = SamplePattern::new(4);
         let tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
         for setup in triangles() {
-            let mut found = [LayerList::default(), LayerList::default(), LayerList::default()];
-            let [rows, blocks, anywhere] = &mut found;
+            let mut found = [LayerList::default(), LayerList::default()];
+            let [rows, blocks] = &mut found;
             dispatch!(Level::new(), simd => {
                 traverse_by_rows(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, rows));
                 traverse(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, blocks));
-                traverse_anywhere(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, anywhere));
             });
-            let [rows, blocks, anywhere] = found.map(|list| {
+            let [rows, blocks] = found.map(|list| {
                 let mut places: Vec<_> = list.iter().map(|l| (l.at, l.depth.to_bits())).collect();
                 places.sort_unstable();
                 places
             });
             assert_eq!(rows, blocks);
-            assert_eq!(anywhere, blocks);
         }
     }
 }

@@ -1,9 +1,11 @@
-//! What a batch draws when polygons are filled: triangles in pieces, found once and kept with the batch.
+//! What a batch draws when polygons are filled: triangles in pieces, each found once, when it is drawn, and kept with the batch.
 
 use super::grid::{self, Grid};
 use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use crate::vertex::{Primitive, VertexBatch};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
+use vitral_math::Vec4;
 
 /// Triangles of a piece.
 const PIECE: usize = 1024;
@@ -49,7 +51,10 @@ impl PieceVertices {
 /// All triangles of a batch.
 #[derive(Debug)]
 pub(crate) struct Assembled {
-    pub pieces: Vec<Piece>,
+    /// Made by who first draws them, which may be any thread.
+    pieces: Vec<OnceLock<Piece>>,
+    /// For each primitive, how many triangles those before it have; then how many there are.
+    starts: Vec<u32>,
     /// There are points or lines too.
     pub others: bool,
     /// All triangles are a flat grid.
@@ -86,77 +91,134 @@ impl PartialEq for AssembledCell {
 
 impl Assembled {
     fn new(batch: &VertexBatch) -> Self {
-        let mut triangles = Vec::new();
-        let mut others = false;
+        let mut starts = vec![0];
+        let mut count = 0;
         for primitive in &batch.primitives {
-            others |= primitive.mode < TRIANGLES;
-            add_triangles(primitive, &mut triangles);
+            count += triangle_count(primitive);
+            starts.push(count);
         }
-        for corner in triangles.iter_mut().flatten() {
-            *corner = batch.vertex(*corner) as u32;
+        let others = batch.primitives.iter().any(|primitive| primitive.mode < TRIANGLES);
+        let mut assembled = Self { pieces: Vec::new(), starts, others, grid: None };
+        if !others {
+            assembled.grid = grid::find(batch, count as usize, || assembled.triangles(batch, 0..count));
         }
-        let pieces = triangles.chunks(PIECE).map(|t| piece(t, &batch.positions)).collect();
-        let grid = if others { None } else { grid::find(batch, &triangles) };
-        Self { pieces, others, grid }
+        assembled.pieces.resize_with((count as usize).div_ceil(PIECE), OnceLock::new);
+        assembled
+    }
+
+    /// How many pieces there are.
+    pub(crate) fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// The triangles of a piece, by their numbers.
+    fn range(&self, piece: usize) -> Range<u32> {
+        let count = self.starts.last().copied().unwrap_or(0);
+        let first = (piece * PIECE) as u32;
+        first..count.min(first + PIECE as u32)
+    }
+
+    /// How many triangles piece number `piece` has.
+    pub(crate) fn weight(&self, piece: usize) -> usize {
+        self.range(piece).len()
+    }
+
+    /// Piece number `piece` of the batch that this was made of.
+    pub(crate) fn piece(&self, batch: &VertexBatch, piece: usize) -> &Piece {
+        self.pieces[piece].get_or_init(|| make_piece(self.triangles(batch, self.range(piece)), &batch.positions))
+    }
+
+    /// Triangles as numbers of vertices.
+    fn triangles(&self, batch: &VertexBatch, range: Range<u32>) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::with_capacity(range.len());
+        let first = self.starts.partition_point(|start| *start <= range.start).saturating_sub(1);
+        for (primitive, start) in batch.primitives.iter().zip(&self.starts).skip(first) {
+            if *start >= range.end {
+                break;
+            }
+            let end = (range.end - start).min(triangle_count(primitive));
+            add_triangles(primitive, range.start.saturating_sub(*start)..end, &mut triangles);
+        }
+        if let Some(indices) = &batch.indices {
+            for corner in triangles.iter_mut().flatten() {
+                *corner = indices[*corner as usize];
+            }
+        }
+        triangles
     }
 }
 
-/// Triangles of a primitive as index numbers, provoking corner last.
-fn add_triangles(p: &Primitive, out: &mut Vec<[u32; 3]>) {
-    let (first, n) = (p.first, p.count);
+/// How many triangles a primitive has; none for points and lines.
+fn triangle_count(p: &Primitive) -> u32 {
     match p.mode {
-        TRIANGLES => out.extend((0..n / 3).map(|i| [0, 1, 2].map(|k| first + 3 * i + k))),
-        TRIANGLE_STRIP => out.extend((2..n).map(|i| {
+        TRIANGLES => p.count / 3,
+        TRIANGLE_STRIP | TRIANGLE_FAN | POLYGON => p.count.saturating_sub(2),
+        QUADS => p.count / 4 * 2,
+        QUAD_STRIP => p.count.saturating_sub(2) / 2 * 2,
+        _ => 0,
+    }
+}
+
+/// Some triangles of a primitive as index numbers, provoking corner last.
+fn add_triangles(p: &Primitive, range: Range<u32>, out: &mut Vec<[u32; 3]>) {
+    let first = p.first;
+    match p.mode {
+        TRIANGLES => out.extend(range.map(|i| [0, 1, 2].map(|k| first + 3 * i + k))),
+        TRIANGLE_STRIP => out.extend(range.map(|i| {
             let v = first + i;
-            if i % 2 == 0 { [v - 2, v - 1, v] } else { [v - 1, v - 2, v] }
+            if i % 2 == 0 { [v, v + 1, v + 2] } else { [v + 1, v, v + 2] }
         })),
-        TRIANGLE_FAN => out.extend((2..n).map(|i| [first, first + i - 1, first + i])),
+        TRIANGLE_FAN => out.extend(range.map(|i| [first, first + i + 1, first + i + 2])),
         // The first vertex of a polygon provokes.
-        POLYGON => out.extend((2..n).map(|i| [first + i - 1, first + i, first])),
-        QUADS => out.extend((0..n / 4).flat_map(|i| {
-            let v = first + 4 * i;
-            [[v, v + 1, v + 3], [v + 1, v + 2, v + 3]]
+        POLYGON => out.extend(range.map(|i| [first + i + 1, first + i + 2, first])),
+        QUADS => out.extend(range.map(|i| {
+            let v = first + i / 2 * 4;
+            if i % 2 == 0 { [v, v + 1, v + 3] } else { [v + 1, v + 2, v + 3] }
         })),
-        QUAD_STRIP => out.extend((0..n.saturating_sub(2) / 2).flat_map(|i| {
-            let v = first + 2 * i;
-            [[v, v + 1, v + 3], [v + 2, v, v + 3]]
+        QUAD_STRIP => out.extend(range.map(|i| {
+            let v = first + i / 2 * 2;
+            if i % 2 == 0 { [v, v + 1, v + 3] } else { [v + 2, v, v + 3] }
         })),
         _ => {}
     }
 }
 
-fn piece(triangles: &[[u32; 3]], positions: &[[f32; 4]]) -> Piece {
+/// A piece of triangles given as numbers of vertices of the batch.
+fn make_piece(mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
     let (mut low, mut high) = (u32::MAX, 0);
-    for &v in triangles.iter().flatten() {
-        (low, high) = (low.min(v), high.max(v + 1));
+    for [a, b, c] in &triangles {
+        low = low.min(*a.min(b).min(c));
+        high = high.max(*a.max(b).max(c) + 1);
     }
     let low = low.min(high);
     if (high - low) as usize <= 4 * triangles.len() + 64 {
         // Vertices between that no triangle uses may widen the bounds: they only ever save work.
         let bounds = bounds(positions[low as usize..high as usize].iter().copied());
-        let triangles = triangles.iter().map(|t| t.map(|v| v - low)).collect();
+        for corner in triangles.iter_mut().flatten() {
+            *corner -= low;
+        }
         return Piece { triangles, vertices: PieceVertices::Range(low, high), bounds };
     }
     let mut list: Vec<u32> = triangles.iter().flatten().copied().collect();
     list.sort_unstable();
     list.dedup();
-    let number = |v: u32| list.binary_search(&v).unwrap_or(0) as u32;
-    let triangles = triangles.iter().map(|t| t.map(number)).collect();
+    for corner in triangles.iter_mut().flatten() {
+        *corner = list.binary_search(corner).unwrap_or(0) as u32;
+    }
     let bounds = bounds(list.iter().map(|&v| positions[v as usize]));
     Piece { triangles, vertices: PieceVertices::List(list), bounds }
 }
 
+/// The least and the largest coordinates, if all are finite and all `w` 1.
 pub(super) fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
-    let (mut low, mut high, mut regular) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4], true);
-    for p in positions {
-        regular &= p[3] == 1.0 && (p[0] + p[1] + p[2]).is_finite();
-        for k in 0..4 {
-            low[k] = if p[k] < low[k] { p[k] } else { low[k] };
-            high[k] = if p[k] > high[k] { p[k] } else { high[k] };
-        }
+    let (mut low, mut high, mut finite) = (Vec4::INFINITY, Vec4::NEG_INFINITY, Vec4::ZERO);
+    for p in positions.map(Vec4::from) {
+        // 0 x is 0 for finite numbers only.
+        finite += p * 0.0;
+        (low, high) = (low.min(p), high.max(p));
     }
-    let three = |v: [f32; 4]| [v[0], v[1], v[2]];
-    regular.then_some([three(low), three(high)])
+    let regular = finite == Vec4::ZERO && low.w == 1.0 && high.w == 1.0;
+    regular.then_some([low.truncate().to_array(), high.truncate().to_array()])
 }
 
 impl Piece {
@@ -183,10 +245,12 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::enums::POINTS;
 
     fn triangles(mode: u32, count: u32) -> Vec<[u32; 3]> {
+        let p = Primitive { mode, first: 0, count };
         let mut out = Vec::new();
-        add_triangles(&Primitive { mode, first: 0, count }, &mut out);
+        add_triangles(&p, 0..triangle_count(&p), &mut out);
         out
     }
 
@@ -201,10 +265,33 @@ mod tests {
 
     #[test]
     fn pieces_keep_their_vertices_together() {
-        let p = piece(&[[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
+        let p = make_piece(vec![[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
         assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
-        let p = piece(&[[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
+        let p = make_piece(vec![[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
         assert_eq!((p.vertices.len(), p.vertices.get(2)), (3, 80_000));
+    }
+
+    #[test]
+    fn pieces_are_cut_from_any_primitives() {
+        let modes = [(TRIANGLES, 9), (QUADS, 8), (TRIANGLE_STRIP, 3000), (POINTS, 5), (POLYGON, 5), (QUAD_STRIP, 8)];
+        let mut primitives = Vec::new();
+        let (mut first, mut all) = (0, Vec::new());
+        for (mode, count) in modes {
+            let primitive = Primitive { mode, first, count };
+            add_triangles(&primitive, 0..triangle_count(&primitive), &mut all);
+            primitives.push(primitive);
+            first += count;
+        }
+        let batch = VertexBatch { positions: vec![[0.0; 4]; first as usize], primitives, ..VertexBatch::default() };
+        let assembled = Assembled::new(&batch);
+        assert_eq!((assembled.len(), assembled.others), (all.len().div_ceil(PIECE), true));
+        let mut found = Vec::new();
+        for i in 0..assembled.len() {
+            let piece = assembled.piece(&batch, i);
+            assert_eq!(piece.triangles.len(), assembled.weight(i));
+            found.extend(piece.triangles.iter().map(|t| t.map(|v| piece.vertices.get(v))));
+        }
+        assert_eq!(found, all);
     }
 }

@@ -9,7 +9,6 @@ use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
-use vitral_raster::ScreenVertex;
 use vitral_raster::forward::{
     Assembler, ColorGrid, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project,
 };
@@ -44,7 +43,7 @@ impl DrawGeometry {
     }
 
     fn filled_pieces(&self) -> usize {
-        if self.filled() { self.assembled.pieces.len() } else { 0 }
+        if self.filled() { self.assembled.len() } else { 0 }
     }
 
     /// The flat grid that is drawn.
@@ -65,10 +64,10 @@ impl Geometry for DrawGeometry {
         if let Some(grid) = self.grid() {
             return if self.layout.grid.is_some() { grid.vertices.len() / 16 } else { 2 };
         }
-        match self.assembled.pieces.get(piece) {
-            Some(p) if self.filled() => p.triangles.len(),
-            _ => self.batch.primitives.iter().map(|p| p.count as usize).sum(),
+        if piece < self.filled_pieces() {
+            return self.assembled.weight(piece);
         }
+        self.batch.primitives.iter().map(|p| p.count as usize).sum()
     }
 
     fn layout(&self) -> &Layout {
@@ -86,7 +85,7 @@ impl Geometry for DrawGeometry {
             return self.emit_grid(level, grid, state, screen, out);
         }
         if piece < self.filled_pieces() {
-            let whole = &self.assembled.pieces[piece];
+            let whole = self.assembled.piece(&self.batch, piece);
             let Piece { triangles, vertices, .. } = whole;
             let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
             // With depth clamping near and far do not bound the view.
@@ -170,23 +169,16 @@ impl DrawGeometry {
                 &gathered
             }
         };
-        let mut clip = vec![[0.0f32; 4]; count];
-        let mut window = vec![ScreenVertex::default(); count];
-        let matrix = &self.snapshot.clip_from_model;
-        project(level, positions, matrix, &state.window, &mut clip, &mut window);
+        let (mut clip_memory, mut window_memory) = out.scratch.take(count);
+        let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
+        project(level, positions, &self.snapshot.clip_from_model, &state.window, clip, window);
         let user = self.user_distances(positions);
         let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
-        let in_piece = Vertices { clip: &clip, screen: &window, user: &user, sizes: &sizes };
+        let in_piece = Vertices { clip, screen: window, user: &user, sizes: &sizes };
         let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, self.layout.stride, &in_piece);
         assemble(&mut assembler);
-        let range = assembler.finish();
-        if self.layout.stride == 0 {
-            return;
-        }
-        let used = std::mem::take(&mut assembler.used);
-        let records = &mut assembler.records()[range];
-        for (eight, records) in used.chunks(LANES).zip(records.chunks_mut(LANES * self.layout.stride)) {
-            self.shade_eight(level, vertices, &clip, eight, records);
+        assembler.shade(|eight, records| {
+            self.shade_eight(level, vertices, clip, eight, records);
             if let (Some(at), Some(grid)) = (self.layout.grid, self.grid()) {
                 let own = eight
                     .iter()
@@ -194,8 +186,9 @@ impl DrawGeometry {
                     .filter(|(v, _)| Assembler::is_own(**v));
                 own.for_each(|(&v, record)| record[at..at + 2].copy_from_slice(&grid.corner(v)));
             }
-        }
-        assembler.derive();
+        });
+        drop(assembler);
+        (out.scratch.clip, out.scratch.screen) = (clip_memory, window_memory);
     }
 
     /// Shades up to eight used vertices; those that clipping made are skipped.

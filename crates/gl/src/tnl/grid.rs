@@ -30,11 +30,12 @@ pub(crate) struct Grid {
     pub rising: bool,
 }
 
-/// The grid that a batch is, if it is one; `triangles` are its triangles as numbers of vertices.
-pub(crate) fn find(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<Grid> {
-    if triangles.len() < 2 * LEAST_CELLS || !is_plain(batch) {
+/// The grid that a batch of `count` triangles is, if it is one; `triangles` gives them as numbers of vertices.
+pub(crate) fn find(batch: &VertexBatch, count: usize, triangles: impl FnOnce() -> Vec<[u32; 3]>) -> Option<Grid> {
+    if count < 2 * LEAST_CELLS || !is_flat(batch) || !is_plain(batch) {
         return None;
     }
+    let triangles = &triangles()[..];
     let axes = axes(batch, triangles)?;
     let (x, y) = (Lines::new(batch, triangles, axes[0])?, Lines::new(batch, triangles, axes[1])?);
     let (columns, rows) = (x.count - 1, y.count - 1);
@@ -115,6 +116,15 @@ fn turn(places: [[usize; 2]; 3]) -> Option<([usize; 2], Turn)> {
     }
     let all_differ = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
     all_differ.then_some((cell, Turn { corners, missing: missing.clamp(0, 3) as usize }))
+}
+
+/// Whether one coordinate is the same at all vertices that primitives name. Few batches are, and others show it soon.
+fn is_flat(batch: &VertexBatch) -> bool {
+    (0..3).any(|axis| {
+        let mut named = batch.primitives.iter().flat_map(|p| p.first..p.first + p.count);
+        let at = |i: u32| batch.positions[batch.vertex(i)][axis];
+        named.next().is_some_and(|first| named.all(|i| at(i) == at(first)))
+    })
 }
 
 /// Whether only positions, equal normals and texture coordinates vary.
@@ -228,9 +238,8 @@ mod tests {
 
     fn found(batch: &VertexBatch) -> Option<Grid> {
         let n = batch.positions.len() as u32;
-        let triangles: Vec<[u32; 3]> =
-            (0..n / 4).flat_map(|q| [[4 * q, 4 * q + 1, 4 * q + 3], [4 * q + 1, 4 * q + 2, 4 * q + 3]]).collect();
-        find(batch, &triangles)
+        let halves = |q: u32| [[4 * q, 4 * q + 1, 4 * q + 3], [4 * q + 1, 4 * q + 2, 4 * q + 3]];
+        find(batch, n as usize / 2, || (0..n / 4).flat_map(halves).collect())
     }
 
     #[test]

@@ -58,15 +58,18 @@ pub(crate) fn each(mut mask: u32) -> impl Iterator<Item = usize> {
     })
 }
 
+#[inline(always)]
+fn push<T>(values: &mut Option<Vec<T>>, value: T) {
+    if let Some(values) = values {
+        values.push(value);
+    }
+}
+
 impl VertexBatch {
     /// Appends the attributes in `seen` from `current`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn push_attributes(&mut self, seen: u32, current: &Current) {
-        fn push<T>(values: &mut Option<Vec<T>>, value: T) {
-            if let Some(values) = values {
-                values.push(value);
-            }
-        }
+        const USUAL: u32 = 1 << NORMAL | 1 << COLOR | 1 << TEX;
         if seen & 1 << NORMAL != 0 {
             push(&mut self.normals, current.normal);
         }
@@ -76,32 +79,42 @@ impl VertexBatch {
         if seen & 1 << TEX != 0 {
             push(&mut self.tex[0], current.tex[0]);
         }
-        if seen & !(1 << NORMAL | 1 << COLOR | 1 << TEX) != 0 {
-            push(&mut self.secondary, current.secondary);
-            push(&mut self.fog, current.fog);
-            push(&mut self.edges, current.edge);
-            for unit in 1..MAX_TEXTURE_UNITS {
-                push(&mut self.tex[unit], current.tex[unit]);
-            }
+        if seen & !USUAL != 0 {
+            self.push_others(current);
         }
     }
 
-    /// Makes an array for attribute `which`: all vertices so far have the value in `current`.
-    pub(crate) fn back_fill(&mut self, which: usize, current: &Current) {
-        fn fill<T: Clone>(values: &mut Option<Vec<T>>, value: T, n: usize) {
-            let mut all = Vec::with_capacity(n + 1);
+    #[inline(never)]
+    fn push_others(&mut self, current: &Current) {
+        push(&mut self.secondary, current.secondary);
+        push(&mut self.fog, current.fog);
+        push(&mut self.edges, current.edge);
+        for unit in 1..MAX_TEXTURE_UNITS {
+            push(&mut self.tex[unit], current.tex[unit]);
+        }
+    }
+
+    /// Makes an array for attribute `which`, in the memory of `spare`'s if there is any: all vertices so far have the value
+    /// in `current`.
+    #[inline(never)]
+    pub(crate) fn back_fill(&mut self, which: usize, current: &Current, spare: &mut Self) {
+        fn fill<T: Clone>(values: &mut Option<Vec<T>>, spare: &mut Option<Vec<T>>, value: T, n: usize) {
+            let mut all = spare.take().unwrap_or_default();
             all.resize(n, value);
             *values = Some(all);
         }
         let n = self.positions.len();
         match which {
-            NORMAL => fill(&mut self.normals, current.normal, n),
-            COLOR => fill(&mut self.colors, current.color, n),
-            SECONDARY => fill(&mut self.secondary, current.secondary, n),
-            FOG => fill(&mut self.fog, current.fog, n),
-            EDGE => fill(&mut self.edges, current.edge, n),
+            NORMAL => fill(&mut self.normals, &mut spare.normals, current.normal, n),
+            COLOR => fill(&mut self.colors, &mut spare.colors, current.color, n),
+            SECONDARY => fill(&mut self.secondary, &mut spare.secondary, current.secondary, n),
+            FOG => fill(&mut self.fog, &mut spare.fog, current.fog, n),
+            EDGE => fill(&mut self.edges, &mut spare.edges, current.edge, n),
             INDEX => {}
-            _ => fill(&mut self.tex[which - TEX], current.tex[which - TEX], n),
+            _ => {
+                let unit = which - TEX;
+                fill(&mut self.tex[unit], &mut spare.tex[unit], current.tex[unit], n);
+            }
         }
     }
 

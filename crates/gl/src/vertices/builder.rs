@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// Vertices of a batch that waits for no more.
 const LONG_ENOUGH: usize = 1 << 16;
 
+/// Vertices of a batch whose memory is used again: fewer cost nothing to allocate, more are too much to keep.
+const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
+
 /// The primitive that is being given, and complete ones before it.
 #[derive(Debug, Default)]
 pub(crate) struct Builder {
@@ -31,6 +34,10 @@ pub(crate) struct Builder {
     first: u32,
     /// The materials at Begin.
     material: [MaterialFace; 2],
+    /// What was drawn last: its memory serves again when it has been.
+    drawn: Option<Arc<VertexBatch>>,
+    /// Empty vectors with memory, for the attributes of `batch`.
+    spare: VertexBatch,
     /// What was drawn.
     #[cfg(test)]
     pub(crate) log: Vec<Arc<VertexBatch>>,
@@ -55,6 +62,9 @@ impl Builder {
 
     /// Begins a primitive.
     pub(crate) fn open(&mut self, mode: u32) {
+        if !self.gathering {
+            self.reclaim();
+        }
         self.open = true;
         self.gathering = true;
         self.mode = mode;
@@ -71,6 +81,15 @@ impl Builder {
     /// Forgets the open primitive, but not its vertices.
     pub(crate) fn abandon(&mut self) {
         self.open = false;
+    }
+
+    /// Takes the memory of the batch that was drawn last, if nobody needs that any more.
+    fn reclaim(&mut self) {
+        if let Some(drawn) = self.drawn.take().and_then(Arc::into_inner) {
+            self.spare = drawn;
+            self.spare.truncate_vertices(0);
+            self.batch.positions = std::mem::take(&mut self.spare.positions);
+        }
     }
 
     /// Hands out what was gathered.
@@ -95,7 +114,7 @@ impl Builder {
     pub(crate) fn see(&mut self, which: usize, current: &Current) {
         let bit = 1 << which;
         if self.seen & bit == 0 && CARRIED & bit != 0 {
-            self.batch.back_fill(which, current);
+            self.batch.back_fill(which, current, &mut self.spare);
             self.seen |= bit;
         }
     }
@@ -157,8 +176,11 @@ impl Context {
 
     /// Draws what the builder holds.
     pub(super) fn draw_gathered(&mut self) {
-        let batch = self.builder.take();
-        self.draw_batch(Arc::new(batch));
+        let batch = Arc::new(self.builder.take());
+        if REUSED.contains(&batch.positions.len()) {
+            self.builder.drawn = Some(Arc::clone(&batch));
+        }
+        self.draw_batch(batch);
     }
 
     #[inline(always)]

@@ -38,14 +38,6 @@ component! {
     f64: c => c as f32;
 }
 
-/// `N` numbers at `address`.
-#[inline]
-pub(crate) fn array<T: Component, const N: usize>(memory: &dyn ClientMemory, address: usize) -> Option<[T; N]> {
-    let mut values = [T::zeroed(); N];
-    let there = address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values));
-    there.then_some(values)
-}
-
 /// How much is read at once where the client says how much there is: a wild length fails before it is allocated.
 const PIECE: usize = 1 << 20;
 
@@ -93,6 +85,5 @@ mod tests {
         assert_eq!(bytes(&arena, 16, usize::MAX), None);
         assert_eq!(values::<f32>(&arena, 16, usize::MAX), None);
         assert_eq!(values::<i16>(&arena, 16, 4), Some(vec![0; 4]));
-        assert_eq!(array::<f32, 2>(&arena, 0), None);
     }
 }

@@ -1,7 +1,7 @@
 //! The calls of Begin/End: vertices and their attributes in all types.
 
 use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
-use super::client::{self, Component};
+use super::client::Component;
 use crate::state::MAX_TEXTURE_UNITS;
 use crate::{Context, enums};
 
@@ -13,14 +13,18 @@ pub(super) fn filled<const N: usize>(given: [f32; N]) -> [f32; 4] {
 }
 
 impl Context {
-    /// Numbers that a call points at; records the error if they are not there.
-    #[inline]
-    pub(super) fn pointed<T: Component, const N: usize>(&mut self, call: &str, address: usize) -> Option<[T; N]> {
-        let values = client::array(&*self.memory, address);
+    /// What a call points at; records the error if it points nowhere.
+    #[inline(always)]
+    pub(super) fn pointed<T, const N: usize>(&mut self, call: &str, values: Option<[T; N]>) -> Option<[T; N]> {
         if values.is_none() {
-            self.record_error(enums::INVALID_VALUE, call, "its values are not in the client's memory");
+            self.points_nowhere(call);
         }
         values
+    }
+
+    #[cold]
+    fn points_nowhere(&mut self, call: &str) {
+        self.record_error(enums::INVALID_VALUE, call, "its values are not in the client's memory");
     }
 
     #[inline(always)]
@@ -71,7 +75,7 @@ impl Context {
     }
 
     /// `glEdgeFlagv`.
-    pub fn edge_flagv(&mut self, flag: usize) {
+    pub fn edge_flagv(&mut self, flag: Option<[u8; 1]>) {
         if let Some([flag]) = self.pointed("glEdgeFlagv", flag) {
             self.edge_flag(flag);
         }
@@ -91,9 +95,8 @@ macro_rules! attributes {
 
                 #[doc = concat!("`", $gl, "v`.")]
                 #[inline]
-                pub fn $vector(&mut self, v: usize) {
-                    const N: usize = [$(stringify!($x)),+].len();
-                    if let Some(v) = self.pointed::<$kind, N>(concat!($gl, "v"), v) {
+                pub fn $vector(&mut self, v: Option<[$kind; [$(stringify!($x)),+].len()]>) {
+                    if let Some(v) = self.pointed(concat!($gl, "v"), v) {
                         self.attribute($which, v.map(Component::$as));
                     }
                 }
@@ -185,9 +188,8 @@ macro_rules! vertices {
 
                 #[doc = concat!("`", $gl, "v`.")]
                 #[inline]
-                pub fn $vector(&mut self, v: usize) {
-                    const N: usize = [$(stringify!($x)),+].len();
-                    if let Some(v) = self.pointed::<$kind, N>(concat!($gl, "v"), v) {
+                pub fn $vector(&mut self, v: Option<[$kind; [$(stringify!($x)),+].len()]>) {
+                    if let Some(v) = self.pointed(concat!($gl, "v"), v) {
                         self.vertex(v.map(Component::plain));
                     }
                 }
@@ -226,10 +228,9 @@ macro_rules! unit_coordinates {
 
                 #[doc = concat!("`", $gl, "v`.")]
                 #[inline]
-                pub fn $vector(&mut self, target: u32, v: usize) {
-                    const N: usize = [$(stringify!($x)),+].len();
+                pub fn $vector(&mut self, target: u32, v: Option<[$kind; [$(stringify!($x)),+].len()]>) {
                     let Some(which) = self.coordinates_of(concat!($gl, "v"), target) else { return };
-                    if let Some(v) = self.pointed::<$kind, N>(concat!($gl, "v"), v) {
+                    if let Some(v) = self.pointed(concat!($gl, "v"), v) {
                         self.attribute(which, v.map(Component::plain));
                     }
                 }
@@ -361,10 +362,9 @@ mod tests {
     #[test]
     fn values_by_pointer() {
         let mut c = context();
-        c.memory.write(0x1000, bytemuck::bytes_of(&[-1i8, 127, 0]));
-        c.normal_3bv(0x1000);
+        c.normal_3bv(Some([-1, 127, 0]));
         assert_eq!(c.state.current.normal, [-1.0 / 255.0, 1.0, 1.0 / 255.0]);
-        c.normal_3fv(0);
+        c.normal_3fv(None);
         assert_eq!(c.error, enums::INVALID_VALUE);
     }
 }

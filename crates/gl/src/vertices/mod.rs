@@ -94,7 +94,7 @@ mod tests {
             0..4 => c.begin(d.small() as u32),
             4..8 => c.end(),
             8..12 => c.vertex_2i(d.small(), 1),
-            12 => c.color_4fv(d.address()),
+            12 => c.color_4fv((d.small() > 0).then_some([0.25, 0.5, 0.75, f32::NAN])),
             13 => c.multi_tex_coord_1s(enums::TEXTURE0 + d.small() as u32 % 9, 1),
             14 => c.edge_flag(d.next() as u8 & 1),
             15 => c.new_list(d.small() as u32, d.one_of(&[enums::COMPILE, enums::COMPILE_AND_EXECUTE])),

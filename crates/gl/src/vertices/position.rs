@@ -62,9 +62,8 @@ macro_rules! positions {
                 }
 
                 #[doc = concat!("`", $gl_vector, "`.")]
-                pub fn $vector(&mut self, v: usize) {
-                    const N: usize = [$(stringify!($x)),+].len();
-                    if let Some(v) = self.pointed::<$kind, N>($gl_vector, v) {
+                pub fn $vector(&mut self, v: Option<[$kind; [$(stringify!($x)),+].len()]>) {
+                    if let Some(v) = self.pointed($gl_vector, v) {
                         self.$set($gl_vector, v.map(Component::plain));
                     }
                 }

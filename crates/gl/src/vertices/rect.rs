@@ -28,9 +28,9 @@ macro_rules! rects {
                 }
 
                 #[doc = concat!("`", $gl, "v`.")]
-                pub fn $vector(&mut self, v1: usize, v2: usize) {
-                    let Some(from) = self.pointed::<$kind, 2>(concat!($gl, "v"), v1) else { return };
-                    let Some(to) = self.pointed::<$kind, 2>(concat!($gl, "v"), v2) else { return };
+                pub fn $vector(&mut self, v1: Option<[$kind; 2]>, v2: Option<[$kind; 2]>) {
+                    let Some(from) = self.pointed(concat!($gl, "v"), v1) else { return };
+                    let Some(to) = self.pointed(concat!($gl, "v"), v2) else { return };
                     self.rect($gl, from.map(Component::plain), to.map(Component::plain));
                 }
             )+

@@ -14,7 +14,8 @@ use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{Batch, GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
-use std::ops::Range;
+use std::mem::take;
+use vitral_math::lanes::LANES;
 
 /// How a facet's interior is found and coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +83,7 @@ pub enum Shape {
 
 /// A vertex that clipping made.
 #[derive(Clone, Copy, Debug)]
-pub struct Derived {
+struct Derived {
     /// Its slot.
     pub slot: u32,
     /// Slots of its parents.
@@ -147,6 +148,31 @@ pub struct Primitives {
     pub grids: Vec<ColorGrid>,
     /// See [`ColorGrid::first`].
     pub grid_colors: Vec<[f32; 4]>,
+    /// Memory of the piece that is being assembled.
+    pub scratch: PieceScratch,
+}
+
+/// What is known of a piece's vertices while it is assembled; kept, so that memory need not be asked for and cleared. The
+/// vectors may be longer than the piece.
+#[derive(Debug, Default)]
+pub struct PieceScratch {
+    /// In clip space.
+    pub clip: Vec<[f32; 4]>,
+    /// In the window.
+    pub screen: Vec<ScreenVertex>,
+    slots: Vec<u32>,
+    used: Vec<u32>,
+}
+
+impl PieceScratch {
+    /// Hands out `clip` and `screen`, with room for `count` vertices.
+    pub fn take(&mut self, count: usize) -> (Vec<[f32; 4]>, Vec<ScreenVertex>) {
+        if self.clip.len() < count {
+            self.clip.resize(count, [0.0; 4]);
+            self.screen.resize(count, ScreenVertex::default());
+        }
+        (take(&mut self.clip), take(&mut self.screen))
+    }
 }
 
 /// The facet's colours come from its corners.
@@ -170,9 +196,9 @@ pub struct Assembler<'a> {
     vertices: &'a Vertices<'a>,
     slots: Vec<u32>,
     /// Vertices to shade, in the order of their slots; derived ones are `NONE`.
-    pub used: Vec<u32>,
+    used: Vec<u32>,
     /// Vertices that clipping made.
-    pub derived: Vec<Derived>,
+    derived: Vec<Derived>,
     first_slot: u32,
 }
 
@@ -206,6 +232,13 @@ struct Corner {
     boundary: bool,
 }
 
+impl Drop for Assembler<'_> {
+    fn drop(&mut self) {
+        self.out.scratch.slots = take(&mut self.slots);
+        self.out.scratch.used = take(&mut self.used);
+    }
+}
+
 impl<'a> Assembler<'a> {
     /// Collects into `out`; records have `stride` numbers and begin where `out.records` ends.
     pub fn new(
@@ -216,9 +249,12 @@ impl<'a> Assembler<'a> {
         vertices: &'a Vertices<'a>,
     ) -> Self {
         let first_slot = out.records.len() as u32;
-        let slots = vec![NONE; vertices.clip.len()];
+        let (mut slots, mut used) = (take(&mut out.scratch.slots), take(&mut out.scratch.used));
+        slots.clear();
+        slots.resize(vertices.clip.len(), NONE);
+        used.clear();
         let stride = stride as u32;
-        Self { state, screen, out, stride, vertices, slots, used: Vec::new(), derived: Vec::new(), first_slot }
+        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot }
     }
 
     /// The slot of a vertex: where its record begins.
@@ -561,20 +597,22 @@ impl<'a> Assembler<'a> {
         self.push(wide, area, plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
     }
 
-    /// Ends the piece: makes room for the records of all used vertices and gives their range.
-    pub fn finish(&mut self) -> Range<usize> {
-        let start = self.out.records.len();
-        self.out.records.resize(start + self.used.len() * self.stride as usize, 0.0);
-        start..self.out.records.len()
-    }
-
-    /// All records, by slot.
-    pub fn records(&mut self) -> &mut [f32] {
-        &mut self.out.records
+    /// Makes records for the vertices that primitives use. `shade` gets up to eight of them, and their records to fill; those
+    /// that clipping made ([`Self::is_own`] tells) are filled afterwards, from their parents'.
+    pub fn shade(&mut self, mut shade: impl FnMut(&[u32], &mut [f32])) {
+        let (start, stride) = (self.out.records.len(), self.stride as usize);
+        if stride == 0 {
+            return;
+        }
+        self.out.records.resize(start + self.used.len() * stride, 0.0);
+        for (eight, records) in self.used.chunks(LANES).zip(self.out.records[start..].chunks_mut(LANES * stride)) {
+            shade(eight, records);
+        }
+        self.derive();
     }
 
     /// Fills the records of the vertices that clipping made from their parents'. The first number is `1 / w`.
-    pub fn derive(&mut self) {
+    fn derive(&mut self) {
         let stride = self.stride as usize;
         for d in &self.derived {
             for k in 1..stride {
@@ -586,7 +624,7 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    /// Whether `vertex` of [`Self::used`] is one of the piece's own.
+    /// Whether a used vertex is one of the piece's own.
     pub fn is_own(vertex: u32) -> bool {
         vertex != NONE
     }

@@ -103,9 +103,7 @@ pub(crate) fn depths<S: Simd>(
             let count = pattern.len().min(samples).min(SAMPLES);
             let mut slopes = [Slope::new(simd, setup, place, pattern.position(0)); SAMPLES];
             for s in 1..count {
-                if masks[s] != 0 || block.is_aligned() {
-                    slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
-                }
+                slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
             }
             let test = Test {
                 slopes: &slopes[..count],
@@ -114,15 +112,6 @@ pub(crate) fn depths<S: Simd>(
                 write: rule.write,
             };
             let touched = block.touched();
-            if !block.is_aligned() {
-                if rule.write {
-                    ranges.forget(touched);
-                }
-                let (count, values) = tile.open(touched, together, samples);
-                compare_rows(simd, block, values, count, &test, rule.func, masks);
-                return agree(masks, count, samples);
-            }
-
             let old = ranges.of(simd, tile, block.index(), samples);
             let new = bounds(setup, &slopes[..count], scale);
             let full = (0..samples).all(|s| masks[s] == u64::MAX);
@@ -407,18 +396,23 @@ pub(crate) fn colors<S: Simd>(
                         continue;
                     }
                     let at = (block.y + row) * TILE + block.x;
-                    let stored = &mut plane[at..at + LANES];
-                    let (new, old) = (row_of(row % BLOCK), U32x8::from_slice(simd, stored));
-                    let new = match mixing {
-                        Mixing::Add => add_packed(new, old),
-                        Mixing::AddScaled => add_scaled_packed(new, old),
-                        Mixing::Mix => mix_packed(new, old),
-                        _ => new,
-                    };
-                    let new = if bits == 0xff { new } else { mask_of(simd, bits).select(new, old) };
-                    new.store_slice(stored);
+                    write_row(simd, row_of(row % BLOCK), bits, mixing, &mut plane[at..at + LANES]);
                 }
             }
         },
     );
+}
+
+/// Writes colours to the pixels of a row whose bits are set.
+#[inline(always)]
+pub(super) fn write_row<S: Simd>(simd: S, new: U32x8<S>, bits: u32, mixing: Mixing, stored: &mut [u32]) {
+    let old = U32x8::from_slice(simd, stored);
+    let new = match mixing {
+        Mixing::Add => add_packed(new, old),
+        Mixing::AddScaled => add_scaled_packed(new, old),
+        Mixing::Mix => mix_packed(new, old),
+        _ => new,
+    };
+    let new = if bits == 0xff { new } else { mask_of(simd, bits).select(new, old) };
+    new.store_slice(stored);
 }

@@ -17,6 +17,7 @@ mod plane;
 mod project;
 mod sample;
 mod shade;
+mod small;
 mod soft;
 mod state;
 mod texture;

@@ -10,10 +10,7 @@ use super::environment::fog::{color_sum, fog};
 use super::fragment_ops::compare::{alpha_test, holds};
 use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
-use super::plane::DepthPlane;
-use super::sample::packed::Packed;
 use super::soft::{disc_coverage, overlap, polygon_coverage};
-use super::state::FragmentState;
 use super::wide::{Rgba, bits_of, clamp, saturate_rgba, splat, splat_rgba};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
@@ -126,10 +123,37 @@ impl Interpolation {
     /// For a setup, with corner records by `facet.corners`; places are in pixels of the target.
     #[inline(always)]
     fn new(setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) -> Self {
-        let scale = 1.0 / f64::from(SUBPIXEL);
         let inverse_w = facet.corners.map(|slot| records[slot as usize]);
         let least = inverse_w[0].min(inverse_w[1]).min(inverse_w[2]);
         let steep = inverse_w.iter().any(|w| *w > 8.0 * least);
+        if steep || !setup.is_small() { Self::far(setup, inverse_w, steep, tile) } else { Self::near(setup, inverse_w) }
+    }
+
+    /// For facets whose corners lie so near each other that single precision will do.
+    #[inline(always)]
+    fn near(setup: &Setup, inverse_w: [f32; 3]) -> Self {
+        let (dx1, dy1) = (setup.x[1] - setup.x[0], setup.y[1] - setup.y[0]);
+        let (dx2, dy2) = (setup.x[2] - setup.x[0], setup.y[2] - setup.y[0]);
+        // Differences are in 1/256 pixel: one factor of 256 remains.
+        let inverse = SUBPIXEL as f32 / (dx1 * dy2 - dx2 * dy1) as f32;
+        let (a, b) = ([dy2 as f32 * inverse, -dx2 as f32 * inverse], [-dy1 as f32 * inverse, dx1 as f32 * inverse]);
+        let flat = inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2];
+        let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w };
+        // The differences of the weights' sum are those of 1 / w, and as exact.
+        let (d1, d2) = (w1 - w0, w2 - w0);
+        Self {
+            origin: [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32),
+            first: [0.0, a[0] * w1, a[1] * w1],
+            second: [0.0, b[0] * w2, b[1] * w2],
+            sum: [w0, a[0] * d1 + b[0] * d2, a[1] * d1 + b[1] * d2],
+            flat_w: flat.then_some(1.0 / inverse_w[0]),
+            edges: [[0.0; 3]; 3],
+        }
+    }
+
+    #[inline(never)]
+    fn far(setup: &Setup, inverse_w: [f32; 3], steep: bool, tile: [f32; 2]) -> Self {
+        let scale = 1.0 / f64::from(SUBPIXEL);
         let origin = if steep { tile } else { [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32) };
         let x = |k: usize| f64::from(setup.x[k]) * scale - f64::from(origin[0]);
         let y = |k: usize| f64::from(setup.y[k]) * scale - f64::from(origin[1]);
@@ -180,7 +204,7 @@ impl Interpolation {
 /// From so many pixels of a block on all are coloured, which costs less for each.
 const MANY: u32 = 36;
 
-const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
+pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
 /// Perspective-correct barycentric coordinates at eight points.
 #[derive(Clone, Copy)]
@@ -201,17 +225,12 @@ struct Groups<'a, S: Simd, const N: usize> {
 
 /// A facet, its draw and its job: what a row's colour needs.
 pub(crate) struct Shader<'a> {
-    pub state: &'a FragmentState,
-    pub layout: &'a Layout,
-    pub planes: &'a [Option<&'a DepthPlane>; UNITS],
+    pub draw: &'a DrawContext<'a>,
     pub facet: &'a Facet,
     primitives: &'a Primitives,
-    pub records: &'a [f32],
     /// The tile's first pixel.
     tile: [f32; 2],
-    pub shape: Option<Shape>,
     scratch: &'a mut Scratch,
-    plain: &'a [(usize, Packed<'a>)],
     ready: bool,
 }
 
@@ -224,25 +243,16 @@ impl<'a> Shader<'a> {
         tile: [f32; 2],
         scratch: &'a mut Scratch,
     ) -> Self {
-        let layout = draw.layout;
-        let shape = if facet.kind == FacetKind::Polygon && !layout.smooth[2] {
-            None
-        } else {
-            primitives.shapes.get(facet.shape as usize).copied()
-        };
-        Self {
-            state: draw.state,
-            layout,
-            planes: &draw.planes,
-            facet,
-            primitives,
-            records: &primitives.records,
-            tile,
-            shape,
-            scratch,
-            plain: &draw.plain,
-            ready: false,
+        Self { draw, facet, primitives, tile, scratch, ready: false }
+    }
+
+    /// Local geometry of a line, point or smooth polygon.
+    #[inline(always)]
+    fn shape(&self) -> Option<Shape> {
+        if self.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2] {
+            return None;
         }
+        self.primitives.shapes.get(self.facet.shape as usize).copied()
     }
 
     /// Makes the facet ready to be interpolated: before the first row that shows.
@@ -251,13 +261,13 @@ impl<'a> Shader<'a> {
         if !self.ready {
             self.ready = true;
             let corners = self.facet.corners.map(|slot| slot as usize);
-            self.scratch.differences.prepare(simd, self.records, corners, self.layout.stride);
-            if let Some(Shape::Polygon { x, y, .. }) = self.shape {
+            self.scratch.differences.prepare(simd, &self.primitives.records, corners, self.draw.layout.stride);
+            if let Some(Shape::Polygon { x, y, .. }) = self.shape() {
                 let own = Setup { x, y, ..*setup };
-                self.scratch.interpolation = Interpolation::new(&own, self.facet, self.records, self.tile);
+                self.scratch.interpolation = Interpolation::new(&own, self.facet, &self.primitives.records, self.tile);
                 self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.scratch.interpolation = Interpolation::new(setup, self.facet, self.records, self.tile);
+                self.scratch.interpolation = Interpolation::new(setup, self.facet, &self.primitives.records, self.tile);
             }
         }
     }
@@ -302,10 +312,10 @@ impl<'a> Shader<'a> {
     /// Primary colour, before textures.
     #[inline(always)]
     fn primary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Rgba<S> {
-        if self.state.flat {
+        if self.draw.state.flat {
             return splat_rgba(simd, self.provoking_color());
         }
-        if let (Some(at), Some(grid)) = (self.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
+        if let (Some(at), Some(grid)) = (self.draw.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
             return self.grid_color(simd, weights, grid, at);
         }
         // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
@@ -325,10 +335,10 @@ impl<'a> Shader<'a> {
 
     #[inline(always)]
     fn secondary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Option<[F32x8<S>; 3]> {
-        let front = self.layout.secondary?;
-        let at = if self.facet.back { self.layout.back_secondary.unwrap_or(front) } else { front };
-        if self.state.flat {
-            let r = &self.records[self.facet.provoking as usize + at..][..3];
+        let front = self.draw.layout.secondary?;
+        let at = if self.facet.back { self.draw.layout.back_secondary.unwrap_or(front) } else { front };
+        if self.draw.state.flat {
+            let r = &self.primitives.records[self.facet.provoking as usize + at..][..3];
             return Some([splat(simd, r[0]), splat(simd, r[1]), splat(simd, r[2])]);
         }
         Some([
@@ -364,10 +374,10 @@ impl<'a> Shader<'a> {
         for i in 1..N {
             colors[i] = self.primary(simd, &groups.weights[i]);
         }
-        if !self.state.units.is_empty() {
+        if !self.draw.state.units.is_empty() {
             self.textured(simd, &groups, &mut colors);
         }
-        if self.state.color_sum || self.state.fog.is_some() {
+        if self.draw.state.color_sum || self.draw.state.fog.is_some() {
             for i in 0..N {
                 colors[i] = self.summed(simd, &groups.weights[i], colors[i]);
             }
@@ -378,12 +388,12 @@ impl<'a> Shader<'a> {
     /// Adds the secondary colour, and mixes with fog.
     #[inline(always)]
     fn summed<S: Simd>(&self, simd: S, weights: &Weights<S>, mut color: Rgba<S>) -> Rgba<S> {
-        if self.state.color_sum
+        if self.draw.state.color_sum
             && let Some(secondary) = self.secondary(simd, weights)
         {
             color = color_sum(color, &secondary);
         }
-        if let (Some(f), Some(at)) = (&self.state.fog, self.layout.fog) {
+        if let (Some(f), Some(at)) = (&self.draw.state.fog, self.draw.layout.fog) {
             color = fog(simd, f, color, self.value(simd, weights, at));
         }
         color
@@ -398,7 +408,7 @@ impl<'a> Shader<'a> {
         any: u64,
     ) -> (Words, u64) {
         if let Some(color) = self.constant() {
-            let passed = self.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+            let passed = self.draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
             let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
             return (Words::One(word), if passed { any } else { 0 });
         }
@@ -423,7 +433,7 @@ impl<'a> Shader<'a> {
             return (Words::Each(words), passed);
         }
         // Small facets cover few pixels of a row: eight of any rows go together.
-        let (mut rest, tested) = (any, self.state.alpha_test.is_some());
+        let (mut rest, tested) = (any, self.draw.state.alpha_test.is_some());
         while rest != 0 {
             let (mut places, mut count) = ([rest.trailing_zeros(); LANES], 0);
             while rest != 0 && count < LANES {
@@ -441,6 +451,20 @@ impl<'a> Shader<'a> {
             }
         }
         (Words::Each(words), if tested { passed } else { any })
+    }
+
+    /// Whether colours are those of the corners and nothing else.
+    #[inline(always)]
+    pub(crate) fn is_plain(&self) -> bool {
+        let state = self.draw.state;
+        let alone = state.units.is_empty() && state.fog.is_none() && !state.color_sum;
+        alone && !state.flat && self.draw.layout.grid.is_none()
+    }
+
+    /// The packed colours of the eight pixels with centres `x`, `y` of a facet that [`Self::is_plain`] and prepared.
+    #[inline(always)]
+    pub(crate) fn plain_row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
+        pack(&self.four(simd, &self.weights(simd, x, y), self.color_at()))
     }
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
@@ -496,7 +520,7 @@ impl<'a> Shader<'a> {
             pack(color).store_slice(words);
         }
         let mut passed = u64::MAX;
-        if let Some(test) = self.state.alpha_test {
+        if let Some(test) = self.draw.state.alpha_test {
             passed = 0;
             for i in 0..N {
                 passed |= u64::from(bits_of(alpha_test(simd, test, colors[i][3])) & 0xff) << (8 * i);
@@ -507,8 +531,8 @@ impl<'a> Shader<'a> {
 
     /// The colour of all pixels, where it is the same for all.
     fn constant(&self) -> Option<[f32; 4]> {
-        let plain = self.state.units.is_empty() && self.state.fog.is_none() && !self.state.color_sum;
-        if !(plain && self.state.flat) {
+        let plain = self.draw.state.units.is_empty() && self.draw.state.fog.is_none() && !self.draw.state.color_sum;
+        if !(plain && self.draw.state.flat) {
             return None;
         }
         Some(self.provoking_color().map(|c| c.clamp(0.0, 1.0)))
@@ -517,19 +541,23 @@ impl<'a> Shader<'a> {
     /// Where the colour of the facet's side begins in a record.
     #[inline(always)]
     fn color_at(&self) -> usize {
-        if self.facet.back { self.layout.back_color.unwrap_or(self.layout.color) } else { self.layout.color }
+        if self.facet.back {
+            self.draw.layout.back_color.unwrap_or(self.draw.layout.color)
+        } else {
+            self.draw.layout.color
+        }
     }
 
     #[inline(always)]
     fn provoking_color(&self) -> [f32; 4] {
-        let r = &self.records[self.facet.provoking as usize + self.color_at()..][..4];
+        let r = &self.primitives.records[self.facet.provoking as usize + self.color_at()..][..4];
         [r[0], r[1], r[2], r[3]]
     }
 
     /// Stipples and the soft borders of smooth primitives.
     #[inline(always)]
     fn covered<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, color: Rgba<S>) -> (Rgba<S>, u32) {
-        let smooth = self.layout.smooth;
+        let smooth = self.draw.layout.smooth;
         match self.facet.kind {
             FacetKind::Polygon if !smooth[2] => (color, 0xff),
             _ => self.soft(simd, x, y, color),
@@ -542,7 +570,7 @@ impl<'a> Shader<'a> {
             #[inline(always)]
             || {
                 let mut pass = 0xff;
-                match self.shape {
+                match self.shape() {
                     None => {}
                     Some(Shape::Polygon { boundary, .. }) => {
                         let coverage = polygon_coverage(simd, x, y, &self.scratch.interpolation.edges, boundary);
@@ -554,15 +582,15 @@ impl<'a> Shader<'a> {
                         let length = (dx * dx + dy * dy).sqrt();
                         let (ux, uy) = (dx / length, dy / length);
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
-                        if self.layout.smooth[1] {
+                        if self.draw.layout.smooth[1] {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
                             let side = overlap(across, -width * 0.5, width * 0.5);
                             let ends = overlap(along, 0.0, length);
                             color[3] *= side * ends;
                         }
-                        if let Some((factor, pattern)) = self.layout.line_stipple {
+                        if let Some((factor, pattern)) = self.draw.layout.line_stipple {
                             // Aliased lines count pixels along the major axis, and exactly.
-                            let along = if self.layout.smooth[1] {
+                            let along = if self.draw.layout.smooth[1] {
                                 along
                             } else if dx.abs() >= dy.abs() {
                                 (x - from[0]) * dx.signum()
@@ -579,7 +607,7 @@ impl<'a> Shader<'a> {
                         }
                     }
                     Some(Shape::Point { center, size, fade }) => {
-                        if self.layout.smooth[0] {
+                        if self.draw.layout.smooth[0] {
                             color[3] *= disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
                         }
                         color[3] *= fade;

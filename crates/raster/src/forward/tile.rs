@@ -8,10 +8,11 @@ use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, 
 use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::{Scratch, Shader};
+use super::shade::{CENTERS, Scratch, Shader};
+use super::small::SmallFacet;
 use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
-use crate::kernel::traverse::{Block, BlockSink, traverse, traverse_anywhere};
+use crate::kernel::traverse::{Block, BlockSink, traverse, traverse_by_rows};
 use crate::sink::row_depth;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use vitral_math::lanes::prelude::*;
@@ -20,14 +21,12 @@ use vitral_math::lanes::{F32x8, LANES, Simd};
 /// A tile of the target and its planes.
 pub(crate) struct TileRun<'a> {
     index: usize,
-    x: u32,
-    y: u32,
+    pub(super) x: u32,
+    pub(super) y: u32,
     width: i32,
     height: i32,
-    planes: TilePlanes<'a>,
+    pub(super) planes: TilePlanes<'a>,
 }
-
-const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
 impl<'a> TileRun<'a> {
     /// Tile number `index` at pixel `(x, y)`.
@@ -90,19 +89,23 @@ impl<'a> TileRun<'a> {
             #[inline(always)]
             || {
                 let mut scratch = Scratch::default();
+                let (mut clip, mut clip_of) = ([0; 4], u32::MAX);
                 for setup in primitives.batch.tile(self.index) {
                     let facet = facet_of(primitives, setup.facet);
                     let draw = &draws[facet.draw as usize];
-                    let clip = self.part(draw.clip);
+                    if clip_of != facet.draw {
+                        (clip, clip_of) = (self.part(draw.clip), facet.draw);
+                    }
                     if clip[0] >= clip[2] || clip[1] >= clip[3] {
                         continue;
                     }
                     let pattern = if draw.multisample { many } else { one };
                     let (x, y) = (self.x, self.y);
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
-                    let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
-                    if sink.by_blocks() {
-                        traverse_anywhere(simd, setup, (x, y), pattern, &mut sink);
+                    let small = SmallFacet::default();
+                    let mut sink = FragmentSink { run: self, setup, draw, shader, clip, pattern, small };
+                    if sink.by_rows() {
+                        traverse_by_rows(simd, setup, (x, y), pattern, &mut sink);
                     } else {
                         traverse(simd, setup, (x, y), pattern, &mut sink);
                     }
@@ -254,14 +257,16 @@ fn image_color<S: Simd>(
     color
 }
 
-/// Covered blocks become fragments.
-struct FragmentSink<'r, 'a, 'd> {
-    run: &'r mut TileRun<'a>,
-    draw: &'d DrawContext<'d>,
-    shader: Shader<'d>,
+/// Covered blocks and rows become fragments.
+pub(super) struct FragmentSink<'r, 'a, 'd> {
+    pub(super) run: &'r mut TileRun<'a>,
+    pub(super) setup: &'d Setup,
+    pub(super) draw: &'d DrawContext<'d>,
+    pub(super) shader: Shader<'d>,
     /// Allowed pixels within the tile.
-    clip: [i32; 4],
-    pattern: &'d SamplePattern,
+    pub(super) clip: [i32; 4],
+    pub(super) pattern: &'d SamplePattern,
+    pub(super) small: SmallFacet,
 }
 
 impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
@@ -296,9 +301,9 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
 }
 
 impl FragmentSink<'_, '_, '_> {
-    /// Whether its fragments are of the common kinds, see [`super::block`]; these blocks may begin at any pixel.
+    /// Whether its fragments are of the common kinds, see [`super::block`].
     #[inline(always)]
-    fn by_blocks(&self) -> bool {
+    pub(super) fn by_blocks(&self) -> bool {
         let packed = !matches!(self.run.planes.color, Some(ColorTile::RgbaF32(_)));
         self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
     }

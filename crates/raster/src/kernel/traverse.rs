@@ -29,7 +29,7 @@ impl Block {
         self.y / BLOCK * (TILE / BLOCK) + self.x / BLOCK
     }
 
-    /// Whether it is one of the tile's blocks; others begin at any pixel, see [`traverse_anywhere`].
+    /// Whether it is one of the tile's blocks; sinks that take rows may make others.
     #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
     pub(crate) fn is_aligned(&self) -> bool {
@@ -58,9 +58,12 @@ pub trait BlockSink<S: Simd> {
 /// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins: what small triangles
 /// want, which are most of a fine mesh.
 pub trait RowSink<S: Simd>: BlockSink<S> {
+    /// Triangles with more rows come in blocks.
+    const MOST_ROWS: usize = TILE;
+
     /// Whether nothing of `setup` can matter at the tile's pixels from `low` to `high`, column and row, inclusive: at most
-    /// 8x8.
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
+    /// 8x8. It is asked before their rows come; triangles with more rows are not asked for.
+    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
 
     /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
     fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
@@ -106,6 +109,21 @@ const FAR_AWAY: i64 = 1 << 30;
 /// they touch: the products are below 2^29.
 const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
+#[inline(always)]
+fn is_small(x: &[i32; 3], y: &[i32; 3]) -> bool {
+    let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
+    largest(x) < SMALL && largest(y) < SMALL
+}
+
+#[cfg(any(test, feature = "forward"))]
+impl Setup {
+    /// Whether it extends over less than a tile's side, so that twice its area has fewer than 32 bits.
+    #[inline(always)]
+    pub(crate) fn is_small(&self) -> bool {
+        is_small(&self.x, &self.y)
+    }
+}
+
 /// Pixels of a tile, columns and rows.
 pub type Window = [Range<usize>; 2];
 
@@ -132,7 +150,8 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
 ) {
     let window = [0..TILE, 0..TILE];
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
-    if place.columns[1] - place.columns[0] < LANES && place.is_small() {
+    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+    if x1 - x0 < LANES && y1 - y0 < K::MOST_ROWS && place.is_small() {
         match pattern.len() {
             1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
             4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
@@ -140,65 +159,6 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
         }
     } else {
         blocks_apart(simd, setup, tile, pattern, sink);
-    }
-}
-
-/// [`traverse`] for a sink that takes blocks from any pixel on, not only those of the tile: triangles of at most 8x8
-/// pixels, which lie in up to four of the tile's blocks, make one.
-#[cfg(any(test, feature = "forward"))]
-#[inline(always)]
-pub(crate) fn traverse_anywhere<S: Simd, K: BlockSink<S>>(
-    simd: S,
-    setup: &Setup,
-    tile: (u32, u32),
-    pattern: &SamplePattern,
-    sink: &mut K,
-) {
-    if pattern.len() == 1 {
-        traverse_small::<S, K, 1>(simd, setup, tile, pattern, sink);
-    } else {
-        traverse_small::<S, K, { crate::samples::MOST_SAMPLES }>(simd, setup, tile, pattern, sink);
-    }
-}
-
-#[cfg(any(test, feature = "forward"))]
-#[inline(always)]
-fn traverse_small<S: Simd, K: BlockSink<S>, const MOST: usize>(
-    simd: S,
-    setup: &Setup,
-    tile: (u32, u32),
-    pattern: &SamplePattern,
-    sink: &mut K,
-) {
-    let window = [0..TILE, 0..TILE];
-    let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
-    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
-    if x1 - x0 >= BLOCK || y1 - y0 >= BLOCK || !place.is_small() {
-        return traverse(simd, setup, tile, pattern, sink);
-    }
-    // Blocks must not reach beyond the tile.
-    let (x, y) = (x0.min(TILE - BLOCK), y0.min(TILE - BLOCK));
-    let block = Block { x, y, rows: y0 - y..y1 + 1 - y };
-    if sink.rejects(setup, &block) {
-        return;
-    }
-    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let (edges, corners) = place.edges();
-    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let [xs, ys] = pattern.axes();
-    let (mut masks, mut any) = ([0; MOST], 0);
-    let samples = if MOST == 1 { 1 } else { pattern.len().min(MOST) };
-    for s in 0..samples {
-        let mut at_block = [0; 3];
-        for i in 0..3 {
-            let Edge { a, b } = edges[i];
-            at_block[i] = edges[i].constant(corners[i], [xs[s], ys[s]]) + a * x as i32 + b * y as i32;
-        }
-        masks[s] = mask_rows(simd, &edges, &across, at_block, block.rows.clone());
-        any |= masks[s];
-    }
-    if any != 0 {
-        sink.cover(simd, setup, &block, &masks[..samples]);
     }
 }
 
@@ -306,8 +266,7 @@ impl Placed {
     /// Whether the edge functions fit into 32 bits.
     #[inline(always)]
     fn is_small(&self) -> bool {
-        let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
-        largest(&self.x) < SMALL && largest(&self.y) < SMALL
+        is_small(&self.x, &self.y)
     }
 
     /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].

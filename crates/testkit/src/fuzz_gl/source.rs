@@ -196,3 +196,14 @@ impl Argument for usize {
         token as Self
     }
 }
+
+/// What a pointer at a few numbers points at; seldom nothing.
+impl<T: Argument, const N: usize> Argument for Option<[T; N]> {
+    fn any(source: &mut Source<'_>) -> Self {
+        (source.byte() < 250).then(|| std::array::from_fn(|_| T::any(source)))
+    }
+
+    fn token(token: u32) -> Self {
+        Some(std::array::from_fn(|_| T::token(token)))
+    }
+}

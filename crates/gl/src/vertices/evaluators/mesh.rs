@@ -151,9 +151,8 @@ macro_rules! coords {
                 }
 
                 #[doc = concat!("`", $gl, "v`.")]
-                pub fn $vector(&mut self, u: usize) {
-                    const N: usize = [$(stringify!($x)),+].len();
-                    if let Some(u) = self.pointed::<$kind, N>(concat!($gl, "v"), u) {
+                pub fn $vector(&mut self, u: Option<[$kind; [$(stringify!($x)),+].len()]>) {
+                    if let Some(u) = self.pointed(concat!($gl, "v"), u) {
                         self.coord(u.map(Component::plain));
                     }
                 }

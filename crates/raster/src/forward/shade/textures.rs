@@ -22,13 +22,13 @@ impl Shader<'_> {
         colors: &mut [Rgba<S>; N],
     ) {
         // The mode that nearly all programs use needs no other unit's texture.
-        if !self.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
+        if !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
             for i in 0..N {
                 colors[i] = self.combined(simd, groups, i, &colors[i]);
             }
             return;
         }
-        for unit in &self.state.units {
+        for unit in &self.draw.state.units {
             match self.common(unit) {
                 Some((packed, at)) => self.plain(simd, groups, (unit, packed, at), colors),
                 None => {
@@ -51,11 +51,11 @@ impl Shader<'_> {
         primary: &Rgba<S>,
     ) -> Rgba<S> {
         let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
-        for unit in &self.state.units {
+        for unit in &self.draw.state.units {
             textures[unit.index % UNITS] = self.texture(simd, groups, i, unit);
         }
         let mut color = *primary;
-        for unit in &self.state.units {
+        for unit in &self.draw.state.units {
             color = environment(simd, unit, &textures, primary, color);
         }
         color
@@ -65,8 +65,8 @@ impl Shader<'_> {
     /// a component, no border in reach, no anisotropy, no sprites.
     #[inline(always)]
     fn common(&self, unit: &Unit) -> Option<(&Packed<'_>, usize)> {
-        let (_, packed) = self.plain.iter().find(|(index, _)| *index == unit.index)?;
-        Some((packed, self.layout.tex[unit.index % UNITS]?))
+        let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
+        Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
     }
 
     /// A unit's texture at a group of pixels.
@@ -99,14 +99,14 @@ impl Shader<'_> {
         unit: &Unit,
     ) -> Rgba<S> {
         let texture = &*unit.texture;
-        let mut coords = match self.layout.tex[unit.index % UNITS] {
+        let mut coords = match self.draw.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
             None => splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]),
         };
         let bias = splat(simd, unit.lod_bias);
         let mut sprite = None;
-        if self.layout.sprites >> unit.index & 1 == 1
-            && let Some(Shape::Point { center, size, .. }) = self.shape
+        if self.draw.layout.sprites >> unit.index & 1 == 1
+            && let Some(Shape::Point { center, size, .. }) = self.shape()
         {
             // s runs to the right, t downwards.
             coords[0] = (x - center[0]) / size + 0.5;
@@ -116,7 +116,7 @@ impl Shader<'_> {
         }
         let anisotropic = texture.sampler.anisotropy > 1.0;
         if !needs_lod(texture) && !anisotropic {
-            let plane = self.planes[unit.index % UNITS];
+            let plane = self.draw.planes[unit.index % UNITS];
             return sample(simd, texture, plane, coords, bias, active);
         }
         let [dx, dy] = match sprite {
@@ -124,7 +124,7 @@ impl Shader<'_> {
                 let (zero, step) = (splat(simd, 0.0), splat(simd, step));
                 [[step, zero, zero, zero], [zero, -step, zero, zero]]
             }
-            None => self.steps(simd, weights, self.layout.tex[unit.index % UNITS]),
+            None => self.steps(simd, weights, self.draw.layout.tex[unit.index % UNITS]),
         };
         let steps = derivatives(simd, texture, coords, dx, dy);
         if anisotropic {

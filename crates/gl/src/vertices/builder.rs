@@ -35,7 +35,7 @@ pub(crate) struct Builder {
     /// The materials at Begin.
     material: [MaterialFace; 2],
     /// What was drawn last: its memory serves again when it has been.
-    drawn: Option<Arc<VertexBatch>>,
+    pub(super) drawn: Option<Arc<VertexBatch>>,
     /// Empty vectors with memory, for the attributes of `batch`.
     spare: VertexBatch,
     /// What was drawn.

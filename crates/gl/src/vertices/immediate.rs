@@ -347,6 +347,34 @@ mod tests {
     }
 
     #[test]
+    fn memory_of_a_drawn_batch_serves_again_and_holds_nothing_of_it() {
+        let mut c = context();
+        let mut gives = |from: f32, colored: bool| {
+            c.begin(enums::POINTS);
+            for i in 0..3000 {
+                if colored && i >= 1000 {
+                    c.color_3f(0.25, 0.5, from);
+                } else if !colored {
+                    c.normal_3f(0.0, from, 1.0);
+                }
+                c.vertex_2f(from, i as f32);
+            }
+            c.end();
+            c.finish();
+            let drawn = c.builder.log.pop().map(|batch| (*batch).clone()).unwrap_or_default();
+            (drawn, c.builder.drawn.as_ref().map(|kept| kept.positions.as_ptr()))
+        };
+        let (first, memory) = gives(1.0, false);
+        assert_eq!((first.positions.len(), first.positions[2999]), (3000, [1.0, 2999.0, 0.0, 1.0]));
+        let (second, again) = gives(0.5, true);
+        assert!(memory.is_some() && memory == again);
+        assert_eq!((second.positions.len(), second.positions[7]), (3000, [0.5, 7.0, 0.0, 1.0]));
+        let colors = second.colors.unwrap_or_default();
+        assert_eq!((second.normals, colors.len()), (None, 3000));
+        assert_eq!((colors[999], colors[1000]), ([1.0; 4], [0.25, 0.5, 0.5, 1.0]));
+    }
+
+    #[test]
     fn texture_coordinates_of_a_unit() {
         let mut c = context();
         c.begin(enums::POINTS);

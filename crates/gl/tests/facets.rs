@@ -1,0 +1,107 @@
+//! Facets take different ways through the rasteriser; pictures must not tell which.
+//!
+//! Small facets go row by row, unless something must be known before their depth is written: an alpha test, for example, sends
+//! them through blocks. One that always passes must change nothing.
+
+#![expect(clippy::unwrap_used, reason = "a test")]
+
+mod common;
+
+use common::Stage;
+use vitral_gl::enums as gl;
+
+/// What is drawn beside colours of vertices.
+#[derive(Clone, Copy, Debug)]
+enum With {
+    Nothing,
+    Fog,
+    Texture,
+    Blending,
+    FlatShade,
+    Scissor,
+}
+
+/// A picture of random triangles, most of them small, some across tiles, at many depths and in perspective.
+fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
+    let mut c = Stage::new(150, 90);
+    let names = c.put(&[0u32; 8]);
+    c.gen_framebuffers(1, names);
+    c.gen_renderbuffers(2, names + 4);
+    let [framebuffer, color, depth] = c.take::<u32>(names, 3).try_into().unwrap();
+    if samples > 0 {
+        c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
+        for (buffer, format, at) in
+            [(color, gl::RGBA8, gl::COLOR_ATTACHMENT0), (depth, gl::DEPTH_COMPONENT24, gl::DEPTH_ATTACHMENT)]
+        {
+            c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
+            c.renderbuffer_storage_multisample(gl::RENDERBUFFER, samples, format, 150, 90);
+            c.framebuffer_renderbuffer(gl::FRAMEBUFFER, at, gl::RENDERBUFFER, buffer);
+        }
+        assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_COMPLETE);
+    }
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    c.enable(gl::DEPTH_TEST);
+    if always {
+        c.enable(gl::ALPHA_TEST);
+    }
+    match with {
+        With::Nothing => {}
+        With::Fog => {
+            c.enable(gl::FOG);
+            c.fogf(gl::FOG_DENSITY, 0.3);
+        }
+        With::Texture => {
+            let texels = c.put(&[[255u8, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 0], [255, 255, 255, 60]]);
+            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR as i32);
+            c.enable(gl::TEXTURE_2D);
+        }
+        With::Blending => {
+            c.enable(gl::BLEND);
+            c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
+        }
+        With::FlatShade => c.shade_model(gl::FLAT),
+        With::Scissor => {
+            c.enable(gl::SCISSOR_TEST);
+            c.scissor(13, 7, 100, 71);
+        }
+    }
+    let mut state = 5u32;
+    let mut random = move |below: f32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32 * below
+    };
+    c.begin(gl::TRIANGLES);
+    for k in 0..3000 {
+        let size = if k % 50 == 0 { 60.0 } else { 9.0 };
+        let middle = [random(150.0), random(90.0), random(2.0) - 1.0];
+        for _ in 0..3 {
+            c.color_4f(random(1.0), random(1.0), random(1.0), random(1.0));
+            c.tex_coord_2f(random(2.0), random(2.0));
+            let w = 1.0 + random(2.0);
+            let (x, y) = ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
+            c.vertex_4f(x * w, y * w, (middle[2] * 0.9 + random(0.1)) * w, w);
+        }
+    }
+    c.end();
+    if samples > 0 {
+        c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
+        c.disable(gl::SCISSOR_TEST);
+        c.blit_framebuffer(0, 0, 150, 90, 0, 0, 150, 90, gl::COLOR_BUFFER_BIT, gl::NEAREST);
+        c.bind_framebuffer(gl::READ_FRAMEBUFFER, 0);
+    }
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    c.bytes()
+}
+
+#[test]
+fn small_facets_look_the_same_by_rows_and_by_blocks() {
+    for samples in [0, 4] {
+        for with in [With::Nothing, With::Fog, With::Texture, With::Blending, With::FlatShade, With::Scissor] {
+            let (rows, blocks) = (picture(samples, with, false), picture(samples, with, true));
+            assert!(rows.iter().filter(|pixel| **pixel != [0; 4]).count() > 2000, "{with:?}");
+            let differ = rows.iter().zip(&blocks).filter(|(a, b)| a != b).count();
+            assert_eq!(differ, 0, "{samples} samples with {with:?}");
+        }
+    }
+}

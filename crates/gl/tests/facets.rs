@@ -1,14 +1,24 @@
 //! Facets take different ways through the rasteriser; pictures must not tell which.
 //!
-//! Small facets go row by row, unless something must be known before their depth is written: an alpha test, for example, sends
-//! them through blocks. One that always passes must change nothing.
-
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 mod common;
 
 use common::Stage;
 use vitral_gl::enums as gl;
+
+/// What sends facets which way, and changes nothing.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// Tiny ones row by row.
+    Rows,
+    /// The same, but an alpha test that always passes has depths written after colours are known.
+    LateDepth,
+    /// By blocks: a stencil is written that nobody asks for.
+    Blocks,
+    /// With all operations that there are: samples are counted.
+    Everything,
+}
 
 /// What is drawn beside colours of vertices.
 #[derive(Clone, Copy, Debug)]
@@ -19,10 +29,12 @@ enum With {
     Blending,
     FlatShade,
     Scissor,
+    Stencil,
+    StencilAlone,
 }
 
 /// A picture of random triangles, most of them small, some across tiles, at many depths and in perspective.
-fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
+fn picture((samples, multisample): (i32, bool), with: With, way: Way) -> Vec<[u8; 4]> {
     let mut c = Stage::new(150, 90);
     let names = c.put(&[0u32; 8]);
     c.gen_framebuffers(1, names);
@@ -31,7 +43,7 @@ fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
     if samples > 0 {
         c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
         for (buffer, format, at) in
-            [(color, gl::RGBA8, gl::COLOR_ATTACHMENT0), (depth, gl::DEPTH_COMPONENT24, gl::DEPTH_ATTACHMENT)]
+            [(color, gl::RGBA8, gl::COLOR_ATTACHMENT0), (depth, gl::DEPTH24_STENCIL8, gl::DEPTH_STENCIL_ATTACHMENT)]
         {
             c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
             c.renderbuffer_storage_multisample(gl::RENDERBUFFER, samples, format, 150, 90);
@@ -41,8 +53,8 @@ fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
     }
     c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
     c.enable(gl::DEPTH_TEST);
-    if always {
-        c.enable(gl::ALPHA_TEST);
+    if !multisample {
+        c.disable(gl::MULTISAMPLE);
     }
     match with {
         With::Nothing => {}
@@ -61,9 +73,46 @@ fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
             c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
         }
         With::FlatShade => c.shade_model(gl::FLAT),
+        With::Stencil | With::StencilAlone => {
+            // A slanted region, whose border divides samples of pixels.
+            c.enable(gl::STENCIL_TEST);
+            c.stencil_func(gl::ALWAYS, 1, 0xff);
+            c.stencil_op(gl::KEEP, gl::KEEP, gl::REPLACE);
+            c.color_mask(0, 0, 0, 0);
+            c.depth_mask(0);
+            c.begin(gl::TRIANGLES);
+            for (x, y) in [(-0.9, -0.8), (0.8, -0.5), (0.1, 0.95)] {
+                c.vertex_2f(x, y);
+            }
+            c.end();
+            c.color_mask(1, 1, 1, 1);
+            c.depth_mask(1);
+            c.stencil_func(gl::EQUAL, 1, 0x0f);
+            c.stencil_op(gl::KEEP, gl::KEEP, gl::KEEP);
+            if matches!(with, With::StencilAlone) {
+                c.disable(gl::DEPTH_TEST);
+            }
+        }
         With::Scissor => {
             c.enable(gl::SCISSOR_TEST);
             c.scissor(13, 7, 100, 71);
+        }
+    }
+    match way {
+        Way::Rows => {}
+        Way::LateDepth => c.enable(gl::ALPHA_TEST),
+        Way::Blocks => {
+            if !matches!(with, With::Stencil | With::StencilAlone) {
+                c.enable(gl::STENCIL_TEST);
+                c.stencil_func(gl::ALWAYS, 0, 0x0f);
+            }
+            c.stencil_op(gl::KEEP, gl::KEEP, gl::INVERT);
+            c.stencil_mask(0x80);
+        }
+        Way::Everything => {
+            c.gen_queries(1, names + 12);
+            let query = c.take::<u32>(names + 12, 1)[0];
+            c.begin_query(gl::SAMPLES_PASSED, query);
         }
     }
     let mut state = 5u32;
@@ -84,6 +133,9 @@ fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
         }
     }
     c.end();
+    if matches!(way, Way::Everything) {
+        c.end_query(gl::SAMPLES_PASSED);
+    }
     if samples > 0 {
         c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
         c.disable(gl::SCISSOR_TEST);
@@ -95,13 +147,24 @@ fn picture(samples: i32, with: With, always: bool) -> Vec<[u8; 4]> {
 }
 
 #[test]
-fn small_facets_look_the_same_by_rows_and_by_blocks() {
-    for samples in [0, 4] {
-        for with in [With::Nothing, With::Fog, With::Texture, With::Blending, With::FlatShade, With::Scissor] {
-            let (rows, blocks) = (picture(samples, with, false), picture(samples, with, true));
+fn facets_look_the_same_whichever_way_they_go() {
+    for samples in [(0, true), (4, true), (4, false)] {
+        for with in [
+            With::Nothing,
+            With::Fog,
+            With::Texture,
+            With::Blending,
+            With::FlatShade,
+            With::Scissor,
+            With::Stencil,
+            With::StencilAlone,
+        ] {
+            let rows = picture(samples, with, Way::Rows);
             assert!(rows.iter().filter(|pixel| **pixel != [0; 4]).count() > 2000, "{with:?}");
-            let differ = rows.iter().zip(&blocks).filter(|(a, b)| a != b).count();
-            assert_eq!(differ, 0, "{samples} samples with {with:?}");
+            for way in [Way::LateDepth, Way::Blocks, Way::Everything] {
+                let differ = rows.iter().zip(&picture(samples, with, way)).filter(|(a, b)| a != b).count();
+                assert_eq!(differ, 0, "{samples:?} samples with {with:?}: {way:?}");
+            }
         }
     }
 }

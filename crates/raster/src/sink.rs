@@ -156,7 +156,7 @@ fn block_of([x, y]: [usize; 2]) -> Block {
 
 impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     #[inline(always)]
-    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         hides_box(self.tile, setup, low, high)
     }
 
@@ -251,7 +251,7 @@ impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_F
 
 impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIRST> {
     #[inline(always)]
-    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         FRONT_FIRST && hides_box(self.tile, setup, low, high)
     }
 
@@ -311,7 +311,7 @@ impl LayerSink<'_> {
 
 impl<S: Simd> RowSink<S> for LayerSink<'_> {
     #[inline(always)]
-    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
         hides_box(self.tile, setup, low, high)
     }
 

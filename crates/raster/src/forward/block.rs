@@ -44,14 +44,15 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
 
 /// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
 #[derive(Clone, Copy)]
-struct Slope<S: Simd> {
+pub(super) struct Slope<S: Simd> {
     across: F32x8<S>,
     rows: [f32; BLOCK],
 }
 
 impl<S: Simd> Slope<S> {
+    /// For the block at pixel `(left, bottom)` of the target, and the sample at `[x, y]` of its pixels, in 1/256 pixel.
     #[inline(always)]
-    fn new(simd: S, setup: &Setup, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
+    pub(super) fn new(simd: S, setup: &Setup, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
         let mut rows = [0.0; BLOCK];
         upwards(simd, setup, bottom as i32 * SUBPIXEL + y).store_slice(&mut rows);
         Self { across: across(simd, setup, left as i32 * SUBPIXEL + x), rows }
@@ -59,7 +60,7 @@ impl<S: Simd> Slope<S> {
 
     /// The depths of a row as stored.
     #[inline(always)]
-    fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
+    pub(super) fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
         stored_depth(simd, min(max(self.across + self.rows[row % BLOCK], low), high), scale)
     }
 

@@ -87,6 +87,8 @@ pub(crate) struct FragmentOps {
     protected: u32,
     /// Nothing needs the row-by-row operations, see [`super::block`].
     pub(crate) common: bool,
+    /// Common, and nothing but depths and colours is written, see [`super::tiny`].
+    pub(crate) direct: bool,
     all_protected: bool,
     coverage: u32,
 }
@@ -111,7 +113,8 @@ impl FragmentOps {
             && !(state.alpha_to_coverage || state.alpha_to_one)
             && (protected == 0 || state.masked == [true; 4])
             && mixing != Mixing::General;
-        Self { mixing, protected, common, all_protected: state.masked == [true; 4], coverage }
+        let direct = common && !writes_stencil;
+        Self { mixing, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
     }
 }
 

@@ -17,11 +17,11 @@ mod plane;
 mod project;
 mod sample;
 mod shade;
-mod small;
 mod soft;
 mod state;
 mod texture;
 mod tile;
+mod tiny;
 mod wide;
 
 pub use assemble::{Assembler, Facet, FacetKind, NO_GRID, PrimitiveState, Primitives, Shape, Vertices};

@@ -176,12 +176,6 @@ impl<T: Copy> PlaneTile<T> {
         (samples, &mut self.values)
     }
 
-    /// All samples of the tile, of blocks that [`Self::open`] made ready.
-    #[inline(always)]
-    pub(crate) fn opened(&mut self) -> &mut [T] {
-        &mut self.values
-    }
-
     /// Makes a block ready to be overwritten, whatever it holds: with one value for all samples of a pixel, or each.
     #[inline(always)]
     pub(crate) fn replace(&mut self, bit: u64, together: bool, samples: usize) -> &mut [T] {

@@ -9,10 +9,9 @@ use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
 use super::shade::{CENTERS, Scratch, Shader};
-use super::small::SmallFacet;
 use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
-use crate::kernel::traverse::{Block, BlockSink, traverse, traverse_by_rows};
+use crate::kernel::traverse::{Block, BlockSink, Placed, traverse};
 use crate::sink::row_depth;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use vitral_math::lanes::prelude::*;
@@ -102,10 +101,10 @@ impl<'a> TileRun<'a> {
                     let pattern = if draw.multisample { many } else { one };
                     let (x, y) = (self.x, self.y);
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
-                    let small = SmallFacet::default();
-                    let mut sink = FragmentSink { run: self, setup, draw, shader, clip, pattern, small };
-                    if sink.by_rows() {
-                        traverse_by_rows(simd, setup, (x, y), pattern, &mut sink);
+                    let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
+                    let Some(place) = Placed::new(setup, (x, y), &[0..TILE, 0..TILE], pattern) else { continue };
+                    if place.is_tiny() && sink.by_rows() {
+                        sink.tiny(simd, setup, &place);
                     } else {
                         traverse(simd, setup, (x, y), pattern, &mut sink);
                     }
@@ -260,13 +259,11 @@ fn image_color<S: Simd>(
 /// Covered blocks and rows become fragments.
 pub(super) struct FragmentSink<'r, 'a, 'd> {
     pub(super) run: &'r mut TileRun<'a>,
-    pub(super) setup: &'d Setup,
     pub(super) draw: &'d DrawContext<'d>,
     pub(super) shader: Shader<'d>,
     /// Allowed pixels within the tile.
     pub(super) clip: [i32; 4],
     pub(super) pattern: &'d SamplePattern,
-    pub(super) small: SmallFacet,
 }
 
 impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {

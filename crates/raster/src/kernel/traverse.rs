@@ -58,12 +58,9 @@ pub trait BlockSink<S: Simd> {
 /// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins: what small triangles
 /// want, which are most of a fine mesh.
 pub trait RowSink<S: Simd>: BlockSink<S> {
-    /// Triangles with more rows come in blocks.
-    const MOST_ROWS: usize = TILE;
-
     /// Whether nothing of `setup` can matter at the tile's pixels from `low` to `high`, column and row, inclusive: at most
-    /// 8x8. It is asked before their rows come; triangles with more rows are not asked for.
-    fn rejects_box(&mut self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
+    /// 8x8.
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
 
     /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
     fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
@@ -150,8 +147,7 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
 ) {
     let window = [0..TILE, 0..TILE];
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
-    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
-    if x1 - x0 < LANES && y1 - y0 < K::MOST_ROWS && place.is_small() {
+    if place.columns[1] - place.columns[0] < LANES && place.is_small() {
         match pattern.len() {
             1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
             4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
@@ -205,47 +201,32 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
     if y1 - y0 < BLOCK && sink.rejects_box(setup, [x0, y0], [x1, y1]) {
         return;
     }
-    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
-    // Rows must not reach beyond the tile.
-    let left = x0.min(TILE - LANES);
-    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let (edges, corners) = place.edges();
-    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let zero = I32x8::splat(simd, 0);
-    let [xs, ys] = pattern.axes();
-    for s in 0..samples {
-        let mut e = across;
-        for i in 0..3 {
-            let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
-            e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
-        }
-        for y in y0..=y1 {
-            let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
-            if covered.any_true() {
-                sink.cover_row(simd, setup, s, [left, y], covered);
-            }
-            for i in 0..3 {
-                e[i] += edges[i].b;
-            }
-        }
-    }
+    let left = place.left();
+    place.each_row::<S, (), MOST>(
+        simd,
+        pattern,
+        #[inline(always)]
+        |_| (),
+        #[inline(always)]
+        |(), s, y, covered| sink.cover_row(simd, setup, s, [left, y], covered),
+    );
     sink.end(simd, [x0, y0]);
 }
 
 /// A triangle in a tile's coordinates, with the pixels that its box may cover.
-struct Placed {
+pub(crate) struct Placed {
     /// Corners in 1/256 pixel.
     x: [i32; 3],
     y: [i32; 3],
     /// First and last column and row.
     columns: [usize; 2],
-    rows: [usize; 2],
+    pub(crate) rows: [usize; 2],
 }
 
 impl Placed {
     /// `None` if no pixel of the window can be covered.
     #[inline(always)]
-    fn new(
+    pub(crate) fn new(
         setup: &Setup,
         (tile_x, tile_y): (u32, u32),
         [columns, rows]: &Window,
@@ -267,6 +248,57 @@ impl Placed {
     #[inline(always)]
     fn is_small(&self) -> bool {
         is_small(&self.x, &self.y)
+    }
+
+    /// Whether its pixels lie within a box of 8x8, and the edge functions fit into 32 bits.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn is_tiny(&self) -> bool {
+        let ([x0, x1], [y0, y1]) = (self.columns, self.rows);
+        x1 - x0 < BLOCK && y1 - y0 < BLOCK && self.is_small()
+    }
+
+    /// Where rows of eight pixels begin that hold its columns and do not reach beyond the tile.
+    #[inline(always)]
+    pub(crate) fn left(&self) -> usize {
+        self.columns[0].min(TILE - LANES)
+    }
+
+    /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits, sample by
+    /// sample. `begin` is called for each sample, `row` with what that gave, the sample, the row of the tile and which of
+    /// the eight pixels from [`Self::left`] on are covered, if any are.
+    #[inline(always)]
+    pub(crate) fn each_row<S: Simd, T, const MOST: usize>(
+        &self,
+        simd: S,
+        pattern: &SamplePattern,
+        mut begin: impl FnMut(usize) -> T,
+        mut row: impl FnMut(&T, usize, usize, Mask8<S>),
+    ) {
+        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        let (left, [y0, y1]) = (self.left(), self.rows);
+        let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let (edges, corners) = self.edges();
+        let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
+        let zero = I32x8::splat(simd, 0);
+        let [xs, ys] = pattern.axes();
+        for s in 0..samples {
+            let mut e = across;
+            for i in 0..3 {
+                let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
+                e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
+            }
+            let begun = begin(s);
+            for y in y0..=y1 {
+                let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
+                if covered.any_true() {
+                    row(&begun, s, y, covered);
+                }
+                for i in 0..3 {
+                    e[i] += edges[i].b;
+                }
+            }
+        }
     }
 
     /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].

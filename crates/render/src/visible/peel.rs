@@ -144,7 +144,7 @@ impl<S: Simd> BlockSink<S> for PassSink<'_> {
 
 impl<S: Simd> RowSink<S> for PassSink<'_> {
     #[inline(always)]
-    fn rejects_box(&mut self, _: &Setup, _: [usize; 2], _: [usize; 2]) -> bool {
+    fn rejects_box(&self, _: &Setup, _: [usize; 2], _: [usize; 2]) -> bool {
         false
     }
 

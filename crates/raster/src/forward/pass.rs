@@ -181,7 +181,7 @@ const JOB: usize = 4096;
 pub(crate) enum Item<'a> {
     Clear(&'a Clear),
     Image(&'a ImageFragments, &'a FragmentState, FragmentOps),
-    Job { primitives: Primitives, draws: Vec<DrawContext<'a>> },
+    Job { primitives: &'a Primitives, draws: Vec<DrawContext<'a>> },
 }
 
 /// A draw of a job.
@@ -212,14 +212,6 @@ enum PlanItem {
     Job(usize),
 }
 
-impl<'a> DrawContext<'a> {
-    /// A draw of depths alone, one sample a pixel.
-    pub(crate) fn depth_alone(state: &'a FragmentState, clip: [i32; 4], layout: &'a Layout) -> Self {
-        let ops = FragmentOps::new(state, 1);
-        Self { state, layout, ops, clip, multisample: false, shaded: false, plain: Vec::new(), planes: [None; UNITS] }
-    }
-}
-
 impl Runner {
     /// A runner.
     pub fn new(workers: Workers, level: Level) -> Self {
@@ -234,23 +226,18 @@ impl Runner {
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
-        let mut jobs: Vec<Option<Primitives>> =
-            self.workers.map(plans.len(), |j| Some(self.emit(&plans[j], &pass.commands, &forward)));
+        let mut jobs: Vec<Primitives> =
+            self.workers.map(plans.len(), |j| self.emit(&plans[j], &pass.commands, &forward));
         if self.leave_pending(pass, &plans, &mut jobs) {
             return;
         }
         let sampled = sampled_planes(&pass.commands);
         let sampled: Vec<(*const Mutex<DepthPlane>, MutexGuard<'_, DepthPlane>)> =
             sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
-        let items: Vec<Item<'_>> =
-            order.iter().map(|item| self.item(item, pass, &plans, &mut jobs, &sampled)).collect();
+        let items: Vec<Item<'_>> = order.iter().map(|item| self.item(item, pass, &plans, &jobs, &sampled)).collect();
         self.tiles(&pass.target, &items);
-        let mut spare = lock(&self.spare);
-        for item in items {
-            if let Item::Job { primitives, .. } = item {
-                spare.push(primitives);
-            }
-        }
+        drop(items);
+        lock(&self.spare).extend(jobs);
     }
 
     fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen) -> Primitives {
@@ -273,7 +260,7 @@ impl Runner {
     }
 
     /// Leaves a pass that draws depths into a texture as it is, if it can; `jobs` are its primitives then.
-    fn leave_pending(&self, pass: &Pass, plans: &[Plan], jobs: &mut [Option<Primitives>]) -> bool {
+    fn leave_pending(&self, pass: &Pass, plans: &[Plan], jobs: &mut [Primitives]) -> bool {
         let Some(target) = &pass.target.depth else { return false };
         let mut target = lock(target);
         if !target.sampled || target.viewport() != pass.target.viewport {
@@ -290,10 +277,8 @@ impl Runner {
             };
             plan.pieces.iter().filter_map(draw).collect()
         };
-        let jobs = plans.iter().zip(jobs).map(|(plan, job)| (job.take().unwrap_or_default(), draws(plan))).collect();
-        let viewport = target.viewport();
-        let tiles = (viewport.tiles_x() * viewport.tiles_y()) as usize;
-        target.pending = Some(Box::new(PendingDepth::new(kind, target.scale, viewport.tiles_x(), tiles, jobs)));
+        let jobs = plans.iter().zip(jobs).map(|(plan, job)| (std::mem::take(job), draws(plan))).collect();
+        target.pending = Some(Box::new(PendingDepth::new(kind, target.scale, target.viewport(), jobs)));
         true
     }
 
@@ -302,7 +287,7 @@ impl Runner {
         item: &PlanItem,
         pass: &'a Pass,
         plans: &[Plan],
-        jobs: &mut [Option<Primitives>],
+        jobs: &'a [Primitives],
         sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
     ) -> Item<'a> {
         let samples = pass.target.samples;
@@ -318,7 +303,7 @@ impl Runner {
                     _ => None,
                 });
                 let draws = draws.collect();
-                Item::Job { primitives: jobs[*j].take().unwrap_or_default(), draws }
+                Item::Job { primitives: &jobs[*j], draws }
             }
         }
     }

@@ -1,24 +1,26 @@
-//! Shadow maps that are never drawn: a depth plane may keep the triangles of a pass in place of its texels.
+//! Shadow maps that are drawn where they are looked at: a depth plane may keep the triangles of a pass in place of its texels.
 //!
 //! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those alone. A pass that
 //! clears a texture's depth plane and draws nothing but depths into it, all kept by the same comparison, leaves its tile lists
-//! behind. A texel's value is then the nearest (or farthest) of its tile's triangles there, by the same coverage and depth
-//! that drawing uses: the bits are the same. For a lookup that compares, a bound of each triangle's depths decides most
-//! triangles, and a bound of all the tile's most lookups. Whoever needs all texels draws them: [`PendingDepth::resolve`].
+//! behind. A tile of few triangles is never drawn: a texel's value is the nearest (or farthest) of them there, by the same
+//! coverage and depth that drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn when it is
+//! first looked at. Either way the bits are the same, and for a lookup that compares, a bound of all the tile's triangles
+//! often decides alone. Whoever needs all texels draws them: [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
-//! Cost: a lookup is linear in the triangles of its block of 8x8 texels, eight a step.
+//! Cost: a lookup is linear in the triangles of a tile of few, eight a step; constant in others.
 
 use super::assemble::Primitives;
-use super::depth_ranges::DepthRanges;
-use super::fragment::{TilePlanes, stored};
-use super::pass::{DrawContext, Item, Pass, pattern};
+use super::fragment::{stored, stored_depth};
+use super::pass::{Pass, pattern};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
-use super::tile::TileRun;
-use crate::kernel::traverse::center_edges;
-use crate::{BLOCK, SUBPIXEL, Setup, TILE};
+use super::wide::{max, min};
+use crate::kernel::depths::merge_depths;
+use crate::kernel::traverse::{Window, center_edges};
+use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
@@ -40,30 +42,31 @@ struct PendingTile {
     bound: f32,
     /// The jobs that have triangles there, in [`PendingDepth::touching`].
     jobs: Range<usize>,
-    /// Its triangles by blocks, made when it is first searched.
-    grid: OnceLock<Box<Grid>>,
+    /// How many triangles that is.
+    count: u32,
+    /// How many lookups there were before it was known.
+    asked: AtomicU32,
+    /// What lookups go to, once there are some.
+    known: OnceLock<Known>,
 }
 
 /// A job, and an entry of its batch.
 type Entry = [u32; 2];
 
-/// A tile's triangles by blocks of 8x8 texels.
+/// How a tile's texels are found.
 #[derive(Debug)]
-struct Grid {
-    /// One list for the whole tile.
-    whole: bool,
-    /// Block by block.
-    entries: Vec<Entry>,
-    /// Where each block's entries begin.
-    starts: [u32; BLOCKS * BLOCKS + 1],
-    /// Eights of a block's entries, the rows of [`candidate`], made when it is first searched.
-    candidates: [OnceLock<Box<[f32]>>; BLOCKS * BLOCKS],
+enum Known {
+    /// Among its triangles. Eights of them are rows of [`candidate`].
+    Few { entries: Vec<Entry>, candidates: Box<[f32]> },
+    /// It is drawn, as stored.
+    Drawn(Box<[f32; TILE_PIXELS]>),
 }
 
-/// Blocks along a tile's side.
-const BLOCKS: usize = TILE / BLOCK;
-/// Tiles with no more entries than this have one list for all blocks.
-const FEW: usize = 32;
+/// Tiles with more entries than this are drawn: four eights are compared in less time than it takes to draw them.
+const FEW: u32 = 32;
+
+/// So many lookups in a tile are answered before it is drawn: small pictures have no more.
+const PATIENCE: u32 = 12;
 
 /// See the module.
 #[derive(Debug)]
@@ -76,7 +79,7 @@ pub(crate) struct PendingDepth {
     tiles: Vec<PendingTile>,
     /// Numbers of jobs, tile by tile.
     touching: Vec<u32>,
-    tiles_x: i32,
+    viewport: Viewport,
 }
 
 /// Whether a pass can be left pending: 1 or -1 for which depth stays, and the depth it clears to.
@@ -115,31 +118,31 @@ impl PendingDepth {
     pub(crate) fn new(
         (sign, clear): (f32, f32),
         scale: f32,
-        tiles_x: u32,
-        tiles: usize,
+        viewport: Viewport,
         jobs: Vec<(Primitives, Vec<ClippedState>)>,
     ) -> Self {
         let jobs: Vec<PendingJob> =
             jobs.into_iter().map(|(primitives, draws)| PendingJob { primitives, draws }).collect();
         let mut touching = Vec::new();
-        let tiles = (0..tiles).map(|tile| {
-            let (first, mut most) = (touching.len(), f32::NEG_INFINITY);
+        let tiles = (0..(viewport.tiles_x() * viewport.tiles_y()) as usize).map(|tile| {
+            let (first, mut most, mut count) = (touching.len(), f32::NEG_INFINITY, 0);
             for (number, job) in jobs.iter().enumerate() {
                 let batch = &job.primitives.batch;
                 let range = batch.tile_range(tile);
                 if !range.is_empty() {
                     touching.push(number as u32);
+                    count += range.len() as u32;
                     let its = |at| if sign > 0.0 { batch.item(at).z_max } else { -batch.item(at).z_min };
                     most = range.map(its).fold(most, f32::max);
                 }
             }
             // As read: stored and divided again. Both keep the order.
             let bound = if most.is_finite() { stored(most.abs(), scale) / scale * sign } else { most };
-            PendingTile { bound, jobs: first..touching.len(), grid: OnceLock::new() }
+            PendingTile { bound, jobs: first..touching.len(), count, asked: AtomicU32::new(0), known: OnceLock::new() }
         });
         let tiles = tiles.collect();
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, jobs, tiles, touching, tiles_x: tiles_x as i32 }
+        Self { sign, clear, scale, jobs, tiles, touching, viewport }
     }
 
     /// The primitives, to use their memory again.
@@ -160,7 +163,7 @@ impl PendingDepth {
         known: Option<F32x8<S>>,
     ) -> F32x8<S> {
         const SHIFT: u32 = TILE.trailing_zeros();
-        let tile = ((y >> SHIFT) * self.tiles_x + (x >> SHIFT)).to_array();
+        let tile = ((y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT)).to_array();
         let mut bounds = [f32::NEG_INFINITY; LANES];
         for lane in 0..LANES {
             if let Some(tile) = self.tiles.get(tile[lane] as u32 as usize) {
@@ -182,44 +185,74 @@ impl PendingDepth {
             while open != 0 {
                 let lane = open.trailing_zeros() as usize % LANES;
                 open &= open - 1;
-                depths[lane] = self.search(simd, x[lane], y[lane], tile[lane] as usize, floors[lane], best);
+                let (x, y) = (x[lane], y[lane]);
+                depths[lane] = match self.known(tile[lane] as usize) {
+                    None => self.scan(x, y, tile[lane] as usize, floors[lane], best),
+                    Some(Known::Few { entries, candidates }) => {
+                        self.search(simd, x, y, (entries, candidates), floors[lane], best)
+                    }
+                    Some(Known::Drawn(drawn)) => {
+                        drawn[y as usize % TILE * TILE + x as usize % TILE] / self.scale * self.sign
+                    }
+                };
             }
         }
         F32x8::from_slice(simd, &depths) * self.sign
     }
 
-    /// The best of a tile's triangles at a texel, if better than `floor` and `best`; times the sign.
+    /// The best of a few triangles at a texel, if better than `floor` and `best`; times the sign.
     #[inline(never)]
-    fn search<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, best: f32) -> f32 {
+    fn search<S: Simd>(
+        &self,
+        simd: S,
+        x: i32,
+        y: i32,
+        (entries, candidates): (&[Entry], &[f32]),
+        floor: f32,
+        mut best: f32,
+    ) -> f32 {
         simd.vectorize(
             #[inline(always)]
-            || self.search_inlined(simd, x, y, tile, floor, best),
+            || {
+                // Places within the tile, as the candidates' planes take them.
+                let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
+                for (eight, rows) in entries.chunks(LANES).zip(candidates.chunks_exact(ROWS * LANES)) {
+                    let mut bits = above(simd, rows, u, v, best.max(floor));
+                    while bits != 0 {
+                        let [job, at] = eight[bits.trailing_zeros() as usize];
+                        bits &= bits - 1;
+                        let job = &self.jobs[job as usize];
+                        let setup = job.primitives.batch.item(at as usize);
+                        best = self.better(job, setup, [x, y], floor, best);
+                    }
+                }
+                best
+            },
         )
     }
 
-    #[inline(always)]
-    fn search_inlined<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
-        let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
-        // Places within the tile, as the candidates' planes take them.
-        let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
-        let grid = self.grid(tile);
-        let block = if grid.whole { 0 } else { (y as usize % TILE / BLOCK) * BLOCKS + x as usize % TILE / BLOCK };
-        let entries = &grid.entries[grid.starts[block] as usize..grid.starts[block + 1] as usize];
-        let candidates = grid.candidates[block].get_or_init(|| self.candidates(entries, tile));
-        for (number, block) in candidates.chunks_exact(ROWS * LANES).enumerate() {
-            let mut bits = above(simd, block, u, v, best.max(floor));
-            while bits != 0 {
-                let entry = entries[number * LANES + bits.trailing_zeros() as usize];
-                bits &= bits - 1;
-                let setup = self.setup(entry);
-                let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
-                let allowed = || self.jobs[entry[0] as usize].allows(setup, x, y);
-                if depth > best.max(floor) && setup.covers(px, py) && allowed() {
-                    best = depth;
+    /// The same among all triangles of a tile, one by one.
+    #[inline(never)]
+    fn scan(&self, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
+        let place = [x, y].map(|v| v * SUBPIXEL + SUBPIXEL / 2);
+        let beside = |v: [i32; 3], at: i32| v.iter().all(|v| *v < at) || v.iter().all(|v| *v > at);
+        for &job in &self.touching[self.tiles[tile].jobs.clone()] {
+            let job = &self.jobs[job as usize];
+            for setup in job.primitives.batch.tile(tile) {
+                if !beside(setup.x, place[0]) && !beside(setup.y, place[1]) {
+                    best = self.better(job, setup, [x, y], floor, best);
                 }
             }
         }
         best
+    }
+
+    /// A triangle's depth at a texel if it is better than `floor` and `best`, else `best`; times the sign.
+    #[inline(always)]
+    fn better(&self, job: &PendingJob, setup: &Setup, [x, y]: [i32; 2], floor: f32, best: f32) -> f32 {
+        let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
+        let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
+        if depth > best.max(floor) && setup.covers(px, py) && job.allows(setup, x, y) { depth } else { best }
     }
 
     #[inline(always)]
@@ -228,59 +261,40 @@ impl PendingDepth {
     }
 
     /// The first pixel of a tile.
-    fn origin(&self, tile: usize) -> [i32; 2] {
-        [tile as i32 % self.tiles_x * TILE as i32, tile as i32 / self.tiles_x * TILE as i32]
+    fn origin(&self, tile: usize) -> [u32; 2] {
+        let (tile, across) = (tile as u32, self.viewport.tiles_x());
+        [tile % across * TILE as u32, tile / across * TILE as u32]
     }
 
-    /// The finer lists of a tile.
-    fn grid(&self, tile: usize) -> &Grid {
+    /// How the texels of a tile are found; none if it was asked for too seldom.
+    #[inline(always)]
+    fn known(&self, tile: usize) -> Option<&Known> {
         let pending = &self.tiles[tile];
-        pending.grid.get_or_init(|| {
-            let origin = self.origin(tile);
-            let mut all: Vec<Entry> = Vec::new();
-            for &job in &self.touching[pending.jobs.clone()] {
-                let range = self.jobs[job as usize].primitives.batch.tile_range(tile);
-                all.extend(range.map(|at| [job, at as u32]));
-            }
-            let mut starts = [0; BLOCKS * BLOCKS + 1];
-            let candidates = [const { OnceLock::new() }; BLOCKS * BLOCKS];
-            if all.len() <= FEW {
-                starts[1..].fill(all.len() as u32);
-                return Box::new(Grid { whole: true, entries: all, starts, candidates });
-            }
-            // Texels whose centres may lie within the box.
-            let span = |v: [i32; 3], origin: i32| {
-                let low = ((v[0].min(v[1]).min(v[2]) >> 8) - 1 - origin).clamp(0, TILE as i32 - 1);
-                let high = ((v[0].max(v[1]).max(v[2]) >> 8) + 1 - origin).clamp(0, TILE as i32 - 1);
-                [(low as usize / BLOCK) as u8, (high as usize / BLOCK) as u8]
-            };
-            let blocks = |[x, y]: [[u8; 2]; 2]| (y[0]..=y[1]).flat_map(move |y| (x[0]..=x[1]).map(move |x| (x, y)));
-            let number = |(x, y): (u8, u8)| usize::from(y) * BLOCKS + usize::from(x);
-            let mut spans = Vec::with_capacity(all.len());
-            for &entry in &all {
-                let setup = self.setup(entry);
-                let spanned = [span(setup.x, origin[0]), span(setup.y, origin[1])];
-                blocks(spanned).for_each(|block| starts[number(block) + 1] += 1);
-                spans.push(spanned);
-            }
-            for block in 0..BLOCKS * BLOCKS {
-                starts[block + 1] += starts[block];
-            }
-            let (mut next, mut entries) = (starts, vec![[0; 2]; starts[BLOCKS * BLOCKS] as usize]);
-            for (&entry, &spanned) in all.iter().zip(&spans) {
-                for block in blocks(spanned) {
-                    let next = &mut next[number(block)];
-                    entries[*next as usize] = entry;
-                    *next += 1;
-                }
-            }
-            Box::new(Grid { whole: false, entries, starts, candidates })
-        })
+        pending.known.get().or_else(
+            #[inline(always)]
+            || {
+                let patient = pending.count > FEW && pending.asked.fetch_add(1, Ordering::Relaxed) < PATIENCE;
+                (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
+            },
+        )
+    }
+
+    #[inline(never)]
+    fn know(&self, tile: usize) -> Known {
+        let pending = &self.tiles[tile];
+        if pending.count > FEW {
+            return Known::Drawn(self.draw(tile));
+        }
+        let range = |job: u32| self.jobs[job as usize].primitives.batch.tile_range(tile);
+        let touching = self.touching[pending.jobs.clone()].iter();
+        let entries: Vec<Entry> = touching.flat_map(|&job| range(job).map(move |at| [job, at as u32])).collect();
+        let candidates = self.candidates(&entries, tile);
+        Known::Few { entries, candidates }
     }
 
     /// Eights of entries, row by row; what is missing to an eight is below everything.
     fn candidates(&self, entries: &[Entry], tile: usize) -> Box<[f32]> {
-        let origin = self.origin(tile);
+        let origin = self.origin(tile).map(|v| v as i32);
         let mut rows = vec![f32::NEG_INFINITY; entries.len().div_ceil(LANES) * ROWS * LANES];
         for (eight, rows) in entries.chunks(LANES).zip(rows.chunks_exact_mut(ROWS * LANES)) {
             for (lane, &entry) in eight.iter().enumerate() {
@@ -293,39 +307,84 @@ impl PendingDepth {
         rows.into_boxed_slice()
     }
 
+    /// The depths of a tile with everything drawn, as stored.
+    #[inline(never)]
+    fn draw(&self, tile: usize) -> Box<[f32; TILE_PIXELS]> {
+        let mut depths = Box::new([self.clear; TILE_PIXELS]);
+        dispatch!(Level::new(), simd => self.draw_into(simd, tile, &mut depths));
+        depths
+    }
+
+    fn draw_into<S: Simd>(&self, simd: S, tile: usize, depths: &mut [f32; TILE_PIXELS]) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let ([x, y], one, scale) = (self.origin(tile), pattern(1), self.scale);
+                for &job in &self.touching[self.tiles[tile].jobs.clone()] {
+                    let job = &self.jobs[job as usize];
+                    let (mut window, mut window_of) = ([0..0, 0..0], u32::MAX);
+                    for setup in job.primitives.batch.tile(tile) {
+                        let draw = job.primitives.facets[setup.facet as usize].draw;
+                        if window_of != draw {
+                            (window, window_of) = (job.window(draw, [x, y]), draw);
+                        }
+                        if self.sign > 0.0 {
+                            merge_depths(
+                                simd,
+                                setup,
+                                (x, y),
+                                &window,
+                                &one,
+                                depths,
+                                #[inline(always)]
+                                |new, old| max(stored_depth(simd, new, scale), old),
+                            );
+                        } else {
+                            merge_depths(
+                                simd,
+                                setup,
+                                (x, y),
+                                &window,
+                                &one,
+                                depths,
+                                #[inline(always)]
+                                |new, old| min(stored_depth(simd, new, scale), old),
+                            );
+                        }
+                    }
+                }
+            },
+        );
+    }
+
     /// Which depth stays: 1 the larger, -1 the smaller.
     pub(crate) fn sign(&self) -> f32 {
         self.sign
     }
 
     /// Draws everything into the plane.
-    pub(crate) fn resolve(self, plane: &mut Plane<f32>, scale: f32) {
-        let viewport = plane.viewport();
-        let tiles_x = viewport.tiles_x();
-        let layout = super::shade::Layout::default();
-        let states: Vec<Vec<ClippedState>> = self.jobs.iter().map(|job| job.draws.clone()).collect();
-        let items: Vec<Item<'_>> = self
-            .jobs
-            .into_iter()
-            .zip(&states)
-            .map(|(job, draws)| Item::Job {
-                primitives: job.primitives,
-                draws: draws.iter().map(|(state, clip)| DrawContext::depth_alone(state, *clip, &layout)).collect(),
-            })
-            .collect();
-        let one = pattern(1);
+    pub(crate) fn resolve(mut self, plane: &mut Plane<f32>) {
         for (index, tile) in plane.tiles.iter_mut().enumerate() {
             *tile = PlaneTile::new(self.clear);
-            let (x, y) = (index as u32 % tiles_x * TILE as u32, index as u32 / tiles_x * TILE as u32);
-            let ranges = DepthRanges::new();
-            let planes = TilePlanes { color: None, depth: Some((tile, scale)), stencil: None, samples: 1, ranges };
-            let mut run = TileRun::new(index, x, y, viewport, planes);
-            dispatch!(Level::new(), simd => run.walk(simd, &items, &one, &one));
+            if !self.tiles[index].jobs.is_empty() {
+                let drawn = match self.tiles[index].known.take() {
+                    Some(Known::Drawn(drawn)) => drawn,
+                    _ => self.draw(index),
+                };
+                tile.replace(u64::MAX, true, 1).copy_from_slice(&drawn[..]);
+            }
         }
     }
 }
 
 impl PendingJob {
+    /// The pixels of the tile at pixel `origin` that a draw may touch.
+    fn window(&self, draw: u32, origin: [u32; 2]) -> Window {
+        let [x0, y0, x1, y1] = self.draws[draw as usize].1;
+        let within = |v: i32, axis: usize| (v - origin[axis] as i32).clamp(0, TILE as i32) as usize;
+        [within(x0, 0)..within(x1, 0), within(y0, 1)..within(y1, 1)]
+    }
+
     fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
         let draw = self.primitives.facets[setup.facet as usize].draw;
         let [x0, y0, x1, y1] = self.draws[draw as usize].1;

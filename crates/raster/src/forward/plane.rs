@@ -320,7 +320,7 @@ impl DepthPlane {
     /// All samples, after drawing what is pending.
     pub fn resolved(&mut self) -> &mut Plane<f32> {
         if let Some(pending) = self.pending.take() {
-            pending.resolve(&mut self.plane, self.scale);
+            pending.resolve(&mut self.plane);
         }
         &mut self.plane
     }

@@ -219,7 +219,7 @@ pub(crate) struct Placed {
     x: [i32; 3],
     y: [i32; 3],
     /// First and last column and row.
-    columns: [usize; 2],
+    pub(crate) columns: [usize; 2],
     pub(crate) rows: [usize; 2],
 }
 

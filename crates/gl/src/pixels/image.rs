@@ -67,6 +67,17 @@ impl TextureImage {
         self.full().iter().product()
     }
 
+    /// Size of its texels in memory.
+    pub(crate) fn bytes(&self) -> usize {
+        self.texel_count() * self.format.texel_bytes()
+    }
+
+    /// Size of the copy that a change of its texels makes, since something else has them.
+    pub(crate) fn copied_bytes(&self) -> usize {
+        let shared = self.level.as_ref().is_some_and(|level| Arc::strong_count(level) > 1);
+        if shared { self.bytes() } else { 0 }
+    }
+
     fn viewport(&self) -> Option<Viewport> {
         Viewport::new(self.size[0], self.size[1])
     }

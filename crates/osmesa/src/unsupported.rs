@@ -32,31 +32,31 @@ unsupported! {
     glBeginConditionalRenderNV glBeginQueryIndexed glBeginTransformFeedback glBindAttribLocation
     glBindAttribLocationARB glBindBufferBase glBindBufferRange glBindBuffersBase glBindBuffersRange
     glBindFragDataLocation glBindFragDataLocationEXT glBindFragDataLocationIndexed glBindImageTexture
-    glBindImageTextures glBindProgramARB glBindProgramPipeline glBindSampler glBindSamplers glBindTextures
+    glBindImageTextures glBindProgramARB glBindProgramPipeline glBindSamplers glBindTextures
     glBindTransformFeedback glBindVertexBuffer glBindVertexBuffers glBlendBarrier glBlendEquationSeparatei
     glBlendEquationSeparateiARB glBlendEquationi glBlendEquationiARB glBlendFuncSeparatei glBlendFuncSeparateiARB
     glBlendFunci glBlendFunciARB glBufferStorage glClampColor glClampColorARB glClearBufferData glClearBufferSubData
     glClearBufferfi glClearBufferfv glClearBufferiv glClearBufferuiv glClearColorIiEXT glClearColorIuiEXT
-    glClearColorx glClearDepthf glClearDepthx glClearTexImage glClearTexSubImage glClientWaitSync glClipPlanef
+    glClearColorx glClearDepthf glClearDepthx glClearTexImage glClearTexSubImage glClipPlanef
     glClipPlanex glColor4x glColorMaskIndexedEXT glColorMaski glColorP3ui glColorP3uiv glColorP4ui glColorP4uiv
     glColorSubTable glColorTable glColorTableParameterfv glColorTableParameteriv glCompileShader glCompileShaderARB
     glConvolutionFilter1D glConvolutionFilter2D glConvolutionParameterf glConvolutionParameterfv
-    glConvolutionParameteri glConvolutionParameteriv glCopyBufferSubData glCopyColorSubTable glCopyColorTable
+    glConvolutionParameteri glConvolutionParameteriv glCopyColorSubTable glCopyColorTable
     glCopyConvolutionFilter1D glCopyConvolutionFilter2D glCopyImageSubData glCreateProgram glCreateProgramObjectARB
     glCreateShader glCreateShaderObjectARB glCreateShaderProgramv glDeleteObjectARB glDeleteProgram
-    glDeleteProgramPipelines glDeleteProgramsARB glDeleteSamplers glDeleteShader glDeleteSync
+    glDeleteProgramPipelines glDeleteProgramsARB glDeleteShader
     glDeleteTransformFeedbacks glDepthRangeArrayv glDepthRangeIndexed glDepthRangef glDepthRangex glDetachObjectARB
     glDetachShader glDisableIndexedEXT glDisableVertexAttribArray glDisableVertexAttribArrayARB glDisablei
     glDispatchCompute glDispatchComputeIndirect glDrawArraysIndirect glDrawArraysInstanced glDrawArraysInstancedARB
     glDrawArraysInstancedBaseInstance glDrawArraysInstancedEXT glDrawBuffers glDrawBuffersARB glDrawBuffersATI
-    glDrawElementsBaseVertex glDrawElementsIndirect glDrawElementsInstanced glDrawElementsInstancedARB
+    glDrawElementsIndirect glDrawElementsInstanced glDrawElementsInstancedARB
     glDrawElementsInstancedBaseInstance glDrawElementsInstancedBaseVertex
-    glDrawElementsInstancedBaseVertexBaseInstance glDrawElementsInstancedEXT glDrawRangeElementsBaseVertex
+    glDrawElementsInstancedBaseVertexBaseInstance glDrawElementsInstancedEXT
     glDrawTransformFeedback glDrawTransformFeedbackInstanced glDrawTransformFeedbackStream
     glDrawTransformFeedbackStreamInstanced glEnableIndexedEXT glEnableVertexAttribArray glEnableVertexAttribArrayARB
-    glEnablei glEndConditionalRender glEndConditionalRenderNV glEndQueryIndexed glEndTransformFeedback glFenceSync
+    glEnablei glEndConditionalRender glEndConditionalRenderNV glEndQueryIndexed glEndTransformFeedback
     glFogx glFogxv glFramebufferParameteri glFramebufferTexture glFrustumf glFrustumx glGenProgramPipelines
-    glGenProgramsARB glGenSamplers glGenTransformFeedbacks glGetActiveAtomicCounterBufferiv glGetActiveAttrib
+    glGenProgramsARB glGenTransformFeedbacks glGetActiveAtomicCounterBufferiv glGetActiveAttrib
     glGetActiveAttribARB glGetActiveUniform glGetActiveUniformARB glGetActiveUniformBlockName
     glGetActiveUniformBlockiv glGetActiveUniformName glGetActiveUniformsiv glGetAttachedObjectsARB
     glGetAttachedShaders glGetAttribLocation glGetAttribLocationARB glGetBooleanIndexedvEXT glGetBooleani_v
@@ -64,16 +64,16 @@ unsupported! {
     glGetColorTableParameteriv glGetConvolutionFilter glGetConvolutionParameterfv glGetConvolutionParameteriv
     glGetDoublei_v glGetFixedv glGetFloati_v glGetFragDataIndex glGetFragDataLocation glGetFragDataLocationEXT
     glGetFramebufferParameteriv glGetGraphicsResetStatus glGetGraphicsResetStatusARB glGetHandleARB glGetHistogram
-    glGetHistogramParameterfv glGetHistogramParameteriv glGetInfoLogARB glGetInteger64i_v glGetInteger64v
+    glGetHistogramParameterfv glGetHistogramParameteriv glGetInfoLogARB glGetInteger64i_v
     glGetIntegerIndexedvEXT glGetIntegeri_v glGetLightxv glGetMaterialxv glGetMinmax glGetMinmaxParameterfv
     glGetMinmaxParameteriv glGetMultisamplefv glGetObjectLabelEXT glGetObjectParameterfvARB glGetObjectParameterivARB
     glGetProgramBinary glGetProgramEnvParameterdvARB glGetProgramEnvParameterfvARB glGetProgramInfoLog
     glGetProgramInterfaceiv glGetProgramLocalParameterdvARB glGetProgramLocalParameterfvARB
     glGetProgramPipelineInfoLog glGetProgramPipelineiv glGetProgramResourceIndex glGetProgramResourceLocation
     glGetProgramResourceName glGetProgramResourceiv glGetProgramStringARB glGetProgramiv glGetProgramivARB
-    glGetQueryIndexediv glGetSamplerParameterIiv glGetSamplerParameterIuiv glGetSamplerParameterfv
-    glGetSamplerParameteriv glGetSeparableFilter glGetShaderInfoLog glGetShaderPrecisionFormat glGetShaderSource
-    glGetShaderSourceARB glGetShaderiv glGetStringi glGetSynciv glGetTexEnvxv glGetTexParameterIiv
+    glGetQueryIndexediv
+    glGetSeparableFilter glGetShaderInfoLog glGetShaderPrecisionFormat glGetShaderSource
+    glGetShaderSourceARB glGetShaderiv glGetStringi glGetTexEnvxv glGetTexParameterIiv
     glGetTexParameterIivEXT glGetTexParameterIuiv glGetTexParameterIuivEXT glGetTexParameterxv
     glGetTransformFeedbackVarying glGetUniformBlockIndex glGetUniformIndices glGetUniformLocation
     glGetUniformLocationARB glGetUniformfv glGetUniformfvARB glGetUniformiv glGetUniformivARB glGetUniformuiv
@@ -86,10 +86,10 @@ unsupported! {
     glGetnUniformfvARB glGetnUniformiv glGetnUniformivARB glGetnUniformuiv glGetnUniformuivARB glHistogram
     glInvalidateBufferData glInvalidateBufferSubData glInvalidateFramebuffer glInvalidateSubFramebuffer
     glInvalidateTexImage glInvalidateTexSubImage glIsEnabledIndexedEXT glIsEnabledi glIsProgram glIsProgramARB
-    glIsProgramPipeline glIsSampler glIsShader glIsSync glIsTransformFeedback glLabelObjectEXT glLightModelx
+    glIsProgramPipeline glIsShader glIsTransformFeedback glLabelObjectEXT glLightModelx
     glLightModelxv glLightx glLightxv glLineWidthx glLinkProgram glLinkProgramARB glLoadMatrixx glMaterialx
     glMaterialxv glMemoryBarrier glMemoryBarrierByRegion glMinSampleShading glMinSampleShadingARB glMinmax
-    glMultMatrixx glMultiDrawArraysIndirect glMultiDrawElementsBaseVertex glMultiDrawElementsIndirect
+    glMultMatrixx glMultiDrawArraysIndirect glMultiDrawElementsIndirect
     glMultiTexCoord4x glMultiTexCoordP1ui glMultiTexCoordP1uiv glMultiTexCoordP2ui glMultiTexCoordP2uiv
     glMultiTexCoordP3ui glMultiTexCoordP3uiv glMultiTexCoordP4ui glMultiTexCoordP4uiv glNormal3x glNormalP3ui
     glNormalP3uiv glOrthof glOrthox glPatchParameteri glPauseTransformFeedback glPointParameterx glPointParameterxv
@@ -106,8 +106,8 @@ unsupported! {
     glProgramUniformMatrix3x2fv glProgramUniformMatrix3x4fv glProgramUniformMatrix4fv glProgramUniformMatrix4x2fv
     glProgramUniformMatrix4x3fv glProvokingVertex glProvokingVertexEXT glReadnPixels glReadnPixelsARB
     glReleaseShaderCompiler glResetHistogram glResetMinmax glResumeTransformFeedback glRotatex glSampleCoveragex
-    glSampleMaski glSamplerParameterIiv glSamplerParameterIuiv glSamplerParameterf glSamplerParameterfv
-    glSamplerParameteri glSamplerParameteriv glScalex glScissorArrayv glScissorIndexed glScissorIndexedv
+    glSampleMaski
+    glScalex glScissorArrayv glScissorIndexed glScissorIndexedv
     glSecondaryColorP3ui glSecondaryColorP3uiv glSeparableFilter2D glShaderBinary glShaderSource glShaderSourceARB
     glStencilFuncSeparate glStencilMaskSeparate glTexBuffer glTexBufferARB glTexBufferRange glTexCoordP1ui
     glTexCoordP1uiv glTexCoordP2ui glTexCoordP2uiv glTexCoordP3ui glTexCoordP3uiv glTexCoordP4ui glTexCoordP4uiv
@@ -150,5 +150,5 @@ unsupported! {
     glVertexAttribIPointerEXT glVertexAttribLFormat glVertexAttribP1ui glVertexAttribP1uiv glVertexAttribP2ui
     glVertexAttribP2uiv glVertexAttribP3ui glVertexAttribP3uiv glVertexAttribP4ui glVertexAttribP4uiv
     glVertexAttribPointer glVertexAttribPointerARB glVertexBindingDivisor glVertexP2ui glVertexP2uiv glVertexP3ui
-    glVertexP3uiv glVertexP4ui glVertexP4uiv glViewportArrayv glViewportIndexedf glViewportIndexedfv glWaitSync
+    glVertexP3uiv glVertexP4ui glVertexP4uiv glViewportArrayv glViewportIndexedf glViewportIndexedfv
 }

@@ -27,6 +27,7 @@ mod mipmap;
 mod names;
 mod read_pixels;
 mod renderbuffer;
+mod sampler;
 mod store;
 mod target;
 #[cfg(test)]
@@ -46,4 +47,5 @@ pub(crate) use default::DefaultFramebuffer;
 pub use default::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};
 pub(crate) use framebuffer::FramebufferBindings;
 pub(crate) use renderbuffer::RenderbufferHandle;
+pub(crate) use sampler::SamplerHandle;
 pub(crate) use texture::TextureHandle;

@@ -500,6 +500,9 @@ entry_points! {
     glTexParameterfv => tex_parameterfv(target: u32, pname: u32, params: usize) -> ();
     glTexParameteri => tex_parameteri(target: u32, pname: u32, param: i32) -> ();
     glTexParameteriv => tex_parameteriv(target: u32, pname: u32, params: usize) -> ();
+    glTexStorage1D => tex_storage_1d(target: u32, levels: i32, internalformat: u32, width: i32) -> ();
+    glTexStorage2D => tex_storage_2d(target: u32, levels: i32, internalformat: u32, width: i32, height: i32) -> ();
+    glTexStorage3D => tex_storage_3d(target: u32, levels: i32, internalformat: u32, width: i32, height: i32, depth: i32) -> ();
     glTexSubImage1D glTexSubImage1DEXT => tex_sub_image_1d(target: u32, level: i32, xoffset: i32, width: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage2D glTexSubImage2DEXT => tex_sub_image_2d(target: u32, level: i32, xoffset: i32, yoffset: i32, width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage3D glTexSubImage3DEXT => tex_sub_image_3d(target: u32, level: i32, xoffset: i32, yoffset: i32, zoffset: i32, width: i32, height: i32, depth: i32, format: u32, type_: u32, pixels: usize) -> ();

@@ -21,7 +21,7 @@ impl Context {
     }
 
     /// Whether a call may go on with this fence; else records the error.
-    fn knows_fence(&mut self, call: &str, sync: usize) -> bool {
+    pub(super) fn knows_fence(&mut self, call: &str, sync: usize) -> bool {
         if !self.may_set(call) {
             return false;
         }
@@ -60,6 +60,7 @@ impl Context {
         let call = "glDeleteSync";
         if (sync != 0 || !self.may_set(call)) && self.knows_fence(call, sync) {
             self.fences().names.remove(&sync);
+            self.forget_label(gl::SYNC_FENCE, sync as u32);
         }
     }
 

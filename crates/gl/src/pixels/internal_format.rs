@@ -213,6 +213,28 @@ impl InternalFormat {
     }
 }
 
+/// Whether a token says how many bits there are.
+pub(crate) fn is_sized(token: u32) -> bool {
+    !matches!(
+        token,
+        1..=4
+            | ALPHA
+            | LUMINANCE
+            | LUMINANCE_ALPHA
+            | INTENSITY
+            | RED
+            | RG
+            | RGB
+            | RGBA
+            | SRGB_EXT
+            | SRGB_ALPHA_EXT
+            | SLUMINANCE_EXT
+            | SLUMINANCE_ALPHA_EXT
+            | DEPTH_COMPONENT
+            | DEPTH_STENCIL
+    )
+}
+
 fn color(token: u32) -> Option<(u32, Storage)> {
     use Storage::{Float, Half, Srgb8, Unorm8, Unorm16};
     Some(match token {

@@ -84,6 +84,7 @@ impl Context {
             if lock(&self.shared.samplers).remove(&name).is_none() {
                 continue;
             }
+            self.forget_label(SAMPLER, name);
             for unit in 0..MAX_TEXTURE_UNITS {
                 if self.sampler_name(unit) == name {
                     self.textures.samplers[unit] = None;

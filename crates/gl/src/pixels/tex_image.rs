@@ -3,7 +3,7 @@
 use super::format::{Content, PixelFormat};
 use super::image::{TextureImage, lock};
 use super::internal_format::InternalFormat;
-use super::store::{ClientImage, MAX_IMAGE_BYTES};
+use super::store::ClientImage;
 use super::texels;
 use super::texture::{ImageTarget, slot};
 use super::transfer::Transfer;
@@ -73,8 +73,7 @@ impl ImageArguments {
             return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
         }
         let limit = (target.max_size() >> level) as u32 + 2 * border;
-        let texels = size.iter().try_fold(format.texel_bytes(), |n, &s| n.checked_mul(s as usize));
-        let too_large = texels.is_none_or(|n| n > MAX_IMAGE_BYTES);
+        let too_large = !TextureImage::fits(&format, size);
         let beyond = size[..self.dimensions].iter().any(|&s| s > limit);
         if beyond && !target.proxy {
             return Err((INVALID_VALUE, "a size is larger than the target allows at this level"));
@@ -168,7 +167,7 @@ impl Context {
             return;
         }
         let checked = arguments.check().and_then(|c| formats_agree(format?, &c.format).map(|()| c));
-        match checked {
+        match checked.and_then(|c| self.may_get_image(c.target).map(|()| c)) {
             Err((error, why)) => self.record_error(error, arguments.call, why),
             Ok(checked) => {
                 let transfer = Transfer::new(&self.state.pixel);

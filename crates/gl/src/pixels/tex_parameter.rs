@@ -196,7 +196,13 @@ impl Context {
             let texture = c.target_texture(ImageTarget { slot, face: 0, proxy: false });
             let mut texture = lock(&texture);
             let mut parameters = texture.parameters.clone();
-            match set(&mut parameters, slot, pname, value) {
+            let result = set(&mut parameters, slot, pname, value);
+            if let Some(levels) = texture.immutable_levels() {
+                let [base, last] = parameters.levels;
+                let base = base.min(levels as i32 - 1);
+                parameters.levels = [base, last.clamp(base, levels as i32 - 1)];
+            }
+            match result {
                 Err((error, why)) => {
                     drop(texture);
                     c.record_error(error, call, why);
@@ -249,7 +255,10 @@ impl Context {
             return None;
         };
         let texture = self.target_texture(ImageTarget { slot, face: 0, proxy: false });
-        let values = get(&lock(&texture).parameters, pname);
+        let values = match pname {
+            TEXTURE_IMMUTABLE_FORMAT => Some((vec![f64::from(u8::from(lock(&texture).immutable))], false)),
+            _ => get(&lock(&texture).parameters, pname),
+        };
         if values.is_none() {
             self.record_error(INVALID_ENUM, call, "pname is not a texture parameter");
         }

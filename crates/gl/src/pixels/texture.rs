@@ -1,6 +1,7 @@
 //! Texture objects: parameters, images, completeness, and the snapshot that draws sample.
 
 use super::image::TextureImage;
+use super::internal_format::InternalFormat;
 use crate::enums::*;
 use crate::state::{MAX_3D_TEXTURE_SIZE, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
@@ -75,6 +76,8 @@ pub(crate) struct TextureObject {
     pub slot: usize,
     /// `TexParameter`.
     pub parameters: TextureParameters,
+    /// `TEXTURE_IMMUTABLE_FORMAT`: its images keep their sizes and formats.
+    pub immutable: bool,
     /// Faces of levels.
     faces: Vec<Vec<Option<TextureImage>>>,
     /// What was last sampled, whether cube maps were seamless then, and with which sampler's parameters.
@@ -89,6 +92,7 @@ impl TextureObject {
             name,
             slot,
             parameters: TextureParameters::new(slot),
+            immutable: false,
             faces: (0..faces).map(|_| Vec::new()).collect(),
             snapshot: None,
         }
@@ -116,6 +120,21 @@ impl TextureObject {
             levels.resize_with(level + 1, || None);
         }
         levels[level] = image;
+    }
+
+    /// Gives every face `levels` images, the first of `size`, each of half the size before.
+    pub(crate) fn allocate(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) {
+        self.touch();
+        let sizes: Vec<_> =
+            std::iter::successors(Some(size), |&size| Some(self.next_size(size))).take(levels).collect();
+        for face in &mut self.faces {
+            *face = sizes.iter().map(|&size| Some(TextureImage::new(format, size, 0))).collect();
+        }
+    }
+
+    /// The number of its levels, if they are immutable.
+    pub(crate) fn immutable_levels(&self) -> Option<usize> {
+        self.immutable.then(|| self.faces[0].len())
     }
 
     /// The base level's number, if an image can have that.

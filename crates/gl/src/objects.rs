@@ -1,6 +1,6 @@
 //! Objects that contexts may share.
 
-use crate::pixels::{RenderbufferHandle, TextureHandle};
+use crate::pixels::{RenderbufferHandle, SamplerHandle, TextureHandle};
 pub use crate::vertices::{Buffer, List, ListNames};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,6 +21,10 @@ pub struct Shared {
     pub(crate) textures: Mutex<Names<TextureHandle>>,
     /// Renderbuffers.
     pub(crate) renderbuffers: Mutex<Names<RenderbufferHandle>>,
+    /// Sampler objects.
+    pub(crate) samplers: Mutex<Names<SamplerHandle>>,
+    /// Fences.
+    pub(crate) fences: Mutex<crate::api::Fences>,
     /// Grows when an image that a framebuffer may have attached gets new storage.
     pub(crate) storage_epoch: AtomicU64,
 }

@@ -361,9 +361,9 @@ fn the_scale_of_alpha_holds_beside_an_unscaled_dot_product() {
 fn errors_where_several_rules_meet() {
     let mut c = Stage::new(2, 2);
     // A packed type with a format that is not its own, be it known or not.
-    c.draw_pixels(1, 1, 0x8227, gl::UNSIGNED_SHORT_5_6_5, BUFFER);
+    c.draw_pixels(1, 1, 0x8228, gl::UNSIGNED_SHORT_5_6_5, BUFFER);
     assert_eq!(c.get_error(), gl::INVALID_OPERATION);
-    c.draw_pixels(1, 1, 0x8227, gl::UNSIGNED_BYTE, BUFFER);
+    c.draw_pixels(1, 1, 0x8228, gl::UNSIGNED_BYTE, BUFFER);
     assert_eq!(c.get_error(), gl::INVALID_ENUM);
     // One of format and internal format is of depth.
     let depth = gl::DEPTH_COMPONENT24 as i32;

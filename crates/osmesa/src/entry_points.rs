@@ -33,6 +33,7 @@ entry_points! {
     glBindFramebufferEXT => bind_framebuffer_ext(target: u32, framebuffer: u32) -> ();
     glBindRenderbuffer => bind_renderbuffer(target: u32, renderbuffer: u32) -> ();
     glBindRenderbufferEXT => bind_renderbuffer_ext(target: u32, renderbuffer: u32) -> ();
+    glBindSampler => bind_sampler(unit: u32, sampler: u32) -> ();
     glBindTexture glBindTextureEXT => bind_texture(target: u32, texture: u32) -> ();
     glBindVertexArray => bind_vertex_array(array: u32) -> ();
     glBitmap => bitmap(width: i32, height: i32, xorig: f32, yorig: f32, xmove: f32, ymove: f32, bitmap: usize) -> ();
@@ -54,6 +55,7 @@ entry_points! {
     glClearIndex => clear_index(c: f32) -> ();
     glClearStencil => clear_stencil(s: i32) -> ();
     glClientActiveTexture glClientActiveTextureARB => client_active_texture(texture: u32) -> ();
+    glClientWaitSync => client_wait_sync(sync: usize, flags: u32, timeout: u64) -> u32;
     glClipControl => clip_control(origin: u32, depth: u32) -> ();
     glClipPlane => clip_plane(plane: u32, equation: usize) -> ();
     glColor3b => color_3b(red: i8, green: i8, blue: i8) -> ();
@@ -98,6 +100,7 @@ entry_points! {
     glCompressedTexSubImage1D glCompressedTexSubImage1DARB => compressed_tex_sub_image_1d(target: u32, level: i32, xoffset: i32, width: i32, format: u32, image_size: i32, data: usize) -> ();
     glCompressedTexSubImage2D glCompressedTexSubImage2DARB => compressed_tex_sub_image_2d(target: u32, level: i32, xoffset: i32, yoffset: i32, width: i32, height: i32, format: u32, image_size: i32, data: usize) -> ();
     glCompressedTexSubImage3D glCompressedTexSubImage3DARB => compressed_tex_sub_image_3d(target: u32, level: i32, xoffset: i32, yoffset: i32, zoffset: i32, width: i32, height: i32, depth: i32, format: u32, image_size: i32, data: usize) -> ();
+    glCopyBufferSubData => copy_buffer_sub_data(read_target: u32, write_target: u32, read_offset: isize, write_offset: isize, size: isize) -> ();
     glCopyPixels => copy_pixels(x: i32, y: i32, width: i32, height: i32, type_: u32) -> ();
     glCopyTexImage1D glCopyTexImage1DEXT => copy_tex_image_1d(target: u32, level: i32, internalformat: u32, x: i32, y: i32, width: i32, border: i32) -> ();
     glCopyTexImage2D glCopyTexImage2DEXT => copy_tex_image_2d(target: u32, level: i32, internalformat: u32, x: i32, y: i32, width: i32, height: i32, border: i32) -> ();
@@ -113,6 +116,8 @@ entry_points! {
     glDeleteLists => delete_lists(list: u32, range: i32) -> ();
     glDeleteQueries glDeleteQueriesARB => delete_queries(n: i32, ids: usize) -> ();
     glDeleteRenderbuffers glDeleteRenderbuffersEXT => delete_renderbuffers(n: i32, renderbuffers: usize) -> ();
+    glDeleteSamplers => delete_samplers(count: i32, samplers: usize) -> ();
+    glDeleteSync => delete_sync(sync: usize) -> ();
     glDeleteTextures => delete_textures(n: i32, textures: usize) -> ();
     glDeleteTexturesEXT => delete_textures_ext(n: i32, textures: usize) -> ();
     glDeleteVertexArrays => delete_vertex_arrays(n: i32, arrays: usize) -> ();
@@ -124,8 +129,10 @@ entry_points! {
     glDrawArrays glDrawArraysEXT => draw_arrays(mode: u32, first: i32, count: i32) -> ();
     glDrawBuffer => draw_buffer(buf: u32) -> ();
     glDrawElements => draw_elements(mode: u32, count: i32, type_: u32, indices: usize) -> ();
+    glDrawElementsBaseVertex => draw_elements_base_vertex(mode: u32, count: i32, type_: u32, indices: usize, basevertex: i32) -> ();
     glDrawPixels => draw_pixels(width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
     glDrawRangeElements glDrawRangeElementsEXT => draw_range_elements(mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize) -> ();
+    glDrawRangeElementsBaseVertex => draw_range_elements_base_vertex(mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize, basevertex: i32) -> ();
     glEdgeFlag => edge_flag(flag: u8) -> ();
     glEdgeFlagPointer => edge_flag_pointer(stride: i32, pointer: usize) -> ();
     glEdgeFlagPointerEXT => edge_flag_pointer_ext(stride: i32, count: i32, pointer: usize) -> ();
@@ -148,6 +155,7 @@ entry_points! {
     glEvalPoint1 => eval_point_1(i: i32) -> ();
     glEvalPoint2 => eval_point_2(i: i32, j: i32) -> ();
     glFeedbackBuffer => feedback_buffer(size: i32, type_: u32, buffer: usize) -> ();
+    glFenceSync => fence_sync(condition: u32, flags: u32) -> usize;
     glFinish => finish() -> ();
     glFlush => flush() -> ();
     glFlushMappedBufferRange => flush_mapped_buffer_range(target: u32, offset: isize, length: isize) -> ();
@@ -172,6 +180,7 @@ entry_points! {
     glGenLists => gen_lists(range: i32) -> u32;
     glGenQueries glGenQueriesARB => gen_queries(n: i32, ids: usize) -> ();
     glGenRenderbuffers glGenRenderbuffersEXT => gen_renderbuffers(n: i32, renderbuffers: usize) -> ();
+    glGenSamplers => gen_samplers(count: i32, samplers: usize) -> ();
     glGenTextures => gen_textures(n: i32, textures: usize) -> ();
     glGenTexturesEXT => gen_textures_ext(n: i32, textures: usize) -> ();
     glGenVertexArrays => gen_vertex_arrays(n: i32, arrays: usize) -> ();
@@ -187,6 +196,7 @@ entry_points! {
     glGetError => get_error() -> u32;
     glGetFloatv => get_floatv(pname: u32, data: usize) -> ();
     glGetFramebufferAttachmentParameteriv glGetFramebufferAttachmentParameterivEXT => get_framebuffer_attachment_parameteriv(target: u32, attachment: u32, pname: u32, params: usize) -> ();
+    glGetInteger64v => get_integer64v(pname: u32, data: usize) -> ();
     glGetIntegerv => get_integerv(pname: u32, data: usize) -> ();
     glGetLightfv => get_lightfv(light: u32, pname: u32, params: usize) -> ();
     glGetLightiv => get_lightiv(light: u32, pname: u32, params: usize) -> ();
@@ -206,7 +216,12 @@ entry_points! {
     glGetQueryObjectuiv glGetQueryObjectuivARB => get_query_objectuiv(id: u32, pname: u32, params: usize) -> ();
     glGetQueryiv glGetQueryivARB => get_queryiv(target: u32, pname: u32, params: usize) -> ();
     glGetRenderbufferParameteriv glGetRenderbufferParameterivEXT => get_renderbuffer_parameteriv(target: u32, pname: u32, params: usize) -> ();
+    glGetSamplerParameterIiv => get_sampler_parameter_iiv(sampler: u32, pname: u32, params: usize) -> ();
+    glGetSamplerParameterIuiv => get_sampler_parameter_iuiv(sampler: u32, pname: u32, params: usize) -> ();
+    glGetSamplerParameterfv => get_sampler_parameterfv(sampler: u32, pname: u32, params: usize) -> ();
+    glGetSamplerParameteriv => get_sampler_parameteriv(sampler: u32, pname: u32, params: usize) -> ();
     glGetString => get_string(name: u32) -> usize;
+    glGetSynciv => get_synciv(sync: usize, pname: u32, count: i32, length: usize, values: usize) -> ();
     glGetTexEnvfv => get_tex_envfv(target: u32, pname: u32, params: usize) -> ();
     glGetTexEnviv => get_tex_enviv(target: u32, pname: u32, params: usize) -> ();
     glGetTexGendv => get_tex_gendv(coord: u32, pname: u32, params: usize) -> ();
@@ -239,6 +254,8 @@ entry_points! {
     glIsList => is_list(list: u32) -> u8;
     glIsQuery glIsQueryARB => is_query(id: u32) -> u8;
     glIsRenderbuffer glIsRenderbufferEXT => is_renderbuffer(renderbuffer: u32) -> u8;
+    glIsSampler => is_sampler(sampler: u32) -> u8;
+    glIsSync => is_sync(sync: usize) -> u8;
     glIsTexture => is_texture(texture: u32) -> u8;
     glIsTextureEXT => is_texture_ext(texture: u32) -> u8;
     glIsVertexArray => is_vertex_array(array: u32) -> u8;
@@ -282,6 +299,7 @@ entry_points! {
     glMultTransposeMatrixf glMultTransposeMatrixfARB => mult_transpose_matrixf(m: usize) -> ();
     glMultiDrawArrays glMultiDrawArraysEXT => multi_draw_arrays(mode: u32, first: usize, count: usize, drawcount: i32) -> ();
     glMultiDrawElements glMultiDrawElementsEXT => multi_draw_elements(mode: u32, count: usize, type_: u32, indices: usize, drawcount: i32) -> ();
+    glMultiDrawElementsBaseVertex => multi_draw_elements_base_vertex(mode: u32, count: usize, type_: u32, indices: usize, drawcount: i32, basevertex: usize) -> ();
     glMultiTexCoord1d glMultiTexCoord1dARB => multi_tex_coord_1d(target: u32, s: f64) -> ();
     glMultiTexCoord1dv glMultiTexCoord1dvARB => multi_tex_coord_1dv(target: u32, v: *const [f64; 1]) -> ();
     glMultiTexCoord1f glMultiTexCoord1fARB => multi_tex_coord_1f(target: u32, s: f32) -> ();
@@ -399,6 +417,12 @@ entry_points! {
     glRotated => rotated(angle: f64, x: f64, y: f64, z: f64) -> ();
     glRotatef => rotatef(angle: f32, x: f32, y: f32, z: f32) -> ();
     glSampleCoverage glSampleCoverageARB => sample_coverage(value: f32, invert: u8) -> ();
+    glSamplerParameterIiv => sampler_parameter_iiv(sampler: u32, pname: u32, param: usize) -> ();
+    glSamplerParameterIuiv => sampler_parameter_iuiv(sampler: u32, pname: u32, param: usize) -> ();
+    glSamplerParameterf => sampler_parameterf(sampler: u32, pname: u32, param: f32) -> ();
+    glSamplerParameterfv => sampler_parameterfv(sampler: u32, pname: u32, param: usize) -> ();
+    glSamplerParameteri => sampler_parameteri(sampler: u32, pname: u32, param: i32) -> ();
+    glSamplerParameteriv => sampler_parameteriv(sampler: u32, pname: u32, param: usize) -> ();
     glScaled => scaled(x: f64, y: f64, z: f64) -> ();
     glScalef => scalef(x: f32, y: f32, z: f32) -> ();
     glScissor => scissor(x: i32, y: i32, width: i32, height: i32) -> ();
@@ -477,6 +501,9 @@ entry_points! {
     glTexParameterfv => tex_parameterfv(target: u32, pname: u32, params: usize) -> ();
     glTexParameteri => tex_parameteri(target: u32, pname: u32, param: i32) -> ();
     glTexParameteriv => tex_parameteriv(target: u32, pname: u32, params: usize) -> ();
+    glTexStorage1D => tex_storage_1d(target: u32, levels: i32, internalformat: u32, width: i32) -> ();
+    glTexStorage2D => tex_storage_2d(target: u32, levels: i32, internalformat: u32, width: i32, height: i32) -> ();
+    glTexStorage3D => tex_storage_3d(target: u32, levels: i32, internalformat: u32, width: i32, height: i32, depth: i32) -> ();
     glTexSubImage1D glTexSubImage1DEXT => tex_sub_image_1d(target: u32, level: i32, xoffset: i32, width: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage2D glTexSubImage2DEXT => tex_sub_image_2d(target: u32, level: i32, xoffset: i32, yoffset: i32, width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage3D glTexSubImage3DEXT => tex_sub_image_3d(target: u32, level: i32, xoffset: i32, yoffset: i32, zoffset: i32, width: i32, height: i32, depth: i32, format: u32, type_: u32, pixels: usize) -> ();
@@ -511,6 +538,7 @@ entry_points! {
     glVertexPointer => vertex_pointer(size: i32, type_: u32, stride: i32, pointer: usize) -> ();
     glVertexPointerEXT => vertex_pointer_ext(size: i32, type_: u32, stride: i32, count: i32, pointer: usize) -> ();
     glViewport => viewport(x: i32, y: i32, width: i32, height: i32) -> ();
+    glWaitSync => wait_sync(sync: usize, flags: u32, timeout: u64) -> ();
     glWindowPos2d glWindowPos2dARB glWindowPos2dMESA => window_pos_2d(x: f64, y: f64) -> ();
     glWindowPos2dv glWindowPos2dvARB glWindowPos2dvMESA => window_pos_2dv(v: *const [f64; 2]) -> ();
     glWindowPos2f glWindowPos2fARB glWindowPos2fMESA => window_pos_2f(x: f32, y: f32) -> ();

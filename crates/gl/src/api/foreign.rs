@@ -42,6 +42,7 @@ impl Context {
             gl::VERTEX_ARRAY => self.is_vertex_array(name) != 0,
             gl::RENDERBUFFER => self.renderbuffer_exists(name),
             gl::FRAMEBUFFER => self.framebuffer_exists(name),
+            gl::SAMPLER => self.is_sampler(name) != 0,
             gl::DISPLAY_LIST => self.is_list(name) != 0,
             _ => false,
         }

@@ -17,6 +17,7 @@ mod pixel_store;
 mod queries;
 mod raster;
 mod stipple;
+mod sync;
 #[cfg(test)]
 mod testing;
 mod texture_environment;
@@ -28,6 +29,7 @@ pub(crate) use debug::DebugState;
 pub(crate) use debug::Labels;
 pub use debug::{DebugHook, DebugMessage};
 pub(crate) use queries::Queries;
+pub(crate) use sync::Fences;
 
 use crate::{Context, enums as gl};
 

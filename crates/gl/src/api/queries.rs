@@ -6,24 +6,39 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// `SAMPLES_PASSED` counts, `ANY_SAMPLES_PASSED` tells whether there are any (ARB_occlusion_query2).
+const TARGETS: [u32; 2] = [gl::SAMPLES_PASSED, gl::ANY_SAMPLES_PASSED];
+
+/// What a query asks, and what pending draws count into.
+#[derive(Clone, Debug)]
+struct Query {
+    target: u32,
+    counter: Arc<AtomicU64>,
+}
+
 /// Query objects. Other than textures and buffers they are never shared.
 #[derive(Debug, Default)]
 pub(crate) struct Queries {
-    /// Names in use; `None` until the first `BeginQuery`. The counter is what pending draws count into.
-    names: BTreeMap<u32, Option<Arc<AtomicU64>>>,
-    /// Name and counter of the active query.
-    active: Option<(u32, Arc<AtomicU64>)>,
+    /// Names in use; `None` until the first `BeginQuery`.
+    names: BTreeMap<u32, Option<Query>>,
+    /// Name of the active query, and itself.
+    active: Option<(u32, Query)>,
 }
 
 impl Queries {
     /// The counter of samples, while a query is active.
     pub(crate) fn active(&self) -> Option<Arc<AtomicU64>> {
-        self.active.as_ref().map(|(_, counter)| counter.clone())
+        self.active.as_ref().map(|(_, query)| query.counter.clone())
     }
 
     /// Whether `name` is a query object.
     pub(crate) fn is_object(&self, name: u32) -> bool {
         matches!(self.names.get(&name), Some(Some(_)))
+    }
+
+    /// The target of an object.
+    fn target(&self, name: u32) -> Option<u32> {
+        self.names.get(&name)?.as_ref().map(|query| query.target)
     }
 
     fn active_name(&self) -> u32 {
@@ -84,15 +99,17 @@ impl Context {
     pub fn begin_query(&mut self, target: u32, id: u32) {
         self.listable(move |c| {
             let call = "glBeginQuery";
-            if !c.may_set(call) || !c.check_enum(call, "target", target, &[gl::SAMPLES_PASSED]) {
+            if !c.may_set(call) || !c.check_enum(call, "target", target, &TARGETS) {
             } else if id == 0 {
                 c.refuse_operation(call, "0 is not a query object");
             } else if c.queries.active.is_some() {
                 c.refuse_operation(call, "a query is active");
+            } else if c.queries.target(id).is_some_and(|t| t != target) {
+                c.refuse_operation(call, "the query object is of another target");
             } else {
-                let counter = Arc::new(AtomicU64::new(0));
-                c.queries.names.insert(id, Some(counter.clone()));
-                c.queries.active = Some((id, counter));
+                let query = Query { target, counter: Arc::default() };
+                c.queries.names.insert(id, Some(query.clone()));
+                c.queries.active = Some((id, query));
             }
         });
     }
@@ -101,11 +118,9 @@ impl Context {
     pub fn end_query(&mut self, target: u32) {
         self.listable(move |c| {
             let call = "glEndQuery";
-            if c.may_set(call)
-                && c.check_enum(call, "target", target, &[gl::SAMPLES_PASSED])
-                && c.queries.active.take().is_none()
-            {
-                c.refuse_operation(call, "no query is active");
+            if !c.may_set(call) || !c.check_enum(call, "target", target, &TARGETS) {
+            } else if c.queries.active.take_if(|(_, query)| query.target == target).is_none() {
+                c.refuse_operation(call, "no query of this target is active");
             }
         });
     }
@@ -113,11 +128,15 @@ impl Context {
     /// `glGetQueryiv`.
     pub fn get_queryiv(&mut self, target: u32, pname: u32, params: usize) {
         let call = "glGetQueryiv";
-        if !self.may_set(call) || !self.check_enum(call, "target", target, &[gl::SAMPLES_PASSED]) {
+        if !self.may_set(call) || !self.check_enum(call, "target", target, &TARGETS) {
             return;
         }
         let value = match pname {
-            gl::CURRENT_QUERY => self.queries.active_name(),
+            gl::CURRENT_QUERY => {
+                let of_target = self.queries.active.as_ref().filter(|(_, query)| query.target == target);
+                of_target.map_or(0, |(name, _)| *name)
+            }
+            gl::QUERY_COUNTER_BITS if target == gl::ANY_SAMPLES_PASSED => 1,
             gl::QUERY_COUNTER_BITS => 32,
             _ => return self.refuse_enum(call, "pname", pname),
         };
@@ -129,8 +148,8 @@ impl Context {
         if !self.may_set(call) {
             return None;
         }
-        let counter = self.queries.names.get(&id).cloned().flatten();
-        let Some(counter) = counter.filter(|_| self.queries.active_name() != id) else {
+        let query = self.queries.names.get(&id).cloned().flatten();
+        let Some(query) = query.filter(|_| self.queries.active_name() != id) else {
             self.refuse_operation(call, "no query object of that name, or it is active");
             return None;
         };
@@ -138,7 +157,8 @@ impl Context {
             return None;
         }
         self.flush_recorded();
-        let samples = counter.load(Ordering::Relaxed).min(limit.into()) as u32;
+        let limit = if query.target == gl::ANY_SAMPLES_PASSED { 1 } else { limit };
+        let samples = query.counter.load(Ordering::Relaxed).min(limit.into()) as u32;
         Some(if pname == gl::QUERY_RESULT { samples } else { 1 })
     }
 
@@ -188,6 +208,20 @@ mod tests {
         assert_eq!((c.is_query(1), c.get_error()), (0, gl::NO_ERROR));
         c.gen_queries(2, RESULT);
         assert_eq!(take::<u32, 2>(&c), [1, 3]);
+    }
+
+    #[test]
+    fn any_samples_are_one() {
+        let mut c = context();
+        c.begin_query(gl::ANY_SAMPLES_PASSED, 1);
+        c.queries.active().unwrap().fetch_add(5, Ordering::Relaxed);
+        c.end_query(gl::SAMPLES_PASSED);
+        assert_eq!(c.get_error(), gl::INVALID_OPERATION);
+        c.end_query(gl::ANY_SAMPLES_PASSED);
+        c.get_query_objectuiv(1, gl::QUERY_RESULT, RESULT);
+        assert_eq!((take::<u32, 1>(&c), c.get_error()), ([1], gl::NO_ERROR));
+        c.begin_query(gl::SAMPLES_PASSED, 1);
+        assert_eq!(c.get_error(), gl::INVALID_OPERATION);
     }
 
     #[test]

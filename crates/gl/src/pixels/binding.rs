@@ -2,6 +2,7 @@
 
 use super::image::lock;
 use super::names;
+use super::sampler::SamplerHandle;
 use super::texture::{ImageTarget, TextureHandle, TextureObject, slot_of};
 use crate::Context;
 use crate::enums::*;
@@ -15,6 +16,8 @@ pub(crate) struct UnnamedTextures {
     pub defaults: [TextureHandle; 5],
     /// By slot: images without texels.
     pub proxies: [TextureObject; 5],
+    /// By unit: the sampler object that is bound.
+    pub samplers: [Option<SamplerHandle>; crate::state::MAX_TEXTURE_UNITS],
 }
 
 impl Default for UnnamedTextures {
@@ -22,6 +25,7 @@ impl Default for UnnamedTextures {
         Self {
             defaults: std::array::from_fn(|slot| Arc::new(Mutex::new(TextureObject::new(0, slot)))),
             proxies: std::array::from_fn(|slot| TextureObject::new(0, slot)),
+            samplers: Default::default(),
         }
     }
 }
@@ -54,11 +58,15 @@ impl Context {
         if lock(&object).is_stale() {
             self.flush_recorded();
         }
-        lock(&object).sampled(self.state.cube_map_seamless)
+        let sampler = self.textures.samplers[unit].as_ref().map(|sampler| lock(sampler).parameters.clone());
+        lock(&object).sampled(self.state.cube_map_seamless, sampler.as_ref())
     }
 
-    /// `TEXTURE_LOD_BIAS` of the texture that unit `unit` samples.
+    /// `TEXTURE_LOD_BIAS` of the sampler object of unit `unit`, or of the texture that it samples.
     pub(crate) fn texture_lod_bias(&self, unit: usize) -> f32 {
+        if let Some(sampler) = &self.textures.samplers[unit] {
+            return lock(sampler).parameters.lod_bias;
+        }
         self.sampled_object(unit).map_or(0.0, |object| lock(&object).parameters.lod_bias)
     }
 

@@ -70,6 +70,7 @@ impl Context {
         if checked.target.proxy {
             return Err((INVALID_ENUM, "a proxy has no texels"));
         }
+        self.may_get_image(checked.target)?;
         let Some(surfaces) = self.read_surfaces(arguments.call, true) else { return Ok(()) };
         if !has_source(&surfaces, &checked.format) {
             return Err((INVALID_OPERATION, "the read framebuffer has no such buffer"));

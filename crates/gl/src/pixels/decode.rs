@@ -4,6 +4,7 @@ use super::format::{Content, PixelFormat, float_from_half};
 use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
 use crate::enums::*;
+use std::borrow::Cow;
 
 /// Pixels that are converted at once.
 const CHUNK: usize = 1024;
@@ -45,6 +46,10 @@ fn element(bytes: &[u8]) -> u32 {
 /// Colours of pixels of a colour format, before transfer.
 fn chunk_colors(bytes: &[u8], format: PixelFormat, scratch: &mut Vec<f32>, out: &mut Vec<[f32; 4]>) {
     scratch.clear();
+    if (format.format, format.kind) == (RGBA, FLOAT) {
+        numbers(bytes, FLOAT, scratch);
+        return out.extend(scratch.as_chunks().0);
+    }
     match format.packed() {
         Some(packed) => {
             for pixel in bytes.chunks_exact(packed.bytes) {
@@ -90,20 +95,25 @@ fn indices(bytes: &[u8], kind: u32) -> Vec<i64> {
     }
 }
 
-/// RGBA colours after transfer, not clamped. Indices go through the maps.
+/// Hands RGBA colours after transfer, not clamped, to `take`, some at a time. Indices go through the maps.
+pub(crate) fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, mut take: impl FnMut(&[[f32; 4]])) {
+    let (mut scratch, mut colors) = (Vec::new(), Vec::new());
+    for chunk in image.bytes.chunks(CHUNK * image.format.pixel_bytes()) {
+        colors.clear();
+        if image.format.content() == Content::Index {
+            colors.extend(indices(chunk, image.format.kind).into_iter().map(|i| transfer.color_of_index(i)));
+        } else {
+            chunk_colors(chunk, image.format, &mut scratch, &mut colors);
+            transfer.colors(&mut colors);
+        }
+        take(&colors);
+    }
+}
+
+/// All colours of [`each_colors`].
 pub(crate) fn colors(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<[f32; 4]> {
-    let pixel = image.format.pixel_bytes();
-    let mut out = Vec::with_capacity(image.bytes.len() / pixel);
-    if image.format.content() == Content::Index {
-        out.extend(indices(&image.bytes, image.format.kind).into_iter().map(|i| transfer.color_of_index(i)));
-        return out;
-    }
-    let mut scratch = Vec::new();
-    for chunk in image.bytes.chunks(CHUNK * pixel) {
-        let first = out.len();
-        chunk_colors(chunk, image.format, &mut scratch, &mut out);
-        transfer.colors(&mut out[first..]);
-    }
+    let mut out = Vec::with_capacity(image.bytes.len() / image.format.pixel_bytes());
+    each_colors(image, transfer, |colors| out.extend_from_slice(colors));
     out
 }
 
@@ -144,6 +154,27 @@ pub(crate) fn stencils(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<u8> 
     }
 }
 
+/// As [`words`], of pixels that are such words but for the order of red and blue: the image's own memory is kept.
+pub(crate) fn own_words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, ClientImage>> {
+    let bytes = image.format.kind == UNSIGNED_BYTE;
+    if !bytes && image.format.kind != UNSIGNED_INT_8_8_8_8_REV {
+        return Err(image);
+    }
+    let swapped = match image.format.format {
+        RGBA => false,
+        BGRA => true,
+        _ => return Err(image),
+    };
+    let mut words = image.into_owned().bytes.into_words();
+    if bytes && cfg!(target_endian = "big") {
+        words.iter_mut().for_each(|w| *w = w.swap_bytes());
+    }
+    if swapped {
+        words.iter_mut().for_each(|w| *w = *w & 0xff00_ff00 | *w >> 16 & 255 | (*w & 255) << 16);
+    }
+    Ok(words)
+}
+
 /// Colours of unsigned bytes as RGBA words (red lowest), without transfer. `None` for other formats.
 pub(crate) fn words(image: &ClientImage) -> Option<Vec<u32>> {
     if image.format.kind != UNSIGNED_BYTE {
@@ -170,7 +201,7 @@ mod tests {
 
     fn image(format: u32, kind: u32, bytes: &[u8]) -> ClientImage {
         let format = PixelFormat::new(format, kind).unwrap();
-        ClientImage { size: [bytes.len() / format.pixel_bytes(), 1, 1], bytes: bytes.to_vec(), format }
+        ClientImage { size: [bytes.len() / format.pixel_bytes(), 1, 1], bytes: bytes.into(), format }
     }
 
     fn decoded(format: u32, kind: u32, bytes: &[u8]) -> Vec<[f32; 4]> {
@@ -212,6 +243,26 @@ mod tests {
         assert_eq!(depths(&pixel, &transfer, false), [2.0]);
         assert_eq!(depths(&pixel, &transfer, true), [1.0]);
         assert_eq!(stencils(&pixel, &transfer), [9]);
+    }
+
+    #[test]
+    fn words_that_are_kept_agree_with_the_general_way() {
+        for (format, kind) in [
+            (RGBA, UNSIGNED_BYTE),
+            (BGRA, UNSIGNED_BYTE),
+            (RGBA, UNSIGNED_INT_8_8_8_8_REV),
+            (BGRA, UNSIGNED_INT_8_8_8_8_REV),
+        ] {
+            let bytes: Vec<u8> = (0..12).map(|i| i * 20).collect();
+            let image = image(format, kind, &bytes);
+            let state = PixelTransfer::default();
+            let general: Vec<u32> = colors(&image, &Transfer::new(&state))
+                .into_iter()
+                .map(|c| u32::from_le_bytes(c.map(|v| (v * 255.0 + 0.5) as u8)))
+                .collect();
+            assert_eq!(own_words(Cow::Owned(image)).unwrap(), general);
+        }
+        assert!(own_words(Cow::Owned(image(RGB, UNSIGNED_BYTE, &[1, 2, 3]))).is_err());
     }
 
     #[test]

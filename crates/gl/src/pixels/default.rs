@@ -86,15 +86,9 @@ impl ClientBuffer {
             return self.pack(&colors, out);
         }
         match *self.places() {
-            [0, 1, 2, 3] => words.iter().for_each(|w| out.extend(w.to_le_bytes())),
-            [a, b, c, d] => words.iter().for_each(|w| {
-                let w = w.to_le_bytes();
-                out.extend([w[a], w[b], w[c], w[d]]);
-            }),
-            [a, b, c] => words.iter().for_each(|w| {
-                let w = w.to_le_bytes();
-                out.extend([w[a], w[b], w[c]]);
-            }),
+            [0, 1, 2, 3] if cfg!(target_endian = "little") => out.extend_from_slice(bytemuck::cast_slice(words)),
+            [a, b, c, d] => place(words, out, |w| [w[a], w[b], w[c], w[d]]),
+            [a, b, c] => place(words, out, |w| [w[a], w[b], w[c]]),
             _ => {}
         }
     }
@@ -111,6 +105,16 @@ impl ClientBuffer {
         let mut color = [0.0, 0.0, 0.0, 1.0];
         self.places().iter().zip(numbers).for_each(|(&place, number)| color[place] = number);
         color
+    }
+}
+
+/// Appends the bytes that `pixel` makes of each word's.
+#[inline]
+fn place<const N: usize>(words: &[u32], out: &mut Vec<u8>, pixel: impl Fn([u8; 4]) -> [u8; N]) {
+    let first = out.len();
+    out.resize(first + N * words.len(), 0);
+    for (bytes, word) in out[first..].chunks_exact_mut(N).zip(words) {
+        bytes.copy_from_slice(&pixel(word.to_le_bytes()));
     }
 }
 
@@ -508,6 +512,20 @@ mod tests {
         assert!(c.make_current(8, FLOAT, 4096, 4096));
         c.release();
         assert_eq!(c.check_framebuffer_status(FRAMEBUFFER), FRAMEBUFFER_UNDEFINED);
+    }
+
+    #[test]
+    fn reading_back_does_not_store() {
+        let mut c = context();
+        assert!(c.configure_default_framebuffer(RGBA, 0, 0, 0));
+        put(&c, BASE, &[1, 2, 3, 4]);
+        assert!(c.make_current(BASE, UNSIGNED_BYTE, 1, 1));
+        c.clear_color(1.0, 1.0, 1.0, 1.0);
+        c.clear(COLOR_BUFFER_BIT);
+        c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE + 512);
+        assert_eq!((get::<4>(&c, BASE + 512), get::<4>(&c, BASE)), ([255; 4], [1, 2, 3, 4]));
+        c.finish();
+        assert_eq!(get::<4>(&c, BASE), [255; 4]);
     }
 
     #[test]

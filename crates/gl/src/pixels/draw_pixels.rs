@@ -42,6 +42,7 @@ impl Context {
 
     /// Records a rectangle at the raster position, `skip` source pixels away from its corner.
     fn record_pixels(&mut self, mut pixels: Pixels, skip: [usize; 2], size: [usize; 2]) {
+        self.image_came(16 * size[0] * size[1]);
         let zoom = self.state.pixel_mode.zoom;
         let raster = self.state.raster_position.window;
         let origin = std::array::from_fn(|i| raster[i] + skip[i] as f32 * zoom[i]);

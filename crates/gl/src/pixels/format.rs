@@ -62,6 +62,7 @@ impl PixelFormat {
                 | RED
                 | GREEN
                 | BLUE
+                | RG
                 | ALPHA
                 | RGB
                 | RGBA
@@ -115,7 +116,7 @@ impl PixelFormat {
     /// Components of a pixel.
     pub(crate) fn components(self) -> usize {
         match self.format {
-            LUMINANCE_ALPHA => 2,
+            RG | LUMINANCE_ALPHA => 2,
             RGB | BGR => 3,
             RGBA | BGRA | ABGR_EXT => 4,
             _ => 1,
@@ -153,6 +154,7 @@ impl PixelFormat {
             GREEN => &[1],
             BLUE => &[2],
             ALPHA => &[3],
+            RG => &[0, 1],
             RGB => &[0, 1, 2],
             BGR => &[2, 1, 0],
             RGBA => &[0, 1, 2, 3],

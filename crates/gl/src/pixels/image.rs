@@ -5,6 +5,7 @@
 //! draw. Depths of an attached level stay in their plane: the sampler reads it.
 
 use super::internal_format::{InternalFormat, Storage};
+use super::store::MAX_IMAGE_BYTES;
 use super::texels::{self, TexelData, color_from_word, stored_depth, word_from_color};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -65,6 +66,23 @@ impl TextureImage {
 
     fn texel_count(&self) -> usize {
         self.full().iter().product()
+    }
+
+    /// Whether an image is no larger than images may be.
+    pub(crate) fn fits(format: &InternalFormat, size: [u32; 3]) -> bool {
+        let bytes = size.iter().try_fold(format.texel_bytes(), |n, &s| n.checked_mul(s as usize));
+        bytes.is_some_and(|n| n <= MAX_IMAGE_BYTES)
+    }
+
+    /// Size of its texels in memory.
+    pub(crate) fn bytes(&self) -> usize {
+        self.texel_count() * self.format.texel_bytes()
+    }
+
+    /// Size of the copy that a change of its texels makes, since something else has them.
+    pub(crate) fn copied_bytes(&self) -> usize {
+        let shared = self.level.as_ref().is_some_and(|level| Arc::strong_count(level) > 1);
+        if shared { self.bytes() } else { 0 }
     }
 
     fn viewport(&self) -> Option<Viewport> {

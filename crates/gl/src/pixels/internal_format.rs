@@ -27,7 +27,7 @@ pub(crate) enum Storage {
 pub(crate) struct InternalFormat {
     /// The token to report.
     pub token: u32,
-    /// `ALPHA`, `LUMINANCE`, `LUMINANCE_ALPHA`, `INTENSITY`, `RGB`, `RGBA`, `DEPTH_COMPONENT`, `DEPTH_STENCIL`,
+    /// `ALPHA`, `LUMINANCE`, `LUMINANCE_ALPHA`, `INTENSITY`, `RED`, `RG`, `RGB`, `RGBA`, `DEPTH_COMPONENT`, `DEPTH_STENCIL`,
     /// `STENCIL_INDEX`.
     pub base: u32,
     /// What is stored.
@@ -59,6 +59,8 @@ impl InternalFormat {
             | COMPRESSED_LUMINANCE
             | COMPRESSED_LUMINANCE_ALPHA
             | COMPRESSED_INTENSITY
+            | COMPRESSED_RED
+            | COMPRESSED_RG
             | COMPRESSED_RGB
             | COMPRESSED_RGBA => base,
             COMPRESSED_SRGB_EXT
@@ -110,7 +112,8 @@ impl InternalFormat {
             LUMINANCE => BaseFormat::Luminance,
             LUMINANCE_ALPHA => BaseFormat::LuminanceAlpha,
             INTENSITY => BaseFormat::Intensity,
-            RGB => BaseFormat::Rgb,
+            // Texels are expanded: what is missing is 0, and alpha the fragment's.
+            RED | RG | RGB => BaseFormat::Rgb,
             RGBA => BaseFormat::Rgba,
             _ => BaseFormat::Depth,
         }
@@ -133,6 +136,8 @@ impl InternalFormat {
             LUMINANCE => [r, r, r, 1.0],
             LUMINANCE_ALPHA => [r, r, r, a],
             INTENSITY => [r; 4],
+            RED => [r, 0.0, 0.0, 1.0],
+            RG => [r, g, 0.0, 1.0],
             RGB => [r, g, b, 1.0],
             _ => [r, g, b, a],
         }
@@ -147,6 +152,8 @@ impl InternalFormat {
             LUMINANCE => red | 0xff00_0000,
             LUMINANCE_ALPHA => red | (word & 0xff00_0000),
             INTENSITY => red | (word << 24),
+            RED => (word & 0xff) | 0xff00_0000,
+            RG => (word & 0xffff) | 0xff00_0000,
             RGB => word | 0xff00_0000,
             _ => word,
         }
@@ -156,7 +163,8 @@ impl InternalFormat {
     pub(crate) fn missing(&self) -> [bool; 4] {
         match self.base {
             ALPHA => [true, true, true, false],
-            LUMINANCE | INTENSITY => [false, true, true, true],
+            RED | LUMINANCE | INTENSITY => [false, true, true, true],
+            RG => [false, false, true, true],
             LUMINANCE_ALPHA => [false, true, true, false],
             RGB => [false, false, false, true],
             _ => [false; 4],
@@ -177,6 +185,8 @@ impl InternalFormat {
             LUMINANCE => Bits { luminance: size, ..none },
             LUMINANCE_ALPHA => Bits { luminance: size, rgba: [0, 0, 0, size], ..none },
             INTENSITY => Bits { intensity: size, ..none },
+            RED => Bits { rgba: [size, 0, 0, 0], ..none },
+            RG => Bits { rgba: [size, size, 0, 0], ..none },
             RGB => Bits { rgba: [size, size, size, 0], ..none },
             RGBA => Bits { rgba: [size; 4], ..none },
             DEPTH_COMPONENT => Bits { depth: size, ..none },
@@ -203,6 +213,28 @@ impl InternalFormat {
     }
 }
 
+/// Whether a token says how many bits there are.
+pub(crate) fn is_sized(token: u32) -> bool {
+    !matches!(
+        token,
+        1..=4
+            | ALPHA
+            | LUMINANCE
+            | LUMINANCE_ALPHA
+            | INTENSITY
+            | RED
+            | RG
+            | RGB
+            | RGBA
+            | SRGB_EXT
+            | SRGB_ALPHA_EXT
+            | SLUMINANCE_EXT
+            | SLUMINANCE_ALPHA_EXT
+            | DEPTH_COMPONENT
+            | DEPTH_STENCIL
+    )
+}
+
 fn color(token: u32) -> Option<(u32, Storage)> {
     use Storage::{Float, Half, Srgb8, Unorm8, Unorm16};
     Some(match token {
@@ -219,6 +251,10 @@ fn color(token: u32) -> Option<(u32, Storage)> {
         LUMINANCE12_ALPHA4 | LUMINANCE12_ALPHA12 | LUMINANCE16_ALPHA16 => (LUMINANCE_ALPHA, Unorm16),
         INTENSITY | INTENSITY4 | INTENSITY8 | COMPRESSED_INTENSITY => (INTENSITY, Unorm8),
         INTENSITY12 | INTENSITY16 => (INTENSITY, Unorm16),
+        RED | R8 | COMPRESSED_RED => (RED, Unorm8),
+        R16 => (RED, Unorm16),
+        RG | RG8 | COMPRESSED_RG => (RG, Unorm8),
+        RG16 => (RG, Unorm16),
         3 | RGB | R3_G3_B2 | RGB2_EXT | RGB4 | RGB5 | RGB8 | COMPRESSED_RGB => (RGB, Unorm8),
         RGB10 | RGB12 | RGB16 => (RGB, Unorm16),
         4 | RGBA | RGBA2 | RGBA4 | RGB5_A1 | RGBA8 | COMPRESSED_RGBA => (RGBA, Unorm8),
@@ -227,6 +263,10 @@ fn color(token: u32) -> Option<(u32, Storage)> {
         SRGB_ALPHA_EXT | SRGB8_ALPHA8_EXT | COMPRESSED_SRGB_ALPHA_EXT => (RGBA, Srgb8),
         SLUMINANCE_EXT | SLUMINANCE8_EXT | COMPRESSED_SLUMINANCE_EXT => (LUMINANCE, Srgb8),
         SLUMINANCE_ALPHA_EXT | SLUMINANCE8_ALPHA8_EXT | COMPRESSED_SLUMINANCE_ALPHA_EXT => (LUMINANCE_ALPHA, Srgb8),
+        R32F => (RED, Float),
+        RG32F => (RG, Float),
+        R16F => (RED, Half),
+        RG16F => (RG, Half),
         RGBA32F_ARB => (RGBA, Float),
         RGB32F_ARB => (RGB, Float),
         ALPHA32F_ARB => (ALPHA, Float),
@@ -276,7 +316,7 @@ mod tests {
 
     #[test]
     fn words_expand_as_colours_do() {
-        for token in [ALPHA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, RGB, RGBA] {
+        for token in [ALPHA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, RED, RG, RGB, RGBA] {
             let format = InternalFormat::of_texture(token).unwrap();
             let color = format.expand([51.0, 102.0, 153.0, 204.0].map(|v| v / 255.0));
             let word = u32::from_le_bytes(color.map(|v| (v * 255.0 + 0.5) as u8));

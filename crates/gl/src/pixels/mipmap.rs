@@ -301,7 +301,7 @@ mod tests {
         image.replace(TexelData::Words(vec![0xff10_2030; 18]));
         texture.set_image(0, 0, Some(image));
         generate(&mut texture, 0..1);
-        let snapshot = texture.sampled(false).unwrap();
+        let snapshot = texture.sampled(false, None).unwrap();
         let sizes: Vec<_> = snapshot.faces[0].iter().map(|l| [l.size[0], l.size[1]]).collect();
         assert_eq!(sizes, [[6, 3], [3, 1], [1, 1]]);
         let Texels::Rgba8(last) = &snapshot.faces[0][2].texels else { panic!() };

@@ -201,9 +201,6 @@ impl Context {
         if !has_content(&surfaces, format.content()) {
             return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
         }
-        if self.framebuffers.read == 0 {
-            self.store_default_framebuffer();
-        }
         let r = inside(&surfaces, x, y, width, height);
         if (pixels == 0 && self.client.pack.buffer == 0)
             || r.size.contains(&0)

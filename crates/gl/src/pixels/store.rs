@@ -5,6 +5,7 @@ use crate::Context;
 use crate::enums::{BITMAP, INVALID_OPERATION};
 use crate::memory::ClientMemory;
 use crate::state::PixelStore;
+use std::ops::{Deref, DerefMut};
 
 /// No image, in memory or in a texture, may be larger.
 pub(crate) const MAX_IMAGE_BYTES: usize = 1 << 30;
@@ -17,7 +18,46 @@ pub(crate) struct ClientImage {
     /// Width, height, depth.
     pub size: [usize; 3],
     /// The pixels.
-    pub bytes: Vec<u8>,
+    pub bytes: Bytes,
+}
+
+/// Bytes that lie in words, so that pixels of four bytes can become texels without being copied once more.
+#[derive(Clone, Debug)]
+pub(crate) struct Bytes {
+    words: Vec<u32>,
+    len: usize,
+}
+
+impl Bytes {
+    fn zeroed(len: usize) -> Self {
+        Self { words: vec![0; len.div_ceil(4)], len }
+    }
+
+    /// The bytes, four to a word in the order of memory; the last word may have more.
+    pub(crate) fn into_words(self) -> Vec<u32> {
+        self.words
+    }
+}
+
+impl From<&[u8]> for Bytes {
+    fn from(bytes: &[u8]) -> Self {
+        let mut new = Self::zeroed(bytes.len());
+        new.copy_from_slice(bytes);
+        new
+    }
+}
+
+impl Deref for Bytes {
+    type Target = [u8];
+    fn deref(&self) -> &[u8] {
+        &bytemuck::cast_slice(&self.words)[..self.len]
+    }
+}
+
+impl DerefMut for Bytes {
+    fn deref_mut(&mut self) -> &mut [u8] {
+        &mut bytemuck::cast_slice_mut(&mut self.words)[..self.len]
+    }
 }
 
 /// A rectangle (or box) of an image in the client's memory.
@@ -118,7 +158,7 @@ pub(crate) fn read_region(
     format: PixelFormat,
     region: &Region,
     address: usize,
-) -> Option<Vec<u8>> {
+) -> Option<Bytes> {
     let layout = layout(store, format, region)?;
     let [width, height, depth] = region.size;
     let total = layout.row_bytes.checked_mul(height)?.checked_mul(depth)?;
@@ -126,10 +166,10 @@ pub(crate) fn read_region(
     if total > MAX_IMAGE_BYTES || pixels > MAX_IMAGE_BYTES {
         return None;
     }
-    let mut bytes = vec![0; total];
     if pixels == 0 {
-        return Some(Vec::new());
+        return Some(Bytes::zeroed(0));
     }
+    let mut bytes = Bytes::zeroed(total);
     if !rows(&layout, region, address, |at, range| memory.read(at, &mut bytes[range])) {
         return None;
     }
@@ -139,7 +179,7 @@ pub(crate) fn read_region(
             let bit = |x: usize| u8::from(row[(layout.bit + x) / 8] & mask(layout.bit + x, store.lsb_first) != 0);
             spread.extend((0..width).map(bit));
         }
-        return Some(spread);
+        return Some(Bytes::from(&*spread));
     }
     if store.swap_bytes {
         swap(&mut bytes, format.element_bytes());
@@ -237,7 +277,7 @@ mod tests {
         let format = PixelFormat::new(RGB, UNSIGNED_BYTE).unwrap();
         let region = Region::whole([1, 2, 1], false);
         let read = read_region(&arena, &PixelStore::default(), format, &region, 4096).unwrap();
-        assert_eq!(read, [1, 2, 3, 4, 5, 6]);
+        assert_eq!(*read, [1, 2, 3, 4, 5, 6]);
     }
 
     #[test]
@@ -253,7 +293,7 @@ mod tests {
         };
         let format = PixelFormat::new(RED, UNSIGNED_SHORT).unwrap();
         let read = read_region(&arena, &store, format, &Region::whole([2, 1, 1], false), 4096).unwrap();
-        assert_eq!(read, [9, 8, 11, 10]);
+        assert_eq!(*read, [9, 8, 11, 10]);
     }
 
     #[test]
@@ -263,10 +303,10 @@ mod tests {
         let store = PixelStore { skip_pixels: 1, alignment: 1, ..PixelStore::default() };
         let region = Region::whole([8, 1, 1], false);
         let read = read_region(&arena, &store, format, &region, 4096).unwrap();
-        assert_eq!(read, [1, 0, 0, 0, 0, 0, 1, 1]);
+        assert_eq!(*read, [1, 0, 0, 0, 0, 0, 1, 1]);
         let store = PixelStore { lsb_first: true, ..store };
         let read = read_region(&arena, &store, format, &region, 4096).unwrap();
-        assert_eq!(read, [0, 0, 0, 0, 0, 1, 0, 0]);
+        assert_eq!(*read, [0, 0, 0, 0, 0, 1, 0, 0]);
         // Written back, the bit before the region keeps its value.
         assert!(write_region(&arena, &store, format, &region, 4096, vec![1; 8]));
         let mut bytes = [0; 2];

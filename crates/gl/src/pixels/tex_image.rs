@@ -3,13 +3,13 @@
 use super::format::{Content, PixelFormat};
 use super::image::{TextureImage, lock};
 use super::internal_format::InternalFormat;
-use super::store::{ClientImage, MAX_IMAGE_BYTES};
+use super::store::ClientImage;
 use super::texels;
 use super::texture::{ImageTarget, slot};
 use super::transfer::Transfer;
 use crate::Context;
 use crate::enums::*;
-use std::sync::Arc;
+use std::borrow::Cow;
 
 /// The arguments that all forms of `TexImage` share.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +73,7 @@ impl ImageArguments {
             return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
         }
         let limit = (target.max_size() >> level) as u32 + 2 * border;
-        let texels = size.iter().try_fold(format.texel_bytes(), |n, &s| n.checked_mul(s as usize));
-        let too_large = texels.is_none_or(|n| n > MAX_IMAGE_BYTES);
+        let too_large = !TextureImage::fits(&format, size);
         let beyond = size[..self.dimensions].iter().any(|&s| s > limit);
         if beyond && !target.proxy {
             return Err((INVALID_VALUE, "a size is larger than the target allows at this level"));
@@ -111,6 +110,7 @@ impl Context {
     /// Stores a checked image; without texels they are undefined.
     pub(crate) fn store_image(&mut self, checked: &CheckedImage, data: Option<texels::TexelData>) {
         let mut image = TextureImage::new(checked.format, checked.size, checked.border);
+        self.image_came(image.bytes());
         if let Some(data) = data.filter(|_| !checked.size.contains(&0)) {
             image.replace(data);
         }
@@ -148,23 +148,26 @@ impl Context {
             _ => Ok(None),
         };
         let image = match image {
-            Ok(image) => image.map(Arc::new),
+            Ok(image) => image,
             Err((error, why)) => return self.record_error(error, arguments.call, why),
         };
-        self.listable(move |c| c.exec_tex_image(&arguments, pair, image.as_deref()));
+        if !self.lists.recording {
+            return self.exec_tex_image(&arguments, pair, image.map(Cow::Owned));
+        }
+        self.listable(move |c| c.exec_tex_image(&arguments, pair, image.as_ref().map(Cow::Borrowed)));
     }
 
     fn exec_tex_image(
         &mut self,
         arguments: &ImageArguments,
         format: Result<PixelFormat, Failure>,
-        image: Option<&ClientImage>,
+        image: Option<Cow<'_, ClientImage>>,
     ) {
         if !self.outside_begin(arguments.call) {
             return;
         }
         let checked = arguments.check().and_then(|c| formats_agree(format?, &c.format).map(|()| c));
-        match checked {
+        match checked.and_then(|c| self.may_get_image(c.target).map(|()| c)) {
             Err((error, why)) => self.record_error(error, arguments.call, why),
             Ok(checked) => {
                 let transfer = Transfer::new(&self.state.pixel);
@@ -252,6 +255,7 @@ impl Context {
 mod tests {
     use super::super::testing::{BASE, context, put, read_u32};
     use super::*;
+    use std::sync::Arc;
 
     fn level_parameter(c: &mut Context, target: u32, level: i32, pname: u32) -> u32 {
         c.get_tex_level_parameteriv(target, level, pname, BASE + 1024);
@@ -268,6 +272,41 @@ mod tests {
         assert_eq!(level_parameter(&mut c, TEXTURE_2D, 0, TEXTURE_RED_SIZE), 8);
         assert_eq!(level_parameter(&mut c, TEXTURE_2D, 0, TEXTURE_ALPHA_SIZE), 0);
         assert_eq!(level_parameter(&mut c, TEXTURE_2D, 1, TEXTURE_INTERNAL_FORMAT), 1);
+    }
+
+    #[test]
+    fn images_do_not_pile_up_behind_draws() {
+        let mut c = super::super::testing::context_with(4, 4);
+        c.enable(TEXTURE_2D);
+        c.tex_parameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.rectf(0.0, 0.0, 1.0, 1.0);
+        let drawn = Arc::downgrade(&c.sampled_texture(0).unwrap());
+        // The second draw holds another image, and both wait.
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.rectf(0.0, 0.0, 1.0, 1.0);
+        assert_eq!(drawn.strong_count(), 1);
+        for _ in 0..4 {
+            c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        }
+        assert_eq!(drawn.strong_count(), 0);
+    }
+
+    #[test]
+    fn parts_do_not_pile_up_behind_draws() {
+        let mut c = super::super::testing::context_with(4, 4);
+        c.enable(TEXTURE_2D);
+        c.tex_parameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        let mut drawn = Vec::new();
+        for _ in 0..9 {
+            c.rectf(0.0, 0.0, 1.0, 1.0);
+            drawn.push(Arc::downgrade(&c.sampled_texture(0).unwrap()));
+            // One texel makes a copy of the level, since the draw waits.
+            c.tex_sub_image_2d(TEXTURE_2D, 0, 0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE);
+        }
+        let held = drawn.iter().filter(|texture| texture.strong_count() > 0).count();
+        assert!((1..=5).contains(&held), "{held}");
     }
 
     #[test]

@@ -4,10 +4,11 @@ use super::image::lock;
 use super::texture::{ImageTarget, MAX_ANISOTROPY, TextureParameters, slot, slot_of};
 use crate::Context;
 use crate::enums::*;
+use crate::memory::ClientMemory;
 
 /// A parameter's value as it was given.
 #[derive(Clone, Copy, Debug)]
-enum Value {
+pub(super) enum Value {
     Float(f32),
     Int(i32),
     Floats([f32; 4]),
@@ -20,7 +21,7 @@ fn component(value: i32) -> f32 {
 }
 
 /// A component of a colour as an integer.
-fn integer(component: f32) -> i32 {
+pub(super) fn integer(component: f32) -> i32 {
     ((f64::from(u32::MAX) * f64::from(component) - 1.0) / 2.0).round() as i32
 }
 
@@ -44,6 +45,14 @@ impl Value {
         self.int() as u32
     }
 
+    fn tokens(self) -> Option<[u32; 4]> {
+        match self {
+            Self::Floats(v) => Some(v.map(|v| v.round() as i32 as u32)),
+            Self::Ints(v) => Some(v.map(|v| v as u32)),
+            Self::Float(_) | Self::Int(_) => None,
+        }
+    }
+
     fn color(self) -> Option<[f32; 4]> {
         match self {
             Self::Floats(v) => Some(v),
@@ -65,7 +74,11 @@ fn level_of(value: Value) -> Result<i32, Failure> {
     (level >= 0).then_some(level).ok_or((INVALID_VALUE, "a level is negative"))
 }
 
-fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Result<(), Failure> {
+/// Where a component may come from.
+const SWIZZLES: [u32; 6] = [RED, GREEN, BLUE, ALPHA, ZERO, ONE];
+
+/// Sets a parameter of a texture of `slot`.
+pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Result<(), Failure> {
     let rectangle = slot == slot::RECTANGLE;
     match pname {
         TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
@@ -100,7 +113,7 @@ fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Resu
         }
         TEXTURE_MAX_LEVEL => p.levels[1] = level_of(value)?,
         TEXTURE_LOD_BIAS => p.lod_bias = value.float(),
-        DEPTH_TEXTURE_MODE => p.depth_mode = token_of(value, &[LUMINANCE, INTENSITY, ALPHA])?,
+        DEPTH_TEXTURE_MODE => p.depth_mode = token_of(value, &[LUMINANCE, INTENSITY, ALPHA, RED])?,
         TEXTURE_COMPARE_MODE => p.compare_mode = token_of(value, &[NONE, COMPARE_R_TO_TEXTURE])?,
         TEXTURE_COMPARE_FUNC => {
             p.compare_func = token_of(value, &[LEQUAL, GEQUAL, LESS, GREATER, EQUAL, NOTEQUAL, ALWAYS, NEVER])?;
@@ -116,13 +129,23 @@ fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Resu
             }
             p.anisotropy = amount.min(MAX_ANISOTROPY);
         }
+        TEXTURE_SWIZZLE_R..=TEXTURE_SWIZZLE_A => {
+            p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize] = token_of(value, &SWIZZLES)?;
+        }
+        TEXTURE_SWIZZLE_RGBA => {
+            let all = value.tokens().ok_or((INVALID_ENUM, "TEXTURE_SWIZZLE_RGBA needs a vector"))?;
+            for token in all {
+                token_of(Value::Int(token as i32), &SWIZZLES)?;
+            }
+            p.swizzle = all;
+        }
         _ => return Err((INVALID_ENUM, "pname is not a texture parameter")),
     }
     Ok(())
 }
 
 /// The values of a parameter: numbers, and whether they are components of a colour.
-fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)> {
+pub(super) fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)> {
     let one = |v: f64| Some((vec![v], false));
     match pname {
         TEXTURE_WRAP_S => one(p.wrap[0].into()),
@@ -143,8 +166,21 @@ fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)> {
         TEXTURE_COMPARE_FUNC => one(p.compare_func.into()),
         GENERATE_MIPMAP => one(f64::from(u8::from(p.generate_mipmap))),
         TEXTURE_MAX_ANISOTROPY_EXT => one(p.anisotropy.into()),
+        TEXTURE_SWIZZLE_R..=TEXTURE_SWIZZLE_A => one(p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize].into()),
+        TEXTURE_SWIZZLE_RGBA => Some((p.swizzle.map(f64::from).to_vec(), false)),
         _ => None,
     }
+}
+
+/// Reads a parameter's vector: four values of a border colour or swizzle, else one.
+pub(super) fn read_vector<T: bytemuck::Pod + Default>(
+    memory: &dyn ClientMemory,
+    pname: u32,
+    address: usize,
+) -> Option<[T; 4]> {
+    let mut values = [T::default(); 4];
+    let count = if matches!(pname, TEXTURE_BORDER_COLOR | TEXTURE_SWIZZLE_RGBA) { 4 } else { 1 };
+    (address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values[..count]))).then_some(values)
 }
 
 impl Context {
@@ -160,7 +196,13 @@ impl Context {
             let texture = c.target_texture(ImageTarget { slot, face: 0, proxy: false });
             let mut texture = lock(&texture);
             let mut parameters = texture.parameters.clone();
-            match set(&mut parameters, slot, pname, value) {
+            let result = set(&mut parameters, slot, pname, value);
+            if let Some(levels) = texture.immutable_levels() {
+                let [base, last] = parameters.levels;
+                let base = base.min(levels as i32 - 1);
+                parameters.levels = [base, last.clamp(base, levels as i32 - 1)];
+            }
+            match result {
                 Err((error, why)) => {
                     drop(texture);
                     c.record_error(error, call, why);
@@ -174,11 +216,8 @@ impl Context {
         });
     }
 
-    /// Reads a parameter's vector: four values of a border colour, else one.
     fn read_parameter<T: bytemuck::Pod + Default>(&self, pname: u32, address: usize) -> Option<[T; 4]> {
-        let mut values = [T::default(); 4];
-        let count = if pname == TEXTURE_BORDER_COLOR { 4 } else { 1 };
-        (address != 0 && self.memory.read(address, bytemuck::cast_slice_mut(&mut values[..count]))).then_some(values)
+        read_vector(&*self.memory, pname, address)
     }
 
     /// `glTexParameterf`. A list keeps it, as Mesa's does, as a call with `v`: a border colour is no error there.
@@ -216,7 +255,10 @@ impl Context {
             return None;
         };
         let texture = self.target_texture(ImageTarget { slot, face: 0, proxy: false });
-        let values = get(&lock(&texture).parameters, pname);
+        let values = match pname {
+            TEXTURE_IMMUTABLE_FORMAT => Some((vec![f64::from(u8::from(lock(&texture).immutable))], false)),
+            _ => get(&lock(&texture).parameters, pname),
+        };
         if values.is_none() {
             self.record_error(INVALID_ENUM, call, "pname is not a texture parameter");
         }

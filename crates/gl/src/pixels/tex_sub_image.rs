@@ -9,7 +9,7 @@ use super::texture::ImageTarget;
 use super::transfer::Transfer;
 use crate::Context;
 use crate::enums::*;
-use std::sync::Arc;
+use std::borrow::Cow;
 
 /// The arguments that all forms of `TexSubImage` share. Offsets count from the border.
 #[derive(Clone, Copy, Debug)]
@@ -67,15 +67,21 @@ impl Context {
         if checked.size.contains(&0) {
             return;
         }
-        // A plane must not change under recorded draws.
         let texture = self.target_texture(checked.target);
+        let copied = {
+            let mut texture = lock(&texture);
+            // Without the snapshot, texels that no draw waits for change in place.
+            texture.touch();
+            texture.image(checked.target.face, checked.level).map_or(0, |image| image.copied_bytes())
+        };
+        self.image_came(copied);
+        // A plane must not change under recorded draws.
         let in_plane = lock(&texture).image(checked.target.face, checked.level).is_some_and(|image| image.has_planes());
         if in_plane {
             self.flush_recorded();
         }
         {
             let mut texture = lock(&texture);
-            // Without the snapshot, texels that no draw waits for change in place.
             texture.touch();
             if let Some(image) = texture.image(checked.target.face, checked.level) {
                 image.write(checked.origin, checked.size, data);
@@ -92,17 +98,20 @@ impl Context {
             Err(_) => Ok(None),
         };
         let image = match image {
-            Ok(image) => image.map(Arc::new),
+            Ok(image) => image,
             Err((error, why)) => return self.record_error(error, arguments.call, why),
         };
-        self.listable(move |c| c.exec_tex_sub_image(&arguments, pair, image.as_deref()));
+        if !self.lists.recording {
+            return self.exec_tex_sub_image(&arguments, pair, image.map(Cow::Owned));
+        }
+        self.listable(move |c| c.exec_tex_sub_image(&arguments, pair, image.as_ref().map(Cow::Borrowed)));
     }
 
     fn exec_tex_sub_image(
         &mut self,
         arguments: &BoxArguments,
         format: Result<PixelFormat, (u32, &'static str)>,
-        image: Option<&ClientImage>,
+        image: Option<Cow<'_, ClientImage>>,
     ) {
         if !self.outside_begin(arguments.call) {
             return;

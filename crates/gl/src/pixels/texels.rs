@@ -5,6 +5,8 @@ use super::format::{Content, float_from_half, half_from_float};
 use super::internal_format::{InternalFormat, Storage};
 use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
+use crate::enums::RGBA;
+use std::borrow::Cow;
 use vitral_raster::forward::Texels;
 
 /// Texels of a box, in the form in which an image of that format stores them.
@@ -37,23 +39,33 @@ pub(crate) fn stored_depth(depth: f32, scale: f32) -> f32 {
 }
 
 /// The client's pixels as texels of `format`.
-pub(crate) fn from_client(image: &ClientImage, format: &InternalFormat, transfer: &Transfer<'_>) -> TexelData {
+pub(crate) fn from_client(image: Cow<'_, ClientImage>, format: &InternalFormat, transfer: &Transfer<'_>) -> TexelData {
     if format.has_depth() {
-        let mut depths = decode::depths(image, transfer, format.depth_scale() != 1.0);
+        let mut depths = decode::depths(&image, transfer, format.depth_scale() != 1.0);
         round_depths(&mut depths, format);
         // Depths alone leave the stencil values as they are.
         let both = format.has_stencil() && image.format.content() == Content::DepthStencil;
-        let stencils = both.then(|| decode::stencils(image, transfer));
+        let stencils = both.then(|| decode::stencils(&image, transfer));
         return TexelData::Depths(depths, stencils);
     }
-    if matches!(format.storage, Storage::Unorm8 | Storage::Srgb8)
-        && transfer.keeps_colors()
-        && let Some(mut words) = decode::words(image)
-    {
-        words.iter_mut().for_each(|w| *w = format.expand_word(*w));
-        return TexelData::Words(words);
+    if !matches!(format.storage, Storage::Unorm8 | Storage::Srgb8) {
+        return from_colors(decode::colors(&image, transfer), format);
     }
-    from_colors(decode::colors(image, transfer), format)
+    let (kept, image) = match transfer.keeps_colors() {
+        true => match decode::own_words(image) {
+            Ok(words) => return from_words(words, format),
+            Err(image) => (decode::words(&image), image),
+        },
+        false => (None, image),
+    };
+    if let Some(words) = kept {
+        return from_words(words, format);
+    }
+    let mut words = Vec::with_capacity(image.size.iter().product());
+    decode::each_colors(&image, transfer, |colors| {
+        words.extend(colors.iter().map(|&c| format.expand_word(word_from_color(c))));
+    });
+    TexelData::Words(words)
 }
 
 /// Colours (after transfer) as texels of a colour format.
@@ -75,7 +87,9 @@ pub(crate) fn from_colors(mut colors: Vec<[f32; 4]>, format: &InternalFormat) ->
 /// Words of a framebuffer as texels of a colour format.
 pub(crate) fn from_words(mut words: Vec<u32>, format: &InternalFormat) -> TexelData {
     if matches!(format.storage, Storage::Unorm8 | Storage::Srgb8) {
-        words.iter_mut().for_each(|w| *w = format.expand_word(*w));
+        if format.base != RGBA {
+            words.iter_mut().for_each(|w| *w = format.expand_word(*w));
+        }
         return TexelData::Words(words);
     }
     from_colors(words.into_iter().map(color_from_word).collect(), format)

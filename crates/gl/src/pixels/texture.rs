@@ -1,10 +1,11 @@
 //! Texture objects: parameters, images, completeness, and the snapshot that draws sample.
 
 use super::image::TextureImage;
+use super::internal_format::InternalFormat;
 use crate::enums::*;
 use crate::state::{MAX_3D_TEXTURE_SIZE, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
-use vitral_raster::forward::{BaseFormat, Compare, Filter, Level, Sampler, Texture, TextureKind, Wrap};
+use vitral_raster::forward::{BaseFormat, Compare, Filter, Level, Sampler, Swizzle, Texture, TextureKind, Wrap};
 
 pub(crate) use crate::state::target as slot;
 
@@ -12,6 +13,9 @@ pub(crate) use crate::state::target as slot;
 pub(crate) const MAX_LEVELS: usize = MAX_TEXTURE_SIZE.ilog2() as usize + 1;
 /// `MAX_TEXTURE_MAX_ANISOTROPY_EXT`.
 pub(crate) const MAX_ANISOTROPY: f32 = 16.0;
+
+/// Components that come from themselves.
+const IDENTITY: [u32; 4] = [RED, GREEN, BLUE, ALPHA];
 
 /// A texture object that units and attachments share.
 pub(crate) type TextureHandle = Arc<Mutex<TextureObject>>;
@@ -32,6 +36,7 @@ pub(crate) struct TextureParameters {
     pub compare_func: u32,
     pub generate_mipmap: bool,
     pub anisotropy: f32,
+    pub swizzle: [u32; 4],
 }
 
 impl TextureParameters {
@@ -52,6 +57,7 @@ impl TextureParameters {
             compare_func: LEQUAL,
             generate_mipmap: false,
             anisotropy: 1.0,
+            swizzle: IDENTITY,
         }
     }
 
@@ -70,10 +76,12 @@ pub(crate) struct TextureObject {
     pub slot: usize,
     /// `TexParameter`.
     pub parameters: TextureParameters,
+    /// `TEXTURE_IMMUTABLE_FORMAT`: its images keep their sizes and formats.
+    pub immutable: bool,
     /// Faces of levels.
     faces: Vec<Vec<Option<TextureImage>>>,
-    /// What was last sampled, and whether cube maps were seamless then.
-    snapshot: Option<(Option<Arc<Texture>>, bool)>,
+    /// What was last sampled, whether cube maps were seamless then, and with which sampler's parameters.
+    snapshot: Option<(Option<Arc<Texture>>, bool, Option<TextureParameters>)>,
 }
 
 impl TextureObject {
@@ -84,6 +92,7 @@ impl TextureObject {
             name,
             slot,
             parameters: TextureParameters::new(slot),
+            immutable: false,
             faces: (0..faces).map(|_| Vec::new()).collect(),
             snapshot: None,
         }
@@ -111,6 +120,21 @@ impl TextureObject {
             levels.resize_with(level + 1, || None);
         }
         levels[level] = image;
+    }
+
+    /// Gives every face `levels` images, the first of `size`, each of half the size before.
+    pub(crate) fn allocate(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) {
+        self.touch();
+        let sizes: Vec<_> =
+            std::iter::successors(Some(size), |&size| Some(self.next_size(size))).take(levels).collect();
+        for face in &mut self.faces {
+            *face = sizes.iter().map(|&size| Some(TextureImage::new(format, size, 0))).collect();
+        }
+    }
+
+    /// The number of its levels, if they are immutable.
+    pub(crate) fn immutable_levels(&self) -> Option<usize> {
+        self.immutable.then(|| self.faces[0].len())
     }
 
     /// The base level's number, if an image can have that.
@@ -195,17 +219,23 @@ impl TextureObject {
         self.faces.iter().flatten().flatten().any(stale)
     }
 
-    /// The texture as draws sample it; `None` if it is not complete. Everything recorded must have run if
-    /// [`Self::is_stale`].
-    pub(crate) fn sampled(&mut self, seamless: bool) -> Option<Arc<Texture>> {
-        if let Some((texture, was)) = &self.snapshot
+    /// The texture as draws sample it, with the parameters of a sampler object if there is one; `None` if it is not
+    /// complete. Everything recorded must have run if [`Self::is_stale`].
+    pub(crate) fn sampled(&mut self, seamless: bool, sampler: Option<&TextureParameters>) -> Option<Arc<Texture>> {
+        if let Some((texture, was, by)) = &self.snapshot
             && *was == seamless
+            && by.as_ref() == sampler
             && !self.is_stale()
         {
             return texture.clone();
         }
+        let own = self.parameters.clone();
+        if let Some(sampler) = sampler {
+            self.parameters = own.sampled_by(sampler);
+        }
         let texture = self.build(seamless);
-        self.snapshot = Some((texture.clone(), seamless));
+        self.parameters = own;
+        self.snapshot = Some((texture.clone(), seamless, sampler.cloned()));
         texture
     }
 
@@ -232,6 +262,7 @@ impl TextureObject {
         let depth_mode = match self.parameters.depth_mode {
             INTENSITY => BaseFormat::Intensity,
             ALPHA => BaseFormat::Alpha,
+            RED => BaseFormat::Rgb,
             _ => BaseFormat::Luminance,
         };
         let depth = format.base_format() == BaseFormat::Depth;
@@ -241,7 +272,19 @@ impl TextureObject {
             sampler.border = sampler.border.map(super::transfer::clamp_unit);
         }
         sampler.border = if depth { [sampler.border[0]; 4] } else { format.expand(sampler.border) };
-        Some(Arc::new(Texture { kind, format: format.base_format(), depth_mode, faces, sampler }))
+        let swizzle = Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
+        Some(Arc::new(Texture { kind, format: format.base_format(), depth_mode, faces, sampler, swizzle }))
+    }
+}
+
+fn swizzle(token: u32) -> Swizzle {
+    match token {
+        RED => Swizzle::Red,
+        GREEN => Swizzle::Green,
+        BLUE => Swizzle::Blue,
+        ALPHA => Swizzle::Alpha,
+        ONE => Swizzle::One,
+        _ => Swizzle::Zero,
     }
 }
 
@@ -354,18 +397,18 @@ mod tests {
     fn mipmapping_needs_all_levels_of_one_format() {
         let mut texture = TextureObject::new(1, slot::TWO);
         texture.set_image(0, 0, Some(image(RGBA8, 4)));
-        assert!(texture.sampled(false).is_none());
+        assert!(texture.sampled(false, None).is_none());
         texture.set_image(0, 1, Some(image(RGBA8, 2)));
         texture.set_image(0, 2, Some(image(RGB8, 1)));
-        assert!(texture.sampled(false).is_none());
+        assert!(texture.sampled(false, None).is_none());
         texture.set_image(0, 2, Some(image(RGBA8, 1)));
-        assert_eq!(texture.sampled(false).unwrap().faces[0].len(), 3);
+        assert_eq!(texture.sampled(false, None).unwrap().faces[0].len(), 3);
         texture.parameters.levels = [0, 1];
         texture.touch();
-        assert_eq!(texture.sampled(false).unwrap().faces[0].len(), 2);
+        assert_eq!(texture.sampled(false, None).unwrap().faces[0].len(), 2);
         texture.parameters.min = LINEAR;
         texture.touch();
-        assert_eq!(texture.sampled(false).unwrap().faces[0].len(), 1);
+        assert_eq!(texture.sampled(false, None).unwrap().faces[0].len(), 1);
     }
 
     #[test]
@@ -373,9 +416,9 @@ mod tests {
         let mut texture = TextureObject::new(1, slot::TWO);
         texture.parameters.min = NEAREST;
         texture.set_image(0, 0, Some(image(RGBA8, 4)));
-        let first = texture.sampled(false).unwrap();
-        assert!(Arc::ptr_eq(&first, &texture.sampled(false).unwrap()));
-        assert!(!Arc::ptr_eq(&first, &texture.sampled(true).unwrap()));
+        let first = texture.sampled(false, None).unwrap();
+        assert!(Arc::ptr_eq(&first, &texture.sampled(false, None).unwrap()));
+        assert!(!Arc::ptr_eq(&first, &texture.sampled(true, None).unwrap()));
     }
 
     #[test]
@@ -385,10 +428,10 @@ mod tests {
         for face in 0..5 {
             texture.set_image(face, 0, Some(image(RGBA8, 2)));
         }
-        assert!(texture.sampled(false).is_none());
+        assert!(texture.sampled(false, None).is_none());
         texture.set_image(5, 0, Some(image(RGBA8, 4)));
-        assert!(texture.sampled(false).is_none());
+        assert!(texture.sampled(false, None).is_none());
         texture.set_image(5, 0, Some(image(RGBA8, 2)));
-        assert_eq!(texture.sampled(false).unwrap().faces.len(), 6);
+        assert_eq!(texture.sampled(false, None).unwrap().faces.len(), 6);
     }
 }

@@ -92,6 +92,8 @@ pub struct ClientState {
     pub array_buffer: u32,
     /// `ELEMENT_ARRAY_BUFFER_BINDING`.
     pub element_buffer: u32,
+    /// `COPY_READ_BUFFER` and `COPY_WRITE_BUFFER`: the buffers that are bound there.
+    pub copy_buffers: [u32; 2],
     /// How pixels are read from the client.
     pub unpack: PixelStore,
     /// How pixels are written to the client.
@@ -114,6 +116,7 @@ impl Default for ClientState {
             active_unit: 0,
             array_buffer: 0,
             element_buffer: 0,
+            copy_buffers: [0; 2],
             unpack: PixelStore::default(),
             pack: PixelStore::default(),
             vertex_array: 0,

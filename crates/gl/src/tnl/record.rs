@@ -26,6 +26,8 @@ pub(crate) struct Recorder {
     lights: LightCache,
     /// Vertices that wait.
     waiting: usize,
+    /// Bytes of images that came while something waits: what waits may be all that needs those before.
+    images: usize,
 }
 
 impl std::fmt::Debug for Recorder {
@@ -37,9 +39,13 @@ impl std::fmt::Debug for Recorder {
 /// Most vertices that wait before they are drawn.
 const MOST_WAITING: usize = 8 << 20;
 
+/// Most bytes of images that come before what waits is drawn. A program that gives a texture new images draw by draw would
+/// else fill the memory with those that it had.
+const MOST_IMAGES: usize = 64 << 20;
+
 impl Recorder {
     fn run(&mut self) {
-        self.waiting = 0;
+        (self.waiting, self.images) = (0, 0);
         let Some(pass) = self.pass.take() else { return };
         let runner = match self.source {
             Some(source) => source(),
@@ -81,6 +87,16 @@ impl Context {
         }
         let pass = self.recorder.pass.get_or_insert_with(|| Pass { target, commands: Vec::new() });
         pass.commands.push(command);
+    }
+
+    /// Says that an image of that many bytes has come, for a texture or to be drawn.
+    pub(crate) fn image_came(&mut self, bytes: usize) {
+        if self.recorder.pass.is_some() {
+            self.recorder.images = self.recorder.images.saturating_add(bytes);
+            if self.recorder.images > MOST_IMAGES {
+                self.recorder.run();
+            }
+        }
     }
 
     /// Runs everything recorded: afterwards all planes and queries are up to date.

@@ -224,6 +224,8 @@ impl Context {
         match target {
             enums::ARRAY_BUFFER => Some(&mut self.client.array_buffer),
             enums::ELEMENT_ARRAY_BUFFER => Some(&mut self.client.element_buffer),
+            enums::COPY_READ_BUFFER => Some(&mut self.client.copy_buffers[0]),
+            enums::COPY_WRITE_BUFFER => Some(&mut self.client.copy_buffers[1]),
             enums::PIXEL_PACK_BUFFER => Some(&mut self.client.pack.buffer),
             enums::PIXEL_UNPACK_BUFFER => Some(&mut self.client.unpack.buffer),
             _ => {
@@ -302,6 +304,47 @@ impl Context {
     /// `glGetBufferSubData`.
     pub fn get_buffer_sub_data(&mut self, target: u32, offset: isize, size: isize, data: usize) {
         self.with_buffer("glGetBufferSubData", target, |buffer, memory| buffer.get_part(memory, offset, size, data));
+    }
+
+    /// `glCopyBufferSubData`.
+    pub fn copy_buffer_sub_data(
+        &mut self,
+        read: u32,
+        write: u32,
+        read_offset: isize,
+        write_offset: isize,
+        size: isize,
+    ) {
+        const CALL: &str = "glCopyBufferSubData";
+        let same = self.buffer_binding(CALL, read).map(|name| *name);
+        let same = same.is_some() && same == self.buffer_binding(CALL, write).map(|name| *name);
+        let source = self.with_buffer(CALL, read, |buffer, _| {
+            let range = buffer.range(read_offset, size)?;
+            match buffer.is_mapped() {
+                true => Err(MAPPED),
+                false => Ok((buffer.bytes.clone(), range)),
+            }
+        });
+        let Some((bytes, from)) = source else { return };
+        self.with_buffer(CALL, write, |buffer, _| {
+            let to = buffer.range(write_offset, size)?;
+            if buffer.is_mapped() {
+                return Err(MAPPED);
+            }
+            if same && from.start < to.end && to.start < from.end {
+                return Err((enums::INVALID_VALUE, "the ranges overlap"));
+            }
+            if !from.is_empty() {
+                buffer.version = new_version();
+                if same {
+                    drop(bytes);
+                    Arc::make_mut(&mut buffer.bytes).copy_within(from, to.start);
+                } else {
+                    Arc::make_mut(&mut buffer.bytes)[to].copy_from_slice(&bytes[from]);
+                }
+            }
+            Ok(())
+        });
     }
 
     /// `glMapBuffer`: the address, or 0.

@@ -153,6 +153,7 @@ functions! {
     glBindBuffer(target: u32, buffer: u32) -> ();
     glBindFramebuffer(target: u32, framebuffer: u32) -> ();
     glBindRenderbuffer(target: u32, renderbuffer: u32) -> ();
+    glBindSampler(unit: u32, sampler: u32) -> ();
     glBindTexture(target: u32, texture: u32) -> ();
     glBindVertexArray(array: u32) -> ();
     glBitmap(width: i32, height: i32, xorig: f32, yorig: f32, xmove: f32, ymove: f32, bitmap: &[u8]) -> ();
@@ -191,6 +192,7 @@ functions! {
     glColorMask(red: u8, green: u8, blue: u8, alpha: u8) -> ();
     glColorMaterial(face: u32, mode: u32) -> ();
     glColorPointer(size: i32, type_: u32, stride: i32, pointer: usize) -> ();
+    glCopyBufferSubData(read: u32, write: u32, read_offset: isize, write_offset: isize, size: isize) -> ();
     glCopyPixels(x: i32, y: i32, width: i32, height: i32, type_: u32) -> ();
     glCopyTexImage2D(target: u32, level: i32, internalformat: u32, x: i32, y: i32, width: i32, height: i32, border: i32) -> ();
     glCopyTexSubImage2D(target: u32, level: i32, xoffset: i32, yoffset: i32, x: i32, y: i32, width: i32, height: i32) -> ();
@@ -198,6 +200,7 @@ functions! {
     glDebugMessageCallback(callback: usize, user_param: usize) -> ();
     glDeleteFramebuffers(n: i32, framebuffers: &[u32]) -> ();
     glDeleteLists(list: u32, range: i32) -> ();
+    glDeleteSamplers(count: i32, samplers: &[u32]) -> ();
     glDepthFunc(func: u32) -> ();
     glDepthMask(flag: u8) -> ();
     glDepthRange(n: f64, f: f64) -> ();
@@ -206,6 +209,7 @@ functions! {
     glDrawArrays(mode: u32, first: i32, count: i32) -> ();
     glDrawBuffer(buf: u32) -> ();
     glDrawElements(mode: u32, count: i32, type_: u32, indices: usize) -> ();
+    glDrawElementsBaseVertex(mode: u32, count: i32, type_: u32, indices: usize, basevertex: i32) -> ();
     glDrawPixels(width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
     glDrawRangeElements(mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize) -> ();
     glEdgeFlag(flag: u8) -> ();
@@ -234,6 +238,7 @@ functions! {
     glGenLists(range: i32) -> u32;
     glGenQueries(n: i32, ids: &mut [u32]) -> ();
     glGenRenderbuffers(n: i32, renderbuffers: &mut [u32]) -> ();
+    glGenSamplers(count: i32, samplers: &mut [u32]) -> ();
     glGenTextures(n: i32, textures: &mut [u32]) -> ();
     glGenVertexArrays(n: i32, arrays: &mut [u32]) -> ();
     glGenerateMipmap(target: u32) -> ();
@@ -338,6 +343,7 @@ functions! {
     glRenderbufferStorageMultisample(target: u32, samples: i32, internalformat: u32, width: i32, height: i32) -> ();
     glRotatef(angle: f32, x: f32, y: f32, z: f32) -> ();
     glSampleCoverage(value: f32, invert: u8) -> ();
+    glSamplerParameteri(sampler: u32, pname: u32, param: i32) -> ();
     glScalef(x: f32, y: f32, z: f32) -> ();
     glScissor(x: i32, y: i32, width: i32, height: i32) -> ();
     glSecondaryColor3f(red: f32, green: f32, blue: f32) -> ();
@@ -366,6 +372,7 @@ functions! {
     glTexParameterf(target: u32, pname: u32, param: f32) -> ();
     glTexParameterfv(target: u32, pname: u32, params: &[f32]) -> ();
     glTexParameteri(target: u32, pname: u32, param: i32) -> ();
+    glTexStorage2D(target: u32, levels: i32, internalformat: u32, width: i32, height: i32) -> ();
     glTexSubImage1D(target: u32, level: i32, xoffset: i32, width: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage2D(target: u32, level: i32, xoffset: i32, yoffset: i32, width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
     glTexSubImage3D(target: u32, level: i32, xoffset: i32, yoffset: i32, zoffset: i32, width: i32, height: i32, depth: i32, format: u32, type_: u32, pixels: usize) -> ();

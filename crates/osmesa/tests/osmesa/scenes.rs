@@ -178,7 +178,7 @@ macro_rules! groups {
 
 groups! {
     lines polygons lighting fog texgen textures texture_images environment alpha_stencil blending images reading lists
-    arrays framebuffers queries surfaces
+    arrays framebuffers queries surfaces extensions
 }
 
 #[test]

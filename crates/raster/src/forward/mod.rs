@@ -35,4 +35,4 @@ pub use state::{
     DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp,
     Unit,
 };
-pub use texture::{BaseFormat, Filter, Level, Sampler, Texels, Texture, TextureKind, Wrap};
+pub use texture::{BaseFormat, Filter, Level, Sampler, Swizzle, Texels, Texture, TextureKind, Wrap};

@@ -79,6 +79,18 @@ pub enum Filter {
     LinearMipmapLinear,
 }
 
+/// Where a component of what sampling yields comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Swizzle {
+    Red,
+    Green,
+    Blue,
+    Alpha,
+    Zero,
+    One,
+}
+
 /// How a texture is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
@@ -107,13 +119,15 @@ pub struct Texture {
     pub kind: TextureKind,
     /// What sampling yields.
     pub format: BaseFormat,
-    /// For depth textures: `Luminance`, `Intensity` or `Alpha`.
+    /// For depth textures: `Luminance`, `Intensity`, `Alpha`, or `Rgb` for the depth in red alone.
     pub depth_mode: BaseFormat,
     /// Faces (one, or six in the order +x -x +y -y +z -z) of levels; level 0 here is `TEXTURE_BASE_LEVEL`. Without
     /// mipmapping only the first is there.
     pub faces: Vec<Vec<Arc<Level>>>,
     /// How to look it up.
     pub sampler: Sampler,
+    /// Where red, green, blue and alpha come from, if not from themselves.
+    pub swizzle: Option<[Swizzle; 4]>,
 }
 
 impl Texture {

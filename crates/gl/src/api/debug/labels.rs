@@ -67,14 +67,16 @@ impl Context {
     /// `glGetObjectLabel`.
     pub fn get_object_label(&mut self, identifier: u32, name: u32, buf_size: i32, length: usize, label: usize) {
         let call = "glGetObjectLabel";
-        if !self.check_object(call, identifier, name) {
-            return;
+        if self.check_object(call, identifier, name) {
+            self.give_label(call, (identifier, name), buf_size, length, label);
         }
+    }
+
+    fn give_label(&mut self, call: &str, of: (u32, u32), buf_size: i32, length: usize, label: usize) {
         let Ok(size) = usize::try_from(buf_size) else {
             return self.refuse_value(call, "the buffer's size is negative");
         };
-        let mut text =
-            self.with_labels(identifier, |labels| labels.get(&(identifier, name)).cloned().unwrap_or_default());
+        let mut text = self.with_labels(of.0, |labels| labels.get(&of).cloned().unwrap_or_default());
         if label != 0 {
             text.truncate(size.saturating_sub(1));
         }
@@ -87,19 +89,22 @@ impl Context {
         }
     }
 
-    /// `glObjectPtrLabel`: there are no sync objects, the only ones named by a pointer.
+    /// `glObjectPtrLabel`, of a sync object.
     pub fn object_ptr_label(&mut self, ptr: usize, length: i32, label: usize) {
-        let _ = (ptr, length, label);
-        if self.may_set("glObjectPtrLabel") {
-            self.refuse_value("glObjectPtrLabel", "there is no such sync object");
+        let (call, of) = ("glObjectPtrLabel", (gl::SYNC_FENCE, ptr as u32));
+        if !self.knows_fence(call, ptr) {
+        } else if label == 0 {
+            self.forget_label(of.0, of.1);
+        } else if let Some(text) = self.debug_text(call, label, length, MAX_LABEL_LENGTH) {
+            self.with_labels(of.0, |labels| labels.insert(of, text));
         }
     }
 
-    /// `glGetObjectPtrLabel`: see [`Self::object_ptr_label`].
+    /// `glGetObjectPtrLabel`.
     pub fn get_object_ptr_label(&mut self, ptr: usize, buf_size: i32, length: usize, label: usize) {
-        let _ = (ptr, buf_size, length, label);
-        if self.may_set("glGetObjectPtrLabel") {
-            self.refuse_value("glGetObjectPtrLabel", "there is no such sync object");
+        let call = "glGetObjectPtrLabel";
+        if self.knows_fence(call, ptr) {
+            self.give_label(call, (gl::SYNC_FENCE, ptr as u32), buf_size, length, label);
         }
     }
 }
@@ -137,5 +142,9 @@ mod tests {
         assert_eq!(c.get_error(), gl::INVALID_ENUM);
         c.object_ptr_label(0, 0, 0);
         assert_eq!(c.get_error(), gl::INVALID_VALUE);
+        let (fence, at) = (c.fence_sync(gl::SYNC_GPU_COMMANDS_COMPLETE, 0), put(&c, b"gate"));
+        c.object_ptr_label(fence, 4, at);
+        c.get_object_ptr_label(fence, 4, RESULT, RESULT + 4);
+        assert_eq!((take::<u8, 8>(&c), c.get_error()), (*b"\x03\0\0\0gat\0", gl::NO_ERROR));
     }
 }

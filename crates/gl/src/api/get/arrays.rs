@@ -51,6 +51,8 @@ impl Context {
             gl::VERTEX_ARRAY_BINDING => client.vertex_array,
             gl::ARRAY_BUFFER_BINDING => client.array_buffer,
             gl::ELEMENT_ARRAY_BUFFER_BINDING => client.element_buffer,
+            gl::COPY_READ_BUFFER => client.copy_buffers[0],
+            gl::COPY_WRITE_BUFFER => client.copy_buffers[1],
             gl::PIXEL_PACK_BUFFER_BINDING => client.pack.buffer,
             gl::PIXEL_UNPACK_BUFFER_BINDING => client.unpack.buffer,
             gl::VERTEX_ARRAY_BUFFER_BINDING => client.vertex.buffer,

@@ -10,6 +10,7 @@ impl Context {
     pub(super) fn get_texturing(&mut self, pname: u32) -> Option<Value> {
         let bindings = &self.state.units[self.state.active_unit].bindings;
         Some(match pname {
+            gl::SAMPLER_BINDING => Value::token(self.sampler_name(self.state.active_unit)),
             gl::ACTIVE_TEXTURE => Value::token(gl::TEXTURE0 + self.state.active_unit as u32),
             gl::TEXTURE_BINDING_1D => Value::token(bindings[target::ONE]),
             gl::TEXTURE_BINDING_2D => Value::token(bindings[target::TWO]),

@@ -106,6 +106,15 @@ impl Answer for i32 {
     }
 }
 
+impl Answer for i64 {
+    fn convert(kind: Kind, number: f64) -> Self {
+        match kind {
+            Kind::Normalized => ((number * u64::MAX as f64 - 1.0) / 2.0) as Self,
+            Kind::Boolean | Kind::Integer | Kind::Float => number.round() as Self,
+        }
+    }
+}
+
 impl Answer for f32 {
     fn convert(_: Kind, number: f64) -> Self {
         number as Self
@@ -170,6 +179,11 @@ impl Context {
     /// `glGetIntegerv`.
     pub fn get_integerv(&mut self, pname: u32, data: usize) {
         self.get_any::<i32>("glGetIntegerv", pname, data);
+    }
+
+    /// `glGetInteger64v`.
+    pub fn get_integer64v(&mut self, pname: u32, data: usize) {
+        self.get_any::<i64>("glGetInteger64v", pname, data);
     }
 
     /// `glGetFloatv`.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 pub(super) enum Vertices {
     /// In order.
     Range { first: usize, count: usize },
-    /// By indices of a type, at an address (or offset in a buffer).
-    Elements { count: usize, kind: u32, pointer: usize, buffer: u32 },
+    /// By indices of a type, at an address (or offset in a buffer), plus `base`.
+    Elements { count: usize, kind: u32, pointer: usize, buffer: u32, base: i32 },
 }
 
 /// Everything that a batch depends on.

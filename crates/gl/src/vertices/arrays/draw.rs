@@ -11,6 +11,9 @@ use crate::vertices::compile::Call;
 use crate::{Context, enums};
 use std::sync::Arc;
 
+/// What stands against an index.
+const BEFORE: Refusal = "an index with its base is negative or too large";
+
 /// The most vertices a draw may take.
 const MAX_VERTICES: usize = 1 << 28;
 
@@ -29,20 +32,52 @@ impl Context {
 
     /// `glDrawElements`.
     pub fn draw_elements(&mut self, mode: u32, count: i32, type_: u32, indices: usize) {
-        self.draw_indexed("glDrawElements", mode, count, type_, indices);
+        self.draw_indexed("glDrawElements", mode, count, type_, indices, 0);
     }
 
     /// `glDrawRangeElements`.
     pub fn draw_range_elements(&mut self, mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize) {
-        if end < start {
-            let why = format!("end {end} lies before start {start}");
-            self.record_error(enums::INVALID_VALUE, "glDrawRangeElements", &why);
-            return;
-        }
-        self.draw_indexed("glDrawRangeElements", mode, count, type_, indices);
+        self.draw_indexed_range("glDrawRangeElements", mode, [start, end], count, type_, indices, 0);
     }
 
-    fn draw_indexed(&mut self, call: &'static str, mode: u32, count: i32, kind: u32, pointer: usize) {
+    fn draw_indexed_range(
+        &mut self,
+        call: &'static str,
+        mode: u32,
+        [start, end]: [u32; 2],
+        count: i32,
+        kind: u32,
+        pointer: usize,
+        base: i32,
+    ) {
+        if end < start {
+            let why = format!("end {end} lies before start {start}");
+            self.record_error(enums::INVALID_VALUE, call, &why);
+            return;
+        }
+        self.draw_indexed(call, mode, count, kind, pointer, base);
+    }
+
+    /// `glDrawElementsBaseVertex`.
+    pub fn draw_elements_base_vertex(&mut self, mode: u32, count: i32, type_: u32, indices: usize, basevertex: i32) {
+        self.draw_indexed("glDrawElementsBaseVertex", mode, count, type_, indices, basevertex);
+    }
+
+    /// `glDrawRangeElementsBaseVertex`.
+    pub fn draw_range_elements_base_vertex(
+        &mut self,
+        mode: u32,
+        start: u32,
+        end: u32,
+        count: i32,
+        type_: u32,
+        indices: usize,
+        basevertex: i32,
+    ) {
+        self.draw_indexed_range("glDrawRangeElementsBaseVertex", mode, [start, end], count, type_, indices, basevertex);
+    }
+
+    fn draw_indexed(&mut self, call: &'static str, mode: u32, count: i32, kind: u32, pointer: usize, base: i32) {
         let Ok(count) = usize::try_from(count) else {
             self.record_error(enums::INVALID_VALUE, call, &format!("count {count} is negative"));
             return;
@@ -52,7 +87,7 @@ impl Context {
             return;
         }
         let buffer = self.client.element_buffer;
-        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer });
+        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer, base });
     }
 
     /// `glMultiDrawArrays`.
@@ -76,20 +111,47 @@ impl Context {
 
     /// `glMultiDrawElements`.
     pub fn multi_draw_elements(&mut self, mode: u32, count: usize, type_: u32, indices: usize, drawcount: i32) {
-        const CALL: &str = "glMultiDrawElements";
-        let Some(n) = self.draw_count(CALL, mode, drawcount) else { return };
+        self.draw_indexed_many("glMultiDrawElements", mode, count, type_, indices, drawcount, None);
+    }
+
+    /// `glMultiDrawElementsBaseVertex`.
+    pub fn multi_draw_elements_base_vertex(
+        &mut self,
+        mode: u32,
+        count: usize,
+        type_: u32,
+        indices: usize,
+        drawcount: i32,
+        basevertex: usize,
+    ) {
+        let bases = Some(basevertex);
+        self.draw_indexed_many("glMultiDrawElementsBaseVertex", mode, count, type_, indices, drawcount, bases);
+    }
+
+    fn draw_indexed_many(
+        &mut self,
+        call: &'static str,
+        mode: u32,
+        count: usize,
+        kind: u32,
+        indices: usize,
+        drawcount: i32,
+        bases: Option<usize>,
+    ) {
+        let Some(n) = self.draw_count(call, mode, drawcount) else { return };
         let counts = client::values::<i32>(&*self.memory, count, n);
         let pointers = client::values::<usize>(&*self.memory, indices, n);
-        let (Some(counts), Some(pointers)) = (counts, pointers) else {
-            self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
+        let bases = bases.map_or_else(|| Some(vec![0; n]), |bases| client::values::<i32>(&*self.memory, bases, n));
+        let (Some(counts), Some(pointers), Some(bases)) = (counts, pointers, bases) else {
+            self.record_error(enums::INVALID_VALUE, call, "its ranges are not in the client's memory");
             return;
         };
         if counts.iter().any(|v| *v < 0) {
-            self.record_error(enums::INVALID_VALUE, CALL, "a count is negative");
+            self.record_error(enums::INVALID_VALUE, call, "a count is negative");
             return;
         }
-        for (count, pointer) in counts.into_iter().zip(pointers) {
-            self.draw_indexed(CALL, mode, count, type_, pointer);
+        for ((count, pointer), base) in counts.into_iter().zip(pointers).zip(bases) {
+            self.draw_indexed(call, mode, count, kind, pointer, base);
         }
     }
 
@@ -226,8 +288,13 @@ fn build(
     let mut batch = VertexBatch::default();
     let (runs, count) = match vertices {
         Vertices::Range { first, count } => (vec![(first, count)], count),
-        Vertices::Elements { count, kind, pointer, buffer } => {
+        Vertices::Elements { count, kind, pointer, buffer, base } => {
             let mut indices = reader.indices(buffer, kind, count, pointer)?;
+            if base != 0 {
+                for index in &mut indices {
+                    *index = index.checked_add_signed(base).ok_or(BEFORE)?;
+                }
+            }
             let runs = compact(&mut indices);
             batch.indices = Some(indices);
             (runs, count)

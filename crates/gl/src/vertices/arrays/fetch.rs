@@ -3,9 +3,27 @@
 use crate::enums;
 use crate::memory::ClientMemory;
 use crate::objects::{Buffer, Names};
+use crate::pixels::float_from_half;
 use crate::state::ArrayPointer;
 use crate::vertices::client::{self, Component};
 use std::sync::Arc;
+
+/// The size of an array of four components in the order blue, green, red, alpha.
+pub(super) const BGRA: i32 = enums::BGRA as i32;
+
+/// A half-precision number.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+struct Half(u16);
+
+impl Component for Half {
+    fn plain(self) -> f32 {
+        float_from_half(self.0)
+    }
+    fn unit(self) -> f32 {
+        float_from_half(self.0)
+    }
+}
 
 /// Why elements cannot be read.
 pub(super) type Refusal = &'static str;
@@ -89,6 +107,9 @@ impl Reader {
                 left -= n;
             }
         }
+        if array.size == BGRA && N > 2 {
+            elements.iter_mut().for_each(|element| element.swap(0, 2));
+        }
         Ok(elements)
     }
 
@@ -118,7 +139,7 @@ impl Reader {
 fn type_size(kind: u32) -> usize {
     match kind {
         enums::BYTE | enums::UNSIGNED_BYTE => 1,
-        enums::SHORT | enums::UNSIGNED_SHORT => 2,
+        enums::SHORT | enums::UNSIGNED_SHORT | enums::HALF_FLOAT_ARB => 2,
         enums::DOUBLE => 8,
         _ => 4,
     }
@@ -135,7 +156,7 @@ struct Layout {
 
 impl Layout {
     fn of(array: &ArrayPointer) -> Self {
-        let components = array.size as usize;
+        let components = if array.size == BGRA { 4 } else { array.size as usize };
         let size = components * type_size(array.kind);
         let stride = if array.stride == 0 { size } else { array.stride as usize };
         Self { kind: array.kind, components, size, stride }
@@ -170,6 +191,7 @@ impl Layout {
             enums::UNSIGNED_SHORT => self.numbers::<u16, N>(bytes, count, unit, default, to),
             enums::INT => self.numbers::<i32, N>(bytes, count, unit, default, to),
             enums::UNSIGNED_INT => self.numbers::<u32, N>(bytes, count, unit, default, to),
+            enums::HALF_FLOAT_ARB => self.numbers::<Half, N>(bytes, count, unit, default, to),
             _ => self.numbers::<f64, N>(bytes, count, unit, default, to),
         }
     }
@@ -237,6 +259,19 @@ mod tests {
             reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 2)], false, [0.0]),
             Ok(vec![[0.0], [500.0]])
         );
+    }
+
+    #[test]
+    fn halves_and_colours_in_the_other_order() {
+        let arena = Arc::new(Arena::new(16, 64));
+        arena.write(16, bytemuck::bytes_of(&[0x3c00_u16, 0xc000, 0x3800]));
+        arena.write(32, &[51, 102, 153, 204]);
+        let reader = Reader { memory: arena, stores: Vec::new() };
+        let halves = reader.elements(&array(3, enums::HALF_FLOAT_ARB, 0, 16), &[(0, 1)], true, [0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(halves, Ok(vec![[1.0, -2.0, 0.5, 1.0]]));
+        let bgra = array(BGRA, enums::UNSIGNED_BYTE, 0, 32);
+        assert_eq!(reader.elements(&bgra, &[(0, 1)], true, [0.0; 4]), Ok(vec![[0.6, 0.4, 0.2, 0.8]]));
+        assert_eq!(reader.elements(&bgra, &[(0, 1)], true, [0.0; 3]), Ok(vec![[0.6, 0.4, 0.2]]));
     }
 
     #[test]

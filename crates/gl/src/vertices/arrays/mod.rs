@@ -61,7 +61,8 @@ impl Context {
     pub(super) fn forget_buffer(&mut self, name: u32) {
         let client = &mut self.client;
         let (pack, unpack) = (&mut client.pack.buffer, &mut client.unpack.buffer);
-        for binding in [&mut client.array_buffer, &mut client.element_buffer, pack, unpack] {
+        let [read, write] = &mut client.copy_buffers;
+        for binding in [&mut client.array_buffer, &mut client.element_buffer, pack, unpack, read, write] {
             if *binding == name {
                 *binding = 0;
             }

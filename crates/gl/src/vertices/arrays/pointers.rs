@@ -1,14 +1,16 @@
 //! Where arrays lie, and which are used.
 
 use super::POSITION;
+use super::fetch::BGRA;
 use crate::state::{ArrayPointer, MAX_TEXTURE_UNITS};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::{Context, enums};
 use std::ops::RangeInclusive;
 
-const REALS: &[u32] = &[enums::FLOAT, enums::DOUBLE];
-const SIGNED: &[u32] = &[enums::SHORT, enums::INT, enums::FLOAT, enums::DOUBLE];
-const SIGNED_AND_BYTE: &[u32] = &[enums::BYTE, enums::SHORT, enums::INT, enums::FLOAT, enums::DOUBLE];
+const REALS: &[u32] = &[enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
+const SIGNED: &[u32] = &[enums::SHORT, enums::INT, enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
+const SIGNED_AND_BYTE: &[u32] =
+    &[enums::BYTE, enums::SHORT, enums::INT, enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
 const INDICES: &[u32] = &[enums::UNSIGNED_BYTE, enums::SHORT, enums::INT, enums::FLOAT, enums::DOUBLE];
 const FLAGS: &[u32] = &[enums::UNSIGNED_BYTE];
 const ALL: &[u32] = &[
@@ -18,6 +20,7 @@ const ALL: &[u32] = &[
     enums::UNSIGNED_SHORT,
     enums::INT,
     enums::UNSIGNED_INT,
+    enums::HALF_FLOAT_ARB,
     enums::FLOAT,
     enums::DOUBLE,
 ];
@@ -43,7 +46,11 @@ impl Context {
         }
         let (sizes, kinds) = allowed(which);
         let buffer = self.client.array_buffer;
-        let trouble = if !sizes.contains(&size) {
+        // EXT_vertex_array_bgra: the order is a size.
+        let bgra = matches!(which, COLOR | SECONDARY) && size == BGRA;
+        let trouble = if bgra && kind != enums::UNSIGNED_BYTE {
+            Some((enums::INVALID_OPERATION, "components in the order BGRA are bytes".to_owned()))
+        } else if !bgra && !sizes.contains(&size) {
             Some((enums::INVALID_VALUE, format!("size {size} is not allowed")))
         } else if !kinds.contains(&kind) {
             Some((enums::INVALID_ENUM, format!("type {kind:#x} is not allowed")))

@@ -4,6 +4,7 @@ mod alpha_stencil;
 mod arrays;
 mod blending;
 mod environment;
+mod extensions;
 mod fog;
 mod framebuffers;
 mod images;
@@ -70,6 +71,7 @@ pub(crate) const GROUPS: &[(&str, &[Scene])] = &[
     ("framebuffers", framebuffers::SCENES),
     ("queries", queries::SCENES),
     ("surfaces", surfaces::SCENES),
+    ("extensions", extensions::SCENES),
 ];
 
 /// All scenes.

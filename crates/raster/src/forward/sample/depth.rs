@@ -54,6 +54,7 @@ pub(super) fn by_mode<S: Simd>(simd: S, mode: BaseFormat, value: F32x8<S>) -> Rg
     match mode {
         BaseFormat::Alpha => [zero, zero, zero, value],
         BaseFormat::Intensity => [value; 4],
+        BaseFormat::Rgb => [value, zero, zero, one],
         _ => [value, value, value, one],
     }
 }

@@ -36,7 +36,11 @@ impl<'a> Packed<'a> {
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
-        if texture.kind != TextureKind::Two || levels.len() > LEVELS || !stays_inside(&texture.sampler.wrap) {
+        if texture.kind != TextureKind::Two
+            || levels.len() > LEVELS
+            || texture.swizzle.is_some()
+            || !stays_inside(&texture.sampler.wrap)
+        {
             return None;
         }
         let [width, height, _] = interior(first, 2);

@@ -9,6 +9,7 @@ use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::sample;
 use crate::forward::state::{EnvironmentMode, Unit};
+use crate::forward::texture::Swizzle;
 use crate::forward::wide::{Rgba, max, splat, splat_rgba};
 use vitral_math::lanes::{F32x8, Simd};
 
@@ -82,10 +83,19 @@ impl Shader<'_> {
                 },
             );
         }
-        simd.vectorize(
+        let color = simd.vectorize(
             #[inline(always)]
             || self.any(simd, weights, (groups.x[i], groups.y[i]), active, unit),
-        )
+        );
+        let Some(swizzle) = unit.texture.swizzle else { return color };
+        swizzle.map(|from| match from {
+            Swizzle::Red => color[0],
+            Swizzle::Green => color[1],
+            Swizzle::Blue => color[2],
+            Swizzle::Alpha => color[3],
+            Swizzle::Zero => splat(simd, 0.0),
+            Swizzle::One => splat(simd, 1.0),
+        })
     }
 
     /// Any texture: sprites, borders, volumes, cubes, depth, anisotropy.

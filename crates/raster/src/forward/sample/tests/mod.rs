@@ -33,7 +33,7 @@ fn level(size: [u32; 3], border: u32, texels: Texels) -> Arc<Level> {
 }
 
 fn texture(kind: TextureKind, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Texture {
-    Texture { kind, format: BaseFormat::Rgba, depth_mode: BaseFormat::Luminance, faces, sampler }
+    Texture { kind, format: BaseFormat::Rgba, depth_mode: BaseFormat::Luminance, faces, sampler, swizzle: None }
 }
 
 /// Red bytes, opaque.

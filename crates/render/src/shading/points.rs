@@ -2,8 +2,9 @@
 
 use super::FrameConstants;
 use crate::marks::MarkColors;
+use crate::transparency::range;
 use crate::visible::Peel;
-use vitral_raster::{Layer, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile};
+use vitral_raster::{Fragment, Layer, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile};
 
 /// The points of a tile.
 #[derive(Default)]
@@ -23,6 +24,7 @@ pub(crate) struct Points {
     /// Their depths, sample by sample.
     pub depths: Vec<f32>,
     layers: Vec<LayerPoint>,
+    sorted: Vec<Fragment>,
     /// Points in the order of their groups.
     pub order: Vec<u32>,
     /// Runs of `order` with one object and material.
@@ -55,6 +57,14 @@ pub(crate) enum Source {
     Mixed(u32),
 }
 
+/// What lies in front of a tile's opaque samples.
+pub(crate) enum InFront<'l> {
+    /// Sample by sample.
+    Samples(&'l [Layer]),
+    /// Facets in pixels, and their depths.
+    Fragments(&'l [Fragment], Vec<f32>),
+}
+
 /// A layer at a sample of a pixel.
 #[derive(Clone, Copy, Default)]
 struct LayerPoint {
@@ -81,6 +91,10 @@ pub(crate) struct FragmentPoint {
     pub mask: u32,
     /// Its depth at each of them, from this place in [`Points::depths`].
     pub start: u32,
+    /// How many those are, and the farthest and nearest of them.
+    pub count: u32,
+    pub far: f32,
+    pub near: f32,
     /// Index of a point, or of a mark.
     pub source: u32,
     /// It is a line or a point of the model, not a surface.
@@ -109,7 +123,7 @@ impl Points {
     pub(crate) fn collect(
         &mut self,
         tile: &Tile,
-        layers: &[Layer],
+        layers: InFront<'_>,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
     ) {
@@ -129,8 +143,13 @@ impl Points {
             }
         }
         self.covered_pixels = self.pixels.len() as u64;
-        if !layers.is_empty() {
-            self.collect_layers(tile, layers, constants, marks);
+        match layers {
+            InFront::Samples([]) | InFront::Fragments([], _) => {}
+            InFront::Samples(layers) => self.collect_layers(tile, layers, constants, marks),
+            InFront::Fragments(fragments, depths) => {
+                self.depths = depths;
+                self.collect_fragments(tile, fragments, constants, marks);
+            }
         }
         self.group(constants);
     }
@@ -247,11 +266,92 @@ impl Points {
                 }
                 let mark = marks.index(facet);
                 let source = mark.unwrap_or_else(|| self.push(facet, middle(place, mask, constants)));
-                let (pixel, is_mark) = (pixel as u32, mark.is_some());
-                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                self.fragments.push(fragment);
             }
         }
         self.layers = layers;
+    }
+
+    /// [`Self::collect_layers`] of facets whose samples in a pixel are together.
+    fn collect_fragments(
+        &mut self,
+        tile: &Tile,
+        fragments: &[Fragment],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
+        self.sort_fragments(tile, fragments, constants);
+        let mut sorted = std::mem::take(&mut self.sorted);
+        self.fragments.reserve(sorted.len());
+        self.facet.reserve(sorted.len());
+        self.place.reserve(sorted.len());
+        for here in sorted.chunk_by_mut(|a, b| a.pixel == b.pixel) {
+            // Mostly they come in the order of the scene, each facet once.
+            let count = if here.is_sorted_by(|a, b| a.facet < b.facet) { here.len() } else { self.unite(here) };
+            let pixel = usize::from(here[0].pixel);
+            let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
+            for &Fragment { facet, start, far, near, mask, count, .. } in &here[..count] {
+                let (pixel, mask, count, mark) = (pixel as u32, u32::from(mask), u32::from(count), marks.index(facet));
+                let source = mark.unwrap_or_else(|| self.push(facet, middle(place, mask, constants)));
+                let is_mark = mark.is_some();
+                self.fragments.push(FragmentPoint { pixel, facet, mask, start, count, far, near, source, is_mark });
+            }
+        }
+        self.sorted = sorted;
+    }
+
+    /// Sorts a pixel's fragments by facet and makes one of those of a facet, as where it was clipped into several triangles:
+    /// of a sample on their common border the nearer depth stays. The first so many are left.
+    fn unite(&mut self, fragments: &mut [Fragment]) -> usize {
+        fragments.sort_by_key(|f| f.facet);
+        let mut last = 0;
+        for i in 1..fragments.len() {
+            let (a, b) = (fragments[last], fragments[i]);
+            if a.facet != b.facet {
+                last += 1;
+                fragments[last] = b;
+                continue;
+            }
+            let (start, mask) = (self.depths.len(), a.mask | b.mask);
+            for bit in (0..u16::BITS).map(|s| 1 << s).filter(|bit| mask & bit != 0) {
+                let depth = |f: Fragment| {
+                    let before = (f.mask & (bit - 1)).count_ones();
+                    if f.mask & bit == 0 { f32::MIN } else { self.depths[(f.start + before) as usize] }
+                };
+                self.depths.push(depth(a).max(depth(b)));
+            }
+            let [far, near] = range(&self.depths[start..]);
+            let (start, count) = (start as u32, mask.count_ones() as u16);
+            fragments[last] = Fragment { start, far, near, mask, count, ..a };
+        }
+        last + 1
+    }
+
+    /// Fragments pixel by pixel, each pixel's in the order in which they came (a counting sort).
+    fn sort_fragments(&mut self, tile: &Tile, fragments: &[Fragment], constants: &FrameConstants<'_>) {
+        let (width, height) = visible_part(tile, constants);
+        let whole = (width, height) == (TILE, TILE);
+        let inside = |f: &&Fragment| {
+            let pixel = usize::from(f.pixel);
+            whole || (pixel % TILE < width && pixel / TILE < height)
+        };
+        let place = |f: &Fragment| usize::from(f.pixel) % TILE_PIXELS;
+        let starts = &mut self.starts;
+        starts.clear();
+        starts.resize(TILE_PIXELS + 1, 0);
+        let mut sum = 0;
+        fragments.iter().filter(inside).for_each(|f| starts[place(f)] += 1);
+        for start in starts.iter_mut() {
+            sum += std::mem::replace(start, sum);
+        }
+        self.sorted.clear();
+        self.sorted.resize(sum as usize, Fragment::default());
+        for fragment in fragments.iter().filter(inside) {
+            let start = &mut starts[place(fragment)];
+            self.sorted[*start as usize] = *fragment;
+            *start += 1;
+        }
     }
 
     /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with all layers at once.
@@ -283,8 +383,8 @@ impl Points {
                 done |= mask;
                 let mark = marks.index(facet);
                 let source = mark.unwrap_or_else(|| self.push(facet, middle(place, found.covers, constants)));
-                let (pixel, is_mark) = (pixel as u32, mark.is_some());
-                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                self.fragments.push(fragment);
             }
         }
         self.group(constants);
@@ -336,10 +436,10 @@ impl Points {
             if is_mark {
                 // It may have another place at each sample.
                 let samples = (0..32).filter(|s| mask >> s & 1 == 1).map(|s| 1u32 << s);
-                let at_sample = |(mask, start)| FragmentPoint { pixel, facet, mask, start, source, is_mark };
+                let at_sample = |place| self.fragment((pixel, facet), place, (source, is_mark));
                 drawn.extend(samples.zip(start..).map(at_sample));
             } else if mask != 0 {
-                drawn.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+                drawn.push(self.fragment((pixel, facet), (mask, start), (source, is_mark)));
             }
         }
         self.place_marks(&mut drawn);
@@ -394,7 +494,7 @@ impl Points {
 
     /// Frees what only finding the points took.
     pub(crate) fn forget_workspace(&mut self) {
-        (self.layers, self.order, self.keys, self.key_of_point) = Default::default();
+        (self.layers, self.sorted, self.order, self.keys, self.key_of_point) = Default::default();
         (self.starts, self.followed, self.groups) = Default::default();
     }
 
@@ -410,6 +510,18 @@ impl Points {
         self.facet.clear();
         self.facet.extend(facets);
         self.group(constants);
+    }
+
+    /// A fragment of a pixel and facet with the samples `mask`, whose depths begin at `start`.
+    fn fragment(
+        &self,
+        (pixel, facet): (u32, u32),
+        (mask, start): (u32, u32),
+        (source, is_mark): (u32, bool),
+    ) -> FragmentPoint {
+        let count = mask.count_ones();
+        let [far, near] = range(&self.depths[start as usize..(start + count) as usize]);
+        FragmentPoint { pixel, facet, mask, start, count, far, near, source, is_mark }
     }
 
     fn push(&mut self, facet: u32, place: [f32; 2]) -> u32 {

@@ -15,55 +15,62 @@ use super::{Fragment, MOST_SAMPLES, sorted};
 /// Fragments up to which one order for all samples is looked for.
 const FEW: usize = 32;
 
-/// A fragment's number, and its range of depths.
-#[derive(Clone, Copy, Default)]
-struct Range {
-    index: u8,
-    far: f32,
-    near: f32,
-}
-
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
-    if fragments.len() > FEW {
-        return sorted::lay(fragments, samples);
+    match fragments.len() {
+        0 => {}
+        1 => fragments[0].over_all(samples),
+        2..=8 => pack::<8>(fragments, samples),
+        9..=FEW => pack::<FEW>(fragments, samples),
+        _ => sorted::lay(fragments, samples),
     }
-    let mut ranges = [Range::default(); FEW];
-    let ranges = &mut ranges[..fragments.len()];
-    let of = |r: &Range| &fragments[usize::from(r.index)];
+}
+
+/// [`lay`] for at most `MOST` fragments.
+fn pack<const MOST: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
+    // They are few: each finds its place among those before it, from far to near.
+    let mut order = [(0.0f32, 0u32); MOST];
+    let order = &mut order[..fragments.len().min(MOST)];
+    let of = |&(_, index): &(f32, u32)| &fragments[index as usize];
     for (i, fragment) in fragments.iter().enumerate() {
-        let (mut far, mut near) = (f32::MAX, f32::MIN);
-        for &depth in fragment.depths {
-            far = if depth < far { depth } else { far };
-            near = if depth > near { depth } else { near };
-        }
-        // They are few: each finds its place among those before it.
-        let range = Range { index: i as u8, far, near };
-        let farther = |r: &Range| r.far < far || (r.far == far && of(r).facet > fragment.facet);
+        let far = fragment.far;
         let mut place = i;
-        while place > 0 && !farther(&ranges[place - 1]) {
-            ranges[place] = ranges[place - 1];
+        while place > 0 {
+            let before = order[place - 1];
+            if before.0 < far || (before.0 == far && of(&before).facet > fragment.facet) {
+                break;
+            }
+            order[place] = before;
             place -= 1;
         }
-        ranges[place] = range;
+        order[place] = (far, i as u32);
     }
-    let mixed = ranges
-        .iter()
-        .enumerate()
-        .any(|(i, b)| ranges[..i].iter().any(|a| a.near >= b.far && of(a).mask & of(b).mask != 0));
-    if mixed {
+
+    // Fragments that share no samples may overlap in depth, as neighbours in a mesh do.
+    let all = (1u32 << samples.len().min(MOST_SAMPLES)) - 1;
+    let (mut nearest, mut overlap, mut filling) = (f32::MIN, false, all);
+    for at in order.iter() {
+        let fragment = of(at);
+        overlap |= nearest >= at.0;
+        nearest = if fragment.near > nearest { fragment.near } else { nearest };
+        filling &= fragment.mask;
+    }
+    let shares = |i: usize| order[..i].iter().any(|a| of(a).near >= order[i].0 && of(a).mask & of(&order[i]).mask != 0);
+    if overlap && (1..order.len()).any(shares) {
         return sorted::lay(fragments, samples);
     }
-    let all = (1u32 << samples.len().min(MOST_SAMPLES)) - 1;
-    let same_behind = samples.iter().all(|s| *s == samples[0]);
-    if same_behind && fragments.iter().all(|f| f.mask == all) {
-        // Panes that fill the pixel: one sample stands for all.
-        ranges.iter().for_each(|r| of(r).over(&mut samples[0]));
-        let color = samples[0];
+
+    // As long as fragments fill the pixel, one sample stands for all.
+    let mut rest = &order[..];
+    if samples.iter().all(|s| *s == samples[0]) {
+        let count = if filling == all { order.len() } else { order.iter().take_while(|a| of(a).mask == all).count() };
+        let (first, others) = order.split_at(count);
+        let mut color = samples[0];
+        first.iter().for_each(|a| of(a).over(&mut color));
         samples.fill(color);
-        return;
+        rest = others;
     }
-    ranges.iter().for_each(|r| of(r).over_all(samples));
+    rest.iter().for_each(|a| of(a).over_all(samples));
 }
 
 #[cfg(test)]
@@ -87,14 +94,8 @@ mod tests {
     fn surfaces_that_meet_within_a_pixel_are_sorted_sample_by_sample() {
         // Two crossing panes over four samples: which one is in front changes in the middle.
         let (rising, falling) = ([0.2, 0.4, 0.6, 0.8], [0.8, 0.6, 0.4, 0.2]);
-        let fragment = |facet, depths, red: f32| Fragment {
-            facet,
-            mask: 0b1111,
-            depths,
-            color: [red * 0.5, 0.0, 0.0, 0.5],
-            passes: [0.5; 3],
-            behind: None,
-        };
+        let fragment =
+            |facet, depths, red: f32| Fragment::new(facet, (0b1111, depths), [red * 0.5, 0.0, 0.0, 0.5], [0.5; 3]);
         for order in [[0, 1], [1, 0]] {
             let both = [fragment(0, &rising, 1.0), fragment(1, &falling, 0.0)];
             let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
@@ -105,8 +106,7 @@ mod tests {
 
     #[test]
     fn masks_say_which_samples_a_fragment_changes() {
-        let half =
-            Fragment { facet: 0, mask: 0b1001, depths: &[0.5, 0.5], color: [1.0; 4], passes: [0.0; 3], behind: None };
+        let half = Fragment::new(0, (0b1001, &[0.5, 0.5]), [1.0; 4], [0.0; 3]);
         let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
         lay(&[half], &mut samples);
         assert_eq!(samples.map(|s| s[0]), [1.0, 0.0, 0.0, 1.0]);

@@ -39,14 +39,8 @@ mod tests {
     #[test]
     fn pieces_of_one_facet_come_at_different_times() {
         // A facet that another one crosses within the pixel: half of it comes before, half after.
-        let piece = |facet, mask, red: f32| Fragment {
-            facet,
-            mask,
-            depths: &[0.5; 4],
-            color: [red * 0.5, 0.0, 0.0, 0.5],
-            passes: [0.5; 3],
-            behind: None,
-        };
+        let piece =
+            |facet, mask, red: f32| Fragment::new(facet, (mask, &[0.5; 4]), [red * 0.5, 0.0, 0.0, 0.5], [0.5; 3]);
         let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
         lay(&[piece(0, 0b0011, 1.0), piece(1, 0b1111, 0.0), piece(0, 0b1100, 1.0)], &mut samples);
         assert_eq!(samples.map(|s| s[0]), [0.25, 0.25, 0.5, 0.5]);

@@ -1,0 +1,128 @@
+//! Layers gathered pixel by pixel: a facet in a pixel is one entry, however many of the pixel's samples it covers.
+//!
+//! A triangle is walked sample by sample; its masks and depths wait in rows of eight pixels until it is done. Then the bits
+//! of a pixel are put together: of a mesh finer than a few pixels, that is a fourth of the entries.
+
+use crate::samples::MOST_SAMPLES;
+use crate::sink::{Row, corner, cover_by_rows, hides_box, is_nearer};
+use crate::{Block, BlockSink, LayerList, RowSink, SamplePattern, Setup, TILE, Tile};
+use std::ops::Range;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
+
+/// A facet in a pixel, in front of the nearest opaque one at each sample that it covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fragment {
+    /// The facet.
+    pub facet: u32,
+    /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
+    pub start: u32,
+    /// The farthest of them.
+    pub far: f32,
+    /// The nearest of them.
+    pub near: f32,
+    /// `y * TILE + x` within the tile.
+    pub pixel: u16,
+    /// The samples that it covers, one bit each; not 0.
+    pub mask: u16,
+    /// How many they are.
+    pub count: u16,
+}
+
+/// Collects every facet that is not hidden by the tile's opaque samples, fragment by fragment.
+#[derive(Debug)]
+pub struct FragmentSink<'a> {
+    tile: &'a Tile,
+    pattern: &'a SamplePattern,
+    layers: &'a mut LayerList,
+    /// What of the triangle at hand is seen in each row of the tile, sample by sample; 0 between triangles.
+    seen: [[u8; MOST_SAMPLES]; TILE],
+    /// Its depths there.
+    depths: [[[f32; LANES]; MOST_SAMPLES]; TILE],
+    /// Rows in which something is seen, and the column of their first pixel.
+    rows: Range<usize>,
+    left: usize,
+    facet: u32,
+}
+
+impl<'a> FragmentSink<'a> {
+    /// Adds to `layers`, in front of what `tile` holds.
+    pub fn new(tile: &'a Tile, pattern: &'a SamplePattern, layers: &'a mut LayerList) -> Self {
+        layers.expect_fragments(pattern.len());
+        let (seen, depths) = ([[0; MOST_SAMPLES]; TILE], [[[0.0; LANES]; MOST_SAMPLES]; TILE]);
+        Self { tile, pattern, layers, seen, depths, rows: TILE..0, left: 0, facet: 0 }
+    }
+
+    /// Hands the triangle at hand on.
+    #[inline(always)]
+    fn flush<S: Simd, const MOST: usize>(&mut self, simd: S) {
+        let samples = if MOST == MOST_SAMPLES { self.pattern.len().min(MOST) } else { MOST };
+        let infinity = F32x8::splat(simd, f32::INFINITY);
+        for y in std::mem::replace(&mut self.rows, TILE..0) {
+            let seen = std::mem::take(&mut self.seen[y]);
+            let (mut far, mut near, mut pixels) = (infinity, -infinity, 0);
+            for s in 0..samples {
+                let z = F32x8::from_slice(simd, &self.depths[y][s]);
+                let here = Mask8::from_bitmask(simd, u64::from(seen[s]));
+                far = lanes::Lanes::min(far, here.select(z, infinity));
+                near = lanes::Lanes::max(near, here.select(z, -infinity));
+                pixels |= seen[s];
+            }
+            let (far, near) = (far.to_array(), near.to_array());
+            while pixels != 0 {
+                let lane = pixels.trailing_zeros() as usize % LANES;
+                pixels &= pixels - 1;
+                let pixel = (y * TILE + self.left + lane) as u16;
+                let place =
+                    Fragment { facet: self.facet, pixel, far: far[lane], near: near[lane], ..Fragment::default() };
+                let (seen, depths) = (&seen, &self.depths[y]);
+                self.layers.push_fragment::<MOST>(place, samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
+            }
+        }
+        self.layers.spread_at_limit();
+    }
+}
+
+impl<S: Simd> RowSink<S> for FragmentSink<'_> {
+    #[inline(always)]
+    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+        hides_box(self.tile, setup, low, high)
+    }
+
+    #[inline(always)]
+    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
+        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+        let seen = (is_nearer(simd, self.tile, U32x8::splat(simd, setup.facet), &row) & covered).to_bitmask() as u8;
+        let [x, y] = at;
+        self.seen[y][sample] = seen;
+        row.z.store_slice(&mut self.depths[y][sample]);
+        (self.left, self.facet) = (x, setup.facet);
+        if seen != 0 {
+            self.rows = self.rows.start.min(y)..self.rows.end.max(y + 1);
+        }
+    }
+
+    #[inline(always)]
+    fn end(&mut self, simd: S, _at: [usize; 2]) {
+        if self.rows.is_empty() {
+            return;
+        }
+        match self.pattern.len() {
+            1 => self.flush::<S, 1>(simd),
+            4 => self.flush::<S, 4>(simd),
+            _ => self.flush::<S, MOST_SAMPLES>(simd),
+        }
+    }
+}
+
+impl<S: Simd> BlockSink<S> for FragmentSink<'_> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        setup.z_max < self.tile.block_far[block.index()]
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        cover_by_rows(simd, setup, block, masks, self);
+    }
+}

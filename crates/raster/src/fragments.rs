@@ -60,23 +60,32 @@ impl<'a> FragmentSink<'a> {
         let infinity = F32x8::splat(simd, f32::INFINITY);
         for y in std::mem::replace(&mut self.rows, TILE..0) {
             let seen = std::mem::take(&mut self.seen[y]);
-            let (mut far, mut near, mut pixels) = (infinity, -infinity, 0);
+            let (mut far, mut near, mut pixels, mut full) = (infinity, -infinity, 0u8, u8::MAX);
             for s in 0..samples {
                 let z = F32x8::from_slice(simd, &self.depths[y][s]);
                 let here = Mask8::from_bitmask(simd, u64::from(seen[s]));
                 far = lanes::Lanes::min(far, here.select(z, infinity));
                 near = lanes::Lanes::max(near, here.select(z, -infinity));
-                pixels |= seen[s];
+                (pixels, full) = (pixels | seen[s], full & seen[s]);
             }
             let (far, near) = (far.to_array(), near.to_array());
-            while pixels != 0 {
-                let lane = pixels.trailing_zeros() as usize % LANES;
-                pixels &= pixels - 1;
-                let pixel = (y * TILE + self.left + lane) as u16;
-                let place =
-                    Fragment { facet: self.facet, pixel, far: far[lane], near: near[lane], ..Fragment::default() };
-                let (seen, depths) = (&seen, &self.depths[y]);
-                self.layers.push_fragment::<MOST>(place, samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
+            let (depths, first) = (&self.depths[y], y * TILE + self.left);
+            let place = |lane: usize| {
+                let pixel = (first + lane) as u16;
+                Fragment { facet: self.facet, pixel, far: far[lane], near: near[lane], ..Fragment::default() }
+            };
+            // Pixels that are covered whole, then the others, whose order does not matter.
+            let mut rest = pixels & !full;
+            while full != 0 {
+                let lane = full.trailing_zeros() as usize % LANES;
+                full &= full - 1;
+                self.layers.push_fragment::<MOST>(place(lane), samples, |s| (true, depths[s][lane]));
+            }
+            while rest != 0 {
+                let lane = rest.trailing_zeros() as usize % LANES;
+                rest &= rest - 1;
+                self.layers
+                    .push_fragment::<MOST>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
             }
         }
         self.layers.spread_at_limit();

@@ -319,7 +319,8 @@ impl<'a> Whitted<'a> {
             let edge = corners[(corner + 1) % 3] - corners[(corner + 2) % 3];
             if whole > 0.0 { (way.cross(edge).dot(across) / whole) as f32 } else { 0.0 }
         };
-        let weights = [0, 1, 2].map(|k| [weights[k], slope(k, ways[0]), slope(k, ways[1])]);
+        let along_edges = |k: usize| [weights[k], slope(k, ways[0]), slope(k, ways[1])];
+        let weights = [along_edges(0), along_edges(1), along_edges(2)];
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
         let place = Place { position, normal, facet, seed, pixel: None };

@@ -20,6 +20,7 @@ mod geometry;
 mod glow;
 mod group;
 pub(crate) mod hits;
+mod listed;
 mod looks;
 mod passes;
 mod points;
@@ -182,6 +183,7 @@ impl TileSink for ColorSink<'_> {
             shaded_points: points.len() as u64,
             layer_samples,
             lost_layers: layers.lost(),
+            overruled_layers: points.overruled,
         };
         self.counters.lock().expect("counters").add(&counters);
         if let Some(deep) = &self.deep {

@@ -6,7 +6,6 @@
 use crate::samples::MOST_SAMPLES;
 use crate::sink::{Row, corner, cover_by_rows, hides_box, is_nearer};
 use crate::{Block, BlockSink, LayerList, RowSink, SamplePattern, Setup, TILE, Tile};
-use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
 
@@ -39,18 +38,21 @@ pub struct FragmentSink<'a> {
     seen: [[u8; MOST_SAMPLES]; TILE],
     /// Its depths there.
     depths: [[[f32; LANES]; MOST_SAMPLES]; TILE],
-    /// Rows in which something is seen, and the column of their first pixel.
-    rows: Range<usize>,
+    /// The first row in which something is seen, the one behind the last, and the column of their first pixel.
+    rows: [usize; 2],
     left: usize,
     facet: u32,
 }
+
+/// Rows before the first one is found.
+const NO_ROWS: [usize; 2] = [TILE, 0];
 
 impl<'a> FragmentSink<'a> {
     /// Adds to `layers`, in front of what `tile` holds.
     pub fn new(tile: &'a Tile, pattern: &'a SamplePattern, layers: &'a mut LayerList) -> Self {
         layers.expect_fragments(pattern.len());
         let (seen, depths) = ([[0; MOST_SAMPLES]; TILE], [[[0.0; LANES]; MOST_SAMPLES]; TILE]);
-        Self { tile, pattern, layers, seen, depths, rows: TILE..0, left: 0, facet: 0 }
+        Self { tile, pattern, layers, seen, depths, rows: NO_ROWS, left: 0, facet: 0 }
     }
 
     /// Hands the triangle at hand on.
@@ -58,7 +60,8 @@ impl<'a> FragmentSink<'a> {
     fn flush<S: Simd, const MOST: usize>(&mut self, simd: S) {
         let samples = if MOST == MOST_SAMPLES { self.pattern.len().min(MOST) } else { MOST };
         let infinity = F32x8::splat(simd, f32::INFINITY);
-        for y in std::mem::replace(&mut self.rows, TILE..0) {
+        let [top, end] = std::mem::replace(&mut self.rows, NO_ROWS);
+        for y in top..end {
             let seen = std::mem::take(&mut self.seen[y]);
             let (mut far, mut near, mut pixels, mut full) = (infinity, -infinity, 0u8, u8::MAX);
             for s in 0..samples {
@@ -107,13 +110,13 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
         row.z.store_slice(&mut self.depths[y][sample]);
         (self.left, self.facet) = (x, setup.facet);
         if seen != 0 {
-            self.rows = self.rows.start.min(y)..self.rows.end.max(y + 1);
+            self.rows = [self.rows[0].min(y), self.rows[1].max(y + 1)];
         }
     }
 
     #[inline(always)]
     fn end(&mut self, simd: S, _at: [usize; 2]) {
-        if self.rows.is_empty() {
+        if self.rows == NO_ROWS {
             return;
         }
         match self.pattern.len() {

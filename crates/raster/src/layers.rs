@@ -5,9 +5,13 @@
 //! in the picture; what was lost is counted, so that the user can be told. Which entries survive depends on depth and
 //! facet alone: in whatever order facets come, the same ones stay.
 //!
+//! Whoever wants to know which facets are in a pixel, at whichever samples, asks for fragments ([`LayerList::gather`]): they
+//! take half the memory. Before they could take more than is allowed they are spread out into samples, so that the
+//! limit means the same.
+//!
 //! Cost: constant an entry; at the limit a sort, after which at least half the list is free.
 
-use crate::{Layer, TILE_PIXELS};
+use crate::{Fragment, Layer, TILE_PIXELS};
 
 /// A list of layers with a limit.
 #[derive(Clone, Debug)]
@@ -19,12 +23,17 @@ pub struct LayerList {
     lost: u64,
     /// Entries come from back to front, and stay in their order.
     from_back: bool,
+    /// Fragments are kept as they come.
+    gathers: bool,
+    fragments: Vec<Fragment>,
+    depths: Vec<f32>,
 }
 
 impl Default for LayerList {
     /// Without a limit.
     fn default() -> Self {
-        Self { list: Vec::new(), limit: usize::MAX, kept: usize::MAX, lost: 0, from_back: false }
+        let (list, fragments, depths) = (Vec::new(), Vec::new(), Vec::new());
+        Self { list, limit: usize::MAX, kept: usize::MAX, lost: 0, from_back: false, gathers: false, fragments, depths }
     }
 }
 
@@ -41,6 +50,103 @@ impl LayerList {
     #[must_use]
     pub fn from_back_to_front(self) -> Self {
         Self { from_back: true, ..self }
+    }
+
+    /// Keeps fragments as they are, for someone who takes [`Self::fragments`]; to be called before the first entry. By a
+    /// list, where parts of a facet come at different times, there are none.
+    pub fn gather(&mut self) {
+        self.gathers = !self.from_back && self.list.is_empty();
+    }
+
+    /// Whether [`Self::fragments`] are all that there is; else all samples are in the list.
+    pub fn gathers(&self) -> bool {
+        self.gathers
+    }
+
+    /// The fragments, in the order in which they came.
+    pub fn fragments(&self) -> &[Fragment] {
+        &self.fragments
+    }
+
+    /// The fragments' depths, 1 near.
+    pub fn depths(&self) -> &[f32] {
+        &self.depths
+    }
+
+    /// Takes them out.
+    pub fn take_depths(&mut self) -> Vec<f32> {
+        std::mem::take(&mut self.depths)
+    }
+
+    /// How many samples the entries have.
+    pub fn sample_count(&self) -> usize {
+        self.list.len() + self.depths.len()
+    }
+
+    /// Makes room for one layer all over a tile.
+    pub(crate) fn expect_fragments(&mut self, samples: usize) {
+        if self.gathers && self.fragments.capacity() == 0 {
+            self.fragments.reserve(TILE_PIXELS);
+            self.depths.reserve(samples * TILE_PIXELS);
+        }
+    }
+
+    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MOST`: `at` says whether it
+    /// covers a sample, and its depth there.
+    #[inline(always)]
+    pub(crate) fn push_fragment<const MOST: usize>(
+        &mut self,
+        place: Fragment,
+        samples: usize,
+        at: impl Fn(usize) -> (bool, f32),
+    ) {
+        // Depths are written in any case, and those kept where it is seen: no branch to guess.
+        let start = self.depths.len();
+        self.depths.resize(start + MOST, 0.0);
+        let depths = &mut self.depths[start..start + MOST];
+        let (mut mask, mut count) = (0u16, 0usize);
+        for s in 0..samples.min(MOST) {
+            let (seen, depth) = at(s);
+            depths[count % MOST] = depth;
+            count += usize::from(seen);
+            mask |= u16::from(seen) << s;
+        }
+        let fragment = Fragment { start: start as u32, mask, count: count as u16, ..place };
+        if self.gathers {
+            self.depths.truncate(start + count);
+            self.fragments.push(fragment);
+        } else {
+            let depths = std::mem::take(&mut self.depths);
+            self.spread(fragment, &depths[..count]);
+        }
+    }
+
+    /// Spreads fragments out into samples as soon as they, and then the samples besides, could take more memory than the list
+    /// may have.
+    #[inline(always)]
+    pub(crate) fn spread_at_limit(&mut self) {
+        let bytes = self.fragments.len() * size_of::<Fragment>() + self.depths.len() * size_of::<f32>();
+        if bytes / size_of::<Layer>() > self.limit / 3 {
+            self.spread_all();
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn spread_all(&mut self) {
+        self.gathers = false;
+        let (fragments, depths) = (std::mem::take(&mut self.fragments), std::mem::take(&mut self.depths));
+        for fragment in fragments {
+            self.spread(fragment, &depths[fragment.start as usize..][..usize::from(fragment.count)]);
+        }
+    }
+
+    fn spread(&mut self, fragment: Fragment, depths: &[f32]) {
+        let samples = (0..u16::BITS as usize).filter(|s| fragment.mask >> s & 1 == 1);
+        for (sample, &depth) in samples.zip(depths) {
+            let at = (sample * TILE_PIXELS + usize::from(fragment.pixel)) as u32;
+            self.push(Layer { at, depth, facet: fragment.facet });
+        }
     }
 
     /// Adds an entry.
@@ -146,6 +252,31 @@ mod tests {
         layers.finish();
         let left: Vec<_> = layers.iter().map(|l| l.facet).collect();
         assert_eq!((left, layers.lost()), ((29_994..30_000).collect(), 29_994));
+    }
+
+    #[test]
+    fn fragments_beyond_the_limit_are_its_samples() {
+        let mut gathered = LayerList::new(2 * TILE_PIXELS, 4);
+        gathered.gather();
+        let mut samples = LayerList::new(2 * TILE_PIXELS, 4);
+        for i in 0..60_000u32 {
+            // Samples 0 and 2 of a pixel each.
+            let (pixel, depths) = ((i * 7919 % 3) as u16, [(i % 1000) as f32 / 1000.0, 0.5, 0.0, 0.0]);
+            let place = Fragment { facet: i, pixel, ..Fragment::default() };
+            gathered.push_fragment::<4>(place, 4, |s| (s % 2 == 0, depths[s / 2]));
+            gathered.spread_at_limit();
+            for (sample, depth) in [0, 2].into_iter().zip(depths) {
+                samples.push(Layer { at: (sample * TILE_PIXELS) as u32 + u32::from(pixel), depth, facet: i });
+            }
+        }
+        let ends = [&mut gathered, &mut samples].map(|list| {
+            list.finish();
+            let mut left = list.to_vec();
+            left.sort_by_key(|l| (l.at, l.facet));
+            (left, list.lost(), list.sample_count())
+        });
+        assert!(!gathered.gathers() && ends[0].1 > 0);
+        assert_eq!(ends[0], ends[1]);
     }
 
     #[test]

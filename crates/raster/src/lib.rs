@@ -4,7 +4,7 @@
 //! [`Setup`]s (integer edge functions, a depth plane) and sorts them into the tiles they touch; [`traverse`] walks a
 //! tile's triangles in blocks of 8x8 pixels and hands each block with its coverage masks to a [`BlockSink`], which
 //! decides what a covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
-//! facet in front of it. [`traverse_by_rows`] hands triangles that are at most eight pixels wide row by row to a
+//! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most eight pixels wide row by row to a
 //! [`RowSink`], wherever the rows begin: of a fine mesh, most are.
 //!
 //! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two triangles that share
@@ -16,6 +16,7 @@
 pub mod clip;
 #[cfg(feature = "forward")]
 pub mod forward;
+mod fragments;
 pub mod geometry;
 mod kernel;
 mod layers;
@@ -24,6 +25,7 @@ mod setup;
 mod sink;
 mod tile;
 
+pub use fragments::{Fragment, FragmentSink};
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
 pub use kernel::transform::transform;
 pub use kernel::traverse::{

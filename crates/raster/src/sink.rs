@@ -19,17 +19,17 @@ pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x
 }
 
 /// Eight samples of a row that a facet covers, with the facet's depth there.
-struct Row<S: Simd> {
+pub(crate) struct Row<S: Simd> {
     /// Index of the first in the tile's planes.
     at: usize,
     covered: Mask8<S>,
-    z: F32x8<S>,
+    pub(crate) z: F32x8<S>,
 }
 
 impl<S: Simd> Row<S> {
     /// Sample `sample` of the tile's pixels from `[x, y]`.
     #[inline(always)]
-    fn new(
+    pub(crate) fn new(
         simd: S,
         setup: &Setup,
         (pattern, corner): (&SamplePattern, [usize; 2]),
@@ -45,7 +45,7 @@ impl<S: Simd> Row<S> {
 
 /// [`BlockSink::cover`] for a sink that takes rows: hands it the rows in which `masks`, one a sample, have something.
 #[inline(always)]
-fn cover_by_rows<S: Simd>(simd: S, setup: &Setup, block: &Block, masks: &[u64], sink: &mut impl RowSink<S>) {
+pub(crate) fn cover_by_rows<S: Simd>(simd: S, setup: &Setup, block: &Block, masks: &[u64], sink: &mut impl RowSink<S>) {
     for (s, &mask) in masks.iter().enumerate() {
         for row in block.rows.clone() {
             let covered = (mask >> (8 * row)) & 0xff;
@@ -58,7 +58,7 @@ fn cover_by_rows<S: Simd>(simd: S, setup: &Setup, block: &Block, masks: &[u64], 
 }
 
 /// The tile's first pixel.
-fn corner(tile: &Tile) -> [usize; 2] {
+pub(crate) fn corner(tile: &Tile) -> [usize; 2] {
     [tile.x as usize, tile.y as usize]
 }
 
@@ -70,6 +70,14 @@ struct Met<S: Simd> {
     wins: Mask8<S>,
     old_z: F32x8<S>,
     old_facet: U32x8<S>,
+}
+
+/// Where `facet` is nearer than what the tile holds at the samples of `row`, or as near and the lower.
+#[inline(always)]
+pub(crate) fn is_nearer<S: Simd>(simd: S, tile: &Tile, facet: U32x8<S>, row: &Row<S>) -> Mask8<S> {
+    let old_z = F32x8::from_slice(simd, &tile.depth[row.at..row.at + BLOCK]);
+    let old_facet = U32x8::from_slice(simd, &tile.facet[row.at..row.at + BLOCK]);
+    row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet))
 }
 
 /// Keeps the nearer facet at the samples of `row`.
@@ -143,7 +151,7 @@ impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
 
 /// Whether the blocks of a box of at most 8x8 pixels hold nothing but what is nearer than `setup`.
 #[inline(always)]
-fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+pub(crate) fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
     let far = |x: usize, y: usize| tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK];
     setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
 }

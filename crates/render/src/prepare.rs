@@ -7,6 +7,7 @@
 use crate::cull::{backface, frustum};
 use crate::stats::CullCounters;
 use crate::transparency::registry::order;
+use crate::visible::TileSink;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
@@ -116,6 +117,15 @@ impl<'a> PreparedView<'a> {
     pub(crate) fn layer_list(&self) -> LayerList {
         let list = LayerList::new(self.layer_limit, self.pattern.len());
         if self.lists_layers { list.from_back_to_front() } else { list }
+    }
+
+    /// [`Self::layer_list`] for an algorithm that walks triangles one by one, as `sink` takes it.
+    pub(crate) fn layer_list_for(&self, sink: &dyn TileSink) -> LayerList {
+        let mut list = self.layer_list();
+        if sink.takes_fragments() {
+            list.gather();
+        }
+        list
     }
 
     /// The viewer in world space, and whether projectors meet there.

@@ -303,6 +303,8 @@ pub struct PictureCounters {
     pub layer_samples: u64,
     /// Layers behind others that were dropped to stay within the memory for layers.
     pub lost_layers: u64,
+    /// Samples of layers where the depth function contradicted the order of a list.
+    pub overruled_layers: u64,
 }
 
 impl PictureCounters {
@@ -312,6 +314,7 @@ impl PictureCounters {
         self.shaded_points += o.shaded_points;
         self.layer_samples += o.layer_samples;
         self.lost_layers += o.lost_layers;
+        self.overruled_layers += o.overruled_layers;
     }
 }
 

@@ -42,8 +42,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use vitral_exec::Limit;
 use vitral_light::transmitted;
-use vitral_math::lanes::{Simd, dispatch};
-use vitral_math::{DMat3, DVec3, dvec3};
+use vitral_math::lanes::{LANES, Simd, dispatch};
+use vitral_math::{DMat3, DVec3, Vec3, dvec3};
 use vitral_raster::{Layer, Tile};
 use vitral_scene::bodies::Side;
 
@@ -230,13 +230,22 @@ impl<'a> Whitted<'a> {
         hitting.clear();
         hits.clear();
         let mut searched = Counters::default();
-        for ray in rays.iter() {
-            match self.meet(ray, &mut searched) {
-                Some((hit, from_behind)) => {
-                    hitting.push((*ray, from_behind));
-                    hits.push(hit);
-                }
-                None => add(&mut lit.colors[ray.target as usize], ray.weight, self.background(ray)),
+        for eight in rays.chunks(LANES) {
+            let mut straight = [Ray::new(Vec3::ZERO, Vec3::Z); LANES];
+            let mut own = [u32::MAX; LANES];
+            for (lane, branch) in eight.iter().enumerate() {
+                straight[lane] = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
+                own[lane] = branch.own;
+            }
+            let met = self.tree.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
+            for (ray, met) in eight.iter().zip(met) {
+                let Some((place, t)) = met else {
+                    add(&mut lit.colors[ray.target as usize], ray.weight, self.background(ray));
+                    continue;
+                };
+                let (hit, from_behind) = self.meet(ray, place, t);
+                hitting.push((*ray, from_behind));
+                hits.push(hit);
             }
         }
         counters.rays += rays.len() as u64;
@@ -281,11 +290,9 @@ impl<'a> Whitted<'a> {
         (outward.dot(ray.direction) > 0.0) != mirrors(&instance.world_from_model)
     }
 
-    /// What a ray meets first, and whether it comes from behind.
+    /// Where a ray meets the triangle at this place of the tree's triangles, at `t`, and whether it comes from behind.
     #[inline]
-    fn meet(&self, branch: &Branch, searched: &mut Counters) -> Option<(Hit, bool)> {
-        let ray = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
-        let (place, t) = self.tree.closest_hit_from(&ray, branch.own, searched)?;
+    fn meet(&self, branch: &Branch, place: usize, t: f32) -> (Hit, bool) {
         let triangles = self.tree.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
 
@@ -312,11 +319,12 @@ impl<'a> Whitted<'a> {
             let edge = corners[(corner + 1) % 3] - corners[(corner + 2) % 3];
             if whole > 0.0 { (way.cross(edge).dot(across) / whole) as f32 } else { 0.0 }
         };
-        let weights = [0, 1, 2].map(|k| [weights[k], slope(k, ways[0]), slope(k, ways[1])]);
+        let along_edges = |k: usize| [weights[k], slope(k, ways[0]), slope(k, ways[1])];
+        let weights = [along_edges(0), along_edges(1), along_edges(2)];
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
         let place = Place { position, normal, facet, seed, pixel: None };
-        Some((Hit { weights, origin: origin.as_vec3().to_array(), place }, from_behind))
+        (Hit { weights, origin: origin.as_vec3().to_array(), place }, from_behind)
     }
 
     /// The rays that go on where `ray` meets a surface.

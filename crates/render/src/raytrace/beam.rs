@@ -14,7 +14,7 @@ use super::intersect::Ray;
 use vitral_math::Vec3;
 
 /// Relative error of a bound on the parameter, with room to spare.
-const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
+pub(super) const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]

@@ -12,11 +12,15 @@
 //!       them: below a certain depth cuts are at the median, which bounds the stack.
 
 use super::beam::Beam;
+use super::intersect::Ray;
+use super::packet::{self, Packet};
 use super::triangles::{Triangles, bounds_of};
-use super::{Probe, Structure, Tree, Visitor, space_step};
+use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, LANES, Mask8, Simd};
 
 /// Most bins an axis.
 const BINS: usize = 16;
@@ -127,6 +131,83 @@ impl Bvh {
         let nodes = split(span, workers, budget)?;
         let triangles = triangles.reordered(items.iter().map(|item| item.index));
         Ok(Self { nodes, triangles })
+    }
+
+    /// Shows `visitor` what one to eight rays meet.
+    #[inline(always)]
+    pub(crate) fn follow<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        visitor: &mut impl packet::Visitor<S>,
+        counters: &mut Counters,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.descend_together(simd, rays, visitor, counters),
+        );
+    }
+
+    #[inline(always)]
+    fn descend_together<S: Simd, V: packet::Visitor<S>>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        visitor: &mut V,
+        counters: &mut Counters,
+    ) {
+        let Some(root) = self.nodes.first() else { return };
+        let packet = Packet::new(simd, rays, self.triangles.extent);
+        // Where each ray enters the node at hand; infinite for those that pass it by.
+        let apart = F32x8::splat(simd, f32::INFINITY);
+        let mut near = packet.live().select(packet.enters(simd, root.min, root.max), apart);
+        counters.boxes += rays.len() as u64;
+        let mut stack = [(0u32, [0.0f32; LANES]); STACK];
+        let (mut top, mut index) = (0, 0);
+        loop {
+            let wanted = near.simd_le(visitor.limits(simd));
+            let node = &self.nodes[index];
+            let mut below = None;
+            if !wanted.any_true() {
+            } else if node.count > 0 {
+                for place in node.link as usize..(node.link + node.count) as usize {
+                    counters.triangles += u64::from(wanted.to_bitmask().count_ones());
+                    packet.triangle((place, &self.triangles.corners[place]), wanted, visitor);
+                }
+            } else {
+                counters.boxes += 2 * u64::from(wanted.to_bitmask().count_ones());
+                let (left, right) = (index + 1, index + node.link as usize);
+                let (l, r) = (&self.nodes[left], &self.nodes[right]);
+                let at_left = wanted.select(packet.enters(simd, l.min, l.max), apart);
+                let at_right = wanted.select(packet.enters(simd, r.min, r.max), apart);
+                let lanes = |mask: Mask8<S>| mask.to_bitmask().count_ones();
+                below = match (at_left.simd_lt(apart).any_true(), at_right.simd_lt(apart).any_true()) {
+                    (false, false) => None,
+                    (true, false) => Some((left, at_left)),
+                    (false, true) => Some((right, at_right)),
+                    (true, true) => {
+                        let left_first =
+                            !V::NEAREST_FIRST || lanes(at_right.simd_lt(at_left)) <= lanes(at_left.simd_lt(at_right));
+                        let (next, later) = if left_first {
+                            ((left, at_left), (right, at_right))
+                        } else {
+                            ((right, at_right), (left, at_left))
+                        };
+                        stack[top] = (later.0 as u32, later.1.to_array());
+                        top += 1;
+                        Some(next)
+                    }
+                };
+            }
+            (index, near) = match below {
+                Some(next) => next,
+                None if top == 0 => return,
+                None => {
+                    top -= 1;
+                    (stack[top].0 as usize, F32x8::from_slice(simd, &stack[top].1))
+                }
+            };
+        }
     }
 
     /// How many nodes there are; they are numbered from the root, each before those below it.
@@ -420,8 +501,6 @@ fn node(bounds: &Bounds, count: usize, link: usize) -> Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raytrace::Counters;
-    use crate::raytrace::intersect::Ray;
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
 

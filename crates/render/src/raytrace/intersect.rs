@@ -19,8 +19,8 @@ pub struct Ray {
     pub origin: Vec3,
     /// Where it goes; the parameter of a hit counts in lengths of this vector.
     pub direction: Vec3,
-    axes: [usize; 3],
-    shear: Vec3,
+    pub(super) axes: [usize; 3],
+    pub(super) shear: Vec3,
 }
 
 impl Ray {
@@ -35,6 +35,12 @@ impl Ray {
         }
         let shear = Vec3::new(direction[x] / direction[z], direction[y] / direction[z], 1.0 / direction[z]);
         Self { origin, direction, axes: [x, y, z], shear }
+    }
+
+    /// What rounding may do to the parameter of a hit in a space of half-width `extent`.
+    pub(super) fn rounding(&self, extent: f32) -> f32 {
+        let reach = self.origin.abs().max_element() + extent;
+        reach / self.direction.abs().max_element() * (1.0 / (1 << 19) as f32)
     }
 
     /// The parameter, not negative, at which the ray meets the triangle.
@@ -78,7 +84,7 @@ impl Ray {
 
 /// Three roundings of an edge function, as a part of the square of the largest coordinate: 2 of half a unit for the products,
 /// and one for a difference of at most twice that square.
-const ROUNDING: f32 = 2.0 * f32::EPSILON;
+pub(super) const ROUNDING: f32 = 2.0 * f32::EPSILON;
 
 // With comparisons, since `f32::min` and `f32::max` take several instructions for the sake of NaN.
 #[inline(always)]

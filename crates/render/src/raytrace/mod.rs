@@ -10,6 +10,7 @@ pub mod bvh;
 pub mod grid;
 pub mod intersect;
 pub mod octree;
+pub(crate) mod packet;
 pub mod pyramid;
 pub mod shaft;
 pub mod triangles;
@@ -94,9 +95,7 @@ pub trait Structure: Sync {
     /// [`Self::triangles`] and the parameter.
     fn closest_hit_from(&self, ray: &Ray, own: u32, counters: &mut Counters) -> Option<(usize, f32)> {
         let triangles = self.triangles();
-        let length = ray.direction.abs().max_element();
-        let reach = ray.origin.abs().max_element() + triangles.extent;
-        let slack = reach / length * (1.0 / (1 << 19) as f32);
+        let slack = ray.rounding(triangles.extent);
         let mut closest = Closest { triangles, ray, own, slack, best: None, tests: 0 };
         counters.boxes += self.traverse(&Beam::around(ray, triangles.extent), &mut closest);
         counters.triangles += closest.tests;

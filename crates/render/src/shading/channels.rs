@@ -5,7 +5,7 @@ use super::facets::FacetTable;
 use super::geometry::surface;
 use super::group::each_eight;
 use super::phong::interpolated_normal;
-use super::points::{Points, Source};
+use super::points::{InFront, Points, Source};
 use super::shadowed::shadow_shares;
 use crate::Channels;
 use crate::marks::MarkColors;
@@ -53,7 +53,7 @@ impl TileSink for ChannelSink<'_> {
         }
         if self.wanted.normal || self.wanted.any_shadow() {
             let mut points = Points::default();
-            points.collect(tile, &[], self.constants, &MarkColors::default());
+            points.collect(tile, InFront::Samples(&[]), self.constants, &MarkColors::default());
             if self.wanted.normal {
                 planes.normal = vec![[0.0; 3]; TILE_PIXELS];
                 dispatch!(self.level, simd => normals(simd, &points, self.constants, &mut planes.normal));

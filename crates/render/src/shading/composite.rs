@@ -150,8 +150,9 @@ pub(super) fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, mar
         Some(passes) if !f.is_mark => *passes,
         _ => [1.0 - color[3]; 3],
     };
-    let depths = &points.depths[start..start + f.mask.count_ones() as usize];
-    Fragment { facet: f.facet, mask: f.mask, depths, color, passes, behind: None }
+    let depths = &points.depths[start..start + f.count as usize];
+    let FragmentPoint { facet, mask, far, near, .. } = *f;
+    Fragment { facet, mask, depths, far, near, color, passes, behind: None }
 }
 
 /// Premultiplied colours to display bytes with straight alpha, put in their places; two pixels a step.

@@ -20,6 +20,7 @@ mod geometry;
 mod glow;
 mod group;
 pub(crate) mod hits;
+mod listed;
 mod looks;
 mod passes;
 mod points;
@@ -33,7 +34,7 @@ pub(crate) use behind::DeepImage;
 
 use composite::Composer;
 pub(crate) use group::{Bounce, Lit, shade_hits};
-pub(crate) use points::Points;
+pub(crate) use points::{InFront, Points};
 
 use facets::FacetTable;
 use std::sync::Mutex;
@@ -130,11 +131,15 @@ impl TileSink for ColorSink<'_> {
         self.constants.in_passes && self.tracer.is_none()
     }
 
+    fn takes_fragments(&self) -> bool {
+        self.tracer.is_none()
+    }
+
     fn tile_in_passes(&self, index: usize, tile: &Tile, pass: &mut dyn FnMut(&mut Peel) -> bool) {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
         let Scratch { points, facets, lit, .. } = &mut scratch;
         let constants = self.constants;
-        points.collect(tile, &[], constants, self.marks);
+        points.collect(tile, InFront::Samples(&[]), constants, self.marks);
         lit.reset(points.len(), constants);
         dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
         let (covered_pixels, opaque) = (points.covered_pixels, points.len() as u64);
@@ -156,8 +161,16 @@ impl TileSink for ColorSink<'_> {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
         let Scratch { points, facets, lit, forest, composer } = &mut scratch;
         let constants = self.constants;
+        let layer_samples = layers.sample_count() as u64;
         let front = self.tracer.map(|tracer| tracer.frontmost(tile, layers, self.marks));
-        let (tile, seen) = front.as_ref().map_or((tile, &layers[..]), |(tile, marked)| (tile, marked));
+        let (tile, seen) = match &front {
+            Some((tile, marked)) => (tile, InFront::Samples(marked)),
+            None if layers.gathers() => {
+                let depths = layers.take_depths();
+                (tile, InFront::Fragments(layers.fragments(), depths))
+            }
+            None => (tile, InFront::Samples(layers)),
+        };
         points.collect(tile, seen, constants, self.marks);
         lit.reset(points.len(), constants);
         dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
@@ -168,8 +181,9 @@ impl TileSink for ColorSink<'_> {
             pixels: 0,
             covered_pixels: points.covered_pixels,
             shaded_points: points.len() as u64,
-            layer_samples: layers.len() as u64,
+            layer_samples,
             lost_layers: layers.lost(),
+            overruled_layers: points.overruled,
         };
         self.counters.lock().expect("counters").add(&counters);
         if let Some(deep) = &self.deep {

@@ -2,8 +2,9 @@
 
 use super::FrameConstants;
 use crate::marks::MarkColors;
+use crate::transparency::range;
 use crate::visible::Peel;
-use vitral_raster::{Layer, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile};
+use vitral_raster::{Fragment, Layer, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile};
 
 /// The points of a tile.
 #[derive(Default)]
@@ -29,6 +30,8 @@ pub(crate) struct Points {
     pub groups: Vec<Group>,
     /// Pixels with a surface.
     pub covered_pixels: u64,
+    /// Samples of layers where depth contradicted a list.
+    pub overruled: u64,
     keys: Vec<[u32; 2]>,
     key_of_point: Vec<u32>,
     starts: Vec<u32>,
@@ -55,12 +58,20 @@ pub(crate) enum Source {
     Mixed(u32),
 }
 
+/// What lies in front of a tile's opaque samples.
+pub(crate) enum InFront<'l> {
+    /// Sample by sample.
+    Samples(&'l [Layer]),
+    /// Facets in pixels, and their depths.
+    Fragments(&'l [Fragment], Vec<f32>),
+}
+
 /// A layer at a sample of a pixel.
 #[derive(Clone, Copy, Default)]
-struct LayerPoint {
-    sample: u32,
-    depth: f32,
-    facet: u32,
+pub(super) struct LayerPoint {
+    pub sample: u32,
+    pub depth: f32,
+    pub facet: u32,
 }
 
 impl LayerPoint {
@@ -71,7 +82,7 @@ impl LayerPoint {
 }
 
 /// A facet in a pixel, in front of its opaque samples.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct FragmentPoint {
     /// The pixel's number in the tile.
     pub pixel: u32,
@@ -81,10 +92,21 @@ pub(crate) struct FragmentPoint {
     pub mask: u32,
     /// Its depth at each of them, from this place in [`Points::depths`].
     pub start: u32,
+    /// How many those are, and the farthest and nearest of them.
+    pub count: u32,
+    pub far: f32,
+    pub near: f32,
     /// Index of a point, or of a mark.
     pub source: u32,
     /// It is a line or a point of the model, not a surface.
     pub is_mark: bool,
+}
+
+impl FragmentPoint {
+    /// Whether it covers a sample.
+    pub(crate) fn covers(&self, sample: u32) -> bool {
+        self.mask >> sample & 1 == 1
+    }
 }
 
 /// Points of one object with one material.
@@ -109,7 +131,7 @@ impl Points {
     pub(crate) fn collect(
         &mut self,
         tile: &Tile,
-        layers: &[Layer],
+        layers: InFront<'_>,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
     ) {
@@ -121,6 +143,7 @@ impl Points {
         self.pixels.clear();
         self.mixed.clear();
         self.followed.clear();
+        self.overruled = 0;
         if tile.touched {
             if constants.view.pattern.len() == 1 && !constants.follows_rays() {
                 self.collect_single(tile, constants);
@@ -129,8 +152,13 @@ impl Points {
             }
         }
         self.covered_pixels = self.pixels.len() as u64;
-        if !layers.is_empty() {
-            self.collect_layers(tile, layers, constants, marks);
+        match layers {
+            InFront::Samples([]) | InFront::Fragments([], _) => {}
+            InFront::Samples(layers) => self.collect_layers(tile, layers, constants, marks),
+            InFront::Fragments(fragments, depths) => {
+                self.depths = depths;
+                self.collect_fragments(tile, fragments, constants, marks);
+            }
         }
         self.group(constants);
     }
@@ -247,11 +275,101 @@ impl Points {
                 }
                 let mark = marks.index(facet);
                 let source = mark.unwrap_or_else(|| self.push(facet, middle(place, mask, constants)));
-                let (pixel, is_mark) = (pixel as u32, mark.is_some());
-                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                self.fragments.push(fragment);
             }
         }
         self.layers = layers;
+    }
+
+    /// [`Self::collect_layers`] of facets whose samples in a pixel are together.
+    fn collect_fragments(
+        &mut self,
+        tile: &Tile,
+        fragments: &[Fragment],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
+        self.sort_fragments(tile, fragments, constants);
+        // Mostly they come in the order of the scene, each facet once.
+        if !self.fragments.is_sorted_by(|a, b| (a.pixel, a.facet) < (b.pixel, b.facet)) {
+            self.unite();
+        }
+        let first = self.facet.len() as u32;
+        let mut sources = first..;
+        for fragment in &mut self.fragments {
+            let mark = marks.index(fragment.facet);
+            fragment.is_mark = mark.is_some();
+            fragment.source = mark.or_else(|| sources.next()).unwrap_or(first);
+        }
+        let corner = [tile.x as usize, tile.y as usize];
+        let place = |f: &FragmentPoint| {
+            let pixel = f.pixel as usize;
+            middle([(corner[0] + pixel % TILE) as f32, (corner[1] + pixel / TILE) as f32], f.mask, constants)
+        };
+        let surfaces = || self.fragments.iter().filter(|f| !f.is_mark);
+        if marks.is_empty() {
+            self.facet.extend(self.fragments.iter().map(|f| f.facet));
+            self.place.extend(self.fragments.iter().map(place));
+        } else {
+            self.facet.extend(surfaces().map(|f| f.facet));
+            self.place.extend(surfaces().map(place));
+        }
+    }
+
+    /// Sorts each pixel's fragments by facet and makes one of those of a facet, as where it was clipped into several
+    /// triangles: of a sample on their common border the nearer depth stays.
+    fn unite(&mut self) {
+        let mut fragments = std::mem::take(&mut self.fragments);
+        fragments.sort_by_key(|f| (f.pixel, f.facet));
+        fragments.dedup_by(|next, f| {
+            let same = (next.pixel, next.facet) == (f.pixel, f.facet);
+            if same {
+                let (start, mask) = (self.depths.len() as u32, f.mask | next.mask);
+                for sample in (0..u32::BITS).filter(|s| mask >> s & 1 == 1) {
+                    let depth = |f: &FragmentPoint| if f.covers(sample) { self.depth(f, sample) } else { f32::MIN };
+                    self.depths.push(depth(f).max(depth(next)));
+                }
+                *f = self.fragment((f.pixel, f.facet), (mask, start), (0, false));
+            }
+            same
+        });
+        self.fragments = fragments;
+    }
+
+    /// Depth of a fragment at a sample that it covers.
+    pub(super) fn depth(&self, f: &FragmentPoint, sample: u32) -> f32 {
+        let before = f.mask & ((1u32 << sample) - 1);
+        self.depths[(f.start + before.count_ones()) as usize]
+    }
+
+    /// Fragments pixel by pixel, each pixel's in the order in which they came (a counting sort).
+    fn sort_fragments(&mut self, tile: &Tile, fragments: &[Fragment], constants: &FrameConstants<'_>) {
+        let (width, height) = visible_part(tile, constants);
+        let whole = (width, height) == (TILE, TILE);
+        let inside = |f: &&Fragment| {
+            let pixel = usize::from(f.pixel);
+            whole || (pixel % TILE < width && pixel / TILE < height)
+        };
+        let place = |f: &Fragment| usize::from(f.pixel) % TILE_PIXELS;
+        let starts = &mut self.starts;
+        starts.clear();
+        starts.resize(TILE_PIXELS + 1, 0);
+        let mut sum = 0;
+        fragments.iter().filter(inside).for_each(|f| starts[place(f)] += 1);
+        for start in starts.iter_mut() {
+            sum += std::mem::replace(start, sum);
+        }
+        self.fragments.resize(sum as usize, FragmentPoint::default());
+        for fragment in fragments.iter().filter(inside) {
+            let at = &mut starts[place(fragment)];
+            let &Fragment { facet, start, far, near, pixel, mask, count } = fragment;
+            let (pixel, mask, count) = (u32::from(pixel), u32::from(mask), u32::from(count));
+            let (source, is_mark) = (0, false);
+            self.fragments[*at as usize] =
+                FragmentPoint { pixel, facet, mask, start, count, far, near, source, is_mark };
+            *at += 1;
+        }
     }
 
     /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with all layers at once.
@@ -283,86 +401,11 @@ impl Points {
                 done |= mask;
                 let mark = marks.index(facet);
                 let source = mark.unwrap_or_else(|| self.push(facet, middle(place, found.covers, constants)));
-                let (pixel, is_mark) = (pixel as u32, mark.is_some());
-                self.fragments.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
+                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                self.fragments.push(fragment);
             }
         }
         self.group(constants);
-    }
-
-    /// A pixel's layers in the order of a list. What comes one after the other of one facet is a fragment; all fragments of
-    /// a facet share a point, the same as without a list.
-    fn collect_listed(
-        &mut self,
-        pixel: u32,
-        here: &mut [LayerPoint],
-        place: [f32; 2],
-        constants: &FrameConstants<'_>,
-        marks: &MarkColors,
-    ) {
-        // One point for each facet, in the order of the scene.
-        let mut facets: Vec<_> = here.iter().map(|l| (l.facet, 1u32 << l.sample, 0)).collect();
-        facets.sort_unstable();
-        facets.dedup_by(|next, facet| {
-            let same = next.0 == facet.0;
-            if same {
-                facet.1 |= next.1;
-            }
-            same
-        });
-        for (facet, mask, source) in &mut facets {
-            *source = match marks.index(*facet) {
-                Some(mark) => mark,
-                None => self.push(*facet, middle(place, *mask, constants)),
-            };
-        }
-
-        // One fragment for each piece; a sample on the common border of clipped pieces belongs to the first.
-        let mut drawn = Vec::new();
-        for piece in here.chunk_by_mut(|a, b| a.facet == b.facet) {
-            let facet = piece[0].facet;
-            piece.sort_by_key(|l| l.sample);
-            let Ok(known) = facets.binary_search_by_key(&facet, |f| f.0) else { continue };
-            let (_, undrawn, source) = &mut facets[known];
-            let (start, mut mask) = (self.depths.len() as u32, 0);
-            for layer in piece.iter().filter(|l| *undrawn >> l.sample & 1 == 1) {
-                if mask >> layer.sample & 1 == 0 {
-                    mask |= 1 << layer.sample;
-                    self.depths.push(layer.depth);
-                }
-            }
-            *undrawn &= !mask;
-            let (is_mark, source) = (marks.index(facet).is_some(), *source);
-            if is_mark {
-                // It may have another place at each sample.
-                let samples = (0..32).filter(|s| mask >> s & 1 == 1).map(|s| 1u32 << s);
-                let at_sample = |(mask, start)| FragmentPoint { pixel, facet, mask, start, source, is_mark };
-                drawn.extend(samples.zip(start..).map(at_sample));
-            } else if mask != 0 {
-                drawn.push(FragmentPoint { pixel, facet, mask, start, source, is_mark });
-            }
-        }
-        self.place_marks(&mut drawn);
-        self.fragments.append(&mut drawn);
-    }
-
-    /// Marks come after the list, sample by sample. Puts each in front of the last fragment that is farther than it.
-    fn place_marks(&self, drawn: &mut [FragmentPoint]) {
-        let depth = |f: &FragmentPoint, sample: u32| {
-            let before = f.mask & ((1u32 << sample) - 1);
-            self.depths[(f.start + before.count_ones()) as usize]
-        };
-        let first = drawn.iter().position(|f| f.is_mark).unwrap_or(drawn.len());
-        for i in first..drawn.len() {
-            let mark = drawn[i];
-            let in_front = |f: &FragmentPoint| {
-                let common = f.mask & mark.mask;
-                common != 0 && depth(f, common.trailing_zeros()) > depth(&mark, common.trailing_zeros())
-            };
-            let behind = drawn[..i].iter().rposition(|f| !in_front(f) && f.mask & mark.mask != 0);
-            let place = behind.map_or(0, |b| b + 1);
-            drawn[place..=i].rotate_right(1);
-        }
     }
 
     /// Layers pixel by pixel, each pixel's in the order in which they came (a counting sort); leaves each pixel's end in
@@ -412,7 +455,19 @@ impl Points {
         self.group(constants);
     }
 
-    fn push(&mut self, facet: u32, place: [f32; 2]) -> u32 {
+    /// A fragment of a pixel and facet with the samples `mask`, whose depths begin at `start`.
+    pub(super) fn fragment(
+        &self,
+        (pixel, facet): (u32, u32),
+        (mask, start): (u32, u32),
+        (source, is_mark): (u32, bool),
+    ) -> FragmentPoint {
+        let count = mask.count_ones();
+        let [far, near] = range(&self.depths[start as usize..(start + count) as usize]);
+        FragmentPoint { pixel, facet, mask, start, count, far, near, source, is_mark }
+    }
+
+    pub(super) fn push(&mut self, facet: u32, place: [f32; 2]) -> u32 {
         self.facet.push(facet);
         self.place.push(place);
         self.facet.len() as u32 - 1
@@ -443,6 +498,15 @@ impl Points {
                 };
             }
             self.key_of_point.push(key);
+        }
+        let count = self.facet.len() as u32;
+        if let [[instance, part]] = self.keys[..] {
+            // Of one group nothing need be sorted.
+            self.groups.clear();
+            self.groups.push(Group { instance, part, start: 0, end: count });
+            self.order.clear();
+            self.order.extend(0..count);
+            return;
         }
         self.starts.clear();
         self.starts.resize(self.keys.len() + 1, 0);
@@ -495,7 +559,7 @@ fn settle(layers: &mut [LayerPoint]) -> usize {
 /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the pixel's centre if it
 /// covers them all, else in their middle, so that nothing is extrapolated.
 #[inline(always)]
-fn middle(place: [f32; 2], mask: u32, constants: &FrameConstants<'_>) -> [f32; 2] {
+pub(super) fn middle(place: [f32; 2], mask: u32, constants: &FrameConstants<'_>) -> [f32; 2] {
     let [x, y] = constants.middles.get(mask as usize).copied().unwrap_or_else(|| offset(mask, &constants.view.pattern));
     [place[0] + x, place[1] + y]
 }

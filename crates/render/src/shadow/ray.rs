@@ -10,6 +10,8 @@
 //! than `e`, a corner relative to the origin is wrong by at most `u (|p| + 2 e)`, and shearing and the hit's weighted mean
 //! each add a few times as much: `16 u (|p| + e)` covers them.
 //!
+//! Neighbours' rays to one light go together, eight at a time (`raytrace/packet.rs`).
+//!
 //! In:   points on facets, world space less the scene's middle; lights. Out: the part of light that arrives.
 //! Cost: a ray for each point and light (or cell of an area light), about `O(log n)` each.
 //! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without bending it.
@@ -17,14 +19,15 @@
 use super::occluders::Occluders;
 use super::sources::{Shares, Source, hash};
 use super::{Place, ShadowAlgorithm, Shadows};
-use crate::raytrace::beam::Beam;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
-use crate::raytrace::{Structure, Visitor};
+use crate::raytrace::{Counters, Structure, packet};
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, LANES, Level, Simd, dispatch};
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -43,6 +46,7 @@ struct Prepared<'a> {
     tree: Arc<Bvh>,
     occluders: Occluders<'a>,
     sources: Vec<Source>,
+    level: Level,
 }
 
 impl ShadowAlgorithm for RayShadows {
@@ -57,91 +61,152 @@ impl ShadowAlgorithm for RayShadows {
         let tree = session.bvh(execution)?;
         let center = tree.triangles().center;
         let sources = lights.iter().map(|l| Source::new(l, settings.light_samples, center)).collect();
-        Ok(Box::new(Prepared { tree, occluders: Occluders::new(session, settings), sources }))
+        let (occluders, level) = (Occluders::new(session, settings), execution.level);
+        Ok(Box::new(Prepared { tree, occluders, sources, level }))
     }
 }
+
+/// Places whose rays are made ready before the first is followed.
+const TOGETHER: usize = 64;
 
 impl Shadows for Prepared<'_> {
     fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], rays: &mut u64) {
-        for (place, part) in places.iter().zip(parts) {
-            *part = match &self.sources[light] {
-                Source::Unhindered => [1.0; 3],
-                Source::Infinity(towards) => self.passing(place, *towards, false, rays),
-                Source::Point(at) => self.passing(place, *at - place.position, true, rays),
-                Source::Area(area) => {
-                    let seed = hash(place.seed ^ hash(light as u32));
-                    let mut shares = Shares::default();
-                    for i in 0..area.count() {
-                        let emitter = area.emitter(i, seed);
-                        let way = emitter.at.truncate() - place.position;
-                        shares.add(emitter.weight(place), || self.passing(place, way, true, rays));
-                    }
-                    shares.part()
+        let mut feelers = Vec::with_capacity(TOGETHER);
+        for (places, parts) in places.chunks(TOGETHER).zip(parts.chunks_mut(TOGETHER)) {
+            match &self.sources[light] {
+                Source::Unhindered => parts.fill([1.0; 3]),
+                Source::Infinity(towards) => {
+                    let ways = places.iter().map(|place| (place, *towards));
+                    self.passing(&mut feelers, ways, false, parts);
                 }
-            };
+                Source::Point(at) => {
+                    let ways = places.iter().map(|place| (place, *at - place.position));
+                    self.passing(&mut feelers, ways, true, parts);
+                }
+                Source::Area(area) => {
+                    for (place, part) in places.iter().zip(parts) {
+                        let seed = hash(place.seed ^ hash(light as u32));
+                        let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
+                        let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
+                        let ways = counting.iter().map(|e| (place, e.at.truncate() - place.position));
+                        let mut passing = vec![[0.0; 3]; counting.len()];
+                        self.passing(&mut feelers, ways, true, &mut passing);
+                        *rays += feelers.len() as u64;
+                        let mut shares = Shares::default();
+                        for (emitter, passing) in counting.iter().zip(passing) {
+                            shares.add(emitter.weight(place), || passing);
+                        }
+                        *part = shares.part();
+                    }
+                    continue;
+                }
+            }
+            *rays += feelers.len() as u64;
         }
     }
 }
 
-impl Prepared<'_> {
-    /// What passes on the way from the place along `way`, to its end or to infinity.
-    fn passing(&self, place: &Place, way: DVec3, ends: bool, rays: &mut u64) -> Rgb {
-        // Attached shadow; also a light in the facet's plane, or at the very place.
-        if place.normal.dot(way) <= 0.0 {
-            return [0.0; 3];
-        }
-        let triangles = self.tree.triangles();
-        let extent = f64::from(triangles.extent);
-        let above = clearance(place.position, extent);
-        let origin = place.position + place.normal * above;
-        let way = if ends { way - place.normal * above } else { way };
-        let length = way.abs().max_element();
-        let scale = 1.0 / length;
-        let ray = Ray::new(origin.as_vec3(), (way * scale).as_vec3());
-        if !ray.direction.is_finite() || ray.direction == Vec3::ZERO {
-            return [1.0; 3];
-        }
-        *rays += 1;
-        // What the light itself is fixed to does not hide it.
-        let far = if ends { (length - above) as f32 } else { f32::INFINITY };
-        let mut passing = Passing { prepared: self, ray: &ray, far, own: place.facet, left: [1.0; 3] };
-        self.tree.traverse(&Beam::around(&ray, triangles.extent), &mut passing);
-        passing.left
-    }
-}
-
-/// Follows a ray until no light is left.
-struct Passing<'a> {
-    prepared: &'a Prepared<'a>,
-    ray: &'a Ray,
+/// A ray from a place to a light.
+struct Feeler {
+    ray: Ray,
     /// Parameter of the light.
     far: f32,
     /// The facet that the ray leaves.
     own: u32,
-    left: Rgb,
+    /// The number of the place.
+    of: usize,
 }
 
-impl Visitor for Passing<'_> {
+impl Prepared<'_> {
+    /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
+    /// `feelers` the rays that were followed for it.
+    fn passing<'p>(
+        &self,
+        feelers: &mut Vec<Feeler>,
+        ways: impl Iterator<Item = (&'p Place, DVec3)>,
+        ends: bool,
+        parts: &mut [Rgb],
+    ) {
+        feelers.clear();
+        for (of, (place, way)) in ways.enumerate() {
+            match self.feeler(place, way, ends) {
+                Ok((ray, far)) => feelers.push(Feeler { ray, far, own: place.facet, of }),
+                Err(part) => parts[of] = part,
+            }
+        }
+        dispatch!(self.level, simd => {
+            for eight in feelers.chunks(LANES) {
+                let left = self.left(simd, eight);
+                eight.iter().zip(left).for_each(|(feeler, left)| parts[feeler.of] = left);
+            }
+        });
+    }
+
+    /// The ray from a place along `way` and the parameter of its end; or what arrives, where that is known without one.
+    fn feeler(&self, place: &Place, way: DVec3, ends: bool) -> Result<(Ray, f32), Rgb> {
+        // Attached shadow; also a light in the facet's plane, or at the very place.
+        if place.normal.dot(way) <= 0.0 {
+            return Err([0.0; 3]);
+        }
+        let above = clearance(place.position, f64::from(self.tree.triangles().extent));
+        let origin = place.position + place.normal * above;
+        let way = if ends { way - place.normal * above } else { way };
+        let length = way.abs().max_element();
+        let ray = Ray::new(origin.as_vec3(), (way * (1.0 / length)).as_vec3());
+        if !ray.direction.is_finite() || ray.direction == Vec3::ZERO {
+            return Err([1.0; 3]);
+        }
+        // What the light itself is fixed to does not hide it.
+        Ok((ray, if ends { (length - above) as f32 } else { f32::INFINITY }))
+    }
+
+    /// What of the light of one to eight rays is left at their ends.
+    #[inline(never)]
+    fn left<S: Simd>(&self, simd: S, feelers: &[Feeler]) -> [Rgb; LANES] {
+        let mut rays = [feelers[0].ray; LANES];
+        let mut limits = [-1.0; LANES];
+        for (lane, feeler) in feelers.iter().enumerate() {
+            rays[lane] = feeler.ray;
+            limits[lane] = if feeler.far < f32::MAX { feeler.far } else { f32::MAX };
+        }
+        let mut passing = Passing { prepared: self, feelers, limits, left: [[1.0; 3]; LANES] };
+        self.tree.follow(simd, &rays[..feelers.len()], &mut passing, &mut Counters::default());
+        passing.left
+    }
+}
+
+/// Follows rays until no light is left.
+struct Passing<'a> {
+    prepared: &'a Prepared<'a>,
+    feelers: &'a [Feeler],
+    /// Parameters of the light; negative for rays of which nothing is left.
+    limits: [f32; LANES],
+    left: [Rgb; LANES],
+}
+
+impl<S: Simd> packet::Visitor<S> for Passing<'_> {
+    // Parts of light are multiplied with each other, in one order.
+    const NEAREST_FIRST: bool = false;
+
     #[inline(always)]
-    fn skips(&self, _: usize, near: f32) -> bool {
-        self.done(near)
+    fn limits(&self, simd: S) -> F32x8<S> {
+        F32x8::from_slice(simd, &self.limits)
     }
 
     #[inline(always)]
-    fn done(&self, near: f32) -> bool {
-        self.left == [0.0; 3] || near >= self.far
-    }
-
-    #[inline(always)]
-    fn triangle(&mut self, place: usize) {
+    fn hit(&mut self, lane: usize, place: usize, t: f32) {
         let triangles = self.prepared.tree.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
-        if self.left == [0.0; 3] || facet == self.own {
+        let Feeler { ray, far, own, .. } = &self.feelers[lane];
+        if self.limits[lane] < 0.0 || facet == *own || t >= *far {
             return;
         }
-        let Some(t) = self.ray.hit(corners).filter(|t| *t < self.far) else { return };
-        let point = || (self.ray.origin + self.ray.direction * t).as_dvec3();
+        let point = || (ray.origin + ray.direction * t).as_dvec3();
         let passing = self.prepared.occluders.passing(facet, corners, point);
-        self.left = [0, 1, 2].map(|k| self.left[k] * passing[k]);
+        let [r, g, b] = self.left[lane];
+        self.left[lane] = [r * passing[0], g * passing[1], b * passing[2]];
+        if self.left[lane] == [0.0; 3] {
+            self.limits[lane] = -1.0;
+        }
     }
 }

@@ -7,7 +7,7 @@
 //! still known, so the pixel is sorted sample by sample, and the result is exact everywhere.
 //!
 //! In:   fragments of a pixel. Out: its samples; the same bytes in whatever order the fragments came.
-//! Cost: n log n + n²/2 tests of masks for up to 32 fragments, beyond that as [`super::sorted`].
+//! Cost: n²/4 comparisons for up to 32 fragments in the worst order, beyond that as [`super::sorted`].
 //! Source: \[Carpenter 1984\].
 
 use super::{Fragment, MOST_SAMPLES, sorted};
@@ -15,55 +15,69 @@ use super::{Fragment, MOST_SAMPLES, sorted};
 /// Fragments up to which one order for all samples is looked for.
 const FEW: usize = 32;
 
-/// A fragment's number, and its range of depths.
-#[derive(Clone, Copy, Default)]
-struct Range {
-    index: u8,
-    far: f32,
-    near: f32,
-}
-
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
-    if fragments.len() > FEW {
-        return sorted::lay(fragments, samples);
+    match fragments.len() {
+        0 => {}
+        1 => fragments[0].over_all(samples),
+        2..=8 => pack::<8>(fragments, samples),
+        9..=FEW => pack::<FEW>(fragments, samples),
+        _ => sorted::lay(fragments, samples),
     }
-    let mut ranges = [Range::default(); FEW];
-    let ranges = &mut ranges[..fragments.len()];
-    let of = |r: &Range| &fragments[usize::from(r.index)];
+}
+
+/// [`lay`] for at most `MOST` fragments.
+fn pack<const MOST: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
+    // They are few: each finds its place among those before it, from far to near.
+    let mut order = [(0.0f32, 0u32); MOST];
+    let order = &mut order[..fragments.len().min(MOST)];
+    let of = |&(_, index): &(f32, u32)| &fragments[index as usize];
     for (i, fragment) in fragments.iter().enumerate() {
-        let (mut far, mut near) = (f32::MAX, f32::MIN);
-        for &depth in fragment.depths {
-            far = if depth < far { depth } else { far };
-            near = if depth > near { depth } else { near };
-        }
-        // They are few: each finds its place among those before it.
-        let range = Range { index: i as u8, far, near };
-        let farther = |r: &Range| r.far < far || (r.far == far && of(r).facet > fragment.facet);
+        let far = fragment.far;
         let mut place = i;
-        while place > 0 && !farther(&ranges[place - 1]) {
-            ranges[place] = ranges[place - 1];
+        while place > 0 {
+            let before = order[place - 1];
+            if before.0 < far || (before.0 == far && of(&before).facet > fragment.facet) {
+                break;
+            }
+            order[place] = before;
             place -= 1;
         }
-        ranges[place] = range;
+        order[place] = (far, i as u32);
     }
-    let mixed = ranges
-        .iter()
-        .enumerate()
-        .any(|(i, b)| ranges[..i].iter().any(|a| a.near >= b.far && of(a).mask & of(b).mask != 0));
-    if mixed {
-        return sorted::lay(fragments, samples);
-    }
+
+    // As long as fragments fill the pixel, one sample stands for all.
     let all = (1u32 << samples.len().min(MOST_SAMPLES)) - 1;
-    let same_behind = samples.iter().all(|s| *s == samples[0]);
-    if same_behind && fragments.iter().all(|f| f.mask == all) {
-        // Panes that fill the pixel: one sample stands for all.
-        ranges.iter().for_each(|r| of(r).over(&mut samples[0]));
-        let color = samples[0];
-        samples.fill(color);
-        return;
+    let same = samples.iter().all(|s| *s == samples[0]);
+    let (mut color, mut nearest, mut count) = (samples[0], f32::MIN, 0);
+    while let Some(fragment) = order.get(count).map(of).filter(|f| same && f.mask == all && f.far > nearest) {
+        fragment.over(&mut color);
+        (nearest, count) = (fragment.near, count + 1);
     }
-    ranges.iter().for_each(|r| of(r).over_all(samples));
+    if count == order.len() {
+        return samples.fill(color);
+    }
+
+    // Beyond, each sample knows how near the nearest fragment is that was laid over it: another that is not nearer all over
+    // may cross it.
+    let (mut laid, mut nearest) = ([color; MOST_SAMPLES], [nearest; MOST_SAMPLES]);
+    if count == 0 {
+        laid[..samples.len()].copy_from_slice(samples);
+    }
+    for fragment in order[count..].iter().map(of) {
+        let (mut mask, mut crossing) = (fragment.mask, false);
+        while mask != 0 {
+            let s = mask.trailing_zeros() as usize % MOST_SAMPLES;
+            mask &= mask - 1;
+            crossing |= nearest[s] >= fragment.far;
+            nearest[s] = if fragment.near > nearest[s] { fragment.near } else { nearest[s] };
+            fragment.over(&mut laid[s]);
+        }
+        if crossing {
+            return sorted::lay(fragments, samples);
+        }
+    }
+    samples.copy_from_slice(&laid[..samples.len()]);
 }
 
 #[cfg(test)]
@@ -87,14 +101,8 @@ mod tests {
     fn surfaces_that_meet_within_a_pixel_are_sorted_sample_by_sample() {
         // Two crossing panes over four samples: which one is in front changes in the middle.
         let (rising, falling) = ([0.2, 0.4, 0.6, 0.8], [0.8, 0.6, 0.4, 0.2]);
-        let fragment = |facet, depths, red: f32| Fragment {
-            facet,
-            mask: 0b1111,
-            depths,
-            color: [red * 0.5, 0.0, 0.0, 0.5],
-            passes: [0.5; 3],
-            behind: None,
-        };
+        let fragment =
+            |facet, depths, red: f32| Fragment::new(facet, (0b1111, depths), [red * 0.5, 0.0, 0.0, 0.5], [0.5; 3]);
         for order in [[0, 1], [1, 0]] {
             let both = [fragment(0, &rising, 1.0), fragment(1, &falling, 0.0)];
             let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
@@ -105,8 +113,7 @@ mod tests {
 
     #[test]
     fn masks_say_which_samples_a_fragment_changes() {
-        let half =
-            Fragment { facet: 0, mask: 0b1001, depths: &[0.5, 0.5], color: [1.0; 4], passes: [0.0; 3], behind: None };
+        let half = Fragment::new(0, (0b1001, &[0.5, 0.5]), [1.0; 4], [0.0; 3]);
         let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];
         lay(&[half], &mut samples);
         assert_eq!(samples.map(|s| s[0]), [1.0, 0.0, 0.0, 1.0]);

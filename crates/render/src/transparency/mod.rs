@@ -40,12 +40,31 @@ pub struct Fragment<'a> {
     pub mask: u32,
     /// Its depth at each of them, 1 near.
     pub depths: &'a [f32],
+    /// The farthest of these.
+    pub far: f32,
+    /// The nearest of these.
+    pub near: f32,
     /// Its own light, premultiplied, and its opacity.
     pub color: [f32; 4],
     /// The part of the light from behind that passes.
     pub passes: [f32; 3],
     /// What is behind it in place of what the pixel holds, premultiplied: blurred, for a translucent surface.
     pub behind: Option<[f32; 4]>,
+}
+
+/// The farthest and the nearest of depths.
+pub(crate) fn range(depths: &[f32]) -> [f32; 2] {
+    depths.iter().fold([f32::MAX, f32::MIN], |[far, near], &depth| {
+        [if depth < far { depth } else { far }, if depth > near { depth } else { near }]
+    })
+}
+
+impl<'a> Fragment<'a> {
+    /// A fragment of `facet` at the samples `mask`, with its depth at each of them; nothing is known of what is behind it.
+    pub fn new(facet: u32, (mask, depths): (u32, &'a [f32]), color: [f32; 4], passes: [f32; 3]) -> Self {
+        let [far, near] = range(depths);
+        Self { facet, mask, depths, far, near, color, passes, behind: None }
+    }
 }
 
 impl Fragment<'_> {
@@ -117,7 +136,7 @@ pub(crate) mod tests {
     /// A grey pane with transmission `kt` that covers one sample.
     pub(crate) fn pane(facet: u32, depth: &[f32], grey: f32, kt: f32) -> Fragment<'_> {
         let own = grey * (1.0 - kt);
-        Fragment { facet, mask: 1, depths: depth, color: [own, own, own, 1.0 - kt], passes: [kt; 3], behind: None }
+        Fragment::new(facet, (1, depth), [own, own, own, 1.0 - kt], [kt; 3])
     }
 
     /// What an order makes of fragments over grey in one sample.

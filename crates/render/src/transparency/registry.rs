@@ -99,7 +99,7 @@ pub static ORDERS: &[Order] = &[
     },
     Order {
         name: "back-to-front",
-        description: "fragment over pixel in the order of a list, without looking at depths; exact; with --visibility painter or bsp",
+        description: "fragment over pixel in the order of a list; exact; with --visibility painter or bsp",
         source: "Newell, Newell & Sancha 1972",
         exact: true,
         needs_list: true,

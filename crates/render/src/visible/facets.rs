@@ -129,7 +129,7 @@ impl<'v, 'a> Facets<'v, 'a> {
             let mut pass = |peel: &mut Peel| go_on() && peel.pass(level, batches.clone(), index, tile, pattern);
             return sink.tile_in_passes(index, tile, &mut pass);
         }
-        let mut layers = self.view.layer_list();
+        let mut layers = self.view.layer_list_for(sink);
         let mut layered = self.layered.as_slice();
         if let Some(collect) = collect.filter(|_| self.view.lists_layers) {
             collect(self, index, tile, &mut layers);

@@ -28,6 +28,11 @@ pub trait TileSink: Sync {
     /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
 
+    /// Whether it takes layers as [`LayerList::fragments`] from algorithms that find them so.
+    fn takes_fragments(&self) -> bool {
+        false
+    }
+
     /// Whether it asks for layers pass by pass. Algorithms that find all layers of a sample at once (rays) hand on all.
     fn takes_passes(&self) -> bool {
         false

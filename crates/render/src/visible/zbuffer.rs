@@ -23,8 +23,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, Draw, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE, Tile, TileGrid, Viewport,
-    VisibilitySink, transform, traverse_by_rows,
+    Batch, Draw, FragmentSink, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE, Tile,
+    TileGrid, Viewport, VisibilitySink, transform, traverse_by_rows,
 };
 
 /// Triangles in one piece of work.
@@ -65,7 +65,7 @@ impl VisibleSurface for ZBuffer {
         let jobs = jobs(view);
         let rounds = rounds(&jobs);
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
-        let layers: Vec<_> = grid.tiles.iter().map(|_| Mutex::new(view.layer_list())).collect();
+        let layers: Vec<_> = grid.tiles.iter().map(|_| Mutex::new(view.layer_list_for(sink))).collect();
         // How many facets cover each pixel, for who looks on.
         let watched = if execution.observer.is_some() { grid.tiles.len() } else { 0 };
         let costs: Vec<Mutex<Vec<u32>>> = (0..watched).map(|_| Mutex::default()).collect();
@@ -171,7 +171,7 @@ pub(crate) fn resolve_in_passing(
         });
         tile.clear();
         (tile.x, tile.y) = (number % columns * TILE as u32, number / columns * TILE as u32);
-        let mut layers = view.layer_list();
+        let mut layers = view.layer_list_for(sink);
         let batches = batches.iter().map(|(layered, batch)| (*layered, batch));
         walk(execution.level, batches, index, &mut tile, &view.pattern, &mut layers);
         layers.finish();
@@ -339,20 +339,26 @@ pub(super) fn set_up(
 /// Walks a tile's triangles.
 pub(super) fn walk<'b>(
     level: Level,
-    batches: impl Iterator<Item = (bool, &'b Batch)>,
+    batches: impl Iterator<Item = (bool, &'b Batch)> + Clone,
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
     layers: &mut LayerList,
 ) {
     let place = (tile.x, tile.y);
+    let mut in_front = batches.clone().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
     dispatch!(level, simd => {
-        for (layered, batch) in batches {
-            if layered {
-                walk_batch(simd, batch, index, place, pattern, LayerSink::new(tile, pattern, layers));
-            } else {
-                walk_batch(simd, batch, index, place, pattern, VisibilitySink::new(tile, pattern));
-            }
+        for (_, batch) in batches.filter(|(layered, _)| !layered) {
+            walk_batch(simd, batch, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
+        }
+        let Some(first) = in_front.next() else { return };
+        let in_front = std::iter::once(first).chain(in_front).map(|(_, batch)| batch);
+        if layers.gathers() {
+            let mut sink = FragmentSink::new(tile, pattern, layers);
+            in_front.for_each(|batch| walk_batch(simd, batch, index, place, pattern, &mut sink));
+        } else {
+            let mut sink = LayerSink::new(tile, pattern, layers);
+            in_front.for_each(|batch| walk_batch(simd, batch, index, place, pattern, &mut sink));
         }
     });
 }
@@ -364,9 +370,9 @@ fn walk_batch<S: Simd, K: RowSink<S>>(
     index: usize,
     place: (u32, u32),
     pattern: &SamplePattern,
-    mut sink: K,
+    sink: &mut K,
 ) {
     for setup in batch.tile(index) {
-        traverse_by_rows(simd, setup, place, pattern, &mut sink);
+        traverse_by_rows(simd, setup, place, pattern, sink);
     }
 }

@@ -108,9 +108,10 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
                 own.iter().zip(&reference).filter(far).count()
             };
             // The tree cuts where planes of the world meet, depths are those of corners that were snapped to 1/256
-            // pixel: a sample between the two has another order.
-            let allowed = if algorithm.name == "bsp" { 2 } else { 0 };
-            assert!(apart(&own) <= allowed, "{}, {samples} samples", algorithm.name);
+            // pixel: a sample between the two has another order, and depth has the last word. There are few of them.
+            let picture = rendered.stats.picture;
+            assert!(picture.overruled_layers * 5000 <= picture.layer_samples, "{}: {picture:?}", algorithm.name);
+            assert_eq!(apart(&own), 0, "{}, {samples} samples", algorithm.name);
             for turn in 0..5 {
                 let mut parts = glasses();
                 parts.rotate_left(turn);
@@ -118,7 +119,7 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
                 let mut permuted = renderer(parts, TransparencyOrder::BackToFront, samples);
                 algorithm.name.clone_into(&mut permuted.settings.visibility);
                 let apart = apart(&colors(&mut permuted));
-                assert!(apart <= allowed, "{}, {samples} samples, permutation {turn}: {apart}", algorithm.name);
+                assert_eq!(apart, 0, "{}, {samples} samples, permutation {turn}", algorithm.name);
             }
         }
     }

@@ -1,0 +1,286 @@
+//! Eight rays that go down a tree of boxes together.
+//!
+//! Neighbours' rays to one light, or through one pane, meet mostly the same boxes. A node is fetched once for eight of them
+//! and tested in as many lanes; it is opened if one of them enters it, and below it only those count that do. So each ray is
+//! shown the triangles that it would be shown alone, whatever its companions are. Triangles are tested in lanes, too, as far
+//! as that is a matter of plain rounding; where it may decide, and for hits, [`Ray::hit`] has the word.
+//!
+//! In:   rays in the space of the tree's triangles. Out: triangles that they hit.
+//! Cost: that of one ray in eight lanes as long as they stay together; rays that part share nothing, and cost as if alone.
+//! Source: \[Wald et al. 2001\].
+
+use super::beam;
+use super::bvh::Bvh;
+use super::intersect::{ROUNDING, Ray};
+use super::triangles::Triangles;
+use super::{Counters, Structure};
+use vitral_math::Vec3;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd};
+
+/// Follows the rays of a packet.
+pub(crate) trait Visitor<S: Simd> {
+    /// Whether what most rays enter first is wanted first. Else triangles come in the order of the tree, which is the same for
+    /// a ray whatever its companions are.
+    const NEAREST_FIRST: bool;
+
+    /// For each ray a parameter beyond which nothing is wanted; negative where nothing at all is.
+    fn limits(&self, simd: S) -> F32x8<S>;
+
+    /// Ray `lane` meets the triangle at this place of the tree's triangles, at `t`.
+    fn hit(&mut self, lane: usize, place: usize, t: f32);
+}
+
+/// Rays in lanes.
+pub(crate) struct Packet<'r, S: Simd> {
+    rays: &'r [Ray],
+    /// The lanes that hold a ray.
+    live: Mask8<S>,
+    slabs: [Slab<S>; 3],
+    origin: [F32x8<S>; 3],
+    /// The axes of all rays, renamed as in [`Ray`], and their shear; `None` if they run along different axes.
+    sheared: Option<([usize; 3], [F32x8<S>; 2])>,
+}
+
+/// The beams' lines on one axis, see [`beam`].
+struct Slab<S: Simd> {
+    upper_start: F32x8<S>,
+    lower_start: F32x8<S>,
+    inverse_upper: F32x8<S>,
+    inverse_lower: F32x8<S>,
+    upper_rises: Mask8<S>,
+    lower_rises: Mask8<S>,
+}
+
+/// One number of each of up to eight; unused lanes repeat the first.
+#[inline(always)]
+fn gathered<S: Simd, T>(simd: S, items: &[T], number: impl Fn(&T) -> f32) -> F32x8<S> {
+    let mut soa = [0.0; LANES];
+    for lane in 0..LANES {
+        soa[lane] = number(&items[if lane < items.len() { lane } else { 0 }]);
+    }
+    F32x8::from_slice(simd, &soa)
+}
+
+impl<'r, S: Simd> Packet<'r, S> {
+    /// Puts one to eight rays, in a space of half-width `extent`, into lanes.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, rays: &'r [Ray], extent: f32) -> Self {
+        let component = lanes::inlined(
+            #[inline(always)]
+            |k: usize| [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])],
+        );
+        let slab = lanes::inlined(
+            #[inline(always)]
+            |k: usize| {
+                // As `Beam::around` has it.
+                let [origin, direction] = component(k);
+                let width = (lanes::Lanes::abs(origin) + extent) * beam::ROUNDING;
+                let growth = lanes::Lanes::abs(direction) * beam::ROUNDING + 1e-30;
+                let one = F32x8::splat(simd, 1.0);
+                let away = lanes::inlined(
+                    #[inline(always)]
+                    |slope: F32x8<S>, tiny: f32| {
+                        let flat = lanes::Lanes::lt(lanes::Lanes::abs(slope), F32x8::splat(simd, 1e-20));
+                        flat.select(F32x8::splat(simd, tiny), slope)
+                    },
+                );
+                let (upper, lower) = (one / away(direction + growth, 1e-20), one / away(direction - growth, -1e-20));
+                Slab {
+                    upper_start: origin + width,
+                    lower_start: origin - width,
+                    inverse_upper: upper,
+                    inverse_lower: lower,
+                    upper_rises: upper.simd_gt(F32x8::splat(simd, 0.0)),
+                    lower_rises: lower.simd_gt(F32x8::splat(simd, 0.0)),
+                }
+            },
+        );
+        let axes = rays[0].axes;
+        let sheared = rays
+            .iter()
+            .all(|r| r.axes == axes)
+            .then(|| (axes, [gathered(simd, rays, |r| r.shear.x), gathered(simd, rays, |r| r.shear.y)]));
+        Self {
+            rays,
+            live: Mask8::from_bitmask(simd, (1 << rays.len()) - 1),
+            slabs: [slab(0), slab(1), slab(2)],
+            origin: [component(0)[0], component(1)[0], component(2)[0]],
+            sheared,
+        }
+    }
+
+    /// The lanes that hold a ray.
+    #[inline(always)]
+    pub(crate) fn live(&self) -> Mask8<S> {
+        self.live
+    }
+
+    /// For each ray a parameter that no place common to it and the box goes below; infinite if they are apart.
+    #[inline(always)]
+    pub(crate) fn enters(&self, simd: S, min: [f32; 3], max: [f32; 3]) -> F32x8<S> {
+        let infinity = F32x8::splat(simd, f32::INFINITY);
+        let (mut near, mut far) = (F32x8::splat(simd, 0.0), infinity);
+        for (k, slab) in self.slabs.iter().enumerate() {
+            let at_min = (-slab.upper_start + min[k]) * slab.inverse_upper;
+            let at_max = (-slab.lower_start + max[k]) * slab.inverse_lower;
+            near = lanes::Lanes::max(near, slab.upper_rises.select(at_min, -infinity));
+            far = lanes::Lanes::min(far, slab.upper_rises.select(infinity, at_min));
+            far = lanes::Lanes::min(far, slab.lower_rises.select(at_max, infinity));
+            near = lanes::Lanes::max(near, slab.lower_rises.select(-infinity, at_max));
+        }
+        let near = near * (1.0 - beam::ROUNDING);
+        near.simd_le(far * (1.0 + beam::ROUNDING)).select(near, infinity)
+    }
+
+    /// The lanes among `wanted` whose ray may meet a triangle: what a ray's own edge functions deny without doubt is left out.
+    #[inline(always)]
+    fn may_meet(&self, corners: &[Vec3; 3], wanted: Mask8<S>) -> u64 {
+        let Some(([x, y, z], shear)) = self.sheared else { return wanted.to_bitmask() };
+        let place = lanes::inlined(
+            #[inline(always)]
+            |p: Vec3| {
+                let p = [p.x, p.y, p.z];
+                let away = -self.origin[z] + p[z];
+                [-self.origin[x] + p[x] - shear[0] * away, -self.origin[y] + p[y] - shear[1] * away]
+            },
+        );
+        let (a, b, c) = (place(corners[0]), place(corners[1]), place(corners[2]));
+        let edge = lanes::inlined(
+            #[inline(always)]
+            |p: [F32x8<S>; 2], q: [F32x8<S>; 2]| p[0] * q[1] - p[1] * q[0],
+        );
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let (least, largest) =
+            (lanes::Lanes::min(lanes::Lanes::min(u, v), w), lanes::Lanes::max(lanes::Lanes::max(u, v), w));
+        let size = lanes::inlined(
+            #[inline(always)]
+            |p: [F32x8<S>; 2]| lanes::Lanes::max(lanes::Lanes::abs(p[0]), lanes::Lanes::abs(p[1])),
+        );
+        let size = lanes::Lanes::max(lanes::Lanes::max(size(a), size(b)), size(c));
+        let beside = lanes::Lanes::min(-least, largest).simd_gt(size * size * ROUNDING);
+        (wanted & !beside).to_bitmask()
+    }
+
+    /// Tells `visitor` which rays hit the triangle at `place`; only `wanted` ones are tested.
+    #[inline(always)]
+    pub(crate) fn triangle(
+        &self,
+        (place, corners): (usize, &[Vec3; 3]),
+        wanted: Mask8<S>,
+        visitor: &mut impl Visitor<S>,
+    ) {
+        let mut lanes = self.may_meet(corners, wanted);
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            if let Some(t) = self.rays[lane].hit(corners) {
+                visitor.hit(lane, place, t);
+            }
+        }
+    }
+}
+
+/// Keeps the first hit of each ray.
+struct Closest<'a> {
+    triangles: &'a Triangles,
+    /// The facets that the rays leave.
+    own: &'a [u32],
+    /// Rounding of the hits' parameters.
+    slack: [f32; LANES],
+    limits: [f32; LANES],
+    best: [Option<(usize, f32)>; LANES],
+}
+
+impl<S: Simd> Visitor<S> for Closest<'_> {
+    const NEAREST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn limits(&self, simd: S) -> F32x8<S> {
+        F32x8::from_slice(simd, &self.limits)
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, lane: usize, place: usize, t: f32) {
+        let facets = &self.triangles.facets;
+        let first = |(p, best): (usize, f32)| t < best || (t == best && facets[place] < facets[p]);
+        if facets[place] != self.own[lane] && self.best[lane].is_none_or(first) {
+            self.best[lane] = Some((place, t));
+            self.limits[lane] = t + self.slack[lane];
+        }
+    }
+}
+
+impl Bvh {
+    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`.
+    #[inline(never)]
+    pub(crate) fn closest_hits<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        own: &[u32],
+        counters: &mut Counters,
+    ) -> [Option<(usize, f32)>; LANES] {
+        let triangles = self.triangles();
+        let mut slack = [0.0; LANES];
+        for (slack, ray) in slack.iter_mut().zip(rays) {
+            *slack = ray.rounding(triangles.extent);
+        }
+        let mut closest = Closest { triangles, own, slack, limits: [f32::MAX; LANES], best: [None; LANES] };
+        self.follow(simd, rays, &mut closest, counters);
+        closest.best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_exec::{Budget, Workers};
+    use vitral_math::lanes::{available_levels, dispatch};
+    use vitral_math::vec3;
+    use vitral_scene::{World, builtin};
+
+    /// Numbers without pattern from -1 to 1.
+    fn random(state: &mut u32) -> f32 {
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (*state >> 8) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    #[test]
+    fn rays_together_meet_what_each_meets_alone() {
+        let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
+        let triangles = Triangles::of_world(&world, &Workers::single());
+        let bvh = Bvh::build(&triangles, &Workers::single(), &Budget::default()).unwrap();
+        let (size, mut state, mut hits) = (triangles.extent, 3, 0);
+        for packet in 0..600 {
+            // Bundles side by side, bundles from one point, and rays that have nothing in common; some packets are not full.
+            let mut vector = || vec3(random(&mut state), random(&mut state), random(&mut state)) * size;
+            let (from, to) = (vector() * 2.0, vector() * 0.5);
+            let rays: Vec<Ray> = (0..1 + packet % 8)
+                .map(|_| match packet % 3 {
+                    0 => Ray::new(from + vector() * 0.1, to - from),
+                    1 => Ray::new(from, to + vector() * 0.1 - from),
+                    _ => Ray::new(vector() * 2.0, vector()),
+                })
+                .collect();
+            let mut alone = Counters::default();
+            let first: Vec<_> = rays.iter().map(|r| bvh.closest_hit_from(r, u32::MAX, &mut alone)).collect();
+            // Leaving what was met, each ray meets the next.
+            let own: Vec<u32> =
+                first.iter().map(|hit| hit.map_or(u32::MAX, |(p, _)| bvh.triangles().facets[p])).collect();
+            let second: Vec<_> =
+                rays.iter().zip(&own).map(|(r, own)| bvh.closest_hit_from(r, *own, &mut alone)).collect();
+            for (_, level) in available_levels() {
+                let mut together = Counters::default();
+                let nobody = [u32::MAX; LANES];
+                let (a, b) = dispatch!(level, simd => (
+                    bvh.closest_hits(simd, &rays, &nobody, &mut together),
+                    bvh.closest_hits(simd, &rays, &own, &mut together)
+                ));
+                assert_eq!((&a[..rays.len()], &b[..rays.len()]), (&first[..], &second[..]), "packet {packet}");
+            }
+            hits += second.iter().flatten().count();
+        }
+        assert!(hits > 500, "{hits}");
+    }
+}

@@ -107,14 +107,14 @@ mod tests {
                     }
                 }
             }
-            for level in available_levels() {
+            for (name, level) in available_levels() {
                 let mut depths = Box::new([0.25f32; TILE_PIXELS]);
                 dispatch!(level, simd => {
                     for setup in &setups {
                         merge_depths(simd, setup, (64, 64), &window, &pattern, &mut depths, |new, old| lanes::Lanes::max(new, old));
                     }
                 });
-                assert!(depths[..] == expected[..], "{level:?} {window:?}");
+                assert!(depths[..] == expected[..], "{name} {window:?}");
             }
         }
     }

@@ -7,7 +7,7 @@
 use crate::clip::{Polygon, clip};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{GUARD_BAND, SUBPIXEL, SamplePattern, TILE, Viewport};
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use vitral_math::{Mat4, Vec2, Vec4, vec2};
 
@@ -34,7 +34,7 @@ pub mod flag {
 }
 
 /// A vertex on the screen. Coordinates are only meaningful without [`flag::CLIP`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ScreenVertex {
     /// 1/256 pixel from the left.
@@ -182,6 +182,16 @@ impl Screen {
     fn crosses_line(&self, low: i32, high: i32, axis: usize) -> bool {
         let [offset, shift] = self.lines[axis];
         (high - offset) >> shift > (low - 1 - offset) >> shift
+    }
+
+    /// Along an axis: the lines of samples (offset and shift of their distance), the outermost samples in a pixel, and how many
+    /// pixels there are.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn along(&self, axis: usize) -> ([i32; 2], [i32; 2], u32) {
+        let Viewport { width, height, .. } = self.viewport;
+        let (samples, size) = if axis == 0 { (self.sample_x, width) } else { (self.sample_y, height) };
+        (self.lines[axis], samples, size)
     }
 
     /// The map from ndc to the screen.

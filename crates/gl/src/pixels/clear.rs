@@ -84,9 +84,9 @@ impl Context {
         let exists = match buffer {
             NONE => true,
             FRONT_AND_BACK if !draw => return Err((INVALID_ENUM, "FRONT_AND_BACK cannot be read")),
-            // There is one buffer: neither back nor right ones.
-            FRONT | FRONT_LEFT | LEFT | FRONT_AND_BACK => !object,
-            BACK | BACK_LEFT | BACK_RIGHT | FRONT_RIGHT | RIGHT | AUX0..=AUX3 => false,
+            // There is one buffer. Programs made for windows call it the back one, and Mesa's library takes that.
+            FRONT | FRONT_LEFT | LEFT | FRONT_AND_BACK | BACK | BACK_LEFT => !object,
+            BACK_RIGHT | FRONT_RIGHT | RIGHT | AUX0..=AUX3 => false,
             _ if colors.contains(&buffer) => object && buffer < COLOR_ATTACHMENT0 + MAX_COLOR_ATTACHMENTS as u32,
             _ => return Err((INVALID_ENUM, "the token names no colour buffer")),
         };
@@ -167,7 +167,8 @@ mod tests {
             }
             c.error
         };
-        assert_eq!(error(true, BACK), INVALID_OPERATION);
+        assert_eq!((error(true, BACK), error(false, BACK_LEFT)), (NO_ERROR, NO_ERROR));
+        assert_eq!(error(true, BACK_RIGHT), INVALID_OPERATION);
         assert_eq!(error(true, FRONT_AND_BACK), NO_ERROR);
         assert_eq!(error(false, FRONT_AND_BACK), INVALID_ENUM);
         assert_eq!(error(true, COLOR_ATTACHMENT0), INVALID_OPERATION);

@@ -92,7 +92,7 @@ impl Geometry for DrawGeometry {
             if !state.depth_clamp && whole.is_outside(matrix, state.window.near, planes) {
                 return;
             }
-            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles));
+            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
         } else {
             let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
             self.emit_vertices(level, &all, &state, screen, out, |assembler| self.emit_primitives(assembler));
@@ -119,7 +119,7 @@ impl DrawGeometry {
             state.grid = out.grids.len() as u32;
         }
         let records = out.records.len();
-        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(triangles));
+        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
         if let Some(at) = self.layout.grid {
             self.emit_colors(level, grid, at, records, out);
         }

@@ -7,6 +7,7 @@
 //! In:   clip-space vertices, projected ones, corners of primitives.
 //! Out:  [`Primitives`]: setups, tile lists, facets, and which vertices to shade.
 
+mod eight;
 mod lines;
 
 use super::color_grid::ColorGrid;
@@ -15,7 +16,7 @@ use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{Batch, GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
 use std::mem::take;
-use vitral_math::lanes::LANES;
+use vitral_math::lanes::{LANES, Level};
 
 /// How a facet's interior is found and coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -284,19 +285,16 @@ impl<'a> Assembler<'a> {
     }
 
     /// Triangles that are filled; the last corner provokes.
-    pub fn triangles(&mut self, triangles: &[[u32; 3]]) {
-        let plain = self.state.polygon_mode == [2, 2];
+    pub fn triangles(&mut self, level: Level, triangles: &[[u32; 3]]) {
+        if self.state.user_planes == 0 {
+            return self.by_eights(level, triangles);
+        }
         for corners in triangles {
-            if plain {
-                self.triangle(*corners, corners[2]);
-            } else {
-                self.polygon(corners, &[true; 3], corners[2]);
-            }
+            self.triangle(*corners, corners[2]);
         }
     }
 
     /// A filled triangle.
-    #[inline(always)]
     pub fn triangle(&mut self, corners: [u32; 3], provoking: u32) {
         let s = self.vertices.screen;
         let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];

@@ -11,7 +11,7 @@ use super::state::Compare;
 use super::tile::FragmentSink;
 use super::wide::{bits_of, mask_of, select, splat};
 use crate::kernel::traverse::{Block, Placed};
-use crate::{BLOCK, Setup, TILE, TILE_PIXELS};
+use crate::{BLOCK, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Mask8, Simd};
 
@@ -44,19 +44,22 @@ impl FragmentSink<'_, '_, '_> {
     fn tiny_inlined<S: Simd, const N: usize>(&mut self, simd: S, setup: &Setup, place: &Placed) {
         let (left, [top, last]) = (place.left(), place.rows);
         let block = Block { x: left, y: top, rows: 0..last + 1 - top };
-        let mut allowed = [block::rectangle(left as i32, top as i32, self.clip); SAMPLES];
+        let rectangle = block::rectangle(left as i32, top as i32, self.clip);
+        if rectangle == 0 {
+            return;
+        }
+        let mut allowed = [rectangle; SAMPLES];
         if let Some(test) = &self.draw.state.stencil {
             let face = if self.shader.facet.back { &test.back } else { &test.front };
             block::stencil(simd, &block, &mut self.run.planes, face, &mut allowed);
-        }
-        if allowed == [0; SAMPLES] {
-            return;
+            if allowed == [0; SAMPLES] {
+                return;
+            }
         }
         // Before the alpha test depth may be looked at, but not written.
         let late = self.draw.state.alpha_test.is_some();
         let rule = self.draw.state.depth.map(|test| DepthRule { func: test.func, write: test.write && !late });
-        let mut passed = self.passing::<S, N>(simd, setup, place, &block, rule, &allowed);
-        let any = passed[0] | passed[1] | passed[2] | passed[3];
+        let (mut passed, any) = self.passing::<S, N>(simd, setup, place, &block, rule, &allowed);
         if any == 0 || !self.draw.shaded {
             return;
         }
@@ -94,7 +97,8 @@ impl FragmentSink<'_, '_, '_> {
         }
     }
 
-    /// Depth test, with its writes: the samples of `allowed` pixels that are covered and pass, row by row.
+    /// Depth test, with its writes: the samples of `allowed` pixels that are covered and pass, row by row, and the pixels of
+    /// which some do.
     #[inline(always)]
     fn passing<S: Simd, const N: usize>(
         &mut self,
@@ -104,63 +108,25 @@ impl FragmentSink<'_, '_, '_> {
         block: &Block,
         rule: Option<DepthRule>,
         allowed: &[u64; SAMPLES],
-    ) -> [u64; SAMPLES] {
-        let (left, top) = (block.x, block.y);
-        let corner = (self.run.x as usize + left, self.run.y as usize + top);
-        let planes = &mut self.run.planes;
-        // A draw without multisampling covers all samples of a pixel alike; where all have one depth and the same may be drawn,
-        // one stands for all.
-        let (mut test, mut alike) = (None, 1);
-        if let (Some((tile, scale)), Some(rule)) = (&mut planes.depth, rule) {
-            let touched = block.touched();
-            if rule.write {
-                planes.ranges.forget(touched);
-            }
-            let together = N == 1 && block::all_alike(allowed, planes.samples);
-            let (count, values) = tile.open(touched, together, planes.samples);
-            alike = if N == 1 { count } else { 1 };
-            test = Some((values, *scale, rule));
+    ) -> ([u64; SAMPLES], u64) {
+        let corner = (self.run.x as usize + block.x, self.run.y as usize + block.y);
+        let (planes, pattern) = (&mut self.run.planes, self.pattern);
+        let (Some((tile, scale)), Some(rule)) = (&mut planes.depth, rule) else {
+            return covered::<S, N>(simd, place, pattern, allowed);
+        };
+        let touched = block.touched();
+        if rule.write {
+            planes.ranges.forget(touched);
         }
-        let limits = [splat(simd, setup.z_min), splat(simd, setup.z_max)];
-        let [xs, ys] = self.pattern.axes();
-        let mut passed = [0; SAMPLES];
-        place.each_row::<S, Slope<S>, N>(
-            simd,
-            self.pattern,
-            #[inline(always)]
-            |s| Slope::new(simd, setup, corner, [xs[s], ys[s]]),
-            #[inline(always)]
-            |slope, s, y, covered: Mask8<S>| {
-                let (row, shift) = (y - top, 8 * (y - top));
-                let Some((values, scale, rule)) = &mut test else {
-                    passed[s % SAMPLES] |= u64::from(bits_of(covered) & 0xff) << shift;
-                    return;
-                };
-                let depth = slope.row(simd, row, limits, *scale);
-                for other in 0..alike {
-                    let at = (s + other) * TILE_PIXELS + y * TILE + left;
-                    let stored = &mut values[at..at + LANES];
-                    let old = F32x8::from_slice(simd, stored);
-                    let (sample, mut pass) = ((s + other) % SAMPLES, covered & compare(simd, rule.func, depth, old));
-                    if allowed[sample] != u64::MAX {
-                        pass &= mask_of(simd, (allowed[sample] >> shift) as u32 & 0xff);
-                    }
-                    if rule.write {
-                        select(pass, depth, old).store_slice(stored);
-                    }
-                    passed[sample] |= u64::from(bits_of(pass) & 0xff) << shift;
-                }
-            },
-        );
-        if N == 1 && (alike == 1 || test.is_none()) {
-            passed = [passed[0]; SAMPLES];
+        // A draw without multisampling covers all samples of a pixel alike; where all have one depth and the same may be
+        // drawn, one stands for all.
+        let together = N == 1 && block::all_alike(allowed, planes.samples);
+        let (count, values) = tile.open(touched, together, planes.samples);
+        let depths = Depths { values, corner: (block.x, block.y), scale: *scale, rule, allowed };
+        if N == 1 && count > 1 {
+            return depths.compare::<S, 1, SAMPLES>(simd, setup, place, corner, pattern);
         }
-        if test.is_none() {
-            for s in 0..SAMPLES {
-                passed[s] &= allowed[s];
-            }
-        }
-        passed
+        depths.compare::<S, N, 1>(simd, setup, place, corner, pattern)
     }
 
     /// Colours and writes the pixels that passed, of which `any` has all, where colours are those of corners.
@@ -176,20 +142,119 @@ impl FragmentSink<'_, '_, '_> {
         let samples = self.run.planes.samples;
         let Some(ColorTile::Rgba8(tile)) = &mut self.run.planes.color else { return };
         let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
-        let (count, values) = tile.open(block.touched(), block::all_alike(passed, samples), samples);
+        let together = samples == 1 || block::all_alike(passed, samples);
+        let (count, values) = tile.open(block.touched(), together, samples);
+        let mixing = self.draw.ops.mixing;
         for row in block.rows.clone() {
-            if any >> (8 * row) & 0xff == 0 {
+            let bits = (any >> (8 * row)) as u32 & 0xff;
+            if bits == 0 {
                 continue;
             }
             let words = self.shader.plain_row(simd, x, splat(simd, (top + row) as f32 + 0.5));
             let at = (block.y + row) * TILE + block.x;
-            for (plane, passed) in values.chunks_exact_mut(TILE_PIXELS).zip(passed).take(count) {
-                let bits = (passed >> (8 * row)) as u32 & 0xff;
+            if count == 1 {
+                block::write_row(simd, words, bits, mixing, &mut values[at..at + LANES]);
+                continue;
+            }
+            for (s, passed) in passed.iter().enumerate().take(count) {
+                let (bits, at) = ((passed >> (8 * row)) as u32 & 0xff, at + s * TILE_PIXELS);
                 if bits != 0 {
-                    block::write_row(simd, words, bits, self.draw.ops.mixing, &mut plane[at..at + LANES]);
+                    block::write_row(simd, words, bits, mixing, &mut values[at..at + LANES]);
                 }
             }
         }
+    }
+}
+
+/// The covered samples of `allowed` pixels, and the pixels of which some are.
+#[inline(always)]
+fn covered<S: Simd, const N: usize>(
+    simd: S,
+    place: &Placed,
+    pattern: &SamplePattern,
+    allowed: &[u64; SAMPLES],
+) -> ([u64; SAMPLES], u64) {
+    let (top, mut passed) = (place.rows[0], *allowed);
+    place.each_row::<S, u64, N>(
+        simd,
+        pattern,
+        #[inline(always)]
+        |_| 0,
+        #[inline(always)]
+        |bits, y, covered| *bits |= u64::from(bits_of(covered) & 0xff) << (8 * (y - top)),
+        #[inline(always)]
+        |s, bits| {
+            // One sample stands for all.
+            for s in if N == 1 { 0..SAMPLES } else { s..s + 1 } {
+                passed[s] &= bits;
+            }
+        },
+    );
+    (passed, passed[0] | passed[1] | passed[2] | passed[3])
+}
+
+/// A tile's depths, and what meets them.
+struct Depths<'a> {
+    values: &'a mut [f32],
+    /// The facet's first pixel within the tile.
+    corner: (usize, usize),
+    scale: f32,
+    rule: DepthRule,
+    allowed: &'a [u64; SAMPLES],
+}
+
+impl Depths<'_> {
+    /// See [`FragmentSink::passing`]. Of each of the `N` samples that are walked there are `A` alike; if there is one of all,
+    /// it stands for all.
+    #[inline(always)]
+    fn compare<S: Simd, const N: usize, const A: usize>(
+        self,
+        simd: S,
+        setup: &Setup,
+        place: &Placed,
+        corner: (usize, usize),
+        pattern: &SamplePattern,
+    ) -> ([u64; SAMPLES], u64) {
+        let Self { values, corner: (left, top), scale, rule, allowed } = self;
+        let limits = [splat(simd, setup.z_min), splat(simd, setup.z_max)];
+        let [xs, ys] = pattern.axes();
+        let (mut passed, mut any) = ([0; SAMPLES], 0);
+        place.each_row::<S, (Slope<S>, usize, [u64; A]), N>(
+            simd,
+            pattern,
+            #[inline(always)]
+            |s| (Slope::new(simd, setup, corner, [xs[s], ys[s]]), s, [0; A]),
+            #[inline(always)]
+            |(slope, s, bits), y, covered: Mask8<S>| {
+                let shift = 8 * (y - top);
+                let depth = slope.row(simd, y - top, limits, scale);
+                for other in 0..A {
+                    let sample = (*s + other) % SAMPLES;
+                    let at = sample * TILE_PIXELS + y * TILE + left;
+                    let stored = &mut values[at..at + LANES];
+                    let old = F32x8::from_slice(simd, stored);
+                    let mut pass = covered & compare(simd, rule.func, depth, old);
+                    if allowed[sample] != u64::MAX {
+                        pass &= mask_of(simd, (allowed[sample] >> shift) as u32 & 0xff);
+                    }
+                    if rule.write {
+                        select(pass, depth, old).store_slice(stored);
+                    }
+                    bits[other] |= u64::from(bits_of(pass) & 0xff) << shift;
+                }
+            },
+            #[inline(always)]
+            |s, (_, _, bits)| {
+                for other in 0..A {
+                    passed[(s + other) % SAMPLES] = bits[other];
+                    any |= bits[other];
+                }
+            },
+        );
+        if N == 1 && A == 1 {
+            passed = [any; SAMPLES];
+        }
+        (passed, any)
     }
 }
 

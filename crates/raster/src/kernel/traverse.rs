@@ -104,7 +104,7 @@ const FAR_AWAY: i64 = 1 << 30;
 
 /// Triangles that extend over fewer 1/256 pixel than this, a tile's side, have edge functions of 32 bits in a tile that
 /// they touch: the products are below 2^29.
-const SMALL: i32 = TILE as i32 * SUBPIXEL;
+pub(crate) const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
 #[inline(always)]
 fn is_small(x: &[i32; 3], y: &[i32; 3]) -> bool {
@@ -202,13 +202,15 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
         return;
     }
     let left = place.left();
-    place.each_row::<S, (), MOST>(
+    place.each_row::<S, usize, MOST>(
         simd,
         pattern,
         #[inline(always)]
-        |_| (),
+        |sample| sample,
         #[inline(always)]
-        |(), s, y, covered| sink.cover_row(simd, setup, s, [left, y], covered),
+        |sample, y, covered| sink.cover_row(simd, setup, *sample, [left, y], covered),
+        #[inline(always)]
+        |_, _| {},
     );
     sink.end(simd, [x0, y0]);
 }
@@ -265,15 +267,16 @@ impl Placed {
     }
 
     /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits, sample by
-    /// sample. `begin` is called for each sample, `row` with what that gave, the sample, the row of the tile and which of
-    /// the eight pixels from [`Self::left`] on are covered, if any are.
+    /// sample. `begin` is called for each sample; `row` with what that gave, the row of the tile and which of the eight
+    /// pixels from [`Self::left`] on are covered, if any are; `end` with the sample and what became of it.
     #[inline(always)]
     pub(crate) fn each_row<S: Simd, T, const MOST: usize>(
         &self,
         simd: S,
         pattern: &SamplePattern,
         mut begin: impl FnMut(usize) -> T,
-        mut row: impl FnMut(&T, usize, usize, Mask8<S>),
+        mut row: impl FnMut(&mut T, usize, Mask8<S>),
+        mut end: impl FnMut(usize, T),
     ) {
         let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
         let (left, [y0, y1]) = (self.left(), self.rows);
@@ -288,16 +291,17 @@ impl Placed {
                 let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
                 e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
             }
-            let begun = begin(s);
+            let mut begun = begin(s);
             for y in y0..=y1 {
                 let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
                 if covered.any_true() {
-                    row(&begun, s, y, covered);
+                    row(&mut begun, y, covered);
                 }
                 for i in 0..3 {
                     e[i] += edges[i].b;
                 }
             }
+            end(s, begun);
         }
     }
 

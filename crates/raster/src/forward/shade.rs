@@ -120,18 +120,23 @@ struct Interpolation {
 }
 
 impl Interpolation {
-    /// For a setup, with corner records by `facet.corners`; places are in pixels of the target.
+    /// Makes it ready for a setup, with corner records by `facet.corners`; places are in pixels of the target. Fields are set one
+    /// by one: a whole that was put together elsewhere would be read again before its parts are in the cache.
     #[inline(always)]
-    fn new(setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) -> Self {
+    fn prepare(&mut self, setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) {
         let inverse_w = facet.corners.map(|slot| records[slot as usize]);
         let least = inverse_w[0].min(inverse_w[1]).min(inverse_w[2]);
         let steep = inverse_w.iter().any(|w| *w > 8.0 * least);
-        if steep || !setup.is_small() { Self::far(setup, inverse_w, steep, tile) } else { Self::near(setup, inverse_w) }
+        if steep || !setup.is_small() {
+            self.far(setup, inverse_w, steep, tile);
+        } else {
+            self.near(setup, inverse_w);
+        }
     }
 
     /// For facets whose corners lie so near each other that single precision will do.
     #[inline(always)]
-    fn near(setup: &Setup, inverse_w: [f32; 3]) -> Self {
+    fn near(&mut self, setup: &Setup, inverse_w: [f32; 3]) {
         let (dx1, dy1) = (setup.x[1] - setup.x[0], setup.y[1] - setup.y[0]);
         let (dx2, dy2) = (setup.x[2] - setup.x[0], setup.y[2] - setup.y[0]);
         // Differences are in 1/256 pixel: one factor of 256 remains.
@@ -141,18 +146,15 @@ impl Interpolation {
         let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w };
         // The differences of the weights' sum are those of 1 / w, and as exact.
         let (d1, d2) = (w1 - w0, w2 - w0);
-        Self {
-            origin: [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32),
-            first: [0.0, a[0] * w1, a[1] * w1],
-            second: [0.0, b[0] * w2, b[1] * w2],
-            sum: [w0, a[0] * d1 + b[0] * d2, a[1] * d1 + b[1] * d2],
-            flat_w: flat.then_some(1.0 / inverse_w[0]),
-            edges: [[0.0; 3]; 3],
-        }
+        self.origin = [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32);
+        self.first = [0.0, a[0] * w1, a[1] * w1];
+        self.second = [0.0, b[0] * w2, b[1] * w2];
+        self.sum = [w0, a[0] * d1 + b[0] * d2, a[1] * d1 + b[1] * d2];
+        self.flat_w = flat.then_some(1.0 / inverse_w[0]);
     }
 
     #[inline(never)]
-    fn far(setup: &Setup, inverse_w: [f32; 3], steep: bool, tile: [f32; 2]) -> Self {
+    fn far(&mut self, setup: &Setup, inverse_w: [f32; 3], steep: bool, tile: [f32; 2]) {
         let scale = 1.0 / f64::from(SUBPIXEL);
         let origin = if steep { tile } else { [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32) };
         let x = |k: usize| f64::from(setup.x[k]) * scale - f64::from(origin[0]);
@@ -166,15 +168,11 @@ impl Interpolation {
         let (a, b) = ((dy2 * inverse, -dx2 * inverse), (-dy1 * inverse, dx1 * inverse));
         let (first, second) = (plane(a.0, a.1, 0.0, w1), plane(b.0, b.1, 0.0, w2));
         let rest = plane(-a.0 - b.0, -a.1 - b.1, 1.0, w0);
-        let sum = [0, 1, 2].map(|k: usize| (first[k] + second[k] + rest[k]) as f32);
-        Self {
-            origin,
-            first: first.map(|v| v as f32),
-            second: second.map(|v| v as f32),
-            sum,
-            flat_w: flat.then_some(1.0 / inverse_w[0]),
-            edges: [[0.0; 3]; 3],
-        }
+        self.origin = origin;
+        self.first = first.map(|v| v as f32);
+        self.second = second.map(|v| v as f32);
+        self.sum = [0, 1, 2].map(|k: usize| (first[k] + second[k] + rest[k]) as f32);
+        self.flat_w = flat.then_some(1.0 / inverse_w[0]);
     }
 
     /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
@@ -264,10 +262,10 @@ impl<'a> Shader<'a> {
             self.scratch.differences.prepare(simd, &self.primitives.records, corners, self.draw.layout.stride);
             if let Some(Shape::Polygon { x, y, .. }) = self.shape() {
                 let own = Setup { x, y, ..*setup };
-                self.scratch.interpolation = Interpolation::new(&own, self.facet, &self.primitives.records, self.tile);
+                self.scratch.interpolation.prepare(&own, self.facet, &self.primitives.records, self.tile);
                 self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.scratch.interpolation = Interpolation::new(setup, self.facet, &self.primitives.records, self.tile);
+                self.scratch.interpolation.prepare(setup, self.facet, &self.primitives.records, self.tile);
             }
         }
     }

@@ -414,6 +414,44 @@ pub fn level_by_name(name: &str) -> Option<Level> {
     available_levels().into_iter().find(|(n, _)| *n == name).map(|(_, level)| level)
 }
 
+/// The columns of eight rows of four words, each word in the lane of its row.
+#[inline(always)]
+pub fn columns_of_rows<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [I32x8<S>; 4] {
+    let at = inlined(
+        #[inline(always)]
+        |lane: usize| I32x4::from_slice(simd, &row(lane)),
+    );
+    let (low, high) = (transposed([at(0), at(1), at(2), at(3)]), transposed([at(4), at(5), at(6), at(7)]));
+    let both = inlined(
+        #[inline(always)]
+        |k: usize| simd.combine_i32x4(low[k], high[k]),
+    );
+    [both(0), both(1), both(2), both(3)]
+}
+
+/// Hands out the eight rows of four columns: the way back from [`columns_of_rows`].
+#[inline(always)]
+pub fn rows_of_columns<S: Simd>(simd: S, columns: [I32x8<S>; 4], mut row: impl FnMut(usize, [i32; 4])) {
+    let halves = inlined(
+        #[inline(always)]
+        |k: usize| simd.split_i32x8(columns[k]),
+    );
+    let (a, b, c, d) = (halves(0), halves(1), halves(2), halves(3));
+    for (first, half) in [(0, transposed([a.0, b.0, c.0, d.0])), (4, transposed([a.1, b.1, c.1, d.1]))] {
+        for k in 0..4 {
+            row(first + k, half[k].to_array());
+        }
+    }
+}
+
+/// Rows become columns.
+#[inline(always)]
+fn transposed<S: Simd>([a, b, c, d]: [I32x4<S>; 4]) -> [I32x4<S>; 4] {
+    let (ac, bd) = (a.interleave(c), b.interleave(d));
+    let (low, high) = (ac.0.interleave(bd.0), ac.1.interleave(bd.1));
+    [low.0, low.1, high.0, high.1]
+}
+
 /// Every level that can run here, slowest first. Pictures do not depend on it.
 pub fn available_levels() -> Vec<(&'static str, Level)> {
     #[allow(unused_mut)]
@@ -460,6 +498,21 @@ mod tests {
                     assert_eq!(one[k].to_bits(), w[k][lane].to_bits(), "{name}: function {k} of {}", x[lane]);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_and_rows_again() {
+        let rows: [[i32; 4]; 8] = std::array::from_fn(|r| std::array::from_fn(|c| 10 * r as i32 + c as i32));
+        for (name, level) in available_levels() {
+            let mut again = [[0; 4]; 8];
+            let columns = dispatch!(level, simd => {
+                let columns = columns_of_rows(simd, |lane| rows[lane]);
+                rows_of_columns(simd, columns, |lane, row| again[lane] = row);
+                columns.map(|column| column.to_array())
+            });
+            assert_eq!(columns[2], [2, 12, 22, 32, 42, 52, 62, 72], "{name}");
+            assert_eq!(again, rows, "{name}");
         }
     }
 

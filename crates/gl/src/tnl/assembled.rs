@@ -5,7 +5,8 @@ use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRI
 use crate::vertex::{Primitive, VertexBatch};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
-use vitral_math::Vec4;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Level, Simd, dispatch};
 
 /// Triangles of a piece.
 const PIECE: usize = 1024;
@@ -124,8 +125,8 @@ impl Assembled {
     }
 
     /// Piece number `piece` of the batch that this was made of.
-    pub(crate) fn piece(&self, batch: &VertexBatch, piece: usize) -> &Piece {
-        self.pieces[piece].get_or_init(|| make_piece(self.triangles(batch, self.range(piece)), &batch.positions))
+    pub(crate) fn piece(&self, level: Level, batch: &VertexBatch, piece: usize) -> &Piece {
+        self.pieces[piece].get_or_init(|| make_piece(level, self.triangles(batch, self.range(piece)), &batch.positions))
     }
 
     /// Triangles as numbers of vertices.
@@ -184,7 +185,7 @@ fn add_triangles(p: &Primitive, range: Range<u32>, out: &mut Vec<[u32; 3]>) {
 }
 
 /// A piece of triangles given as numbers of vertices of the batch.
-fn make_piece(mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
+fn make_piece(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
     let (mut low, mut high) = (u32::MAX, 0);
     for [a, b, c] in &triangles {
         low = low.min(*a.min(b).min(c));
@@ -193,7 +194,7 @@ fn make_piece(mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
     let low = low.min(high);
     if (high - low) as usize <= 4 * triangles.len() + 64 {
         // Vertices between that no triangle uses may widen the bounds: they only ever save work.
-        let bounds = bounds(positions[low as usize..high as usize].iter().copied());
+        let bounds = bounds(level, &positions[low as usize..high as usize]);
         for corner in triangles.iter_mut().flatten() {
             *corner -= low;
         }
@@ -205,20 +206,35 @@ fn make_piece(mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
     for corner in triangles.iter_mut().flatten() {
         *corner = list.binary_search(corner).unwrap_or(0) as u32;
     }
-    let bounds = bounds(list.iter().map(|&v| positions[v as usize]));
+    let used: Vec<[f32; 4]> = list.iter().map(|&v| positions[v as usize]).collect();
+    let bounds = bounds(level, &used);
     Piece { triangles, vertices: PieceVertices::List(list), bounds }
 }
 
 /// The least and the largest coordinates, if all are finite and all `w` 1.
-pub(super) fn bounds(positions: impl Iterator<Item = [f32; 4]>) -> Option<[[f32; 3]; 2]> {
-    let (mut low, mut high, mut finite) = (Vec4::INFINITY, Vec4::NEG_INFINITY, Vec4::ZERO);
-    for p in positions.map(Vec4::from) {
+pub(super) fn bounds(level: Level, positions: &[[f32; 4]]) -> Option<[[f32; 3]; 2]> {
+    // Two positions a step; a last one alone counts twice.
+    let (pairs, last) = positions.as_chunks::<2>();
+    let last = last.first().map(|p| [*p, *p]);
+    let [low, high, finite] = dispatch!(level, simd => extremes(simd, pairs.iter().chain(&last)));
+    let both = |v: [f32; 8], best: fn(f32, f32) -> f32| [0, 1, 2, 3].map(|k| best(v[k], v[k + 4]));
+    let (low, high) = (both(low, f32::min), both(high, f32::max));
+    let regular = finite == [0.0; 8] && low[3] == 1.0 && high[3] == 1.0;
+    regular.then_some([[low[0], low[1], low[2]], [high[0], high[1], high[2]]])
+}
+
+/// The least and the largest numbers of pairs of positions, and 0 where all are finite.
+#[inline(always)]
+fn extremes<'a, S: Simd>(simd: S, pairs: impl Iterator<Item = &'a [[f32; 4]; 2]>) -> [[f32; 8]; 3] {
+    let splat = |v| <F32x8<S> as SimdBase<S>>::splat(simd, v);
+    let (mut low, mut high, mut finite) = (splat(f32::INFINITY), splat(f32::NEG_INFINITY), splat(0.0));
+    for pair in pairs {
+        let v = F32x8::from_slice(simd, pair.as_flattened());
         // 0 x is 0 for finite numbers only.
-        finite += p * 0.0;
-        (low, high) = (low.min(p), high.max(p));
+        finite += v * 0.0;
+        (low, high) = (lanes::Lanes::min(v, low), lanes::Lanes::max(v, high));
     }
-    let regular = finite == Vec4::ZERO && low.w == 1.0 && high.w == 1.0;
-    regular.then_some([low.truncate().to_array(), high.truncate().to_array()])
+    [low.to_array(), high.to_array(), finite.to_array()]
 }
 
 impl Piece {
@@ -265,10 +281,10 @@ mod tests {
 
     #[test]
     fn pieces_keep_their_vertices_together() {
-        let p = make_piece(vec![[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
+        let p = make_piece(Level::new(), vec![[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
         assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
-        let p = make_piece(vec![[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
+        let p = make_piece(Level::new(), vec![[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
         assert_eq!((p.vertices.len(), p.vertices.get(2)), (3, 80_000));
     }
 
@@ -288,10 +304,23 @@ mod tests {
         assert_eq!((assembled.len(), assembled.others), (all.len().div_ceil(PIECE), true));
         let mut found = Vec::new();
         for i in 0..assembled.len() {
-            let piece = assembled.piece(&batch, i);
+            let piece = assembled.piece(Level::new(), &batch, i);
             assert_eq!(piece.triangles.len(), assembled.weight(i));
             found.extend(piece.triangles.iter().map(|t| t.map(|v| piece.vertices.get(v))));
         }
         assert_eq!(found, all);
+    }
+
+    #[test]
+    fn bounds_are_of_finite_positions_with_w_1() {
+        let positions = [[1.0, -2.0, 3.0, 1.0], [-4.0, 5.0, 0.5, 1.0], [0.0, 0.0, 9.0, 1.0]];
+        let level = Level::new();
+        assert_eq!(bounds(level, &positions), Some([[-4.0, -2.0, 0.5], [1.0, 5.0, 9.0]]));
+        assert_eq!(bounds(level, &positions[..2]), Some([[-4.0, -2.0, 0.5], [1.0, 5.0, 3.0]]));
+        for wrong in [[f32::NAN, 0.0, 0.0, 1.0], [0.0, f32::INFINITY, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0]] {
+            assert_eq!(bounds(level, &[positions[0], wrong]), None);
+            assert_eq!(bounds(level, &[wrong, positions[0], positions[1]]), None);
+        }
+        assert_eq!(bounds(level, &[]), None);
     }
 }

@@ -85,7 +85,7 @@ impl Geometry for DrawGeometry {
             return self.emit_grid(level, grid, state, screen, out);
         }
         if piece < self.filled_pieces() {
-            let whole = self.assembled.piece(&self.batch, piece);
+            let whole = self.assembled.piece(level, &self.batch, piece);
             let Piece { triangles, vertices, .. } = whole;
             let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
             // With depth clamping near and far do not bound the view.

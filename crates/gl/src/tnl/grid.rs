@@ -13,6 +13,7 @@
 
 use super::assembled::{Piece, PieceVertices, bounds};
 use crate::vertex::VertexBatch;
+use vitral_math::lanes::Level;
 
 /// Fewer cells are drawn as they are.
 const LEAST_CELLS: usize = 16;
@@ -84,7 +85,8 @@ pub(crate) fn find(batch: &VertexBatch, count: usize, triangles: impl FnOnce() -
         return None;
     }
     let triangles: Vec<[u32; 3]> = shape?.into_iter().flatten().map(|turn| turn.corners).collect();
-    let bounds = bounds(corners.iter().map(|&v| batch.positions[v as usize]));
+    let places: Vec<[f32; 4]> = corners.iter().map(|&v| batch.positions[v as usize]).collect();
+    let bounds = bounds(Level::new(), &places);
     let rectangle = Piece { triangles, vertices: PieceVertices::List(corners), bounds };
     // A triangle without corner (1, 0) or (0, 1) has the rising diagonal.
     Some(Grid { rectangle, cells: [columns as u32, rows as u32], vertices, rising: pair == 0b1010 })

@@ -1,11 +1,11 @@
 //! Clip space to window space, eight vertices at a time or one.
 
 use crate::geometry::{ScreenVertex, flag};
-use crate::kernel::transform::{bit, load, whole};
+use crate::kernel::transform::{bit, whole};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{GUARD_BAND, SUBPIXEL};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Simd, U32x8, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, U32x8, dispatch};
 
 /// The viewport and depth range as a map from normalised device coordinates. Row 0 is the lowest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,30 +125,56 @@ fn project_all<S: Simd>(
     clip: &mut [[f32; 4]],
     screen: &mut [ScreenVertex],
 ) {
-    let chunks = positions.chunks(LANES).zip(clip.chunks_mut(LANES)).zip(screen.chunks_mut(LANES));
-    for ((p, clip), screen) in chunks {
-        let mut soa = [[0.0f32; LANES]; 4];
-        for lane in 0..LANES {
-            let v = p[lane.min(p.len() - 1)];
-            for k in 0..4 {
-                soa[k][lane] = v[k];
-            }
-        }
-        let [x, y, z, w] = [load(simd, &soa[0]), load(simd, &soa[1]), load(simd, &soa[2]), load(simd, &soa[3])];
-        let c = [
-            x * m[0] + y * m[4] + z * m[8] + w * m[12],
-            x * m[1] + y * m[5] + z * m[9] + w * m[13],
-            x * m[2] + y * m[6] + z * m[10] + w * m[14],
-            x * m[3] + y * m[7] + z * m[11] + w * m[15],
-        ];
-        let (sx, sy, depth, flags) = to_window(simd, c, window);
-        let (cx, cy, cz, cw) = (c[0].to_array(), c[1].to_array(), c[2].to_array(), c[3].to_array());
-        let (sx, sy, depth, flags) = (sx.to_array(), sy.to_array(), depth.to_array(), flags.to_array());
-        for lane in 0..clip.len() {
-            clip[lane] = [cx[lane], cy[lane], cz[lane], cw[lane]];
-            screen[lane] = ScreenVertex { x: sx[lane], y: sy[lane], z: depth[lane], flags: flags[lane] };
-        }
+    let ((eights, rest), (clips, last_clips)) = (positions.as_chunks(), clip.as_chunks_mut());
+    let (screens, last_screens) = screen.as_chunks_mut();
+    for ((p, clip), screen) in eights.iter().zip(clips).zip(screens) {
+        project_eight(simd, p, m, window, clip, screen);
     }
+    if let Some(first) = rest.first() {
+        let mut eight = [*first; LANES];
+        eight[..rest.len()].copy_from_slice(rest);
+        let (mut clip, mut screen) = ([[0.0; 4]; LANES], [ScreenVertex::default(); LANES]);
+        project_eight(simd, &eight, m, window, &mut clip, &mut screen);
+        last_clips.copy_from_slice(&clip[..rest.len()]);
+        last_screens.copy_from_slice(&screen[..rest.len()]);
+    }
+}
+
+#[inline(always)]
+fn project_eight<S: Simd>(
+    simd: S,
+    p: &[[f32; 4]; LANES],
+    m: &[f32; 16],
+    window: &WindowTransform,
+    clip: &mut [[f32; 4]; LANES],
+    screen: &mut [ScreenVertex; LANES],
+) {
+    let columns = lanes::columns_of_rows(
+        simd,
+        #[inline(always)]
+        |lane| bytemuck::cast(p[lane]),
+    );
+    let [x, y, z, w]: [F32x8<S>; 4] =
+        [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast(), columns[3].bitcast()];
+    let c = [
+        x * m[0] + y * m[4] + z * m[8] + w * m[12],
+        x * m[1] + y * m[5] + z * m[9] + w * m[13],
+        x * m[2] + y * m[6] + z * m[10] + w * m[14],
+        x * m[3] + y * m[7] + z * m[11] + w * m[15],
+    ];
+    let (sx, sy, depth, flags) = to_window(simd, c, window);
+    lanes::rows_of_columns(
+        simd,
+        [c[0].bitcast(), c[1].bitcast(), c[2].bitcast(), c[3].bitcast()],
+        #[inline(always)]
+        |lane, row| clip[lane] = bytemuck::cast(row),
+    );
+    lanes::rows_of_columns(
+        simd,
+        [sx, sy, depth.bitcast(), flags.bitcast()],
+        #[inline(always)]
+        |lane, row| screen[lane] = bytemuck::cast(row),
+    );
 }
 
 /// From clip space to snapped window coordinates, depth and flags.
@@ -181,7 +207,7 @@ fn to_window<S: Simd>(
     let sx = x / safe_w * window.scale[0] + window.center[0];
     let sy = y / safe_w * window.scale[1] + window.center[1];
     let sz = z / safe_w * window.z_scale + window.z_center;
-    let sz = vitral_math::lanes::Lanes::saturate(sz);
+    let sz = lanes::Lanes::saturate(sz);
     let sub = SUBPIXEL as f32;
     (whole(in_band, sx * sub + 0.5), whole(in_band, sy * sub + 0.5), sz, flags)
 }

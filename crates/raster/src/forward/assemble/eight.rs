@@ -7,7 +7,7 @@ use crate::kernel::traverse::SMALL;
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{SUBPIXEL, ScreenVertex};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x4, I32x8, LANES, Level, Mask8, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 
 /// What is known of eight triangles, and bits of those that are left.
 struct Eight {
@@ -59,19 +59,11 @@ impl Assembler<'_> {
         let corner = lanes::inlined(
             #[inline(always)]
             |k: usize| {
-                let at = lanes::inlined(
+                lanes::columns_of_rows(
+                    simd,
                     #[inline(always)]
-                    |lane: usize| {
-                        I32x4::from_slice(simd, &bytemuck::cast::<_, [i32; 4]>(vertices[triangles[lane][k] as usize]))
-                    },
-                );
-                let first = transposed(simd, at(0), at(1), at(2), at(3));
-                let second = transposed(simd, at(4), at(5), at(6), at(7));
-                let both = lanes::inlined(
-                    #[inline(always)]
-                    |i: usize| simd.combine_i32x4(first[i], second[i]),
-                );
-                [both(0), both(1), both(2), both(3)]
+                    |lane| bytemuck::cast(vertices[triangles[lane][k] as usize]),
+                )
             },
         );
         let (a, b, c) = (corner(0), corner(1), corner(2));
@@ -162,14 +154,6 @@ impl Assembler<'_> {
         let back = self.is_back(area);
         self.push(positions, area, &plane, pixels, slots, slots[2], FacetKind::Polygon, back, NONE);
     }
-}
-
-/// Columns of a matrix whose rows are given.
-#[inline(always)]
-fn transposed<S: Simd>(simd: S, a: I32x4<S>, b: I32x4<S>, c: I32x4<S>, d: I32x4<S>) -> [I32x4<S>; 4] {
-    let (ac, bd) = (simd.interleave_i32x4(a, c), simd.interleave_i32x4(b, d));
-    let (low, high) = (simd.interleave_i32x4(ac.0, bd.0), simd.interleave_i32x4(ac.1, bd.1));
-    [low.0, low.1, high.0, high.1]
 }
 
 /// The pixels that eight boxes may cover within `clip`, x0, y0, x1, y1 inclusive, and which of them hold any; as

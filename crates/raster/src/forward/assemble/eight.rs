@@ -52,9 +52,18 @@ impl Assembler<'_> {
         }
     }
 
-    /// Culls and sets up eight triangles.
-    #[inline(always)]
+    /// Culls and sets up eight triangles. A function of its own: all in one would be a function over which compilers take
+    /// minutes, where they must do without vectors.
+    #[inline(never)]
     fn sift<S: Simd>(&self, simd: S, triangles: &[[u32; 3]; LANES]) -> Eight {
+        simd.vectorize(
+            #[inline(always)]
+            || self.sift_inlined(simd, triangles),
+        )
+    }
+
+    #[inline(always)]
+    fn sift_inlined<S: Simd>(&self, simd: S, triangles: &[[u32; 3]; LANES]) -> Eight {
         let vertices = self.vertices.screen;
         let corner = lanes::inlined(
             #[inline(always)]

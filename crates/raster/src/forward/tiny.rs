@@ -52,6 +52,10 @@ impl FragmentSink<'_, '_, '_> {
         if let Some(test) = &self.draw.state.stencil {
             let face = if self.shader.facet.back { &test.back } else { &test.front };
             block::stencil(simd, &block, &mut self.run.planes, face, &mut allowed);
+            if self.run.planes.samples == 1 {
+                // The others stand for samples that there are not.
+                allowed = [allowed[0]; SAMPLES];
+            }
             if allowed == [0; SAMPLES] {
                 return;
             }

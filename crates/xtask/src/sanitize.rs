@@ -63,7 +63,9 @@ fn nightly(components: &[&str]) -> Result<Command, String> {
         println!("installing a nightly toolchain with {}", components.join(" and "));
         let mut install = command("rustup");
         install.args(["toolchain", "install", "nightly", "--profile", "minimal"]);
-        components.iter().for_each(|name| drop(install.args(["--component", name])));
+        for name in components {
+            install.args(["--component", name]);
+        }
         output(&mut install).map_err(|why| format!("could not install: {why}"))?;
     }
     let mut words = command("rustup");
@@ -121,12 +123,16 @@ fn valgrind() -> Outcome {
     let (runner, library) = (debug.join("examples/scene_runner"), debug.join("libOSMesa.so"));
 
     let scenes = target.join("scenes");
-    watch(&runner, "definite", |words| drop(words.arg(&library).arg(&scenes)))?;
+    watch(&runner, "definite", |words| {
+        words.arg(&library).arg(&scenes);
+    })?;
     for mode in MODES.into_iter().chain(MORE_MODES) {
         // In the others the client itself leaves contexts behind, or the parent's threads are gone.
         let leaks = if matches!(mode, "growth" | "threads" | "close") { "definite" } else { "none" };
         println!("{mode}");
-        watch(&runner, leaks, |words| drop(words.args(["--lifecycle", mode]).arg(&library)))?;
+        watch(&runner, leaks, |words| {
+            words.args(["--lifecycle", mode]).arg(&library);
+        })?;
     }
 
     println!("buffers.c");
@@ -137,7 +143,9 @@ fn valgrind() -> Outcome {
     let mut compile = command("cc");
     compile.arg(sources.join("tests/clients/buffers.c")).arg(format!("-I{}", sources.join("include").display()));
     run(compile.args(["-g", "-O1"]).arg(&named).args(["-lm", "-o"]).arg(&program))?;
-    watch(&program, "definite", |words| drop(words.arg(&target).env("LD_LIBRARY_PATH", &target)))
+    watch(&program, "definite", |words| {
+        words.arg(&target).env("LD_LIBRARY_PATH", &target);
+    })
 }
 
 /// Runs a program under memcheck; any finding, and any leak of these kinds, is a failure.

@@ -2,7 +2,7 @@
 
 use crate::environment;
 use crate::handle::Handle;
-use crate::messages::Waiting;
+use crate::messages::{Messages, Waiting};
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -59,7 +59,7 @@ pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Contex
         Err(cause) => panicked(context, name, &*cause),
     };
     if handle.messages.any() {
-        deliver(handle);
+        deliver(&Arc::clone(&handle.messages));
     }
     result
 }
@@ -81,10 +81,9 @@ fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Se
 type DebugProc = unsafe extern "C" fn(u32, u32, u32, u32, i32, *const u8, usize);
 
 /// Calls the client's debug callback with each message that waits. The callback may call OpenGL, and even destroy the
-/// context.
+/// context: nothing of its handle is borrowed here.
 #[cold]
-fn deliver(handle: &Handle) {
-    let messages = Arc::clone(&handle.messages);
+fn deliver(messages: &Messages) {
     while let Some(Waiting { callback, user, mut message }) = messages.next() {
         let length = i32::try_from(message.text.len()).unwrap_or(i32::MAX);
         message.text.push(0);

@@ -7,6 +7,8 @@
 
 mod api;
 mod attributes;
+#[cfg(test)]
+mod client;
 mod current;
 mod entry_points;
 mod environment;

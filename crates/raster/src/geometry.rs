@@ -355,6 +355,20 @@ impl Batch {
         self.counters.tile_entries = self.entries.len() as u64;
     }
 
+    /// Exchanges the memory of what is needed up to [`Batch::finish`].
+    #[cfg(feature = "forward")]
+    pub(crate) fn exchange_entries(&mut self, entries: &mut Vec<[u32; 2]>) {
+        std::mem::swap(&mut self.entries, entries);
+    }
+
+    /// Gives each triangle's facet another number.
+    #[cfg(feature = "forward")]
+    pub(crate) fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+        for setup in &mut self.setups {
+            setup.facet = number(setup.facet);
+        }
+    }
+
     /// All triangles, in order of submission.
     pub fn setups(&self) -> &[Setup] {
         &self.setups

@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | compare`.
+//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | sanitize | compare`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -7,6 +7,7 @@ mod clients;
 mod compare;
 mod osmesa;
 mod prepare;
+mod sanitize;
 mod shell;
 mod tally;
 mod test;
@@ -20,6 +21,7 @@ cargo xtask check                 the floors and the rules of the house that the
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
+cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
 cargo xtask compare [--quick] [--peers-only]
                                   install the peers, run them in turns with vitral, print ratios";
 
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         ["bless"] => bless::run(None),
         ["bless", filter] => bless::run(Some(filter)),
         ["clients"] => clients::run_all(),
+        ["sanitize", tools @ ..] => sanitize::run_all(tools),
         ["osmesa"] => osmesa::run_all(),
         ["compare", options @ ..] => compare::run(options),
         _ => Err(format!("usage:\n{USAGE}")),

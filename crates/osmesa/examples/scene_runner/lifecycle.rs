@@ -1,7 +1,7 @@
 //! Contexts in threads and processes, the functions of OSMesa itself, wild calls. Each mode is run in a process of its
 //! own; a mode that does not come back has failed.
 
-use crate::gl::{Gl, OsmesaContext, at_mut, fetch};
+use crate::gl::{Gl, OsmesaContext, at, at_mut, fetch};
 use std::ffi::CString;
 use vitral_gl::enums::*;
 
@@ -15,6 +15,7 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
         "fork" => fork(&gl),
         "threads" => threads(&gl),
         "moved" => moved(&gl),
+        "growth" => growth(&gl),
         "destroyed-elsewhere" => destroyed_elsewhere(&gl),
         "buffer-gone" => buffer_gone(&gl),
         "exit" => exit(&gl),
@@ -125,6 +126,48 @@ fn moved(gl: &Gl) -> Result<(), String> {
     }
     window.make_current(gl);
     window.frame(gl)
+}
+
+/// Neither frames nor contexts leave anything behind: the process does not grow with their number.
+fn growth(gl: &Gl) -> Result<(), String> {
+    let texels = vec![[200_u8; 4]; 256 * 256];
+    let round = || {
+        let mut first = Window::new(gl);
+        let context = gl.OSMesaCreateContextExt(RGBA, 24, 8, 0, first.context);
+        let mut second = Window { context, buffer: first.buffer.clone() };
+        for window in [&mut first, &mut second] {
+            window.make_current(gl);
+            let (mut names, size) = ([0], 256);
+            gl.glGenTextures(1, &mut names);
+            gl.glBindTexture(TEXTURE_2D, names[0]);
+            gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, size, size, 0, RGBA, UNSIGNED_BYTE, at(&texels));
+            gl.glNewList(7, COMPILE);
+            gl.glRectf(-0.1, -0.1, 0.1, 0.1);
+            gl.glEndList();
+            for _ in 0..3 {
+                window.frame(gl)?;
+                gl.glCallList(7);
+            }
+        }
+        gl.OSMesaDestroyContext(first.context);
+        gl.OSMesaDestroyContext(second.context);
+        Ok::<(), String>(())
+    };
+    // The first rounds fill what is kept to be used again.
+    (0..20).try_for_each(|_| round())?;
+    let before = resident()?;
+    (0..100).try_for_each(|_| round())?;
+    let grown = resident()?.saturating_sub(before);
+    // One texture left behind in each round would be 25 MB.
+    same("MiB grown", grown >> 20, 0)
+}
+
+/// Bytes of this process that are in memory.
+fn resident() -> Result<usize, String> {
+    let status = std::fs::read_to_string("/proc/self/status").map_err(|e| e.to_string())?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).ok_or("no VmRSS")?;
+    let kilobytes: usize = line.trim_end_matches("kB").trim().parse().map_err(|e| format!("{line}: {e}"))?;
+    Ok(kilobytes << 10)
 }
 
 /// A context that another thread destroys lives on until its own thread lets go of it.

@@ -32,6 +32,13 @@ fn a_context_moves_from_thread_to_thread() {
 }
 
 #[test]
+fn contexts_and_frames_leave_nothing_behind() {
+    for threads in ["1", "3"] {
+        lifecycle("growth", Some(threads));
+    }
+}
+
+#[test]
 fn a_context_destroyed_elsewhere_lives_until_it_is_let_go() {
     lifecycle("destroyed-elsewhere", None);
 }

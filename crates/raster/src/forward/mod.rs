@@ -18,6 +18,7 @@ mod project;
 mod sample;
 mod shade;
 mod soft;
+mod spare;
 mod state;
 mod texture;
 mod tile;

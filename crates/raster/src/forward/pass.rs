@@ -7,10 +7,11 @@ use super::assemble::{Facet, Primitives, screen};
 use super::depth_ranges::DepthRanges;
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
-use super::pending::{PendingDepth, pendable};
+use super::pending::{PendingDepth, name_draws, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::packed::Packed;
 use super::shade::Layout;
+use super::spare::{Assembly, Places};
 use super::state::FragmentState;
 use super::tile::TileRun;
 use crate::geometry::Screen;
@@ -170,7 +171,9 @@ pub struct Runner {
     pub workers: Workers,
     /// Instruction set.
     pub level: Level,
-    spare: Mutex<Vec<Primitives>>,
+    spare: Places,
+    spare_pending: Places,
+    assemblies: Mutex<Vec<Assembly>>,
 }
 
 /// Triangles of a job.
@@ -215,7 +218,13 @@ enum PlanItem {
 impl Runner {
     /// A runner.
     pub fn new(workers: Workers, level: Level) -> Self {
-        Self { workers, level, spare: Mutex::default() }
+        Self {
+            workers,
+            level,
+            spare: Places::default(),
+            spare_pending: Places::default(),
+            assemblies: Mutex::default(),
+        }
     }
 
     /// Runs a pass.
@@ -226,9 +235,16 @@ impl Runner {
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
-        let mut jobs: Vec<Primitives> =
-            self.workers.map(plans.len(), |j| self.emit(&plans[j], &pass.commands, &forward));
-        if self.leave_pending(pass, &plans, &mut jobs) {
+        let kind = self.pendable(pass);
+        let spare = if kind.is_some() { &self.spare_pending } else { &self.spare };
+        let places = spare.take(plans.len());
+        let jobs: Vec<Primitives> = self.workers.map(plans.len(), |j| {
+            let mut job = std::mem::take(&mut *lock(&places[j]));
+            self.emit(&plans[j], &pass.commands, &forward, &mut job, kind.is_some());
+            job
+        });
+        if let Some(kind) = kind {
+            leave_pending(kind, pass, &plans, jobs);
             return;
         }
         let sampled = sampled_planes(&pass.commands);
@@ -237,11 +253,12 @@ impl Runner {
         let items: Vec<Item<'_>> = order.iter().map(|item| self.item(item, pass, &plans, &jobs, &sampled)).collect();
         self.tiles(&pass.target, &items);
         drop(items);
-        lock(&self.spare).extend(jobs);
+        spare.give(jobs);
     }
 
-    fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen) -> Primitives {
-        let mut out = lock(&self.spare).pop().unwrap_or_default();
+    fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen, out: &mut Primitives, pending: bool) {
+        let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
+        assembly.exchange(out, pending);
         out.batch.clear();
         out.facets.clear();
         out.shapes.clear();
@@ -251,35 +268,30 @@ impl Runner {
         for (draw, (command, pieces)) in plan.pieces.iter().enumerate() {
             if let Command::Draw(geometry, _) = &commands[*command] {
                 for piece in pieces.clone() {
-                    geometry.emit(self.level, piece, draw as u32, forward, &mut out);
+                    geometry.emit(self.level, piece, draw as u32, forward, out);
                 }
             }
         }
         out.batch.finish(forward.screen(false));
-        out
+        if pending {
+            name_draws(out);
+        }
+        assembly.exchange(out, pending);
+        lock(&self.assemblies).push(assembly);
     }
 
-    /// Leaves a pass that draws depths into a texture as it is, if it can; `jobs` are its primitives then.
-    fn leave_pending(&self, pass: &Pass, plans: &[Plan], jobs: &mut [Primitives]) -> bool {
-        let Some(target) = &pass.target.depth else { return false };
-        let mut target = lock(target);
+    /// How a pass can be left as it is that draws depths into a texture, if it can: [`pendable`]. What is pending there is
+    /// dropped, since the pass clears all of it; its memory serves this pass.
+    fn pendable(&self, pass: &Pass) -> Option<(f32, f32)> {
+        let mut target = lock(pass.target.depth.as_ref()?);
         if !target.sampled || target.viewport() != pass.target.viewport {
-            return false;
+            return None;
         }
-        let Some(kind) = pendable(pass) else { return false };
+        let kind = pendable(pass)?;
         if let Some(before) = target.pending.take() {
-            lock(&self.spare).extend(before.into_primitives());
+            self.spare_pending.give(before.into_primitives());
         }
-        let draws = |plan: &Plan| {
-            let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
-                Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
-                _ => None,
-            };
-            plan.pieces.iter().filter_map(draw).collect()
-        };
-        let jobs = plans.iter().zip(jobs).map(|(plan, job)| (std::mem::take(job), draws(plan))).collect();
-        target.pending = Some(Box::new(PendingDepth::new(kind, target.scale, target.viewport(), jobs)));
-        true
+        Some(kind)
     }
 
     fn item<'a>(
@@ -337,6 +349,22 @@ impl Runner {
             dispatch!(self.level, simd => run.walk(simd, items, &many, &one));
         });
     }
+}
+
+/// Leaves a pass as it is; `jobs` are its primitives.
+fn leave_pending(kind: (f32, f32), pass: &Pass, plans: &[Plan], jobs: Vec<Primitives>) {
+    let Some(target) = &pass.target.depth else { return };
+    let draws = |plan: &Plan| {
+        let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
+            Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
+            _ => None,
+        };
+        plan.pieces.iter().filter_map(draw).collect()
+    };
+    let jobs = plans.iter().zip(jobs).map(|(plan, job)| (job, draws(plan))).collect();
+    let mut target = lock(target);
+    let pending = PendingDepth::new(kind, target.scale, target.viewport(), jobs);
+    target.pending = Some(Box::new(pending));
 }
 
 fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {

@@ -28,7 +28,7 @@ use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
 
-/// A job's triangles, with the state and the allowed pixels of each draw.
+/// A job's triangles, which name their draws, with the state and the allowed pixels of each draw.
 #[derive(Debug)]
 struct PendingJob {
     primitives: Primitives,
@@ -82,6 +82,12 @@ pub(crate) struct PendingDepth {
     viewport: Viewport,
 }
 
+/// Makes a job's triangles name their draws in place of their facets, of which no more is asked.
+pub(crate) fn name_draws(job: &mut Primitives) {
+    let facets = &job.facets;
+    job.batch.renumber(|facet| facets[facet as usize].draw);
+}
+
 /// Whether a pass can be left pending: 1 or -1 for which depth stays, and the depth it clears to.
 pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
     use super::pass::Command;
@@ -114,7 +120,7 @@ pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
 }
 
 impl PendingDepth {
-    /// Keeps a pass's primitives. `jobs` are with their draws' states and allowed pixels.
+    /// Keeps a pass's primitives, after [`name_draws`]. `jobs` are with their draws' states and allowed pixels.
     pub(crate) fn new(
         (sign, clear): (f32, f32),
         scale: f32,
@@ -324,7 +330,7 @@ impl PendingDepth {
                     let job = &self.jobs[job as usize];
                     let (mut window, mut window_of) = ([0..0, 0..0], u32::MAX);
                     for setup in job.primitives.batch.tile(tile) {
-                        let draw = job.primitives.facets[setup.facet as usize].draw;
+                        let draw = setup.facet;
                         if window_of != draw {
                             (window, window_of) = (job.window(draw, [x, y]), draw);
                         }
@@ -386,8 +392,7 @@ impl PendingJob {
     }
 
     fn allows(&self, setup: &Setup, x: i32, y: i32) -> bool {
-        let draw = self.primitives.facets[setup.facet as usize].draw;
-        let [x0, y0, x1, y1] = self.draws[draw as usize].1;
+        let [x0, y0, x1, y1] = self.draws[setup.facet as usize].1;
         (x0..x1).contains(&x) && (y0..y1).contains(&y)
     }
 }

@@ -3,7 +3,7 @@
 //! The z-buffer without facets: of equal depths it does not matter whose they are. Coverage and depth are those of
 //! [`super::traverse`] and of [`Setup::depth`]. Triangles that are at most eight pixels wide are walked row by row, others
 //! by the blocks of 8x8 pixels that they touch. A block that is full remembers how far its farthest pixel is, so that what
-//! lies behind is rejected; as the order does not matter either, facets are drawn from near to far.
+//! lies behind is rejected.
 //!
 //! In:   facets set up, in any order. Out: depths.
 //! Cost: linear in the rows of eight pixels that facets touch.
@@ -38,14 +38,10 @@ impl NearestDepths {
     }
 
     /// Draws facets: the larger depth, the nearer one, stays.
-    pub fn draw(&mut self, level: Level, setups: &[&Setup]) {
-        // From near to far, as the bits of a depth from 0 to 1 tell: then most of what is hidden is rejected.
-        let key = |(i, setup): (usize, &&Setup)| u64::from(!setup.z_max.to_bits()) << 32 | i as u64;
-        let mut order: Vec<u64> = setups.iter().enumerate().map(key).collect();
-        order.sort_unstable();
+    pub fn draw<'s>(&mut self, level: Level, setups: impl Iterator<Item = &'s Setup>) {
         dispatch!(level, simd => {
-            for &key in &order {
-                self.facet(simd, setups[key as u32 as usize]);
+            for setup in setups {
+                self.facet(simd, setup);
             }
         });
     }
@@ -127,6 +123,7 @@ impl NearestDepths {
         let (edges, constants) = place.center_edges();
         let extremes = Extremes::new(simd, &edges, &constants.map(|c| [c]), 1);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let zero = I32x8::splat(simd, 0);
         let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
         for top in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
             if seen[top / BLOCK] == 0 {
@@ -147,16 +144,29 @@ impl NearestDepths {
                         lanes::Lanes::max(plane.row(y), old).store_slice(stored);
                     }
                 } else {
-                    let mut e = across;
+                    // The rows in which no edge has all eight pixels on its outer side.
+                    let (mut e, mut most) = (across, zero);
                     for i in 0..3 {
-                        e[i] += constants[i] + edges[i].a * left as i32 + edges[i].b * rows.start as i32;
+                        let Edge { a, b } = edges[i];
+                        let constant = constants[i] + a * left as i32;
+                        e[i] += constant;
+                        most |= lane * b + (constant + b * top as i32 + (a * (BLOCK as i32 - 1)).max(0));
                     }
-                    for y in rows.clone() {
-                        let inside = (e[0] | e[1] | e[2]).simd_ge(I32x8::splat(simd, 0));
+                    let reached = most.simd_ge(zero).to_bitmask() as u32;
+                    if reached == 0 {
+                        continue;
+                    }
+                    let first = rows.start.max(top + reached.trailing_zeros() as usize);
+                    let end = rows.end.min(top + 32 - reached.leading_zeros() as usize);
+                    for i in 0..3 {
+                        e[i] += edges[i].b * first as i32;
+                    }
+                    for y in first..end {
+                        let outside = (e[0] | e[1] | e[2]).simd_lt(zero);
                         let stored = &mut self.depths[y * TILE + left..][..LANES];
                         let old = F32x8::from_slice(simd, stored);
                         let new = lanes::Lanes::max(plane.row(y), old);
-                        lanes::Lanes::select(inside, new, old).store_slice(stored);
+                        lanes::Lanes::select(outside, old, new).store_slice(stored);
                         for i in 0..3 {
                             e[i] += edges[i].b;
                         }
@@ -265,7 +275,7 @@ mod tests {
             }
             for (name, level) in available_levels() {
                 let mut nearest = NearestDepths::new((64, 64));
-                nearest.draw(level, &setups.iter().collect::<Vec<_>>());
+                nearest.draw(level, setups.iter());
                 let far = nearest.far();
                 let depths = nearest.into_depths();
                 assert!(depths == expected, "{name}, {count} facets");

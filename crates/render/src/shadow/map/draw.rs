@@ -78,8 +78,10 @@ impl DepthSink<'_> {
     fn draw(&self, view: &PreparedView<'_>, index: usize, batches: &[(bool, &Batch)], spare: &Mutex<Vec<Tile>>) {
         let place = tile_place(view, index);
         let mut nearest = NearestDepths::new(place);
-        let opaque: Vec<_> = batches.iter().filter(|b| !b.0).flat_map(|(_, batch)| batch.tile(index)).collect();
-        nearest.draw(self.level, &opaque);
+        let opaque = batches.iter().filter(|(layered, _)| !layered);
+        for (_, batch) in opaque {
+            nearest.draw(self.level, batch.tile(index));
+        }
         let far = nearest.far();
         let depths = nearest.into_depths();
         let mut layers = Vec::new();

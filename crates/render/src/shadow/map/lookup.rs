@@ -100,7 +100,8 @@ impl Map {
         let (u, v) = (before.select(u, nowhere), before.select(v, nowhere));
         let (left, top) = ((u + 0.5).floor() - 1.0, (v + 0.5).floor() - 1.0);
 
-        // The plane, by the operations of `Lens::plane`.
+        // The facet's plane: how a step of a texel changes what the normal measures, at distance 1 or at any, and so what
+        // its height is to be divided by; for a parallel light the distance itself.
         let step = [normal[0] * 2.0 * lens.extent[0] / width, -normal[1] * 2.0 * lens.extent[1] / height];
         let corner = normal[1] * lens.extent[1] - normal[0] * lens.extent[0];
         let height = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];

@@ -8,8 +8,8 @@
 
 use fearless_simd::prelude::*;
 pub use fearless_simd::{
-    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, i32x4 as I32x4, i32x8 as I32x8, mask32x8 as Mask8,
-    u16x16 as U16x16, u32x8 as U32x8,
+    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f64x8 as F64x8, i32x4 as I32x4, i32x8 as I32x8,
+    mask32x8 as Mask8, u16x16 as U16x16, u32x8 as U32x8,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 

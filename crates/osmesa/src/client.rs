@@ -222,7 +222,6 @@ fn a_context_goes_with_the_last_thread_that_has_it() {
         window.0.free_buffer();
     });
     known.recv().unwrap();
-    let context = context;
     // SAFETY: destroyed once; the other thread keeps it alive.
     unsafe { OSMesaDestroyContext(context.0.context) };
     destroyed.send(()).unwrap();

@@ -5,7 +5,7 @@
 //! tile's triangles in blocks of 8x8 pixels and hands each block with its coverage masks to a [`BlockSink`], which
 //! decides what a covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
 //! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most eight pixels wide row by row to a
-//! [`RowSink`], wherever the rows begin: of a fine mesh, most are.
+//! [`RowSink`], wherever the rows begin: of a fine mesh, most are. [`NearestDepths`] keeps depths alone, for shadow maps.
 //!
 //! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two triangles that share
 //! an edge cover each sample along it exactly once. Depth is `1` at the near plane and `0` at the far plane; the
@@ -27,6 +27,7 @@ mod tile;
 
 pub use fragments::{Fragment, FragmentSink};
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
+pub use kernel::nearest::NearestDepths;
 pub use kernel::transform::transform;
 pub use kernel::traverse::{
     Block, BlockSink, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,

@@ -31,9 +31,12 @@ const MORE_MODES: [&str; 2] = ["fork", "growth"];
 /// Where the sanitized libraries are for; they need a target by name.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
+/// A tool by its name.
+type Tool = (&'static str, fn() -> Outcome);
+
 /// Runs those of `tools` that are named, or all.
 pub(crate) fn run_all(wanted: &[&str]) -> Outcome {
-    let tools: [(&str, fn() -> Outcome); 4] = [
+    let tools: [Tool; 4] = [
         ("miri", miri),
         ("valgrind", valgrind),
         ("thread", || sanitizer("thread")),
@@ -55,11 +58,11 @@ pub(crate) fn run_all(wanted: &[&str]) -> Outcome {
 
 /// The nightly cargo, with these components.
 fn nightly(components: &[&str]) -> Result<Command, String> {
-    let has = |name: &&str| {
+    let has = |name: &str| {
         let list = output(command("rustup").args(["component", "list", "--toolchain", "nightly", "--installed"]));
         list.is_ok_and(|list| list.lines().any(|line| line.starts_with(name)))
     };
-    if !components.iter().all(|name| has(&name)) {
+    if !components.iter().all(|name| has(name)) {
         println!("installing a nightly toolchain with {}", components.join(" and "));
         let mut install = command("rustup");
         install.args(["toolchain", "install", "nightly", "--profile", "minimal"]);

@@ -180,7 +180,6 @@ pub struct Runner {
 const JOB: usize = 4096;
 
 /// What a tile walks, in order.
-#[expect(clippy::large_enum_variant, reason = "a pass has a few, and nearly all are jobs")]
 pub(crate) enum Item<'a> {
     Clear(&'a Clear),
     Image(&'a ImageFragments, &'a FragmentState, FragmentOps),

@@ -111,7 +111,7 @@ mod tests {
                 let mut depths = Box::new([0.25f32; TILE_PIXELS]);
                 dispatch!(level, simd => {
                     for setup in &setups {
-                        merge_depths(simd, setup, (64, 64), &window, &pattern, &mut depths, |new, old| lanes::Lanes::max(new, old));
+                        merge_depths(simd, setup, (64, 64), &window, &pattern, &mut depths, lanes::Lanes::max);
                     }
                 });
                 assert!(depths[..] == expected[..], "{name} {window:?}");

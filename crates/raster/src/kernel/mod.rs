@@ -2,5 +2,6 @@
 
 #[cfg(any(test, feature = "forward"))]
 pub(crate) mod depths;
+pub(crate) mod nearest;
 pub(crate) mod transform;
 pub(crate) mod traverse;

@@ -72,15 +72,15 @@ pub trait RowSink<S: Simd>: BlockSink<S> {
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
 #[derive(Clone, Copy)]
-struct Edge {
-    a: i32,
-    b: i32,
+pub(crate) struct Edge {
+    pub(crate) a: i32,
+    pub(crate) b: i32,
 }
 
 impl Edge {
     /// The constant of a sample at `(x, y)` in its pixel: `corner` is the edge function's value at the tile's origin.
     #[inline(always)]
-    fn constant(self, corner: i32, [x, y]: [i32; 2]) -> i32 {
+    pub(crate) fn constant(self, corner: i32, [x, y]: [i32; 2]) -> i32 {
         (corner + (self.b * y + self.a * x)) >> 8
     }
 }
@@ -248,7 +248,7 @@ impl Placed {
 
     /// Whether the edge functions fit into 32 bits.
     #[inline(always)]
-    fn is_small(&self) -> bool {
+    pub(crate) fn is_small(&self) -> bool {
         is_small(&self.x, &self.y)
     }
 
@@ -305,9 +305,22 @@ impl Placed {
         }
     }
 
+    /// The edges, and [`Edge::constant`] of the middles of pixels; for triangles of any size.
+    #[inline(always)]
+    pub(crate) fn center_edges(&self) -> ([Edge; 3], [i32; 3]) {
+        let mut edges = [Edge { a: 0, b: 0 }; 3];
+        let mut constants = [0; 3];
+        for i in 0..3 {
+            let constant;
+            (edges[i], constant) = far_edge(&self.x, &self.y, i);
+            constants[i] = constant([SUBPIXEL / 2; 2]);
+        }
+        (edges, constants)
+    }
+
     /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].
     #[inline(always)]
-    fn edges(&self) -> ([Edge; 3], [i32; 3]) {
+    pub(crate) fn edges(&self) -> ([Edge; 3], [i32; 3]) {
         let mut edges = [Edge { a: 0, b: 0 }; 3];
         let mut corners = [0; 3];
         for i in 0..3 {
@@ -439,14 +452,19 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
 }
 
 /// The least and the largest values that the edge functions take on the samples of the eight blocks of a tile's top row.
-struct Extremes<S: Simd> {
+pub(crate) struct Extremes<S: Simd> {
     least: [I32x8<S>; 3],
     largest: [I32x8<S>; 3],
 }
 
 impl<S: Simd> Extremes<S> {
     #[inline(always)]
-    fn new<const MOST: usize>(simd: S, edges: &[Edge; 3], constants: &[[i32; MOST]; 3], samples: usize) -> Self {
+    pub(crate) fn new<const MOST: usize>(
+        simd: S,
+        edges: &[Edge; 3],
+        constants: &[[i32; MOST]; 3],
+        samples: usize,
+    ) -> Self {
         let side = BLOCK as i32 - 1;
         let blocks = I32x8::from_slice(simd, &[0, 8, 16, 24, 32, 40, 48, 56]);
         let zero = I32x8::splat(simd, 0);
@@ -467,7 +485,7 @@ impl<S: Simd> Extremes<S> {
     /// A bit for each block of the row of blocks at pixel row `y`: those that may hold covered samples, and those whose
     /// samples all are.
     #[inline(always)]
-    fn row(&self, simd: S, edges: &[Edge; 3], y: usize) -> [u32; 2] {
+    pub(crate) fn row(&self, simd: S, edges: &[Edge; 3], y: usize) -> [u32; 2] {
         let zero = I32x8::splat(simd, 0);
         let (mut touched, mut full) = (zero, zero);
         for i in 0..3 {

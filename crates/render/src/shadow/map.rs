@@ -23,6 +23,7 @@
 mod cascade;
 mod draw;
 mod lens;
+mod lookup;
 mod slice;
 
 use super::occluders::Occluders;
@@ -32,12 +33,12 @@ use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
 use crate::{ColorSpace, Execution, PreparedView, Session, Settings, Transparency};
 pub(crate) use cascade::Cascades;
-use lens::{Lens, PlaneDepth};
+use lens::Lens;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, LightKind, Rgb};
+use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4};
-use vitral_raster::TILE;
 use vitral_scene::ViewTransform;
 
 /// See the module.
@@ -125,7 +126,7 @@ impl ShadowAlgorithm for MapShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let maps = Maps::of(session, lights, settings, execution)?;
-        Ok(Box::new(Prepared { maps, cascades: None }))
+        Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }))
     }
 
     fn prepare_for<'a>(
@@ -139,7 +140,7 @@ impl ShadowAlgorithm for MapShadows {
         let maps = Maps::of(session, lights, settings, execution)?;
         let (count, size) = (settings.shadow_cascades, settings.shadow_map_size);
         if count < 2 {
-            return Ok(Box::new(Prepared { maps, cascades: None }));
+            return Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }));
         }
         let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
         let cascades = keep_for(&session.shadow_cascades, key, || {
@@ -147,7 +148,7 @@ impl ShadowAlgorithm for MapShadows {
             let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution);
             Cascades::new(&session.world, &view.view, &maps, (count, size), draw)
         })?;
-        Ok(Box::new(Prepared { maps, cascades: Some(cascades) }))
+        Ok(Box::new(Prepared { maps, cascades: Some(cascades), level: execution.level }))
     }
 }
 
@@ -224,88 +225,50 @@ impl LightMaps {
 struct Prepared {
     maps: Arc<Maps>,
     cascades: Option<Arc<Cascades>>,
+    level: Level,
 }
 
 impl Shadows for Prepared {
     fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
-        let maps = &self.maps.0[light];
-        for (place, part) in places.iter().zip(parts) {
-            let ask = |whole: &Map| match &self.cascades {
-                Some(cascades) => cascades.passing(light, place, || whole.passing(place)),
-                None => whole.passing(place),
-            };
-            *part = maps.arriving(place, ask);
-        }
-    }
-}
-
-impl LightMaps {
-    /// The part of light that arrives at a place; `ask` asks the map that sees it.
-    fn arriving(&self, place: &Place, ask: impl Fn(&Map) -> f32) -> Rgb {
-        match self {
-            Self::Unhindered => [1.0; 3],
-            Self::Infinity { towards, .. } if place.normal.dot(*towards) <= 0.0 => [0.0; 3],
-            Self::Infinity { map, .. } => [ask(map); 3],
-            Self::Places(places) => {
-                let mut shares = Shares::default();
-                for (from, maps) in places {
-                    let sees = |m: &&Map| m.lens.sees(place.position);
-                    shares.add(from.weight(place), || [maps.iter().find(sees).map_or(1.0, &ask); 3]);
+        match &self.maps.0[light] {
+            LightMaps::Unhindered => parts.fill([1.0; 3]),
+            LightMaps::Infinity { towards, map } => {
+                let faces = |place: &Place| place.normal.dot(*towards) > 0.0;
+                let questions: Vec<_> = places.iter().filter(|p| faces(p)).map(|p| (0, p)).collect();
+                let mut answers = self.answers(light, &[map], &questions).into_iter();
+                for (place, part) in places.iter().zip(parts) {
+                    let lit = if faces(place) { answers.next().unwrap_or(1.0) } else { 0.0 };
+                    *part = [lit; 3];
                 }
-                shares.part()
+            }
+            LightMaps::Places(emitters) => {
+                let mut shares = vec![Shares::default(); places.len()];
+                for (from, maps) in emitters {
+                    let maps: Vec<_> = maps.iter().collect();
+                    let weights: Vec<_> = places.iter().map(|place| from.weight(place)).collect();
+                    // What no map sees is lit: nothing has this number.
+                    let seeing = |p: &Place| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
+                    let asking = places.iter().zip(&weights).filter(|(_, weight)| **weight > 0.0);
+                    let questions: Vec<_> = asking.map(|(place, _)| (seeing(place), place)).collect();
+                    let mut answers = self.answers(light, &maps, &questions).into_iter();
+                    for (share, &weight) in shares.iter_mut().zip(&weights) {
+                        share.add(weight, || [answers.next().unwrap_or(1.0); 3]);
+                    }
+                }
+                for (part, share) in parts.iter_mut().zip(&shares) {
+                    *part = share.part();
+                }
             }
         }
     }
 }
 
-impl Map {
-    /// The part of light that arrives at a place that faces it.
-    fn passing(&self, place: &Place) -> f32 {
-        let lens = &self.lens;
-        let normal = lens.view_from_world.transform_vector3(place.normal);
-        let point = lens.view_from_world.transform_point3(place.position);
-        let point = point + normal * (LIFT * lens.texel_at(-point.z));
-        let Some([u, v]) = lens.texel_place(point) else { return 1.0 };
-        let beyond = |x: f64, side: u32| !(x > -0.5 && x < f64::from(side) + 0.5);
-        if beyond(u, lens.width) || beyond(v, lens.height) {
-            return 1.0;
-        }
-        // The upper left of the four texels whose middles are nearest: rounded down.
-        let (left, top) = ((u + 0.5) as i64 - 1, (v + 0.5) as i64 - 1);
-        let (right, bottom) = ((u - 0.5 - left as f64) as f32, (v - 0.5 - top as f64) as f32);
-        let (plane, own) = (lens.plane(point, normal), -point.z);
-        let at = |dx: i64, dy: i64| self.passing_at([left + dx, top + dy], &plane, own);
-        // Written so that four equal answers stay what they are.
-        let row = |dy: i64| {
-            let (a, b) = (at(0, dy), at(1, dy));
-            a + (b - a) * right
-        };
-        let (a, b) = (row(0), row(1));
-        a + (b - a) * bottom
-    }
-
-    /// The same, asking one texel, for a place on a plane at a distance of its `own`.
-    #[inline(always)]
-    fn passing_at(&self, [column, row]: [i64; 2], plane: &PlaneDepth, own: f64) -> f32 {
-        let outside = |k: i64, side: u32| k < 0 || k >= i64::from(side);
-        if outside(column, self.lens.width) || outside(row, self.lens.height) {
-            return 1.0;
-        }
-        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-        let (column, row) = (column as usize, row as usize);
-        let tile = &self.tiles[row / TILE * self.columns + column / TILE];
-        let texel = row % TILE * TILE + column % TILE;
-        let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
-        let there = plane.at([x, y]).unwrap_or(own);
-        // The nearer of the two: the plane may go down further than the facet does.
-        let slope = (there - own).abs();
-        let depth = there.min(own) - slope * SLOPE_BIAS - own.abs() * DEPTH_BIAS;
-        if f64::from(nearest) < depth {
-            0.0
-        } else if tile.layers.is_empty() {
-            1.0
-        } else {
-            tile.filtered(texel, depth)
+impl Prepared {
+    /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
+    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
+        match &self.cascades {
+            Some(cascades) => cascades.answers(self.level, light, maps, questions),
+            None => lookup::answers(self.level, maps, questions),
         }
     }
 }

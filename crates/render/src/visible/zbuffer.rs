@@ -143,47 +143,78 @@ pub(crate) fn resolve_in_passing(
     execution: &Execution,
     sink: &dyn TileSink,
 ) -> Result<(), Limit> {
+    let spare: Mutex<Vec<Tile>> = Mutex::default();
+    let tile = |index: usize, batches: &[(bool, &Batch)]| {
+        with_spare(&spare, view.pattern.len(), |tile| {
+            tile.clear();
+            (tile.x, tile.y) = tile_place(view, index);
+            let mut layers = view.layer_list_for(sink);
+            walk(execution.level, batches.iter().copied(), index, tile, &view.pattern, &mut layers);
+            layers.finish();
+            if tile.touched || !layers.is_empty() {
+                sink.tile(index, tile, &mut layers);
+            }
+        });
+    };
+    if each_tile(view, rows, execution, tile)? {
+        return Ok(());
+    }
+    // Tiles must wait for more triangles.
+    let bytes = TileGrid::bytes(view.viewport, view.pattern.len());
+    charged(&execution.budget, bytes, "a z-buffer", || {
+        let mut grid = TileGrid::new(view.viewport, view.pattern.len());
+        ZBuffer.resolve(view, None, &mut grid, execution, sink).map(|_| ())
+    })
+}
+
+/// Calls `tile` with the number of each tile of the top `rows` that triangles touch, and the batches that hold them: whether
+/// they are layers, in order. From any thread. Gives `false` and does nothing where there are too many triangles to be set up
+/// at once.
+pub(crate) fn each_tile(
+    view: &PreparedView<'_>,
+    rows: u32,
+    execution: &Execution,
+    tile: impl Fn(usize, &[(bool, &Batch)]) + Sync + Send,
+) -> Result<bool, Limit> {
     let jobs = jobs(view);
     if rounds(&jobs).len() > 1 {
-        // Tiles must wait for more triangles.
-        let bytes = TileGrid::bytes(view.viewport, view.pattern.len());
-        return charged(&execution.budget, bytes, "a z-buffer", || {
-            let mut grid = TileGrid::new(view.viewport, view.pattern.len());
-            ZBuffer.resolve(view, None, &mut grid, execution, sink).map(|_| ())
-        });
+        return Ok(false);
     }
     execution.budget.check("visibility")?;
     let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
     let batches = set_up(view, &jobs, &vertices, execution);
-    let spare: Mutex<Vec<Tile>> = Mutex::default();
-    let columns = view.viewport.tiles_x();
-    execution.workers.for_each((0..columns * rows.min(view.viewport.tiles_y())).collect(), |number| {
+    let numbers = 0..view.viewport.tiles_x() * rows.min(view.viewport.tiles_y());
+    execution.workers.for_each(numbers.collect(), |number: u32| {
         let index = number as usize;
-        if batches.iter().all(|(_, batch)| batch.tile(index).next().is_none()) {
-            return;
+        let touching = batches.iter().filter(|(_, batch)| batch.tile(index).next().is_some());
+        let touching: Vec<_> = touching.map(|(layered, batch)| (*layered, batch)).collect();
+        if !touching.is_empty() {
+            tile(index, &touching);
         }
-        let used = spare.lock().expect("spare tiles").pop();
-        let mut tile = used.unwrap_or_else(|| {
-            let side = TILE as u32;
-            let one = TileGrid::new(Viewport { width: side, height: side }, view.pattern.len());
-            one.tiles.into_iter().next().expect("one tile")
-        });
-        tile.clear();
-        (tile.x, tile.y) = (number % columns * TILE as u32, number / columns * TILE as u32);
-        let mut layers = view.layer_list_for(sink);
-        let batches = batches.iter().map(|(layered, batch)| (*layered, batch));
-        walk(execution.level, batches, index, &mut tile, &view.pattern, &mut layers);
-        layers.finish();
-        if tile.touched || !layers.is_empty() {
-            sink.tile(index, &tile, &mut layers);
-        }
-        spare.lock().expect("spare tiles").push(tile);
     });
     view.session.spare_batches.lock().expect("spare batches").extend(batches.into_iter().map(|(_, batch)| batch));
     let vertices = vertices.into_iter().filter(|v| v.capacity() > 0);
     view.session.spare_vertices.lock().expect("spare vertices").extend(vertices);
-    Ok(())
+    Ok(true)
+}
+
+/// The first pixel of a tile.
+pub(crate) fn tile_place(view: &PreparedView<'_>, index: usize) -> (u32, u32) {
+    let columns = view.viewport.tiles_x();
+    (index as u32 % columns * TILE as u32, index as u32 / columns * TILE as u32)
+}
+
+/// Lends `f` a tile as someone left it, or an empty one.
+pub(crate) fn with_spare(spare: &Mutex<Vec<Tile>>, samples: usize, f: impl FnOnce(&mut Tile)) {
+    let used = spare.lock().expect("spare tiles").pop();
+    let mut tile = used.unwrap_or_else(|| {
+        let side = TILE as u32;
+        let one = TileGrid::new(Viewport { width: side, height: side }, samples);
+        one.tiles.into_iter().next().expect("one tile")
+    });
+    f(&mut tile);
+    spare.lock().expect("spare tiles").push(tile);
 }
 
 /// Layers of earlier rounds, charged to the budget.
@@ -337,7 +368,7 @@ pub(super) fn set_up(
 }
 
 /// Walks a tile's triangles.
-pub(super) fn walk<'b>(
+pub(crate) fn walk<'b>(
     level: Level,
     batches: impl Iterator<Item = (bool, &'b Batch)> + Clone,
     index: usize,

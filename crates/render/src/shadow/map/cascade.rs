@@ -19,10 +19,11 @@
 //! Source: [Zhang et al. 2006], [Dimitrov 2007]. Departs from them: slices are fitted to objects, not to the frustum.
 
 use super::lens::Lens;
-use super::{LightMaps, Map, Maps, slice};
+use super::{LightMaps, Map, Maps, lookup, slice};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::Place;
 use vitral_exec::Limit;
+use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4, func};
 use vitral_scene::{ViewTransform, World};
 
@@ -73,22 +74,42 @@ impl Cascades {
         Ok(Self { depth, cuts, maps: maps? })
     }
 
-    /// The part of a light that arrives at a place that faces it; `whole` asks the map of the whole scene.
-    pub(super) fn passing(&self, light: usize, place: &Place, whole: impl Fn() -> f32) -> f32 {
-        let depth = self.depth.dot(place.position.extend(1.0));
-        // A little before the first cut is in the first slice, as is what rays find beside the view.
-        let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;
-        let ask = |slice: usize| {
-            let map = self.maps[light].get(slice).and_then(Option::as_ref);
-            map.filter(|m| m.lens.holds(place.position)).map_or_else(&whole, |m| m.passing(place))
-        };
-        let (Some(&start), Some(&end)) = (self.cuts.get(slice), self.cuts.get(slice + 1)) else { return whole() };
-        let fade = (depth - end) / ((end - start) * FADE) + 1.0;
-        let here = ask(slice);
-        if fade <= 0.0 || slice + 2 >= self.cuts.len() {
-            return here;
+    /// What the maps of a light answer to questions, which of those of the whole scene (`maps`) and about which place; sharper
+    /// ones where they hold it.
+    pub(super) fn answers(&self, level: Level, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
+        // The slices' maps are numbered from the end of the others on.
+        let slices = &self.maps[light];
+        let all: Vec<&Map> = maps.iter().copied().chain(slices.iter().flatten()).collect();
+        let number = |slice: usize| maps.len() + slices[..slice].iter().flatten().count();
+        let numbers: Vec<_> = (0..slices.len()).map(number).collect();
+        let mut asked = Vec::with_capacity(questions.len());
+        // How much the next question's answer counts against this one's.
+        let mut fades = Vec::with_capacity(questions.len());
+        for &(whole, place) in questions {
+            let depth = self.depth.dot(place.position.extend(1.0));
+            // A little before the first cut is in the first slice, as is what rays find beside the view.
+            let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;
+            let map = |slice: usize| {
+                let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(place.position));
+                if sharper.is_some() { numbers[slice] } else { whole }
+            };
+            let ends = self.cuts.get(slice).zip(self.cuts.get(slice + 1));
+            let fade = ends.map_or(0.0, |(start, end)| (depth - end) / ((end - start) * FADE) + 1.0);
+            let inside = ends.is_some();
+            asked.push((if inside { map(slice) } else { whole }, place));
+            let fades_out = inside && !(fade <= 0.0 || slice + 2 >= self.cuts.len());
+            if fades_out {
+                asked.push((map(slice + 1), place));
+            }
+            fades.push(fades_out.then_some(fade.min(1.0) as f32));
         }
-        here + (ask(slice + 1) - here) * fade.min(1.0) as f32
+        let mut found = lookup::answers(level, &all, &asked).into_iter();
+        let mut next = || found.next().unwrap_or(1.0);
+        let mut blend = |fade: Option<f32>| {
+            let here = next();
+            fade.map_or(here, |fade| here + (next() - here) * fade)
+        };
+        fades.into_iter().map(&mut blend).collect()
     }
 }
 

@@ -15,8 +15,8 @@ pub(super) struct Lens {
     pub width: u32,
     pub height: u32,
     /// Half the picture's width and height: at distance 1, or at any for a parallel light.
-    extent: [f64; 2],
-    perspective: bool,
+    pub extent: [f64; 2],
+    pub perspective: bool,
 }
 
 /// Wider cones than this (tangent of half the angle) are cut into the faces of a cube.
@@ -137,6 +137,7 @@ impl Lens {
     }
 
     /// Distance along the axis from what the z-buffer holds.
+    #[inline(always)]
     pub(super) fn distance(&self, depth: f32) -> f32 {
         let (near, far, depth) = (self.view.near, self.view.far, f64::from(depth));
         let distance =
@@ -164,8 +165,12 @@ impl Lens {
 
     /// The same at this distance along the axis.
     pub(super) fn texel_at(&self, distance: f64) -> f64 {
-        let side = 2.0 * self.extent[0] / f64::from(self.width);
-        if self.perspective { side * distance.abs() } else { side }
+        if self.perspective { self.side() * distance.abs() } else { self.side() }
+    }
+
+    /// Side of a texel at distance 1, or at any for a parallel light.
+    pub(super) fn side(&self) -> f64 {
+        2.0 * self.extent[0] / f64::from(self.width)
     }
 
     /// Where a point of view space is on the map, in texels.
@@ -182,44 +187,6 @@ impl Lens {
         let y = (1.0 - y / f64::from(self.height) * 2.0) * self.extent[1];
         let scale = if self.perspective { distance } else { 1.0 };
         DVec3::new(x * scale, y * scale, -distance)
-    }
-
-    /// The plane through `point` with this normal, view space.
-    pub(super) fn plane(&self, point: DVec3, normal: DVec3) -> PlaneDepth {
-        // How a step of a texel on the map changes what the normal measures, at distance 1 or at any.
-        let step = [
-            normal.x * 2.0 * self.extent[0] / f64::from(self.width),
-            -normal.y * 2.0 * self.extent[1] / f64::from(self.height),
-        ];
-        let corner = normal.y * self.extent[1] - normal.x * self.extent[0];
-        let height = normal.dot(point);
-        if self.perspective {
-            PlaneDepth { start: corner - normal.z, step, height: Some(height) }
-        } else {
-            let scale = 1.0 / normal.z;
-            PlaneDepth { start: (corner - height) * scale, step: step.map(|s| s * scale), height: None }
-        }
-    }
-}
-
-/// How far away a plane is along the ray of each place on a map.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PlaneDepth {
-    /// In the upper left corner of the map, and its change from texel to texel: the distance itself for a parallel light, else
-    /// what the plane's height is to be divided by.
-    start: f64,
-    step: [f64; 2],
-    height: Option<f64>,
-}
-
-impl PlaneDepth {
-    /// The distance at a place on the map, in texels; `None` where the ray does not meet the plane.
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<f64> {
-        let value = self.start + self.step[0] * x + self.step[1] * y;
-        match self.height {
-            None => value.is_finite().then_some(value),
-            Some(height) => Some(height / value).filter(|d| d.is_finite() && *d > 0.0),
-        }
     }
 }
 

@@ -1,0 +1,199 @@
+//! Questions to one map, eight at a time.
+//!
+//! Where a place is on the map and how deep its facet's plane is in the four texels round it is found for eight places at
+//! once; each then looks at its texels.
+//!
+//! In:   places that face the light. Out: the part of the light that passes to each of them.
+//! Cost: a constant number of operations a place.
+
+use super::{DEPTH_BIAS, LIFT, Map, SLOPE_BIAS};
+use crate::shadow::Place;
+use vitral_math::DMat4;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F64x8, LANES, Level, Simd, dispatch};
+use vitral_raster::TILE;
+
+/// Where eight places are on a map, and how deep.
+struct Eight {
+    /// In texels; not a number where the map does not tell.
+    at: [[f64; LANES]; 2],
+    /// The upper left of the four texels whose middles are nearest.
+    first: [[f64; LANES]; 2],
+    /// Depths of the places' planes in the four texels, row by row, less what they may be wrong by.
+    depths: [[f64; LANES]; 4],
+}
+
+/// What maps answer to questions: the number of a map, and the place that is asked about, which faces its light.
+pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
+    let mut parts = vec![1.0; questions.len()];
+    let mut own = Vec::with_capacity(questions.len());
+    for (number, map) in maps.iter().enumerate() {
+        own.clear();
+        own.extend((0..questions.len()).filter(|&q| questions[q].0 == number));
+        for asked in own.chunks(LANES) {
+            // The last are asked again to fill up.
+            let places = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)]].1);
+            let found = dispatch!(level, simd => map.passing(simd, &places));
+            for (&question, part) in asked.iter().zip(found) {
+                parts[question] = part;
+            }
+        }
+    }
+    parts
+}
+
+impl Map {
+    /// The part of light that arrives at each of eight places that face it.
+    #[inline(always)]
+    fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [f32; LANES] {
+        let eight = self.locate(simd, places);
+        let mut parts = [1.0; LANES];
+        for lane in 0..LANES {
+            let [u, v] = [eight.at[0][lane], eight.at[1][lane]];
+            let near = |x: f64, side: u32| x > -0.5 && x < f64::from(side) + 0.5;
+            if near(u, self.lens.width) && near(v, self.lens.height) {
+                let first = [eight.first[0][lane], eight.first[1][lane]];
+                let depths =
+                    [eight.depths[0][lane], eight.depths[1][lane], eight.depths[2][lane], eight.depths[3][lane]];
+                parts[lane] = self.filtered([u, v], first, depths);
+            }
+        }
+        parts
+    }
+
+    #[inline(always)]
+    fn locate<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> Eight {
+        let lens = &self.lens;
+        let splat = lanes::inlined(
+            #[inline(always)]
+            |x: f64| F64x8::splat(simd, x),
+        );
+        let (zero, infinity) = (splat(0.0), splat(f64::INFINITY));
+        let mut inputs = [[0.0; LANES]; 6];
+        for (lane, place) in places.iter().enumerate() {
+            let (p, n) = (place.position, place.normal);
+            for (input, value) in inputs.iter_mut().zip([p.x, p.y, p.z, n.x, n.y, n.z]) {
+                input[lane] = value;
+            }
+        }
+        let load = lanes::inlined(
+            #[inline(always)]
+            |k: usize| F64x8::from_slice(simd, &inputs[k]),
+        );
+        let matrix = &lens.view_from_world;
+        let normal = rotated(matrix, [load(3), load(4), load(5)]);
+        let [px, py, pz] = rotated(matrix, [load(0), load(1), load(2)]);
+        let (px, py, pz) = (px + matrix.w_axis.x, py + matrix.w_axis.y, pz + matrix.w_axis.z);
+
+        // Lifted along the normal.
+        let lift = lens.side();
+        let lift = if lens.perspective { pz.abs() * lift * LIFT } else { splat(lift * LIFT) };
+        let point = [px + normal[0] * lift, py + normal[1] * lift, pz + normal[2] * lift];
+        let own = -point[2];
+
+        let distance = if lens.perspective { own } else { splat(1.0) };
+        let (width, height) = (f64::from(lens.width), f64::from(lens.height));
+        let before = distance.simd_gt(zero);
+        let nowhere = splat(f64::NAN);
+        let u = (point[0] / (distance * lens.extent[0]) + 1.0) * 0.5 * width;
+        let v = (splat(1.0) - point[1] / (distance * lens.extent[1])) * 0.5 * height;
+        let (u, v) = (before.select(u, nowhere), before.select(v, nowhere));
+        let (left, top) = ((u + 0.5).floor() - 1.0, (v + 0.5).floor() - 1.0);
+
+        // The facet's plane: how a step of a texel changes what the normal measures, at distance 1 or at any, and so what
+        // its height is to be divided by; for a parallel light the distance itself.
+        let step = [normal[0] * 2.0 * lens.extent[0] / width, -normal[1] * 2.0 * lens.extent[1] / height];
+        let corner = normal[1] * lens.extent[1] - normal[0] * lens.extent[0];
+        let height = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
+        let scale = splat(1.0) / normal[2];
+        let (start, step) = if lens.perspective {
+            (corner - normal[2], step)
+        } else {
+            ((corner - height) * scale, [step[0] * scale, step[1] * scale])
+        };
+        let deep = own.abs() * DEPTH_BIAS;
+        let mut depths = [[0.0; LANES]; 4];
+        for (k, stored) in depths.iter_mut().enumerate() {
+            let (x, y) = (left + (k % 2) as f64 + 0.5, top + (k / 2) as f64 + 0.5);
+            let value = start + step[0] * x + step[1] * y;
+            let there = if lens.perspective {
+                let there = height / value;
+                (there.simd_gt(zero) & there.simd_lt(infinity)).select(there, own)
+            } else {
+                value.abs().simd_lt(infinity).select(value, own)
+            };
+            // The nearer of the two: the plane may go down further than the facet does.
+            let slope = (there - own).abs();
+            let nearer = there.simd_lt(own).select(there, own);
+            (nearer - slope * SLOPE_BIAS - deep).store_slice(stored);
+        }
+        let store = lanes::inlined(
+            #[inline(always)]
+            |value: F64x8<S>| {
+                let mut stored = [0.0; LANES];
+                value.store_slice(&mut stored);
+                stored
+            },
+        );
+        Eight { at: [store(u), store(v)], first: [store(left), store(top)], depths }
+    }
+
+    /// The answers of four texels, blended.
+    #[inline(always)]
+    fn filtered(&self, [u, v]: [f64; 2], [left, top]: [f64; 2], depths: [f64; 4]) -> f32 {
+        let (right, bottom) = ((u - 0.5 - left) as f32, (v - 0.5 - top) as f32);
+        let (left, top) = (left as i32, top as i32);
+        let [a, b, c, d] = self.four(left, top, depths);
+        // Written so that four equal answers stay what they are.
+        let (above, below) = (a + (b - a) * right, c + (d - c) * right);
+        above + (below - above) * bottom
+    }
+
+    #[inline(always)]
+    fn four(&self, left: i32, top: i32, depths: [f64; 4]) -> [f32; 4] {
+        let (x, y) = (left as usize % TILE, top as usize % TILE);
+        let inside = left >= 0 && top >= 0 && left + 1 < self.lens.width as i32 && top + 1 < self.lens.height as i32;
+        if inside && x + 1 < TILE && y + 1 < TILE {
+            let tile = &self.tiles[top as usize / TILE * self.columns + left as usize / TILE];
+            if tile.layers.is_empty() {
+                let Some(texels) = tile.depth.get(y * TILE + x..y * TILE + x + TILE + 2) else { return [1.0; 4] };
+                let lit = |texel: usize, k: usize| if f64::from(texels[texel]) < depths[k] { 0.0 } else { 1.0 };
+                return [lit(0, 0), lit(1, 1), lit(TILE, 2), lit(TILE + 1, 3)];
+            }
+        }
+        self.four_apart(left, top, depths)
+    }
+
+    /// The same across tiles, at the map's border and behind transparent things.
+    #[inline(never)]
+    fn four_apart(&self, left: i32, top: i32, depths: [f64; 4]) -> [f32; 4] {
+        let at = |dx: i32, dy: i32| self.passing_at([left + dx, top + dy], depths[(2 * dy + dx) as usize]);
+        [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
+    }
+
+    /// What passes one texel to this depth.
+    fn passing_at(&self, [column, row]: [i32; 2], depth: f64) -> f32 {
+        let outside = |k: i32, side: u32| k < 0 || k >= side as i32;
+        if outside(column, self.lens.width) || outside(row, self.lens.height) {
+            return 1.0;
+        }
+        let (column, row) = (column as usize, row as usize);
+        let tile = &self.tiles[row / TILE * self.columns + column / TILE];
+        let texel = row % TILE * TILE + column % TILE;
+        let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
+        if f64::from(nearest) < depth {
+            0.0
+        } else if tile.layers.is_empty() {
+            1.0
+        } else {
+            tile.filtered(texel, depth)
+        }
+    }
+}
+
+/// Eight directions in another space, by the operations of [`DMat4::transform_vector3`].
+#[inline(always)]
+fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
+    let (a, b, c) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
+    [z * c.x + (y * b.x + x * a.x), z * c.y + (y * b.y + x * a.y), z * c.z + (y * b.z + x * a.z)]
+}

@@ -23,6 +23,8 @@ mod layers;
 mod samples;
 mod setup;
 mod sink;
+#[cfg(test)]
+mod testing;
 mod tile;
 
 pub use fragments::{Fragment, FragmentSink};

@@ -345,40 +345,13 @@ impl<S: Simd> BlockSink<S> for LayerSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CornerPosition, TileGrid, Viewport, traverse, traverse_by_rows};
+    use crate::testing::triangles;
+    use crate::{TileGrid, Viewport, traverse, traverse_by_rows};
     use vitral_math::lanes::{Level, dispatch};
-
-    /// Numbers without pattern, from a linear congruence.
-    fn random(state: &mut u32, below: i32) -> i32 {
-        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        ((u64::from(*state) * below as u64) >> 32) as i32
-    }
-
-    /// Triangles of all sizes and shapes all over a tile, across its borders, too.
-    fn triangles() -> Vec<Setup> {
-        let mut state = 7;
-        let mut setups = Vec::new();
-        for facet in 0..4000 {
-            let size = [300, 900, 2500, 4000, 40_000][facet as usize % 5];
-            let middle = [0, 1].map(|_| random(&mut state, 66 * SUBPIXEL) - SUBPIXEL);
-            let mut corner = || CornerPosition {
-                x: middle[0] + random(&mut state, size) - size / 2,
-                // Half of them lie flat.
-                y: middle[1] + random(&mut state, if facet % 2 == 0 { size } else { 200 }) - 100,
-                z: random(&mut state, 1000) as f32 / 1000.0,
-            };
-            let corners = [corner(), corner(), corner()];
-            let area = Setup::doubled_area(corners[0], corners[1], corners[2]);
-            if area != 0 {
-                setups.push(Setup::new(corners, area, facet));
-            }
-        }
-        setups
-    }
 
     #[test]
     fn rows_blocks_and_single_samples_agree() {
-        let setups = triangles();
+        let setups = triangles(4000, 0);
         for samples in [1, 4, 3] {
             let pattern = SamplePattern::new(samples);
             let empty = || TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
@@ -414,7 +387,7 @@ mod tests {
     fn rows_and_blocks_give_each_layer_once() {
         let pattern = SamplePattern::new(4);
         let tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
-        for setup in triangles() {
+        for setup in triangles(4000, 0) {
             let mut found = [LayerList::default(), LayerList::default()];
             let [rows, blocks] = &mut found;
             dispatch!(Level::new(), simd => {

@@ -326,6 +326,7 @@ impl PendingDepth {
             #[inline(always)]
             || {
                 let ([x, y], one, scale) = (self.origin(tile), pattern(1), self.scale);
+                let larger = self.sign > 0.0;
                 for &job in &self.touching[self.tiles[tile].jobs.clone()] {
                     let job = &self.jobs[job as usize];
                     let (mut window, mut window_of) = ([0..0, 0..0], u32::MAX);
@@ -334,29 +335,19 @@ impl PendingDepth {
                         if window_of != draw {
                             (window, window_of) = (job.window(draw, [x, y]), draw);
                         }
-                        if self.sign > 0.0 {
-                            merge_depths(
-                                simd,
-                                setup,
-                                (x, y),
-                                &window,
-                                &one,
-                                depths,
-                                #[inline(always)]
-                                |new, old| max(stored_depth(simd, new, scale), old),
-                            );
-                        } else {
-                            merge_depths(
-                                simd,
-                                setup,
-                                (x, y),
-                                &window,
-                                &one,
-                                depths,
-                                #[inline(always)]
-                                |new, old| min(stored_depth(simd, new, scale), old),
-                            );
-                        }
+                        merge_depths(
+                            simd,
+                            setup,
+                            (x, y),
+                            &window,
+                            &one,
+                            depths,
+                            #[inline(always)]
+                            |new, old| {
+                                let new = stored_depth(simd, new, scale);
+                                if larger { max(new, old) } else { min(new, old) }
+                            },
+                        );
                     }
                 }
             },

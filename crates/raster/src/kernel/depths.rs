@@ -70,32 +70,13 @@ fn columns<S: Simd>(simd: S, lane: I32x8<S>, x: usize, range: &std::ops::Range<u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CornerPosition;
+    use crate::testing::triangles;
     use vitral_math::lanes::{available_levels, dispatch};
 
     #[test]
     fn depths_are_those_of_single_samples() {
         let pattern = SamplePattern::new(1);
-        let mut state = 3u32;
-        let mut random = |below: i32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            ((u64::from(state) * below as u64) >> 32) as i32
-        };
-        let mut setups = Vec::new();
-        for facet in 0..600 {
-            let size = [300, 2000, 9000, 60_000][facet as usize % 4];
-            let middle = [0, 1].map(|_| random(66 * SUBPIXEL) + 63 * SUBPIXEL);
-            let mut corner = || CornerPosition {
-                x: middle[0] + random(size) - size / 2,
-                y: middle[1] + random(size) - size / 2,
-                z: random(1000) as f32 / 1000.0,
-            };
-            let corners = [corner(), corner(), corner()];
-            let area = Setup::doubled_area(corners[0], corners[1], corners[2]);
-            if area != 0 {
-                setups.push(Setup::new(corners, area, facet));
-            }
-        }
+        let setups = triangles(600, 64);
         for window in [[0..TILE, 0..TILE], [5..50, 17..61]] {
             let mut expected = vec![0.25f32; TILE_PIXELS];
             for setup in &setups {

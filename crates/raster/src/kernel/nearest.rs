@@ -233,37 +233,12 @@ impl<S: Simd> Plane<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CornerPosition;
+    use crate::testing::triangles;
     use vitral_math::lanes::available_levels;
-
-    /// Facets of all sizes in a tile and across its borders, so many that blocks get full.
-    fn facets() -> Vec<Setup> {
-        let mut state = 11u32;
-        let mut random = |below: i32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            ((u64::from(state) * below as u64) >> 32) as i32
-        };
-        let mut setups = Vec::new();
-        for facet in 0..3000 {
-            let size = [300, 900, 2000, 9000, 60_000][facet as usize % 5];
-            let middle = [0, 1].map(|_| random(66 * SUBPIXEL) + 63 * SUBPIXEL);
-            let mut corner = || CornerPosition {
-                x: middle[0] + random(size) - size / 2,
-                y: middle[1] + random(size) - size / 2,
-                z: random(1000) as f32 / 1000.0,
-            };
-            let corners = [corner(), corner(), corner()];
-            let area = Setup::doubled_area(corners[0], corners[1], corners[2]);
-            if area != 0 {
-                setups.push(Setup::new(corners, area, facet));
-            }
-        }
-        setups
-    }
 
     #[test]
     fn nearest_depths_are_those_of_single_samples() {
-        let setups = facets();
+        let setups = triangles(3000, 64);
         for count in [40, setups.len()] {
             let setups = &setups[..count];
             let mut expected = vec![f32::NEG_INFINITY; TILE_PIXELS];

@@ -134,22 +134,23 @@ impl Interpolation {
         }
     }
 
-    /// For facets whose corners lie so near each other that single precision will do.
+    /// For facets whose corners lie so near each other that twice the area is a number of 32 bits. Planes are rounded but once:
+    /// what programs lay on a grid of pixels shall stay there.
     #[inline(always)]
     fn near(&mut self, setup: &Setup, inverse_w: [f32; 3]) {
         let (dx1, dy1) = (setup.x[1] - setup.x[0], setup.y[1] - setup.y[0]);
         let (dx2, dy2) = (setup.x[2] - setup.x[0], setup.y[2] - setup.y[0]);
         // Differences are in 1/256 pixel: one factor of 256 remains.
-        let inverse = SUBPIXEL as f32 / (dx1 * dy2 - dx2 * dy1) as f32;
-        let (a, b) = ([dy2 as f32 * inverse, -dx2 as f32 * inverse], [-dy1 as f32 * inverse, dx1 as f32 * inverse]);
+        let inverse = f64::from(SUBPIXEL) / f64::from(dx1 * dy2 - dx2 * dy1);
+        let (a, b) = ([dy2, -dx2], [-dy1, dx1]);
+        let (a, b) = (a.map(|v| f64::from(v) * inverse), b.map(|v| f64::from(v) * inverse));
         let flat = inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2];
-        let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w };
-        // The differences of the weights' sum are those of 1 / w, and as exact.
+        let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w.map(f64::from) };
         let (d1, d2) = (w1 - w0, w2 - w0);
         self.origin = [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32);
-        self.first = [0.0, a[0] * w1, a[1] * w1];
-        self.second = [0.0, b[0] * w2, b[1] * w2];
-        self.sum = [w0, a[0] * d1 + b[0] * d2, a[1] * d1 + b[1] * d2];
+        self.first = [0.0, (a[0] * w1) as f32, (a[1] * w1) as f32];
+        self.second = [0.0, (b[0] * w2) as f32, (b[1] * w2) as f32];
+        self.sum = [w0 as f32, (a[0] * d1 + b[0] * d2) as f32, (a[1] * d1 + b[1] * d2) as f32];
         self.flat_w = flat.then_some(1.0 / inverse_w[0]);
     }
 

@@ -4,8 +4,8 @@
 //! of a pixel are put together: of a mesh finer than a few pixels, that is a fourth of the entries.
 
 use crate::samples::MOST_SAMPLES;
-use crate::sink::{Row, corner, cover_by_rows, hides_box, is_nearer};
-use crate::{Block, BlockSink, LayerList, RowSink, SamplePattern, Setup, TILE, Tile};
+use crate::sink::{Met, Row, corner};
+use crate::{LayerList, RowSink, SamplePattern, Setup, TILE, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
 
@@ -97,14 +97,14 @@ impl<'a> FragmentSink<'a> {
 
 impl<S: Simd> RowSink<S> for FragmentSink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
-        hides_box(self.tile, setup, low, high)
+    fn hiding(&self) -> Option<&Tile> {
+        Some(self.tile)
     }
 
     #[inline(always)]
     fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
         let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
-        let seen = (is_nearer(simd, self.tile, U32x8::splat(simd, setup.facet), &row) & covered).to_bitmask() as u8;
+        let seen = Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins.to_bitmask() as u8;
         let [x, y] = at;
         self.seen[y][sample] = seen;
         row.z.store_slice(&mut self.depths[y][sample]);
@@ -124,17 +124,5 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
             4 => self.flush::<S, 4>(simd),
             _ => self.flush::<S, MOST_SAMPLES>(simd),
         }
-    }
-}
-
-impl<S: Simd> BlockSink<S> for FragmentSink<'_> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        setup.z_max < self.tile.block_far[block.index()]
-    }
-
-    #[inline(always)]
-    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        cover_by_rows(simd, setup, block, masks, self);
     }
 }

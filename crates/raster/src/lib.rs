@@ -4,8 +4,9 @@
 //! [`Setup`]s (integer edge functions, a depth plane) and sorts them into the tiles they touch; [`traverse`] walks a
 //! tile's triangles in blocks of 8x8 pixels and hands each block with its coverage masks to a [`BlockSink`], which
 //! decides what a covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
-//! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most eight pixels wide row by row to a
-//! [`RowSink`], wherever the rows begin: of a fine mesh, most are. [`NearestDepths`] keeps depths alone, for shadow maps.
+//! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most
+//! eight pixels wide row by row to a [`RowSink`], wherever the rows begin: of a fine mesh, most are. [`NearestDepths`]
+//! keeps depths alone, for shadow maps.
 //!
 //! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two triangles that share
 //! an edge cover each sample along it exactly once. Depth is `1` at the near plane and `0` at the far plane; the
@@ -32,7 +33,7 @@ pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::transform::transform;
 pub use kernel::traverse::{
-    Block, BlockSink, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,
+    Block, BlockSink, InBlocks, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,
 };
 pub use layers::LayerList;
 pub use samples::SamplePattern;

@@ -1,6 +1,6 @@
 //! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
-use crate::kernel::traverse::{Block, BlockSink, RowSink};
+use crate::kernel::traverse::{Block, RowSink};
 use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
@@ -43,54 +43,39 @@ impl<S: Simd> Row<S> {
     }
 }
 
-/// [`BlockSink::cover`] for a sink that takes rows: hands it the rows in which `masks`, one a sample, have something.
-#[inline(always)]
-pub(crate) fn cover_by_rows<S: Simd>(simd: S, setup: &Setup, block: &Block, masks: &[u64], sink: &mut impl RowSink<S>) {
-    for (s, &mask) in masks.iter().enumerate() {
-        for row in block.rows.clone() {
-            let covered = (mask >> (8 * row)) & 0xff;
-            if covered != 0 {
-                sink.cover_row(simd, setup, s, [block.x, block.y + row], Mask8::from_bitmask(simd, covered));
-            }
-        }
-    }
-    sink.end(simd, [block.x, block.y]);
-}
-
 /// The tile's first pixel.
 pub(crate) fn corner(tile: &Tile) -> [usize; 2] {
     [tile.x as usize, tile.y as usize]
 }
 
 /// What a facet met at eight samples.
-struct Met<S: Simd> {
+pub(crate) struct Met<S: Simd> {
     /// The facet is nearer than what was there; of equally near ones it is the lower.
     nearer: Mask8<S>,
-    /// It is nearer and covers: it was kept.
-    wins: Mask8<S>,
+    /// It is nearer and covers.
+    pub(crate) wins: Mask8<S>,
     old_z: F32x8<S>,
     old_facet: U32x8<S>,
 }
 
-/// Where `facet` is nearer than what the tile holds at the samples of `row`, or as near and the lower.
-#[inline(always)]
-pub(crate) fn is_nearer<S: Simd>(simd: S, tile: &Tile, facet: U32x8<S>, row: &Row<S>) -> Mask8<S> {
-    let old_z = F32x8::from_slice(simd, &tile.depth[row.at..row.at + BLOCK]);
-    let old_facet = U32x8::from_slice(simd, &tile.facet[row.at..row.at + BLOCK]);
-    row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet))
+impl<S: Simd> Met<S> {
+    /// At the samples of `row`.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, tile: &Tile, facet: U32x8<S>, row: &Row<S>) -> Self {
+        let old_z = F32x8::from_slice(simd, &tile.depth[row.at..row.at + BLOCK]);
+        let old_facet = U32x8::from_slice(simd, &tile.facet[row.at..row.at + BLOCK]);
+        let nearer = row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet));
+        Self { nearer, wins: nearer & row.covered, old_z, old_facet }
+    }
 }
 
 /// Keeps the nearer facet at the samples of `row`.
 #[inline(always)]
 fn keep_nearer<S: Simd>(simd: S, tile: &mut Tile, facet: U32x8<S>, row: &Row<S>) -> Met<S> {
-    let depths = &mut tile.depth[row.at..row.at + BLOCK];
-    let facets = &mut tile.facet[row.at..row.at + BLOCK];
-    let (old_z, old_facet) = (F32x8::from_slice(simd, depths), U32x8::from_slice(simd, facets));
-    let nearer = row.z.simd_gt(old_z) | (row.z.simd_eq(old_z) & facet.simd_lt(old_facet));
-    let wins = nearer & row.covered;
-    wins.select(row.z, old_z).store_slice(depths);
-    wins.select(facet, old_facet).store_slice(facets);
-    Met { nearer, wins, old_z, old_facet }
+    let met = Met::new(simd, tile, facet, row);
+    met.wins.select(row.z, met.old_z).store_slice(&mut tile.depth[row.at..row.at + BLOCK]);
+    met.wins.select(facet, met.old_facet).store_slice(&mut tile.facet[row.at..row.at + BLOCK]);
+    met
 }
 
 /// The z-buffer: each sample keeps the nearest facet, of equally near ones the lowest.
@@ -137,25 +122,6 @@ fn note_writes<S: Simd>(simd: S, tile: &mut Tile, samples: usize, block: &Block,
     tile.block_far[index] = far.to_array().into_iter().fold(f32::INFINITY, f32::min);
 }
 
-impl<S: Simd> BlockSink<S> for VisibilitySink<'_> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        setup.z_max < self.tile.block_far[block.index()]
-    }
-
-    #[inline(always)]
-    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        cover_by_rows(simd, setup, block, masks, self);
-    }
-}
-
-/// Whether the blocks of a box of at most 8x8 pixels hold nothing but what is nearer than `setup`.
-#[inline(always)]
-pub(crate) fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
-    let far = |x: usize, y: usize| tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK];
-    setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
-}
-
 /// The block for which a triangle walked by rows counts, though its rows may reach into others: when far depths are
 /// computed anew does not matter to pictures.
 fn block_of([x, y]: [usize; 2]) -> Block {
@@ -164,8 +130,8 @@ fn block_of([x, y]: [usize; 2]) -> Block {
 
 impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
-        hides_box(self.tile, setup, low, high)
+    fn hiding(&self) -> Option<&Tile> {
+        Some(self.tile)
     }
 
     #[inline(always)]
@@ -245,22 +211,10 @@ impl<const FRONT_FIRST: bool> PrioritySink<'_, FRONT_FIRST> {
     }
 }
 
-impl<S: Simd, const FRONT_FIRST: bool> BlockSink<S> for PrioritySink<'_, FRONT_FIRST> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        FRONT_FIRST && setup.z_max < self.tile.block_far[block.index()]
-    }
-
-    #[inline(always)]
-    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        cover_by_rows(simd, setup, block, masks, self);
-    }
-}
-
 impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIRST> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
-        FRONT_FIRST && hides_box(self.tile, setup, low, high)
+    fn hiding(&self) -> Option<&Tile> {
+        FRONT_FIRST.then_some(&*self.tile)
     }
 
     #[inline(always)]
@@ -319,8 +273,8 @@ impl LayerSink<'_> {
 
 impl<S: Simd> RowSink<S> for LayerSink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
-        hides_box(self.tile, setup, low, high)
+    fn hiding(&self) -> Option<&Tile> {
+        Some(self.tile)
     }
 
     #[inline(always)]
@@ -330,23 +284,11 @@ impl<S: Simd> RowSink<S> for LayerSink<'_> {
     }
 }
 
-impl<S: Simd> BlockSink<S> for LayerSink<'_> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        setup.z_max < self.tile.block_far[block.index()]
-    }
-
-    #[inline(always)]
-    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        cover_by_rows(simd, setup, block, masks, self);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::testing::triangles;
-    use crate::{TileGrid, Viewport, traverse, traverse_by_rows};
+    use crate::{InBlocks, TileGrid, Viewport, traverse, traverse_by_rows};
     use vitral_math::lanes::{Level, dispatch};
 
     #[test]
@@ -360,7 +302,7 @@ mod tests {
                 let mut by_rows = VisibilitySink::new(&mut rows, &pattern);
                 setups.iter().for_each(|s| traverse_by_rows(simd, s, (0, 0), &pattern, &mut by_rows));
                 let mut by_blocks = VisibilitySink::new(&mut blocks, &pattern);
-                setups.iter().for_each(|s| traverse(simd, s, (0, 0), &pattern, &mut by_blocks));
+                setups.iter().for_each(|s| traverse(simd, s, (0, 0), &pattern, &mut InBlocks(&mut by_blocks)));
             });
             for setup in &setups {
                 for at in 0..samples * TILE_PIXELS {
@@ -392,7 +334,8 @@ mod tests {
             let [rows, blocks] = &mut found;
             dispatch!(Level::new(), simd => {
                 traverse_by_rows(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, rows));
-                traverse(simd, &setup, (0, 0), &pattern, &mut LayerSink::new(&tile, &pattern, blocks));
+                let mut by_blocks = LayerSink::new(&tile, &pattern, blocks);
+                traverse(simd, &setup, (0, 0), &pattern, &mut InBlocks(&mut by_blocks));
             });
             let [rows, blocks] = found.map(|list| {
                 let mut places: Vec<_> = list.iter().map(|l| (l.at, l.depth.to_bits())).collect();

@@ -11,19 +11,18 @@
 //! Cost: a lookup is linear in the triangles of a tile of few, eight a step; constant in others.
 
 use super::assemble::Primitives;
-use super::fragment::{stored, stored_depth};
-use super::pass::{Pass, pattern};
+use super::fragment::stored;
+use super::pass::Pass;
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
-use super::wide::{max, min};
-use crate::kernel::depths::merge_depths;
-use crate::kernel::traverse::{Window, center_edges};
+use crate::kernel::nearest::NearestDepths;
+use crate::kernel::traverse::{Edge, Window, center_edges};
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd};
 
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
@@ -316,42 +315,22 @@ impl PendingDepth {
     /// The depths of a tile with everything drawn, as stored.
     #[inline(never)]
     fn draw(&self, tile: usize) -> Box<[f32; TILE_PIXELS]> {
-        let mut depths = Box::new([self.clear; TILE_PIXELS]);
-        dispatch!(Level::new(), simd => self.draw_into(simd, tile, &mut depths));
-        depths
-    }
-
-    fn draw_into<S: Simd>(&self, simd: S, tile: usize, depths: &mut [f32; TILE_PIXELS]) {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let ([x, y], one, scale) = (self.origin(tile), pattern(1), self.scale);
-                let larger = self.sign > 0.0;
-                for &job in &self.touching[self.tiles[tile].jobs.clone()] {
-                    let job = &self.jobs[job as usize];
-                    let (mut window, mut window_of) = ([0..0, 0..0], u32::MAX);
-                    for setup in job.primitives.batch.tile(tile) {
-                        let draw = setup.facet;
-                        if window_of != draw {
-                            (window, window_of) = (job.window(draw, [x, y]), draw);
-                        }
-                        merge_depths(
-                            simd,
-                            setup,
-                            (x, y),
-                            &window,
-                            &one,
-                            depths,
-                            #[inline(always)]
-                            |new, old| {
-                                let new = stored_depth(simd, new, scale);
-                                if larger { max(new, old) } else { min(new, old) }
-                            },
-                        );
-                    }
-                }
-            },
-        );
+        let ([x, y], level) = (self.origin(tile), Level::new());
+        let mut nearest = NearestDepths::with_sign((x, y), self.sign);
+        for &job in &self.touching[self.tiles[tile].jobs.clone()] {
+            let job = &self.jobs[job as usize];
+            nearest.draw_within(level, job.primitives.batch.tile(tile).map(|s| (s, job.window(s.facet, [x, y]))));
+        }
+        let depths = nearest.into_depths();
+        // Rounding keeps the order of depths: the nearest is the nearest as stored.
+        let mut drawn = Box::new([self.clear; TILE_PIXELS]);
+        for (drawn, depth) in drawn.iter_mut().zip(depths).filter(|(_, depth)| depth.is_finite()) {
+            let depth = stored(depth * self.sign, self.scale);
+            if (depth - *drawn) * self.sign > 0.0 {
+                *drawn = depth;
+            }
+        }
+        drawn
     }
 
     /// Which depth stays: 1 the larger, -1 the smaller.
@@ -409,8 +388,10 @@ fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; RO
     } else {
         row[0] = f32::MAX;
     }
-    for (edge, row) in center_edges(setup, origin).iter().zip(row[4..].chunks_exact_mut(3)) {
-        let [a, b, c] = edge.map(|v| v as f32);
+    let corner = |v: [i32; 3], k: usize| v.map(|v| v - origin[k] * SUBPIXEL);
+    let (edges, constants) = center_edges(&corner(setup.x, 0), &corner(setup.y, 1));
+    for ((Edge { a, b }, c), row) in edges.into_iter().zip(constants).zip(row[4..].chunks_exact_mut(3)) {
+        let [a, b, c] = [a, b, c].map(|v| v as f32);
         let margin = ((a.abs() + b.abs()) * TILE as f32 + c.abs()) * 4e-7;
         row.copy_from_slice(&[a, b, c + margin]);
     }

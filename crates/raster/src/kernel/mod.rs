@@ -1,7 +1,5 @@
 //! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or tile.
 
-#[cfg(any(test, feature = "forward"))]
-pub(crate) mod depths;
 pub(crate) mod nearest;
 pub(crate) mod transform;
 pub(crate) mod traverse;

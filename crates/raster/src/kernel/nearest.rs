@@ -10,19 +10,24 @@
 
 use super::traverse::{Edge, Extremes, Placed, Window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
+use std::ops::Range;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 
 /// Rows walked in a block before its far depth is computed anew.
 const PATIENCE: u32 = 16;
 /// Blocks along a tile's side.
 const BLOCKS: usize = TILE / BLOCK;
+/// All of a tile.
+const WHOLE: Window = [0..TILE, 0..TILE];
 
 /// Depths of a tile while facets are drawn.
 #[derive(Debug)]
 pub struct NearestDepths {
     tile: (u32, u32),
     pattern: SamplePattern,
+    /// 1 where larger depths are nearer, -1 where smaller ones are. All depths within are times this.
+    sign: f32,
     depths: Vec<f32>,
     /// For each block a depth that none of its pixels is farther than.
     far: [f32; BLOCKS * BLOCKS],
@@ -33,15 +38,34 @@ pub struct NearestDepths {
 impl NearestDepths {
     /// Nothing in the tile whose first pixel is `tile`.
     pub fn new(tile: (u32, u32)) -> Self {
-        let (far, walked) = ([f32::NEG_INFINITY; BLOCKS * BLOCKS], [0; BLOCKS * BLOCKS]);
-        Self { tile, pattern: SamplePattern::new(1), depths: vec![f32::NEG_INFINITY; TILE_PIXELS], far, walked }
+        Self::with_sign(tile, 1.0)
     }
 
-    /// Draws facets: the larger depth, the nearer one, stays.
+    /// The same with a sign: for -1 the smaller depth is the nearer one, and depths are handed out negated.
+    pub(crate) fn with_sign(tile: (u32, u32), sign: f32) -> Self {
+        let (far, walked) = ([f32::NEG_INFINITY; BLOCKS * BLOCKS], [0; BLOCKS * BLOCKS]);
+        Self { tile, pattern: SamplePattern::new(1), sign, depths: vec![f32::NEG_INFINITY; TILE_PIXELS], far, walked }
+    }
+
+    /// Draws facets: the nearer depth stays.
     pub fn draw<'s>(&mut self, level: Level, setups: impl Iterator<Item = &'s Setup>) {
         dispatch!(level, simd => {
             for setup in setups {
-                self.facet(simd, setup);
+                self.facet::<_, false>(simd, setup, &WHOLE);
+            }
+        });
+    }
+
+    /// Draws of each facet what lies in its window of the tile.
+    #[cfg(any(test, feature = "forward"))]
+    pub(crate) fn draw_within<'s>(&mut self, level: Level, setups: impl Iterator<Item = (&'s Setup, Window)>) {
+        dispatch!(level, simd => {
+            for (setup, window) in setups {
+                if window == WHOLE {
+                    self.facet::<_, false>(simd, setup, &WHOLE);
+                } else {
+                    self.facet::<_, true>(simd, setup, &window);
+                }
             }
         });
     }
@@ -57,26 +81,43 @@ impl NearestDepths {
     }
 
     #[inline(always)]
-    fn facet<S: Simd>(&mut self, simd: S, setup: &Setup) {
-        let window: Window = [0..TILE, 0..TILE];
-        let Some(place) = Placed::new(setup, self.tile, &window, &self.pattern) else { return };
+    fn facet<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, window: &Window) {
+        let Some(place) = Placed::new(setup, self.tile, window, &self.pattern) else { return };
         let [x0, x1] = place.columns;
         if x1 - x0 < LANES && place.is_small() {
-            self.narrow(simd, setup, &place);
+            self.narrow::<S, CLIPPED>(simd, setup, &place, &window[0]);
         } else {
-            self.wide(simd, setup, &place);
+            self.wide::<S, CLIPPED>(simd, setup, &place, &window[0]);
+        }
+    }
+
+    /// The depth that a facet cannot be nearer than.
+    #[inline(always)]
+    fn nearest_of(&self, setup: &Setup) -> f32 {
+        if self.sign > 0.0 { setup.z_max } else { -setup.z_min }
+    }
+
+    /// Keeps the nearer of old and new depths in a row of eight pixels, without those outside.
+    #[inline(always)]
+    fn keep<S: Simd>(&mut self, simd: S, at: usize, new: F32x8<S>, outside: Option<Mask8<S>>) {
+        let stored = &mut self.depths[at..at + LANES];
+        let old = F32x8::from_slice(simd, stored);
+        let nearer = lanes::Lanes::max(new, old);
+        match outside {
+            Some(outside) => lanes::Lanes::select(outside, old, nearer).store_slice(stored),
+            None => nearer.store_slice(stored),
         }
     }
 
     /// A facet that is at most eight pixels wide and whose edge functions fit into 32 bits.
     #[inline(always)]
-    fn narrow<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed) {
+    fn narrow<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, columns: &Range<usize>) {
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
         let block = |x: usize, y: usize| y / BLOCK * BLOCKS + x / BLOCK;
         let own = block(x0, y0);
         if y1 - y0 < BLOCK {
             let far = [self.far[own], self.far[block(x1, y0)], self.far[block(x0, y1)], self.far[block(x1, y1)]];
-            if setup.z_max < far[0].min(far[1]).min(far[2].min(far[3])) {
+            if self.nearest_of(setup) < far[0].min(far[1]).min(far[2].min(far[3])) {
                 return;
             }
         }
@@ -89,14 +130,15 @@ impl NearestDepths {
             let constant = edges[i].constant(corners[i], [SUBPIXEL / 2; 2]);
             e[i] = lane * a + (constant + a * left as i32 + b * y0 as i32);
         }
-        let plane = Plane::new(simd, setup, self.tile, left);
+        let plane = Plane::new(simd, setup, self, left);
+        let beside = beside(simd, left, columns);
         for y in y0..=y1 {
-            let inside = (e[0] | e[1] | e[2]).simd_ge(I32x8::splat(simd, 0));
-            if inside.any_true() {
-                let stored = &mut self.depths[y * TILE + left..][..LANES];
-                let old = F32x8::from_slice(simd, stored);
-                let new = lanes::Lanes::max(plane.row(y), old);
-                lanes::Lanes::select(inside, new, old).store_slice(stored);
+            let mut outside = (e[0] | e[1] | e[2]).simd_lt(I32x8::splat(simd, 0));
+            if CLIPPED {
+                outside |= beside;
+            }
+            if !outside.all_true() {
+                self.keep(simd, y * TILE + left, plane.row(y), Some(outside));
             }
             for i in 0..3 {
                 e[i] += edges[i].b;
@@ -107,14 +149,15 @@ impl NearestDepths {
 
     /// A facet of any size.
     #[inline(always)]
-    fn wide<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed) {
+    fn wide<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, window: &Range<usize>) {
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+        let nearest = self.nearest_of(setup);
         let columns = (0xff << (x0 / BLOCK)) & (0xff >> (BLOCKS - 1 - x1 / BLOCK));
         let mut seen = [0u32; BLOCKS];
         let mut any = 0;
         for row in y0 / BLOCK..=y1 / BLOCK {
             let far = F32x8::from_slice(simd, &self.far[row * BLOCKS..][..BLOCKS]);
-            seen[row] = far.simd_le(F32x8::splat(simd, setup.z_max)).to_bitmask() as u32 & columns;
+            seen[row] = far.simd_le(F32x8::splat(simd, nearest)).to_bitmask() as u32 & columns;
             any |= seen[row];
         }
         if any == 0 {
@@ -136,12 +179,11 @@ impl NearestDepths {
                 let number = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
                 let (block, left) = (top / BLOCK * BLOCKS + number, number * BLOCK);
-                let plane = Plane::new(simd, setup, self.tile, left);
+                let plane = Plane::new(simd, setup, self, left);
+                let beside = beside(simd, left, window);
                 if full >> number & 1 == 1 {
                     for y in rows.clone() {
-                        let stored = &mut self.depths[y * TILE + left..][..LANES];
-                        let old = F32x8::from_slice(simd, stored);
-                        lanes::Lanes::max(plane.row(y), old).store_slice(stored);
+                        self.keep(simd, y * TILE + left, plane.row(y), CLIPPED.then_some(beside));
                     }
                 } else {
                     // The rows in which no edge has all eight pixels on its outer side.
@@ -162,11 +204,11 @@ impl NearestDepths {
                         e[i] += edges[i].b * first as i32;
                     }
                     for y in first..end {
-                        let outside = (e[0] | e[1] | e[2]).simd_lt(zero);
-                        let stored = &mut self.depths[y * TILE + left..][..LANES];
-                        let old = F32x8::from_slice(simd, stored);
-                        let new = lanes::Lanes::max(plane.row(y), old);
-                        lanes::Lanes::select(outside, old, new).store_slice(stored);
+                        let mut outside = (e[0] | e[1] | e[2]).simd_lt(zero);
+                        if CLIPPED {
+                            outside |= beside;
+                        }
+                        self.keep(simd, y * TILE + left, plane.row(y), Some(outside));
                         for i in 0..3 {
                             e[i] += edges[i].b;
                         }
@@ -195,7 +237,15 @@ impl NearestDepths {
     }
 }
 
-/// Depths of a facet on the rows of eight pixels from one column of a tile on, by the operations of [`Setup::depth`].
+/// Which of the eight columns from `left` on lie outside a range.
+#[inline(always)]
+fn beside<S: Simd>(simd: S, left: usize, range: &Range<usize>) -> Mask8<S> {
+    let column = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) + left as i32;
+    column.simd_lt(I32x8::splat(simd, range.start as i32)) | column.simd_ge(I32x8::splat(simd, range.end as i32))
+}
+
+/// Depths of a facet on the rows of eight pixels from one column of a tile on, times the sign, by the operations of
+/// [`Setup::depth`]: rounding does not depend on signs.
 struct Plane<S: Simd> {
     across: F32x8<S>,
     low: F32x8<S>,
@@ -208,16 +258,18 @@ struct Plane<S: Simd> {
 
 impl<S: Simd> Plane<S> {
     #[inline(always)]
-    fn new(simd: S, setup: &Setup, tile: (u32, u32), left: usize) -> Self {
+    fn new(simd: S, setup: &Setup, depths: &NearestDepths, left: usize) -> Self {
+        let (tile, sign) = (depths.tile, depths.sign);
         let centers = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let first = (tile.0 as i32 + left as i32) * SUBPIXEL + SUBPIXEL / 2 - setup.origin[0];
+        let (low, high) = if sign > 0.0 { (setup.z_min, setup.z_max) } else { (-setup.z_max, -setup.z_min) };
         Self {
             // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.
-            across: (centers + first as f32 / SUBPIXEL as f32) * setup.dz_dx,
-            low: F32x8::splat(simd, setup.z_min),
-            high: F32x8::splat(simd, setup.z_max),
-            z: setup.z,
-            dz_dy: setup.dz_dy,
+            across: (centers + first as f32 / SUBPIXEL as f32) * (setup.dz_dx * sign),
+            low: F32x8::splat(simd, low),
+            high: F32x8::splat(simd, high),
+            z: setup.z * sign,
+            dz_dy: setup.dz_dy * sign,
             down: tile.1 as i32 * SUBPIXEL + SUBPIXEL / 2 - setup.origin[1],
         }
     }
@@ -239,21 +291,23 @@ mod tests {
     #[test]
     fn nearest_depths_are_those_of_single_samples() {
         let setups = triangles(3000, 64);
-        for count in [40, setups.len()] {
+        let ways = [(1.0, WHOLE), (-1.0, WHOLE), (1.0, [5..50, 17..61]), (-1.0, [0..64, 3..4])];
+        for ((sign, window), count) in ways.iter().flat_map(|way| [(way, 40), (way, setups.len())]) {
             let setups = &setups[..count];
             let mut expected = vec![f32::NEG_INFINITY; TILE_PIXELS];
-            for (at, depth) in expected.iter_mut().enumerate() {
-                let [x, y] = [at % TILE, at / TILE].map(|v| (v as i32 + 64) * SUBPIXEL + SUBPIXEL / 2);
-                for setup in setups.iter().filter(|s| s.covers(x, y)) {
-                    *depth = depth.max(setup.depth(x, y));
+            for (x, y) in window[0].clone().flat_map(|x| window[1].clone().map(move |y| (x, y))) {
+                let [sx, sy] = [x, y].map(|v| (v as i32 + 64) * SUBPIXEL + SUBPIXEL / 2);
+                for setup in setups.iter().filter(|s| s.covers(sx, sy)) {
+                    let depth = &mut expected[y * TILE + x];
+                    *depth = depth.max(setup.depth(sx, sy) * sign);
                 }
             }
             for (name, level) in available_levels() {
-                let mut nearest = NearestDepths::new((64, 64));
-                nearest.draw(level, setups.iter());
+                let mut nearest = NearestDepths::with_sign((64, 64), *sign);
+                nearest.draw_within(level, setups.iter().map(|setup| (setup, window.clone())));
                 let far = nearest.far();
                 let depths = nearest.into_depths();
-                assert!(depths == expected, "{name}, {count} facets");
+                assert!(depths == expected, "{name}, {count} facets in {window:?}, sign {sign}");
                 let above = |(at, &depth): (usize, &f32)| depth >= far[at / TILE / BLOCK * BLOCKS + at % TILE / BLOCK];
                 assert!(depths.iter().enumerate().all(above), "{name}, {count} facets");
             }

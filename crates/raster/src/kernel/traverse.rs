@@ -7,7 +7,7 @@
 //! Source: [Pineda 1988]; hierarchical traversal after [Greene 1996].
 
 use crate::setup::is_top_left;
-use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE};
+use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, Tile};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{I32x8, LANES, Mask8, Simd};
@@ -56,11 +56,10 @@ pub trait BlockSink<S: Simd> {
 }
 
 /// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins: what small triangles
-/// want, which are most of a fine mesh.
-pub trait RowSink<S: Simd>: BlockSink<S> {
-    /// Whether nothing of `setup` can matter at the tile's pixels from `low` to `high`, column and row, inclusive: at most
-    /// 8x8.
-    fn rejects_box(&self, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool;
+/// want, which are most of a fine mesh. [`InBlocks`] makes a [`BlockSink`] of it.
+pub trait RowSink<S: Simd> {
+    /// The tile whose far depths hide what cannot matter; none if everything does.
+    fn hiding(&self) -> Option<&Tile>;
 
     /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
     fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
@@ -68,6 +67,37 @@ pub trait RowSink<S: Simd>: BlockSink<S> {
     /// The last row of a triangle, or of its part in a block, whose box begins at pixel `at` was given.
     #[inline(always)]
     fn end(&mut self, _simd: S, _at: [usize; 2]) {}
+}
+
+/// Takes blocks for a sink of rows, and hands it the rows in which something is covered.
+#[derive(Debug)]
+pub struct InBlocks<'a, K>(pub &'a mut K);
+
+impl<S: Simd, K: RowSink<S>> BlockSink<S> for InBlocks<'_, K> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        self.0.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()])
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        for (s, &mask) in masks.iter().enumerate() {
+            for row in block.rows.clone() {
+                let covered = (mask >> (8 * row)) & 0xff;
+                if covered != 0 {
+                    self.0.cover_row(simd, setup, s, [block.x, block.y + row], Mask8::from_bitmask(simd, covered));
+                }
+            }
+        }
+        self.0.end(simd, [block.x, block.y]);
+    }
+}
+
+/// Whether the blocks of a box of at most 8x8 pixels, from `low` to `high`, hold nothing but what is nearer than `setup`.
+#[inline(always)]
+fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
+    let far = |x: usize, y: usize| tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK];
+    setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
 }
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
@@ -154,7 +184,7 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
             _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
-        blocks_apart(simd, setup, tile, pattern, sink);
+        blocks_apart(simd, setup, tile, pattern, &mut InBlocks(sink));
     }
 }
 
@@ -198,7 +228,7 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
     sink: &mut K,
 ) {
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
-    if y1 - y0 < BLOCK && sink.rejects_box(setup, [x0, y0], [x1, y1]) {
+    if y1 - y0 < BLOCK && sink.hiding().is_some_and(|tile| hides_box(tile, setup, [x0, y0], [x1, y1])) {
         return;
     }
     let left = place.left();
@@ -305,17 +335,10 @@ impl Placed {
         }
     }
 
-    /// The edges, and [`Edge::constant`] of the middles of pixels; for triangles of any size.
+    /// [`center_edges`] of the triangle.
     #[inline(always)]
     pub(crate) fn center_edges(&self) -> ([Edge; 3], [i32; 3]) {
-        let mut edges = [Edge { a: 0, b: 0 }; 3];
-        let mut constants = [0; 3];
-        for i in 0..3 {
-            let constant;
-            (edges[i], constant) = far_edge(&self.x, &self.y, i);
-            constants[i] = constant([SUBPIXEL / 2; 2]);
-        }
-        (edges, constants)
+        center_edges(&self.x, &self.y)
     }
 
     /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].
@@ -333,16 +356,17 @@ impl Placed {
     }
 }
 
-/// The edge functions of a triangle within the tile at pixel `origin`: `[a, b, c]` with `a x + b y + c >= 0` for all of them
-/// where the centre of the tile's pixel `(x, y)` is covered.
-#[cfg(any(test, feature = "forward"))]
+/// The edges of a triangle of any size with corners in a tile's coordinates, and [`Edge::constant`] of the middles of pixels.
 #[inline(always)]
-pub(crate) fn center_edges(setup: &Setup, origin: [i32; 2]) -> [[i32; 3]; 3] {
-    let (x, y) = (setup.x.map(|x| x - origin[0] * SUBPIXEL), setup.y.map(|y| y - origin[1] * SUBPIXEL));
-    [0, 1, 2].map(|i: usize| {
-        let (edge, constant) = far_edge(&x, &y, i);
-        [edge.a, edge.b, constant([SUBPIXEL / 2; 2])]
-    })
+pub(crate) fn center_edges(x: &[i32; 3], y: &[i32; 3]) -> ([Edge; 3], [i32; 3]) {
+    let mut edges = [Edge { a: 0, b: 0 }; 3];
+    let mut constants = [0; 3];
+    for i in 0..3 {
+        let constant;
+        (edges[i], constant) = far_edge(x, y, i);
+        constants[i] = constant([SUBPIXEL / 2; 2]);
+    }
+    (edges, constants)
 }
 
 /// [`traverse`] for the one block whose top left pixel within the tile is `(x, y)`.

@@ -18,7 +18,9 @@ use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::dispatch;
-use vitral_raster::{Batch, Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse};
+use vitral_raster::{
+    Batch, Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse_by_rows,
+};
 
 /// Tests of a facet at a sample that are not refused: about an hour on one thread.
 pub const MOST_TESTS: u64 = 1 << 40;
@@ -100,7 +102,7 @@ fn add_marks(
     dispatch!(execution.level, simd => {
         let mut sink = LayerSink::new(tile, &view.pattern, layers);
         for setup in marks.tile(index) {
-            traverse(simd, setup, (tile.x, tile.y), &view.pattern, &mut sink);
+            traverse_by_rows(simd, setup, (tile.x, tile.y), &view.pattern, &mut sink);
         }
     });
 }

@@ -13,8 +13,7 @@ use super::facets::nearer;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Level, Mask8, Simd, dispatch};
 use vitral_raster::{
-    BLOCK, Batch, Block, BlockSink, NO_FACET, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile,
-    traverse_by_rows,
+    Batch, NO_FACET, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, traverse_by_rows,
 };
 
 /// Depth and facet; [`NO_FACET`] for none.
@@ -124,28 +123,10 @@ impl PassSink<'_> {
     }
 }
 
-impl<S: Simd> BlockSink<S> for PassSink<'_> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        setup.z_max < self.tile.block_far[block.index()]
-    }
-
-    fn cover(&mut self, _: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        for (sample, &mask) in masks.iter().enumerate() {
-            let mut left = mask;
-            while left != 0 {
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                self.take(setup, sample, [block.x + bit % BLOCK, block.y + bit / BLOCK]);
-            }
-        }
-    }
-}
-
 impl<S: Simd> RowSink<S> for PassSink<'_> {
     #[inline(always)]
-    fn rejects_box(&self, _: &Setup, _: [usize; 2], _: [usize; 2]) -> bool {
-        false
+    fn hiding(&self) -> Option<&Tile> {
+        Some(self.tile)
     }
 
     fn cover_row(&mut self, _: S, setup: &Setup, sample: usize, [x, y]: [usize; 2], covered: Mask8<S>) {
@@ -156,7 +137,4 @@ impl<S: Simd> RowSink<S> for PassSink<'_> {
             self.take(setup, sample, [x + lane, y]);
         }
     }
-
-    #[inline(always)]
-    fn end(&mut self, _: S, _: [usize; 2]) {}
 }

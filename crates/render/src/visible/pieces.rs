@@ -24,8 +24,8 @@ use crate::trace::Step;
 use std::ops::Range;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, Block, BlockSink, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL, SamplePattern,
-    Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
+    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
+    SamplePattern, Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
 };
 
 /// Samples in the box of a triangle that are asked one by one, in at most 8x8 pixels.
@@ -381,13 +381,14 @@ pub(super) fn draw<const FRONT_FIRST: bool>(
 ) {
     let pattern = &facets.view().pattern;
     let place = (tile.x, tile.y);
-    let mut sink = PieceSink { inner: PrioritySink::<FRONT_FIRST>::new(tile, pattern), place, pattern, cuts: &[] };
+    let mut inner = PrioritySink::<FRONT_FIRST>::new(tile, pattern);
+    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
     dispatch!(facets.execution().level, simd => {
         for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
             draw_piece(simd, list, run, piece, &mut sink);
         }
     });
-    let counts: PriorityCounts = sink.inner.counts;
+    let counts: PriorityCounts = inner.counts;
     counters.overdrawn += counts.overdrawn;
     counters.overruled += counts.overruled;
     counters.overruled_far += counts.overruled_far;
@@ -403,7 +404,8 @@ pub(super) fn draw_layers<const FRONT_FIRST: bool>(
 ) {
     let pattern = &facets.view().pattern;
     let place = (tile.x, tile.y);
-    let mut sink = PieceSink { inner: LayerSink::new(tile, pattern, layers), place, pattern, cuts: &[] };
+    let mut inner = LayerSink::new(tile, pattern, layers);
+    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
     let pieces = list.in_tile(index).filter(|(_, piece)| piece.setup as usize >= list.opaque);
     dispatch!(facets.execution().level, simd => {
         if FRONT_FIRST {
@@ -415,12 +417,12 @@ pub(super) fn draw_layers<const FRONT_FIRST: bool>(
 }
 
 #[inline(always)]
-fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
+fn draw_piece<'a, S: Simd, K: RowSink<S>>(
     simd: S,
     list: &List<'_>,
     run: &'a Pieces,
     piece: &Piece,
-    sink: &mut PieceSink<'a, K>,
+    sink: &mut PieceSink<'a, InBlocks<'_, K>>,
 ) {
     let setup = list.setups[piece.setup as usize];
     let (place, pattern) = (sink.place, sink.pattern);
@@ -430,7 +432,7 @@ fn draw_piece<'a, S: Simd, K: BlockSink<S> + RowSink<S>>(
     }
     sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
     if sink.cuts.is_empty() {
-        traverse_by_rows(simd, setup, place, pattern, &mut sink.inner);
+        traverse_by_rows(simd, setup, place, pattern, sink.inner.0);
         return;
     }
     let [x0, y0, x1, y1] = piece.pixels.map(i32::from);

@@ -20,7 +20,7 @@ use crate::visible::facets::extent;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, LayerList, LayerSink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, VisibilitySink, traverse_block,
+    BLOCK, InBlocks, LayerList, LayerSink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, VisibilitySink, traverse_block,
 };
 
 /// Takes what is found in a block.
@@ -50,7 +50,8 @@ impl<S: Simd> Taker<S> for Opaque<'_> {
     #[inline(always)]
     fn take(&mut self, simd: S, setup: &Setup, block: (usize, usize), pattern: &SamplePattern) {
         let place = (self.0.x, self.0.y);
-        traverse_block(simd, setup, place, block, pattern, &mut VisibilitySink::eager(self.0, pattern));
+        let mut sink = VisibilitySink::eager(self.0, pattern);
+        traverse_block(simd, setup, place, block, pattern, &mut InBlocks(&mut sink));
     }
 }
 
@@ -65,7 +66,8 @@ impl<S: Simd> Taker<S> for Layers<'_> {
     #[inline(always)]
     fn take(&mut self, simd: S, setup: &Setup, block: (usize, usize), pattern: &SamplePattern) {
         let place = (self.0.x, self.0.y);
-        traverse_block(simd, setup, place, block, pattern, &mut LayerSink::new(self.0, pattern, self.1));
+        let mut sink = LayerSink::new(self.0, pattern, self.1);
+        traverse_block(simd, setup, place, block, pattern, &mut InBlocks(&mut sink));
     }
 }
 

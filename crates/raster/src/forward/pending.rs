@@ -11,10 +11,11 @@
 //! Cost: a lookup is linear in the triangles of a tile of few, eight a step; constant in others.
 
 use super::assemble::Primitives;
-use super::fragment::stored;
+use super::fragment::{stored, stored_depth};
 use super::pass::Pass;
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
+use super::wide::{max, min};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::{Edge, Window, center_edges};
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
@@ -22,7 +23,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
 
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
@@ -322,15 +323,21 @@ impl PendingDepth {
             nearest.draw_within(level, job.primitives.batch.tile(tile).map(|s| (s, job.window(s.facet, [x, y]))));
         }
         let depths = nearest.into_depths();
-        // Rounding keeps the order of depths: the nearest is the nearest as stored.
         let mut drawn = Box::new([self.clear; TILE_PIXELS]);
-        for (drawn, depth) in drawn.iter_mut().zip(depths).filter(|(_, depth)| depth.is_finite()) {
-            let depth = stored(depth * self.sign, self.scale);
-            if (depth - *drawn) * self.sign > 0.0 {
-                *drawn = depth;
-            }
-        }
+        dispatch!(level, simd => self.store(simd, &depths, &mut drawn));
         drawn
+    }
+
+    /// Brings depths, times the sign, into a tile that is clear. Rounding keeps their order: the nearest is the nearest as
+    /// stored.
+    #[inline(always)]
+    fn store<S: Simd>(&self, simd: S, depths: &[f32], tile: &mut [f32; TILE_PIXELS]) {
+        let clear = F32x8::splat(simd, self.clear);
+        for (depths, tile) in depths.chunks_exact(LANES).zip(tile.chunks_exact_mut(LANES)) {
+            let depth = stored_depth(simd, F32x8::from_slice(simd, depths) * self.sign, self.scale);
+            let nearest = if self.sign > 0.0 { max(depth, clear) } else { min(depth, clear) };
+            nearest.store_slice(tile);
+        }
     }
 
     /// Which depth stays: 1 the larger, -1 the smaller.

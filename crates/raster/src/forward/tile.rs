@@ -101,7 +101,7 @@ impl<'a> TileRun<'a> {
                     let pattern = if draw.multisample { many } else { one };
                     let (x, y) = (self.x, self.y);
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
-                    let mut sink = FragmentSink { run: self, draw, shader, clip, pattern };
+                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern };
                     let Some(place) = Placed::new(setup, (x, y), &[0..TILE, 0..TILE], pattern) else { continue };
                     if place.is_tiny() && sink.by_rows() {
                         sink.tiny(simd, setup, &place);
@@ -257,7 +257,7 @@ fn image_color<S: Simd>(
 }
 
 /// Covered blocks and rows become fragments.
-pub(super) struct FragmentSink<'r, 'a, 'd> {
+pub(super) struct ForwardSink<'r, 'a, 'd> {
     pub(super) run: &'r mut TileRun<'a>,
     pub(super) draw: &'d DrawContext<'d>,
     pub(super) shader: Shader<'d>,
@@ -266,7 +266,7 @@ pub(super) struct FragmentSink<'r, 'a, 'd> {
     pub(super) pattern: &'d SamplePattern,
 }
 
-impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
+impl<S: Simd> BlockSink<S> for ForwardSink<'_, '_, '_> {
     #[inline(always)]
     fn rejects(&self, _setup: &Setup, block: &Block) -> bool {
         let [x0, y0, x1, y1] = self.clip;
@@ -297,7 +297,7 @@ impl<S: Simd> BlockSink<S> for FragmentSink<'_, '_, '_> {
     }
 }
 
-impl FragmentSink<'_, '_, '_> {
+impl ForwardSink<'_, '_, '_> {
     /// Whether its fragments are of the common kinds, see [`super::block`].
     #[inline(always)]
     pub(super) fn by_blocks(&self) -> bool {

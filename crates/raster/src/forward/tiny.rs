@@ -8,14 +8,14 @@ use super::fragment::{ColorTile, SAMPLES};
 use super::fragment_ops::compare::compare;
 use super::shade::CENTERS;
 use super::state::Compare;
-use super::tile::FragmentSink;
+use super::tile::ForwardSink;
 use super::wide::{bits_of, mask_of, select, splat};
 use crate::kernel::traverse::{Block, Placed};
 use crate::{BLOCK, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Mask8, Simd};
 
-impl FragmentSink<'_, '_, '_> {
+impl ForwardSink<'_, '_, '_> {
     /// Whether tiny facets come this way.
     #[inline(always)]
     pub(super) fn by_rows(&self) -> bool {
@@ -208,7 +208,7 @@ struct Depths<'a> {
 }
 
 impl Depths<'_> {
-    /// See [`FragmentSink::passing`]. Of each of the `N` samples that are walked there are `A` alike; if there is one of all,
+    /// See [`ForwardSink::passing`]. Of each of the `N` samples that are walked there are `A` alike; if there is one of all,
     /// it stands for all.
     #[inline(always)]
     fn compare<S: Simd, const N: usize, const A: usize>(

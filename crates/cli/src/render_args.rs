@@ -194,7 +194,7 @@ pub(crate) struct LightArgs {
 
 /// The viewer.
 #[derive(Args, Debug, Default)]
-#[command(next_help_heading = "Camera (without any, the model is framed)")]
+#[command(next_help_heading = "Camera (without any, the model is framed; a built-in figure has its own)")]
 pub(crate) struct CameraArgs {
     /// The side from which the model is framed [default: iso]
     #[arg(long, value_name = "SIDE", value_parser = choices::view())]

@@ -106,6 +106,13 @@ pub fn default_up(path: impl AsRef<Path>) -> Axis {
     if stl { Axis::PlusZ } else { Axis::PlusY }
 }
 
+/// The camera of the scene from which models of this name are usually seen: figures among the built-in scenes have one.
+/// Others are framed.
+pub fn default_camera(path: impl AsRef<Path>) -> Option<usize> {
+    let name = path.as_ref().to_str()?.strip_prefix("builtin:")?;
+    builtin::is_figure(name).then_some(0)
+}
+
 /// Sees to the normals.
 fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
     match options.normals {
@@ -171,5 +178,16 @@ mod tests {
             [default_up("a/b.STL"), default_up("b.obj"), default_up("builtin:cubs")],
             [Axis::PlusZ, Axis::PlusY, Axis::PlusY]
         );
+    }
+
+    #[test]
+    fn figures_have_a_camera() {
+        let figures = ["refraction", "rod", "lens", "mirrors", "cornell"];
+        for (name, _) in builtin::names() {
+            let camera = default_camera(format!("builtin:{name}"));
+            assert_eq!(camera, figures.contains(name).then_some(0), "{name}");
+            assert!(camera.is_none() || !load_builtin(name).unwrap().cameras.is_empty());
+        }
+        assert_eq!(default_camera("cornell"), None);
     }
 }

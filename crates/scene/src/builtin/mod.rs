@@ -14,36 +14,49 @@ pub use teapot::teapot;
 
 use crate::Scene;
 
-/// Builds a scene.
-type Recipe = fn() -> Scene;
+/// How a scene is made, and from where it is meant to be seen.
+struct Recipe {
+    name: &'static str,
+    about: &'static str,
+    make: fn() -> Scene,
+    /// A figure, seen from its own camera; else the scene is framed.
+    is_figure: bool,
+}
 
-/// Name, description, recipe.
-const SCENES: [(&str, &str, Recipe); 10] = [
-    ("cubs", "Lab3D's Cubs(): eight cubes in the colours of the RGB cube, one normal per face", scenes::cubs),
-    ("sphere", "Lab3D's Sphere(): a smooth sphere with vertex normals", scenes::sphere),
-    ("scene0", "Lab3D's Scene 0: box, sphere, cone and cylinder on a chequered floor", scenes::scene0),
-    ("scene1", "Lab3D's Scene 1: a flight of steps with a torus, a tetrahedron, a column and a ball", scenes::scene1),
-    (
+const fn framed(name: &'static str, about: &'static str, make: fn() -> Scene) -> Recipe {
+    Recipe { name, about, make, is_figure: false }
+}
+
+const fn figure(name: &'static str, about: &'static str, make: fn() -> Scene) -> Recipe {
+    Recipe { name, about, make, is_figure: true }
+}
+
+const SCENES: [Recipe; 10] = [
+    framed("cubs", "Lab3D's Cubs(): eight cubes in the colours of the RGB cube, one normal per face", scenes::cubs),
+    framed("sphere", "Lab3D's Sphere(): a smooth sphere with vertex normals", scenes::sphere),
+    framed("scene0", "Lab3D's Scene 0: box, sphere, cone and cylinder on a chequered floor", scenes::scene0),
+    framed(
+        "scene1",
+        "Lab3D's Scene 1: a flight of steps with a torus, a tetrahedron, a column and a ball",
+        scenes::scene1,
+    ),
+    figure(
         "refraction",
-        "the notes' figure: through prisms 1 and 2, P and Q show polygon 3 or 4 (--global ray-trace --camera-index 0)",
+        "the notes' figure: through prisms 1 and 2, P and Q show polygon 3 or 4 (--global ray-trace)",
         optics::refraction,
     ),
-    ("rod", "a stick in water, which looks broken (--global ray-trace --camera-index 0)", optics::rod),
-    ("lens", "a glass ball that turns what is behind upside down (--global ray-trace --camera-index 0)", optics::lens),
-    ("mirrors", "mirrors, glass, a coloured pane, two lights (--global ray-trace --camera-index 0)", optics::mirrors),
-    (
-        "cornell",
-        "the Cornell box, with a lamp that shines by itself (--global radiosity --camera-index 0)",
-        optics::cornell,
-    ),
-    ("teapot", "the Utah teapot, 32 Bezier patches with exact normals", scenes::teapot_scene),
+    figure("rod", "a stick in water, which looks broken (--global ray-trace)", optics::rod),
+    figure("lens", "a glass ball that turns what is behind upside down (--global ray-trace)", optics::lens),
+    figure("mirrors", "mirrors, glass, a coloured pane, two lights (--global ray-trace)", optics::mirrors),
+    figure("cornell", "the Cornell box, with a lamp that shines by itself (--global radiosity)", optics::cornell),
+    framed("teapot", "the Utah teapot, 32 Bezier patches with exact normals", scenes::teapot_scene),
 ];
 
 const NAMES: [(&str, &str); SCENES.len()] = {
     let mut names = [("", ""); SCENES.len()];
     let mut i = 0;
     while i < names.len() {
-        names[i] = (SCENES[i].0, SCENES[i].1);
+        names[i] = (SCENES[i].name, SCENES[i].about);
         i += 1;
     }
     names
@@ -54,7 +67,16 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
     &NAMES
 }
 
+fn recipe(name: &str) -> Option<&'static Recipe> {
+    const { &SCENES }.iter().find(|s| s.name == name)
+}
+
+/// Whether the scene of this name (without `builtin:`) is a figure, meant to be seen from its own camera 0.
+pub fn is_figure(name: &str) -> bool {
+    recipe(name).is_some_and(|r| r.is_figure)
+}
+
 /// The built-in scene of this name (without `builtin:`).
 pub fn scene(name: &str) -> Option<Scene> {
-    SCENES.iter().find(|s| s.0 == name).map(|s| s.2())
+    recipe(name).map(|r| (r.make)())
 }

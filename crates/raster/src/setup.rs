@@ -142,6 +142,29 @@ impl Setup {
             e > 0 || (e == 0 && is_top_left(dx, dy))
         })
     }
+
+    /// [`Self::covers`] for samples a pixel apart, `columns` by `rows` of them, at most 8 by 8, from the one at `(x, y)` in
+    /// 1/256 pixel to the right and down: bit `8 * row + column`.
+    #[inline]
+    pub fn covered(&self, [x, y]: [i32; 2], columns: usize, rows: usize) -> u64 {
+        let edge = |i: usize| {
+            let j = (i + 1) % 3;
+            let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
+            let corner = i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
+            let right = -i64::from(dy) * i64::from(SUBPIXEL);
+            (corner - i64::from(!is_top_left(dx, dy)), right, i64::from(dx) * i64::from(SUBPIXEL))
+        };
+        let ([(mut a, ax, ay), (mut b, bx, by), (mut c, cx, cy)], mut mask) = ([edge(0), edge(1), edge(2)], 0);
+        for row in 0..rows.min(8) {
+            let (mut e, mut f, mut g) = (a, b, c);
+            for column in 0..columns.min(8) {
+                mask |= u64::from(e | f | g >= 0) << (8 * row + column);
+                (e, f, g) = (e + ax, f + bx, g + cx);
+            }
+            (a, b, c) = (a + ay, b + by, c + cy);
+        }
+        mask
+    }
 }
 
 /// Whether an edge of a triangle whose edge functions are positive inside (y downwards) is a top or a left edge.
@@ -157,6 +180,20 @@ mod tests {
 
     fn corner(x: i32, y: i32, z: f32) -> CornerPosition {
         CornerPosition { x: x * 256, y: y * 256, z }
+    }
+
+    #[test]
+    fn covered_samples_are_those_that_it_covers() {
+        for setup in crate::testing::triangles(2000, 0) {
+            let (columns, rows) = (1 + setup.facet as usize % 8, 1 + setup.facet as usize / 8 % 8);
+            let first = [setup.x[0] / 256 * 256 - 768 + 96, setup.y[1] / 256 * 256 - 512 + 32];
+            let mask = setup.covered(first, columns, rows);
+            for (row, column) in (0..8).flat_map(|row| (0..8).map(move |column| (row, column))) {
+                let inside = row < rows && column < columns;
+                let covers = inside && setup.covers(first[0] + column as i32 * 256, first[1] + row as i32 * 256);
+                assert_eq!(mask >> (8 * row + column) & 1 == 1, covers, "{setup:?}");
+            }
+        }
     }
 
     #[test]

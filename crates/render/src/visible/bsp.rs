@@ -17,7 +17,7 @@
 mod tree;
 
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Depth, List, Pieces, Raster, draw, draw_layers, piece_step};
+use super::pieces::{Cut, Depth, Footprint, List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
@@ -32,11 +32,13 @@ pub(crate) use tree::Tree;
 #[derive(Clone, Copy, Debug)]
 pub struct Bsp;
 
+/// Facets in one piece of work.
+const FACETS_A_JOB: usize = 4096;
 /// Planes in one piece of work.
 const PLANES_A_JOB: usize = 4096;
 /// Fragments in one run of the list.
 const FRAGMENTS_A_RUN: usize = 8192;
-/// The facet is not on the screen.
+/// The facet has no samples.
 const ABSENT: u32 = u32::MAX;
 
 impl VisibleSurface for Bsp {
@@ -91,6 +93,15 @@ fn picture(
     let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + size_of_val(tree.cutters()) as u64;
     execution.budget.charge(bytes, "BSP fragments on the screen")?;
 
+    // Of a fine mesh, most facets lie between the samples.
+    let raster = Raster::new(view.viewport, &view.pattern);
+    let mut footprints: Vec<Option<Footprint>> = vec![None; setups.len()];
+    execution.workers.for_each_chunk(&mut footprints, FACETS_A_JOB, |job, footprints| {
+        for (footprint, setup) in footprints.iter_mut().zip(&setups[job * FACETS_A_JOB..]) {
+            *footprint = raster.footprint(setup);
+        }
+    });
+
     // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
     let to_viewer = eye(view);
     let walk = || {
@@ -99,22 +110,21 @@ fn picture(
         order.reverse();
         order
     };
-    let (order, places) = execution.workers.join(walk, || Places::new(&setups, facet_count));
+    let (order, places) = execution.workers.join(walk, || Places::new(&setups, &footprints, facet_count));
 
     // Bring the fragments to the screen, in runs.
     let lines = Lines::new(view, tree, execution);
-    let raster = Raster::new(view.viewport, &view.pattern);
     let runs = execution.workers.map(order.len().div_ceil(FRAGMENTS_A_RUN), |run| {
-        let (mut pieces, mut cuts) = (Pieces::default(), Vec::new());
+        let mut pieces = Pieces::default();
         let places_in_list = (0..order.len() as u32).rev().skip(run * FRAGMENTS_A_RUN);
         for (&fragment, place) in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
             for at in places.of(tree.facet(fragment), &setups) {
                 let setup = setups[at as usize];
                 let plane = Depth::of(setup);
-                cuts.clear();
-                cuts.extend(tree.cuts(fragment).map(|(cutter, positive)| lines.cut(cutter, positive, plane)));
-                if pieces.add(at, setup, &cuts, &raster) {
-                    execution.tell(|| piece_step(place, setup, &cuts));
+                let cuts = || tree.cuts(fragment).map(|(cutter, positive)| lines.cut(cutter, positive, plane));
+                let footprint = footprints[at as usize];
+                if footprint.is_some_and(|footprint| pieces.add(at, (setup, footprint), cuts(), &raster)) {
+                    execution.tell(|| piece_step(place, setup, &cuts().collect::<Vec<_>>()));
                 }
             }
         }
@@ -145,15 +155,15 @@ fn eye(view: &PreparedView<'_>) -> DVec4 {
     if view.view.perspective { world_from_view.w_axis } else { world_from_view.z_axis }
 }
 
-/// Where each facet's triangles are among the view's. Those of a clipped facet follow one another.
+/// Where each facet's triangles are among the view's, if they may have samples. Those of a clipped facet follow one another.
 struct Places {
     first: Vec<u32>,
 }
 
 impl Places {
-    fn new(setups: &[&Setup], facet_count: u32) -> Self {
+    fn new(setups: &[&Setup], footprints: &[Option<Footprint>], facet_count: u32) -> Self {
         let mut first = vec![ABSENT; facet_count as usize];
-        for (i, setup) in setups.iter().enumerate().rev() {
+        for (i, setup) in setups.iter().enumerate().rev().filter(|(i, _)| footprints[*i].is_some()) {
             first[setup.facet as usize] = i as u32;
         }
         Self { first }

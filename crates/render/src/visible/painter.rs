@@ -418,7 +418,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
             let cuts = &self.cuts[polygon.cuts.start as usize..polygon.cuts.end as usize];
             let setup = self.setups[polygon.setup as usize];
             let order = list.len() as u32;
-            if list.add(polygon.setup, setup, cuts, &self.raster) {
+            let Some(footprint) = self.raster.footprint(setup) else { continue };
+            if list.add(polygon.setup, (setup, footprint), cuts.iter().copied(), &self.raster) {
                 self.execution.tell(|| piece_step(order, setup, cuts));
             }
         }

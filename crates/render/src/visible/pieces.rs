@@ -122,6 +122,13 @@ pub(super) fn corners(setup: &Setup) -> [[f64; 2]; 3] {
     [0, 1, 2].map(|i| [f64::from(setup.x[i]), f64::from(setup.y[i])])
 }
 
+/// Smallest and largest corner of the box round a triangle.
+fn around(setup: &Setup) -> [[f64; 2]; 2] {
+    let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
+    let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
+    [[x0, y0], [x1, y1]]
+}
+
 /// Cuts a convex polygon along a line, erring outwards.
 pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 2]>, cut: &Cut) {
     // A line without numbers cuts nothing off.
@@ -183,6 +190,15 @@ pub(super) struct Pieces {
     outline: [Vec<[f64; 2]>; 2],
 }
 
+/// Where a triangle may have samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Footprint {
+    /// First and last pixel column and row.
+    pixels: [u16; 4],
+    /// If they are few: which have their first sample in the triangle, 8 a row.
+    few: Option<u64>,
+}
+
 /// What bounds the pixels of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Raster<'p> {
@@ -204,6 +220,24 @@ impl<'p> Raster<'p> {
     fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
         let [width, height] = [x1 - x0 + 1, y1 - y0 + 1].map(usize::from);
         width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= FEW
+    }
+
+    /// Where a triangle may have samples, if anywhere; what has few pixels is asked for each.
+    pub(super) fn footprint(&self, setup: &Setup) -> Option<Footprint> {
+        let pixels = self.pixels(around(setup))?;
+        if !self.are_few(pixels) {
+            return Some(Footprint { pixels, few: None });
+        }
+        let first = self.covered(setup, pixels, 0);
+        let any = first != 0 || (1..self.pattern.len()).any(|s| self.covered(setup, pixels, s) != 0);
+        any.then_some(Footprint { pixels, few: Some(first) })
+    }
+
+    /// A sample of each of a few pixels, where a triangle covers it: bits from the upper left, 8 a row.
+    fn covered(&self, setup: &Setup, [x0, y0, x1, y1]: [u16; 4], sample: usize) -> u64 {
+        let [dx, dy] = self.pattern.position(sample);
+        let first = [i32::from(x0) * SUBPIXEL + dx, i32::from(y0) * SUBPIXEL + dy];
+        setup.covered(first, usize::from(x1 - x0 + 1), usize::from(y1 - y0 + 1))
     }
 
     /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
@@ -234,17 +268,21 @@ impl<'p> Raster<'p> {
 }
 
 impl Pieces {
-    /// Adds the next piece of the list, if it can have samples; whether it can.
-    pub(super) fn add(&mut self, index: u32, setup: &Setup, cuts: &[Cut], raster: &Raster<'_>) -> bool {
-        let range = |v: &[i32; 3]| [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])].map(f64::from);
-        let ([x0, x1], [y0, y1]) = (range(&setup.x), range(&setup.y));
-        let around = [[x0, y0], [x1, y1]];
-        let Some(pixels) = raster.pixels(around) else { return false };
+    /// Adds the next piece of the list, a triangle with its footprint and the cuts that make it, if it can have samples;
+    /// whether it can.
+    pub(super) fn add(
+        &mut self,
+        index: u32,
+        (setup, footprint): (&Setup, Footprint),
+        cuts: impl ExactSizeIterator<Item = Cut>,
+        raster: &Raster<'_>,
+    ) -> bool {
+        let pixels = footprint.pixels;
         let (first, listed) = (self.cuts.len(), self.samples.len());
-        let (found, samples) = match cuts {
-            [] => (Some(pixels), UNLISTED),
-            _ if raster.are_few(pixels) => (self.list_samples(setup, pixels, cuts, raster), listed as u32),
-            _ => (self.cut_outline(setup, around, cuts, raster), UNLISTED),
+        let (found, samples) = match footprint.few {
+            _ if cuts.len() == 0 => (Some(pixels), UNLISTED),
+            Some(covered) => (self.list_samples(setup, (pixels, covered), cuts, raster), listed as u32),
+            None => (self.cut_outline(setup, cuts, raster), UNLISTED),
         };
         let Some(found) = found else {
             self.cuts.truncate(first);
@@ -263,46 +301,52 @@ impl Pieces {
         true
     }
 
-    /// Lists the samples of a few pixels that the triangle covers and all cuts keep. First and last column and row of
-    /// pixels with such a sample.
-    fn list_samples(&mut self, setup: &Setup, pixels: [u16; 4], cuts: &[Cut], raster: &Raster<'_>) -> Option<[u16; 4]> {
-        let mut found: Option<[u16; 4]> = None;
-        let place = |pixel: u16, offset: i32| i32::from(pixel) * SUBPIXEL + offset;
-        for s in 0..raster.pattern.len() {
-            let ([dx, dy], mut list) = (raster.pattern.position(s), 0u64);
-            for y in pixels[1]..=pixels[3] {
-                for x in pixels[0]..=pixels[2] {
-                    let sample = [place(x, dx), place(y, dy)];
-                    if setup.covers(sample[0], sample[1]) && cuts.iter().all(|cut| cut.keeps(sample.map(f64::from))) {
-                        list |= 1 << (usize::from(y - pixels[1]) * BLOCK + usize::from(x - pixels[0]));
-                        let [x0, y0, x1, y1] = found.unwrap_or([x, y, x, y]);
-                        found = Some([x0.min(x), y0.min(y), x1.max(x), y1.max(y)]);
-                    }
-                }
+    /// Lists the samples of a few pixels that the triangle covers (`covered`: the first of each) and all cuts keep. First and
+    /// last column and row of pixels with such a sample.
+    fn list_samples(
+        &mut self,
+        setup: &Setup,
+        (pixels, covered): ([u16; 4], u64),
+        cuts: impl Iterator<Item = Cut>,
+        raster: &Raster<'_>,
+    ) -> Option<[u16; 4]> {
+        let listed = self.samples.len();
+        self.samples.push(covered);
+        self.samples.extend((1..raster.pattern.len()).map(|s| raster.covered(setup, pixels, s)));
+        let lists = &mut self.samples[listed..];
+        let mut any = lists.iter().fold(0, |any, list| any | list);
+        let origin = [pixels[0], pixels[1]].map(usize::from);
+        for cut in cuts {
+            if any == 0 {
+                return None;
             }
-            self.samples.push(list);
+            any = 0;
+            for (s, list) in lists.iter_mut().enumerate() {
+                *list = keep(&cut, raster.pattern.position(s), origin, *list);
+                any |= *list;
+            }
         }
-        found
+        let columns = (1..BLOCK).fold(any, |columns, row| columns | any >> (BLOCK * row)) as u8;
+        (any != 0).then(|| {
+            let x = [columns.trailing_zeros(), 7 - columns.leading_zeros()].map(|x| pixels[0] + x as u16);
+            let y = [any.trailing_zeros() / 8, 7 - any.leading_zeros() / 8].map(|y| pixels[1] + y as u16);
+            [x[0], y[0], x[1], y[1]]
+        })
     }
 
     /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
     /// the cuts that matter.
-    fn cut_outline(
-        &mut self,
-        setup: &Setup,
-        mut around: [[f64; 2]; 2],
-        cuts: &[Cut],
-        raster: &Raster<'_>,
-    ) -> Option<[u16; 4]> {
+    fn cut_outline(&mut self, setup: &Setup, cuts: impl Iterator<Item = Cut>, raster: &Raster<'_>) -> Option<[u16; 4]> {
+        let mut around = around(setup);
         let [outline, scratch] = &mut self.outline;
         outline.clear();
         outline.extend(corners(setup));
         let first = self.cuts.len();
         for cut in cuts {
             if !cut.holds_box(around) && !cut.holds(outline) {
-                clip_outline(outline, scratch, cut);
+                clip_outline(outline, scratch, &cut);
                 around = bounds(outline);
-                self.cuts.push(*cut);
+                self.cuts.push(cut);
             }
         }
         let pixels = raster.pixels(around)?;
@@ -515,39 +559,41 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
 fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &mut [u64]) -> bool {
     let mut any = false;
     for (s, mask) in masks.iter_mut().enumerate() {
-        let offset = pattern.position(s);
-        let at = |column: usize, row: usize| {
-            let place = |k: usize, pixel: usize| ((origin[k] + pixel) as i32 * SUBPIXEL + offset[k]) as f64;
-            [place(0, column), place(1, row)]
-        };
         for cut in cuts {
             if *mask == 0 {
                 break;
             }
-            // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes
-            // no more to ask them.
-            if mask.count_ones() > CORNERS {
-                let last = BLOCK - 1;
-                let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
-                if keeps == [false; 4] {
-                    *mask = 0;
-                }
-                if keeps[1..].iter().all(|&k| k == keeps[0]) {
-                    continue;
-                }
-            }
-            let mut left = *mask;
-            while left != 0 {
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
-                    *mask &= !(1 << bit);
-                }
-            }
+            *mask = keep(cut, pattern.position(s), origin, *mask);
         }
         any |= *mask != 0;
     }
     any
+}
+
+/// What of a sample's bits, one for each of 8x8 pixels from `origin` on, a cut keeps. `offset` is the sample's place in a pixel.
+fn keep(cut: &Cut, offset: [i32; 2], origin: [usize; 2], mut mask: u64) -> u64 {
+    let at = |column: usize, row: usize| {
+        let place = |k: usize, pixel: usize| ((origin[k] + pixel) as i32 * SUBPIXEL + offset[k]) as f64;
+        [place(0, column), place(1, row)]
+    };
+    // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes no more
+    // to ask them.
+    if mask.count_ones() > CORNERS {
+        let last = BLOCK - 1;
+        let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
+        if keeps[1..].iter().all(|&k| k == keeps[0]) {
+            return if keeps[0] { mask } else { 0 };
+        }
+    }
+    let mut left = mask;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize;
+        left &= left - 1;
+        if !cut.keeps(at(bit % BLOCK, bit / BLOCK)) {
+            mask &= !(1 << bit);
+        }
+    }
+    mask
 }
 
 #[cfg(test)]
@@ -587,7 +633,8 @@ mod tests {
         let mut pieces = Pieces::default();
         let cut = Cut { a: 1.0, b: 0.0, c: -1280.0, positive: false };
         for cuts in [&[][..], &[cut], &[cut.opposite()], &[cut, cut.opposite()]] {
-            pieces.add(0, &triangle(), cuts, &raster);
+            let setup = triangle();
+            pieces.add(0, (&setup, raster.footprint(&setup).unwrap()), cuts.iter().copied(), &raster);
         }
         let bounds: Vec<_> = pieces.pieces.iter().map(|p| p.pixels).collect();
         // The last is the line itself: no pixel centre lies on it.
@@ -622,7 +669,9 @@ mod tests {
                 })
                 .collect();
             let mut pieces = Pieces::default();
-            let added = pieces.add(0, &setup, &cuts, &raster);
+            let added = raster
+                .footprint(&setup)
+                .is_some_and(|footprint| pieces.add(0, (&setup, footprint), cuts.iter().copied(), &raster));
             few += usize::from(raster.pixels([[0.0; 2], [f64::from(size); 2]]).is_some_and(|p| raster.are_few(p)));
             gone += usize::from(!added);
             for (x, y, s) in (0..12u16).flat_map(|y| (0..12u16).flat_map(move |x| (0..3).map(move |s| (x, y, s)))) {

@@ -222,7 +222,7 @@ impl Tree {
     }
 
     /// The cutters of a fragment by their numbers, and whether it lies on the positive side of each.
-    pub(crate) fn cuts(&self, fragment: u32) -> impl Iterator<Item = (u32, bool)> + '_ {
+    pub(crate) fn cuts(&self, fragment: u32) -> impl ExactSizeIterator<Item = (u32, bool)> + '_ {
         let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
         let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
         cuts.iter().map(|cut| (cut.node, cut.positive))

@@ -1,5 +1,5 @@
 //! Facets take different ways through the rasteriser; pictures must not tell which.
-//!
+
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 mod common;

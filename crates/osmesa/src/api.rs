@@ -4,12 +4,19 @@ use crate::attributes::{Attributes, tokens};
 use crate::current::{call, current, replace};
 use crate::environment::{say, tell};
 use crate::handle::{Handle, Machine};
-use crate::procedures;
+use crate::procedures::{self, Procedure, procedures};
 use std::ffi::{CStr, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use vitral_gl::Context;
 use vitral_gl::state::MAX_TEXTURE_SIZE;
+
+/// The functions of this file.
+pub(crate) static PROCEDURES: &[Procedure] = procedures! {
+    OSMesaColorClamp OSMesaCreateContext OSMesaCreateContextAttribs OSMesaCreateContextExt OSMesaDestroyContext
+    OSMesaGetColorBuffer OSMesaGetCurrentContext OSMesaGetDepthBuffer OSMesaGetIntegerv OSMesaGetProcAddress
+    OSMesaMakeCurrent OSMesaPixelStore OSMesaPostprocess
+};
 
 /// The longest list of attributes that is read: no list has more than one of each kind.
 const MOST_ATTRIBUTES: usize = 64;

@@ -4,11 +4,13 @@
 
 use crate::current::call;
 use crate::memory::Argument;
+use crate::procedures::{Procedure, procedures};
 
-/// Exports each name as a C function that calls the method of the current context.
+/// Exports each name as a C function that calls the method of the current context, and makes the table of them.
 macro_rules! entry_points {
     ($($($name:ident)+ => $method:ident $arguments:tt -> $result:ty;)+) => {
         $($(entry_points! { @ $name $method $arguments $result })+)+
+        pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($($name)+)+ };
     };
     (@ $name:ident $method:ident ($($argument:ident: $kind:ty),*) $result:ty) => {
         #[unsafe(no_mangle)]

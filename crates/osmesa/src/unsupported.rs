@@ -3,6 +3,7 @@
 #![allow(non_snake_case)]
 
 use crate::current::call;
+use crate::procedures::{Procedure, procedures};
 use vitral_gl::enums::INVALID_OPERATION;
 
 /// What a call of such a function does.
@@ -15,7 +16,7 @@ fn refuse(name: &'static str) -> usize {
     })
 }
 
-/// Exports each name as a C function that takes whatever it is given and returns 0.
+/// Exports each name as a C function that takes whatever it is given and returns 0, and makes the table of them.
 macro_rules! unsupported {
     ($($name:ident)+) => {
         $(
@@ -24,6 +25,7 @@ macro_rules! unsupported {
                 refuse(stringify!($name))
             }
         )+
+        pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($name)+ };
     };
 }
 

@@ -5,103 +5,59 @@
 //! `--transparency none`; the orders and models are those of the registry, *translucent* blurs what is behind every surface.
 //! `VITRAL_THREADS` limits the threads.
 
-use std::time::Instant;
+mod turntable;
+
+use turntable::{Arguments, Way};
 use vitral::render::Transparency;
 use vitral::render::transparency::registry::{MODELS, ORDERS};
-use vitral::{Axis, Error, LoadOptions, Renderer, Scene, default_up, execution, load, override_material};
+use vitral::{Error, Renderer, override_material};
 
-/// Frames of the turntable.
-const FRAMES: usize = 8;
 /// A frame of the default order takes at most so many times an opaque one.
 const MOST: f64 = 1.6;
 
-/// A way to make frames: its renderer, with the settings.
-struct Way {
-    name: String,
-    renderer: Renderer,
-    fastest: [f64; FRAMES],
-}
-
-fn way(name: &str, scene: &Scene, threads: usize, up: Axis) -> Result<Way, Error> {
-    let mut renderer = Renderer::with_execution(scene.clone(), execution(threads)?)?;
-    renderer.up = up;
-    (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (1024, 768, 4);
-    Ok(Way { name: name.to_owned(), renderer, fastest: [f64::INFINITY; FRAMES] })
-}
-
-/// All ways, the opaque one first.
-fn ways(model: &str, threads: usize) -> Result<Vec<Way>, Error> {
-    let mut scene = load(model, &LoadOptions::default(), &execution(threads)?.workers)?;
+/// All ways, the opaque one first, each with its renderer.
+fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
+    let mut scene = arguments.scene()?;
     if scene.materials.iter().all(|m| m.opacity >= 1.0) {
         override_material(&mut scene, "*", "kt", "0.6")?;
     }
     let mut blurred = scene.clone();
     override_material(&mut blurred, "*", "transmission", "translucent")?;
-    let up = default_up(model);
-    let mut ways = vec![way("opaque", &scene, threads, up)?];
-    ways[0].renderer.settings.transparency = Transparency::None;
+    let renderer = || arguments.renderer(scene.clone());
+
+    let mut ways = vec![(Way::new("opaque", None), renderer()?)];
+    ways[0].1.settings.transparency = Transparency::None;
     for order in ORDERS {
-        let mut way = way(order.name, &scene, threads, up)?;
-        way.renderer.settings.transparency_order = order.value;
+        let mut renderer = renderer()?;
+        renderer.settings.transparency_order = order.value;
         let visibility = if order.needs_list { "bsp" } else { "z-buffer" };
-        visibility.clone_into(&mut way.renderer.settings.visibility);
-        ways.push(way);
+        visibility.clone_into(&mut renderer.settings.visibility);
+        let most = (order.name == ORDERS[0].name).then_some(MOST);
+        ways.push((Way::new(order.name, most), renderer));
     }
-    for row in MODELS.iter().filter(|m| m.value != Transparency::default() && m.value != Transparency::None) {
-        let mut way = way(row.name, &scene, threads, up)?;
-        way.renderer.settings.transparency = row.value;
-        ways.push(way);
+    for model in MODELS.iter().filter(|m| m.value != Transparency::default() && m.value != Transparency::None) {
+        let mut renderer = renderer()?;
+        renderer.settings.transparency = model.value;
+        ways.push((Way::new(model.name, None), renderer));
     }
-    ways.push(way("translucent", &blurred, threads, up)?);
+    ways.push((Way::new("translucent", None), arguments.renderer(blurred)?));
     Ok(ways)
 }
 
-impl Way {
-    /// Renders the turntable and keeps each frame's least milliseconds.
-    fn turn(&mut self) -> Result<(), Error> {
-        let cameras = self.renderer.turntable_cameras(FRAMES);
-        // What outlives a frame is made before.
-        self.renderer.render_from(&cameras[0])?;
-        for (camera, least) in cameras.iter().zip(&mut self.fastest) {
-            let start = Instant::now();
-            self.renderer.render_from(camera)?;
-            *least = least.min(start.elapsed().as_secs_f64() * 1e3);
+fn measure(arguments: &Arguments) -> Result<(), Error> {
+    let mut ways = ways(arguments)?;
+    ways.retain(|(way, _)| arguments.wants(&way.name));
+    for _ in 0..arguments.rounds {
+        for (way, renderer) in &mut ways {
+            way.turn(renderer, |_, _| ())?;
         }
-        Ok(())
     }
-}
-
-fn measure(model: &str, rounds: usize, only: &[String]) -> Result<(), Error> {
-    let threads = std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
-    let mut ways = ways(model, threads)?;
-    ways.retain(|w| only.is_empty() || only.contains(&w.name));
-    // In turns, and of each frame the fastest time: what else the machine does takes from all alike.
-    for _ in 0..rounds {
-        ways.iter_mut().try_for_each(Way::turn)?;
-    }
-    let Some(first) = ways.first() else { return Ok(()) };
-    let mean = |way: &Way| way.fastest.iter().sum::<f64>() / FRAMES as f64;
-    println!("{model}: {} triangles, {rounds} rounds of {FRAMES} frames", first.renderer.world().facet_count);
-    println!("| way | ms a frame | {} = 1 | at most |", first.name);
-    println!("|---|---|---|---|");
-    for way in &ways {
-        let (time, ratio) = (mean(way), mean(way) / mean(first));
-        let missed = if ratio > MOST { " missed" } else { "" };
-        let most = if way.name == ORDERS[0].name { format!("{MOST}{missed}") } else { "-".to_owned() };
-        println!("| {} | {time:.1} | {ratio:.2} | {most} |", way.name);
+    if let Some((_, first)) = ways.first() {
+        arguments.print("transparency", first, ways.iter().map(|(way, _)| way));
     }
     Ok(())
 }
 
 fn main() -> std::process::ExitCode {
-    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
-    let model = arguments.next().unwrap_or_else(|| "builtin:teapot".to_owned());
-    let rounds = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(5);
-    match measure(&model, rounds, &arguments.collect::<Vec<_>>()) {
-        Ok(()) => 0.into(),
-        Err(error) => {
-            eprintln!("transparency: {error}");
-            error.exit_code().into()
-        }
-    }
+    turntable::run("transparency", measure)
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask sanitize`: tools that see wrong uses of memory watch libOSMesa, the one crate with unsafe code.
+//! `cargo xtask sanitize`: tools that see wrong uses of memory watch libOSMesa, the one crate that handles pointers of C.
 //!
 //! * Miri interprets the unit tests of `crates/osmesa`, among them a client of the C functions (`client.rs`).
 //! * Valgrind's memcheck watches all scenes, threads, forks and endings of `scene_runner`, and the client in C.

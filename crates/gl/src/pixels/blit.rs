@@ -1,5 +1,6 @@
 //! `BlitFramebuffer`.
 
+use super::Failure;
 use super::copy_plane::{
     Axis, Job, average_colors, average_words, converted, copy, first_sample, resolved, scale_linear, scale_nearest,
 };
@@ -21,8 +22,6 @@ struct Blit {
     mask: u32,
     filter: u32,
 }
-
-type Failure = (u32, &'static str);
 
 /// What is copied where.
 struct Plan {

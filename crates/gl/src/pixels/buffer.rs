@@ -3,12 +3,11 @@
 //! What reads or writes images asks for a memory and an address. With a buffer bound the memory is that buffer's data store,
 //! as it is now, and the address is an offset.
 
+use super::Failure;
 use crate::Context;
 use crate::enums::*;
 use crate::memory::ClientMemory;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-type Failure = (u32, &'static str);
 
 /// Where the store begins: an offset of 0 must not look like no address.
 const START: usize = 1 << 16;

@@ -1,5 +1,6 @@
 //! `Clear`, and which colour buffers are drawn to and read from.
 
+use super::Failure;
 use super::image::Shared;
 use crate::Context;
 use crate::enums::*;
@@ -79,7 +80,7 @@ impl Context {
     }
 
     /// Which buffers `DrawBuffer` and `ReadBuffer` may name.
-    pub(crate) fn buffer_choice(&self, buffer: u32, object: bool, draw: bool) -> Result<(), (u32, &'static str)> {
+    pub(crate) fn buffer_choice(&self, buffer: u32, object: bool, draw: bool) -> Result<(), Failure> {
         let colors = COLOR_ATTACHMENT0..=COLOR_ATTACHMENT15;
         let exists = match buffer {
             NONE => true,

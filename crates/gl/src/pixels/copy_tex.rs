@@ -1,5 +1,6 @@
 //! `CopyTexImage` and `CopyTexSubImage`: from the read framebuffer to a texture.
 
+use super::Failure;
 use super::image::lock;
 use super::internal_format::InternalFormat;
 use super::read_pixels::{Rectangle, inside, read_colors, read_depths, read_stencils, read_words};
@@ -62,7 +63,7 @@ impl Context {
         });
     }
 
-    fn exec_copy_tex_image(&mut self, arguments: &ImageArguments, x: i32, y: i32) -> Result<(), (u32, &'static str)> {
+    fn exec_copy_tex_image(&mut self, arguments: &ImageArguments, x: i32, y: i32) -> Result<(), Failure> {
         if InternalFormat::of_texture(arguments.internal).is_none() || (1..=4).contains(&arguments.internal) {
             return Err((INVALID_ENUM, "internalformat is not an internal format of this call"));
         }
@@ -107,7 +108,7 @@ impl Context {
         });
     }
 
-    fn exec_copy_tex_sub_image(&mut self, arguments: &BoxArguments, x: i32, y: i32) -> Result<(), (u32, &'static str)> {
+    fn exec_copy_tex_sub_image(&mut self, arguments: &BoxArguments, x: i32, y: i32) -> Result<(), Failure> {
         let mut checked = self.check_box(arguments)?;
         let Some(surfaces) = self.read_surfaces(arguments.call, true) else { return Ok(()) };
         if !has_source(&surfaces, &checked.format) {

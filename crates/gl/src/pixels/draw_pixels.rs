@@ -1,5 +1,6 @@
 //! `DrawPixels` and `CopyPixels`: recorded images at the raster position.
 
+use super::Failure;
 use super::decode;
 use super::format::{Content, PixelFormat};
 use super::image::lock;
@@ -100,12 +101,7 @@ impl Context {
         self.listable(move |c| c.exec_draw_pixels([width, height], pair, image.as_deref()));
     }
 
-    fn exec_draw_pixels(
-        &mut self,
-        size: [i32; 2],
-        format: Result<PixelFormat, (u32, &'static str)>,
-        image: Option<&ClientImage>,
-    ) {
+    fn exec_draw_pixels(&mut self, size: [i32; 2], format: Result<PixelFormat, Failure>, image: Option<&ClientImage>) {
         const CALL: &str = "glDrawPixels";
         if !self.outside_begin(CALL) {
             return;

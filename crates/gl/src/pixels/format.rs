@@ -1,5 +1,6 @@
 //! Formats and types of pixels in the client's memory.
 
+use super::Failure;
 use crate::enums::*;
 
 /// What a pixel holds.
@@ -52,7 +53,7 @@ fn packed(kind: u32) -> Option<Packed> {
 
 impl PixelFormat {
     /// The pair, or the error that the specification gives it.
-    pub(crate) fn new(format: u32, kind: u32) -> Result<Self, (u32, &'static str)> {
+    pub(crate) fn new(format: u32, kind: u32) -> Result<Self, Failure> {
         let pair = Self { format, kind };
         let known = matches!(
             format,

@@ -1,5 +1,6 @@
 //! Framebuffer objects: names, bindings, attachments.
 
+use super::Failure;
 use super::image::lock;
 use super::names;
 use super::renderbuffer::RenderbufferHandle;
@@ -87,7 +88,7 @@ impl FramebufferBindings {
 }
 
 /// The attachment points that a token names.
-fn points(attachment: u32) -> Result<&'static [usize], (u32, &'static str)> {
+fn points(attachment: u32) -> Result<&'static [usize], Failure> {
     const COLORS: [[usize; 1]; 8] = [[0], [1], [2], [3], [4], [5], [6], [7]];
     match attachment {
         COLOR_ATTACHMENT0..=COLOR_ATTACHMENT15 => COLORS

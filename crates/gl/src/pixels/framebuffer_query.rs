@@ -1,5 +1,6 @@
 //! `GetFramebufferAttachmentParameteriv`.
 
+use super::Failure;
 use super::framebuffer::{Attached, DEPTH_POINT, STENCIL_POINT};
 use super::image::lock;
 use super::internal_format::{Bits, Storage};
@@ -7,8 +8,6 @@ use super::texture::slot;
 use crate::Context;
 use crate::enums::*;
 use crate::state::MAX_COLOR_ATTACHMENTS;
-
-type Failure = (u32, &'static str);
 
 impl Context {
     /// `glGetFramebufferAttachmentParameteriv`.

@@ -51,3 +51,6 @@ pub(crate) use framebuffer::FramebufferBindings;
 pub(crate) use renderbuffer::RenderbufferHandle;
 pub(crate) use sampler::SamplerHandle;
 pub(crate) use texture::TextureHandle;
+
+/// The error that a call records, and why.
+type Failure = (u32, &'static str);

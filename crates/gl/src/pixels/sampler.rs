@@ -5,7 +5,7 @@
 
 use super::image::lock;
 use super::names;
-use super::tex_parameter::{Value, get, integer, read_vector, set};
+use super::tex_parameter::{Value, get, integers, read_vector, set};
 use super::texture::{TextureParameters, slot};
 use crate::Context;
 use crate::enums::*;
@@ -41,21 +41,6 @@ fn is_parameter(pname: u32) -> bool {
             | TEXTURE_COMPARE_FUNC
             | TEXTURE_MAX_ANISOTROPY_EXT
     )
-}
-
-impl TextureParameters {
-    /// These parameters with those of a sampler object.
-    pub(crate) fn sampled_by(&self, sampler: &Self) -> Self {
-        let own = self.clone();
-        Self {
-            priority: own.priority,
-            levels: own.levels,
-            depth_mode: own.depth_mode,
-            generate_mipmap: own.generate_mipmap,
-            swizzle: own.swizzle,
-            ..sampler.clone()
-        }
-    }
 }
 
 impl Context {
@@ -196,17 +181,14 @@ impl Context {
 
     /// `glGetSamplerParameteriv`.
     pub fn get_sampler_parameteriv(&mut self, sampler: u32, pname: u32, params: usize) {
-        let Some((values, color)) = self.get_sampler("glGetSamplerParameteriv", sampler, pname) else { return };
-        let convert = |v: f64| if color { integer(v as f32) } else { v.round() as i32 };
-        let values: Vec<i32> = values.into_iter().map(convert).collect();
-        self.give_numbers(params, &values);
+        let Some(found) = self.get_sampler("glGetSamplerParameteriv", sampler, pname) else { return };
+        self.give_numbers(params, &integers(found));
     }
 
     /// As `glGetSamplerParameteriv`, without converting a border colour.
     pub fn get_sampler_parameter_iiv(&mut self, sampler: u32, pname: u32, params: usize) {
         let Some((values, _)) = self.get_sampler("glGetSamplerParameterIiv", sampler, pname) else { return };
-        let values: Vec<i32> = values.into_iter().map(|v| v.round() as i32).collect();
-        self.give_numbers(params, &values);
+        self.give_numbers(params, &integers((values, false)));
     }
 
     /// As [`Self::get_sampler_parameter_iiv`], unsigned.
@@ -214,12 +196,6 @@ impl Context {
         let Some((values, _)) = self.get_sampler("glGetSamplerParameterIuiv", sampler, pname) else { return };
         let values: Vec<u32> = values.into_iter().map(|v| v.round() as u32).collect();
         self.give_numbers(params, &values);
-    }
-
-    fn give_numbers<T: bytemuck::NoUninit>(&self, address: usize, values: &[T]) {
-        if address != 0 {
-            self.memory.write(address, bytemuck::cast_slice(values));
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Images in the client's memory: rows, strides and skips of `PixelStore`; byte and bit order.
 
+use super::Failure;
 use super::format::PixelFormat;
 use crate::Context;
 use crate::enums::{BITMAP, INVALID_OPERATION};
@@ -240,7 +241,7 @@ impl Context {
         size: [usize; 3],
         volume: bool,
         address: usize,
-    ) -> Result<Option<ClientImage>, (u32, &'static str)> {
+    ) -> Result<Option<ClientImage>, Failure> {
         let bound = self.client.unpack.buffer != 0;
         if address == 0 && !bound {
             return Ok(None);

@@ -1,5 +1,6 @@
 //! `TexImage`: new images of textures and proxies.
 
+use super::Failure;
 use super::format::{Content, PixelFormat};
 use super::image::{TextureImage, lock};
 use super::internal_format::InternalFormat;
@@ -35,8 +36,6 @@ pub(crate) struct CheckedImage {
     pub too_large: bool,
 }
 
-type Failure = (u32, &'static str);
-
 /// Size as unsigned numbers if each is neither negative nor beyond every limit.
 pub(crate) fn plausible(size: [i32; 3]) -> Option<[usize; 3]> {
     let largest = crate::state::MAX_TEXTURE_SIZE as i32 + 2;
@@ -65,13 +64,7 @@ impl ImageArguments {
                 .filter(|&s| s >= 2 * border)
                 .ok_or((INVALID_VALUE, "a size is negative or smaller than the borders"))?;
         }
-        if target.slot == slot::CUBE && size[0] != size[1] {
-            return Err((INVALID_VALUE, "a cube map's face is not square"));
-        }
-        // OpenGL 1.5 has no depth cube maps; 3.0 has, and Mesa in every version.
-        if format.has_depth() && target.slot == slot::THREE {
-            return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
-        }
+        check_shape(target, &format, size)?;
         let limit = (target.max_size() >> level) as u32 + 2 * border;
         let too_large = !TextureImage::fits(&format, size);
         let beyond = size[..self.dimensions].iter().any(|&s| s > limit);
@@ -83,6 +76,18 @@ impl ImageArguments {
         }
         Ok(CheckedImage { target, level, format, size, border, too_large: too_large || beyond })
     }
+}
+
+/// Whether a target takes images of this format and shape.
+pub(super) fn check_shape(target: ImageTarget, format: &InternalFormat, size: [u32; 3]) -> Result<(), Failure> {
+    if target.slot == slot::CUBE && size[0] != size[1] {
+        return Err((INVALID_VALUE, "a cube map's face is not square"));
+    }
+    // OpenGL 1.5 has no depth cube maps; 3.0 has, and Mesa in every version.
+    if format.has_depth() && target.slot == slot::THREE {
+        return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
+    }
+    Ok(())
 }
 
 /// Known tokens that are no internal format here give `INVALID_ENUM`: specific compressed formats.
@@ -253,9 +258,10 @@ impl Context {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{BASE, context, put, read_u32};
+    use super::super::testing::{BASE, context, context_with, put, read_u32};
     use super::*;
-    use std::sync::Arc;
+    use std::sync::{Arc, Weak};
+    use vitral_raster::forward::Texture;
 
     fn level_parameter(c: &mut Context, target: u32, level: i32, pname: u32) -> u32 {
         c.get_tex_level_parameteriv(target, level, pname, BASE + 1024);
@@ -274,34 +280,44 @@ mod tests {
         assert_eq!(level_parameter(&mut c, TEXTURE_2D, 1, TEXTURE_INTERNAL_FORMAT), 1);
     }
 
-    #[test]
-    fn images_do_not_pile_up_behind_draws() {
-        let mut c = super::super::testing::context_with(4, 4);
+    /// Gives the texture a new image of 16 MiB.
+    fn give_image(c: &mut Context) {
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+    }
+
+    /// A context that draws with such an image.
+    fn textured() -> Context {
+        let mut c = context_with(4, 4);
         c.enable(TEXTURE_2D);
         c.tex_parameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
-        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        give_image(&mut c);
+        c
+    }
+
+    /// Draws with the texture as it is, which the draw holds while it waits.
+    fn draw(c: &mut Context) -> Weak<Texture> {
         c.rectf(0.0, 0.0, 1.0, 1.0);
-        let drawn = Arc::downgrade(&c.sampled_texture(0).unwrap());
+        Arc::downgrade(&c.sampled_texture(0).unwrap())
+    }
+
+    #[test]
+    fn images_do_not_pile_up_behind_draws() {
+        let mut c = textured();
+        let drawn = draw(&mut c);
         // The second draw holds another image, and both wait.
-        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
-        c.rectf(0.0, 0.0, 1.0, 1.0);
+        give_image(&mut c);
+        draw(&mut c);
         assert_eq!(drawn.strong_count(), 1);
-        for _ in 0..4 {
-            c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
-        }
+        (0..4).for_each(|_| give_image(&mut c));
         assert_eq!(drawn.strong_count(), 0);
     }
 
     #[test]
     fn parts_do_not_pile_up_behind_draws() {
-        let mut c = super::super::testing::context_with(4, 4);
-        c.enable(TEXTURE_2D);
-        c.tex_parameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
-        c.tex_image_2d(TEXTURE_2D, 0, RGBA8 as i32, 2048, 2048, 0, RGBA, UNSIGNED_BYTE, 0);
+        let mut c = textured();
         let mut drawn = Vec::new();
         for _ in 0..9 {
-            c.rectf(0.0, 0.0, 1.0, 1.0);
-            drawn.push(Arc::downgrade(&c.sampled_texture(0).unwrap()));
+            drawn.push(draw(&mut c));
             // One texel makes a copy of the level, since the draw waits.
             c.tex_sub_image_2d(TEXTURE_2D, 0, 0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE);
         }

@@ -1,5 +1,6 @@
 //! `TexParameter` and its queries.
 
+use super::Failure;
 use super::image::lock;
 use super::texture::{ImageTarget, MAX_ANISOTROPY, TextureParameters, slot, slot_of};
 use crate::Context;
@@ -20,9 +21,10 @@ fn component(value: i32) -> f32 {
     ((2.0 * f64::from(value) + 1.0) / f64::from(u32::MAX)) as f32
 }
 
-/// A component of a colour as an integer.
-pub(super) fn integer(component: f32) -> i32 {
-    ((f64::from(u32::MAX) * f64::from(component) - 1.0) / 2.0).round() as i32
+/// What [`get`] gives, as integers: components of a colour by their whole range, others rounded.
+pub(super) fn integers((values, color): (Vec<f64>, bool)) -> Vec<i32> {
+    let convert = |v: f64| if color { (f64::from(u32::MAX) * v - 1.0) / 2.0 } else { v };
+    values.into_iter().map(|v| convert(v).round() as i32).collect()
 }
 
 impl Value {
@@ -61,8 +63,6 @@ impl Value {
         }
     }
 }
-
-type Failure = (u32, &'static str);
 
 fn token_of(value: Value, allowed: &[u32]) -> Result<u32, Failure> {
     let token = value.token();
@@ -198,9 +198,7 @@ impl Context {
             let mut parameters = texture.parameters.clone();
             let result = set(&mut parameters, slot, pname, value);
             if let Some(levels) = texture.immutable_levels() {
-                let [base, last] = parameters.levels;
-                let base = base.min(levels as i32 - 1);
-                parameters.levels = [base, last.clamp(base, levels as i32 - 1)];
+                parameters.bound_levels(levels);
             }
             match result {
                 Err((error, why)) => {
@@ -267,22 +265,23 @@ impl Context {
 
     /// `glGetTexParameterfv`.
     pub fn get_tex_parameterfv(&mut self, target: u32, pname: u32, params: usize) {
-        if let Some((values, _)) = self.parameter_values("glGetTexParameterfv", target, pname)
-            && params != 0
-        {
+        if let Some((values, _)) = self.parameter_values("glGetTexParameterfv", target, pname) {
             let values: Vec<f32> = values.iter().map(|&v| v as f32).collect();
-            self.memory.write(params, bytemuck::cast_slice(&values));
+            self.give_numbers(params, &values);
         }
     }
 
     /// `glGetTexParameteriv`.
     pub fn get_tex_parameteriv(&mut self, target: u32, pname: u32, params: usize) {
-        if let Some((values, color)) = self.parameter_values("glGetTexParameteriv", target, pname)
-            && params != 0
-        {
-            let convert = |v: f64| if color { integer(v as f32) } else { v.round() as i32 };
-            let values: Vec<i32> = values.into_iter().map(convert).collect();
-            self.memory.write(params, bytemuck::cast_slice(&values));
+        if let Some(found) = self.parameter_values("glGetTexParameteriv", target, pname) {
+            self.give_numbers(params, &integers(found));
+        }
+    }
+
+    /// Writes a parameter's values where the client wants them.
+    pub(super) fn give_numbers<T: bytemuck::NoUninit>(&self, address: usize, values: &[T]) {
+        if address != 0 {
+            self.memory.write(address, bytemuck::cast_slice(values));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! `GetTexImage` and `GetTexLevelParameter`.
 
+use super::Failure;
 use super::encode;
 use super::format::{Content, PixelFormat};
 use super::image::lock;
@@ -9,8 +10,6 @@ use super::texture::{ImageTarget, TextureObject};
 use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
-
-type Failure = (u32, &'static str);
 
 /// A level's parameter. Levels without an image have the initial values.
 fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname: u32) -> Result<i32, Failure> {

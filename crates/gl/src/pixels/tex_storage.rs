@@ -2,13 +2,13 @@
 //!
 //! Source: the ARB_texture_storage specification.
 
+use super::Failure;
 use super::image::{TextureImage, lock};
 use super::internal_format::{InternalFormat, is_sized};
+use super::tex_image::check_shape;
 use super::texture::{ImageTarget, slot, slot_of};
 use crate::Context;
 use crate::enums::*;
-
-type Failure = (u32, &'static str);
 
 /// A target that was found valid, and the most levels that an image of `size` has.
 fn check_target(target: u32, dimensions: usize, size: [u32; 3]) -> Result<(ImageTarget, usize), Failure> {
@@ -61,12 +61,7 @@ impl Context {
         }
         let size = size.map(|s| s as u32);
         let (target, most) = check_target(target, dimensions, size)?;
-        if target.slot == slot::CUBE && size[0] != size[1] {
-            return Err((INVALID_VALUE, "a cube map's face is not square"));
-        }
-        if format.has_depth() && target.slot == slot::THREE {
-            return Err((INVALID_OPERATION, "depth formats are not for 3D textures"));
-        }
+        check_shape(target, &format, size)?;
         if levels as usize > most {
             return Err((INVALID_OPERATION, "images of this size have fewer levels"));
         }
@@ -90,9 +85,7 @@ impl Context {
         }
         texture.allocate(format, levels as usize, size);
         texture.immutable = true;
-        let bounds = &mut texture.parameters.levels;
-        bounds[0] = bounds[0].min(levels - 1);
-        bounds[1] = bounds[1].clamp(bounds[0], levels - 1);
+        texture.parameters.bound_levels(levels as usize);
         drop(texture);
         self.shared.storage_changed();
         Ok(())

@@ -1,5 +1,6 @@
 //! `TexSubImage`: new texels for a part of an image; and compressed images, of which there are none.
 
+use super::Failure;
 use super::format::PixelFormat;
 use super::image::lock;
 use super::store::ClientImage;
@@ -34,7 +35,7 @@ pub(crate) struct CheckedBox {
 
 impl Context {
     /// Checks a box against the image that it names.
-    pub(crate) fn check_box(&mut self, arguments: &BoxArguments) -> Result<CheckedBox, (u32, &'static str)> {
+    pub(crate) fn check_box(&mut self, arguments: &BoxArguments) -> Result<CheckedBox, Failure> {
         let target = ImageTarget::new(arguments.target, Some(arguments.dimensions))
             .filter(|t| !t.proxy)
             .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
@@ -110,7 +111,7 @@ impl Context {
     fn exec_tex_sub_image(
         &mut self,
         arguments: &BoxArguments,
-        format: Result<PixelFormat, (u32, &'static str)>,
+        format: Result<PixelFormat, Failure>,
         image: Option<Cow<'_, ClientImage>>,
     ) {
         if !self.outside_begin(arguments.call) {

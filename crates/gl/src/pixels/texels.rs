@@ -51,16 +51,11 @@ pub(crate) fn from_client(image: Cow<'_, ClientImage>, format: &InternalFormat, 
     if !matches!(format.storage, Storage::Unorm8 | Storage::Srgb8) {
         return from_colors(decode::colors(&image, transfer), format);
     }
-    let (kept, image) = match transfer.keeps_colors() {
-        true => match decode::own_words(image) {
-            Ok(words) => return from_words(words, format),
-            Err(image) => (decode::words(&image), image),
-        },
-        false => (None, image),
+    let image = if transfer.keeps_colors() { decode::words(image) } else { Err(image) };
+    let image = match image {
+        Ok(words) => return from_words(words, format),
+        Err(image) => image,
     };
-    if let Some(words) = kept {
-        return from_words(words, format);
-    }
     let mut words = Vec::with_capacity(image.size.iter().product());
     decode::each_colors(&image, transfer, |colors| {
         words.extend(colors.iter().map(|&c| format.expand_word(word_from_color(c))));

@@ -62,8 +62,54 @@ impl TextureParameters {
     }
 
     /// Whether minification uses more than the base level.
-    pub(crate) fn mipmapped(&self) -> bool {
+    fn mipmapped(&self) -> bool {
         !matches!(self.min, NEAREST | LINEAR)
+    }
+
+    /// Keeps the range of levels within the `count` levels of an immutable texture.
+    pub(crate) fn bound_levels(&mut self, count: usize) {
+        let last = count as i32 - 1;
+        let [base, max] = self.levels.map(|level| level.min(last));
+        self.levels = [base, max.max(base)];
+    }
+
+    /// How texels are looked up, as the rasteriser has it.
+    fn sampler(&self, seamless: bool) -> Sampler {
+        let filter = |token| match token {
+            NEAREST => Filter::Nearest,
+            LINEAR => Filter::Linear,
+            NEAREST_MIPMAP_NEAREST => Filter::NearestMipmapNearest,
+            LINEAR_MIPMAP_NEAREST => Filter::LinearMipmapNearest,
+            NEAREST_MIPMAP_LINEAR => Filter::NearestMipmapLinear,
+            _ => Filter::LinearMipmapLinear,
+        };
+        let wrap = |token| match token {
+            CLAMP => Wrap::Clamp,
+            CLAMP_TO_EDGE => Wrap::ClampToEdge,
+            CLAMP_TO_BORDER => Wrap::ClampToBorder,
+            MIRRORED_REPEAT => Wrap::MirroredRepeat,
+            _ => Wrap::Repeat,
+        };
+        let compare = match self.compare_func {
+            NEVER => Compare::Never,
+            LESS => Compare::Less,
+            EQUAL => Compare::Equal,
+            LEQUAL => Compare::LessOrEqual,
+            GREATER => Compare::Greater,
+            NOTEQUAL => Compare::NotEqual,
+            GEQUAL => Compare::GreaterOrEqual,
+            _ => Compare::Always,
+        };
+        Sampler {
+            min: filter(self.min),
+            mag: filter(self.mag),
+            wrap: self.wrap.map(wrap),
+            border: self.border,
+            lod: self.lod,
+            anisotropy: self.anisotropy,
+            compare: (self.compare_mode == COMPARE_R_TO_TEXTURE).then_some(compare),
+            seamless,
+        }
     }
 }
 
@@ -172,15 +218,15 @@ impl TextureObject {
         std::array::from_fn(|i| if i < used { (size[i] / 2).max(1) } else { size[i] })
     }
 
-    /// The range of levels to sample, if the texture is complete.
-    fn complete_levels(&self) -> Option<(usize, usize)> {
+    /// The range of levels to sample, if the texture is complete for that.
+    fn complete_levels(&self, mipmapped: bool) -> Option<(usize, usize)> {
         let base = self.base_level()?;
         let first = self.peek(0, base)?;
         let mut size = self.inner_size(first);
         if size.contains(&0) || (self.slot == slot::CUBE && size[0] != size[1]) {
             return None;
         }
-        let last = if self.parameters.mipmapped() { self.last_level(base)? } else { base };
+        let last = if mipmapped { self.last_level(base)? } else { base };
         for level in base..=last {
             for face in 0..self.faces.len() {
                 let image = self.peek(face, level)?;
@@ -229,18 +275,15 @@ impl TextureObject {
         {
             return texture.clone();
         }
-        let own = self.parameters.clone();
-        if let Some(sampler) = sampler {
-            self.parameters = own.sampled_by(sampler);
-        }
-        let texture = self.build(seamless);
-        self.parameters = own;
+        let lookup = sampler.unwrap_or(&self.parameters);
+        let (mipmapped, lookup) = (lookup.mipmapped(), lookup.sampler(seamless));
+        let texture = self.build(mipmapped, lookup);
         self.snapshot = Some((texture.clone(), seamless, sampler.cloned()));
         texture
     }
 
-    fn build(&mut self, seamless: bool) -> Option<Arc<Texture>> {
-        let (base, last) = self.complete_levels()?;
+    fn build(&mut self, mipmapped: bool, mut sampler: Sampler) -> Option<Arc<Texture>> {
+        let (base, last) = self.complete_levels(mipmapped)?;
         let format = self.peek(0, base)?.format;
         let cube = self.slot == slot::CUBE;
         let faces: Vec<Vec<Arc<Level>>> = self
@@ -266,7 +309,6 @@ impl TextureObject {
             _ => BaseFormat::Luminance,
         };
         let depth = format.base_format() == BaseFormat::Depth;
-        let mut sampler = sampler(&self.parameters, seamless);
         sampler.compare = sampler.compare.filter(|_| depth);
         if format.component_type() == UNSIGNED_NORMALIZED {
             sampler.border = sampler.border.map(super::transfer::clamp_unit);
@@ -285,44 +327,6 @@ fn swizzle(token: u32) -> Swizzle {
         ALPHA => Swizzle::Alpha,
         ONE => Swizzle::One,
         _ => Swizzle::Zero,
-    }
-}
-
-fn sampler(parameters: &TextureParameters, seamless: bool) -> Sampler {
-    let filter = |token| match token {
-        NEAREST => Filter::Nearest,
-        LINEAR => Filter::Linear,
-        NEAREST_MIPMAP_NEAREST => Filter::NearestMipmapNearest,
-        LINEAR_MIPMAP_NEAREST => Filter::LinearMipmapNearest,
-        NEAREST_MIPMAP_LINEAR => Filter::NearestMipmapLinear,
-        _ => Filter::LinearMipmapLinear,
-    };
-    let wrap = |token| match token {
-        CLAMP => Wrap::Clamp,
-        CLAMP_TO_EDGE => Wrap::ClampToEdge,
-        CLAMP_TO_BORDER => Wrap::ClampToBorder,
-        MIRRORED_REPEAT => Wrap::MirroredRepeat,
-        _ => Wrap::Repeat,
-    };
-    let compare = match parameters.compare_func {
-        NEVER => Compare::Never,
-        LESS => Compare::Less,
-        EQUAL => Compare::Equal,
-        LEQUAL => Compare::LessOrEqual,
-        GREATER => Compare::Greater,
-        NOTEQUAL => Compare::NotEqual,
-        GEQUAL => Compare::GreaterOrEqual,
-        _ => Compare::Always,
-    };
-    Sampler {
-        min: filter(parameters.min),
-        mag: filter(parameters.mag),
-        wrap: parameters.wrap.map(wrap),
-        border: parameters.border,
-        lod: parameters.lod,
-        anisotropy: parameters.anisotropy,
-        compare: (parameters.compare_mode == COMPARE_R_TO_TEXTURE).then_some(compare),
-        seamless,
     }
 }
 

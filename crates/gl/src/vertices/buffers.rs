@@ -316,27 +316,27 @@ impl Context {
         size: isize,
     ) {
         const CALL: &str = "glCopyBufferSubData";
-        let same = self.buffer_binding(CALL, read).map(|name| *name);
-        let same = same.is_some() && same == self.buffer_binding(CALL, write).map(|name| *name);
-        let source = self.with_buffer(CALL, read, |buffer, _| {
+        let Some(source) = self.buffer_binding(CALL, read).copied() else { return };
+        let Some(target) = self.buffer_binding(CALL, write).copied() else { return };
+        let part = self.with_buffer(CALL, read, |buffer, _| {
             let range = buffer.range(read_offset, size)?;
             match buffer.is_mapped() {
                 true => Err(MAPPED),
                 false => Ok((buffer.bytes.clone(), range)),
             }
         });
-        let Some((bytes, from)) = source else { return };
+        let Some((bytes, from)) = part else { return };
         self.with_buffer(CALL, write, |buffer, _| {
             let to = buffer.range(write_offset, size)?;
             if buffer.is_mapped() {
                 return Err(MAPPED);
             }
-            if same && from.start < to.end && to.start < from.end {
+            if source == target && from.start < to.end && to.start < from.end {
                 return Err((enums::INVALID_VALUE, "the ranges overlap"));
             }
             if !from.is_empty() {
                 buffer.version = new_version();
-                if same {
+                if source == target {
                     drop(bytes);
                     Arc::make_mut(&mut buffer.bytes).copy_within(from, to.start);
                 } else {

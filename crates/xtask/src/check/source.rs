@@ -4,11 +4,8 @@
 use super::floors;
 use super::tokens::{Token, in_tests, tokens};
 
-/// No file is longer, except tables that say so.
+/// No file is longer.
 const MOST_LINES: usize = 700;
-
-/// The last words of the first line of a file that is one long table of constants.
-const TABLE: &str = "(a table)";
 
 /// Where `unsafe` may live, and why.
 const UNSAFE_PLACES: [&str; 5] = [
@@ -43,7 +40,7 @@ pub(super) fn check(path: &str, text: &str) -> Vec<String> {
     let path = path.replace('\\', "/");
     let mut violations = Vec::new();
     let count = text.lines().count();
-    if count > MOST_LINES && !is_table(text) {
+    if count > MOST_LINES {
         violations.push(format!("{path}: {count} lines; split it by what it holds, {MOST_LINES} is the limit"));
     }
     for (number, line) in (1..).zip(text.lines()) {
@@ -61,15 +58,6 @@ pub(super) fn check(path: &str, text: &str) -> Vec<String> {
         faces_only(&path, &found, &mut violations);
     }
     violations
-}
-
-/// Whether the file calls itself a table, and holds only constants and comments, as a table does.
-fn is_table(text: &str) -> bool {
-    let entry = |line: &str| {
-        let constant = line.starts_with("pub const ") && line.ends_with(';');
-        line.is_empty() || line.starts_with("//") || line.starts_with("#!") || constant
-    };
-    text.lines().next().is_some_and(|line| line.ends_with(TABLE)) && text.lines().all(entry)
 }
 
 /// Whether `word` stands in `line` with no letter, digit or underscore beside it.
@@ -206,10 +194,6 @@ mod tests {
     fn long_files_and_machine_paths_are_refused() {
         assert!(check("crates/io/src/a.rs", &"\n".repeat(700)).is_empty());
         assert_eq!(check("crates/io/src/a.rs", &"\n".repeat(701)).len(), 1);
-        let table = format!("//! Names (a table)\n{}", "pub const A: u32 = 1;\n".repeat(700));
-        assert!(check("crates/io/src/a.rs", &table).is_empty());
-        assert_eq!(check("crates/io/src/a.rs", &format!("{table}fn f() {{}}")).len(), 1, "a table holds no code");
-        assert_eq!(check("crates/io/src/a.rs", &table["//! Names (a table)".len()..]).len(), 1, "a table says so");
         assert_eq!(check("crates/io/src/a.rs", concat!("let p = \"/ro", "ot/x\";")).len(), 1);
     }
 }

@@ -139,7 +139,7 @@ impl Bvh {
         &self,
         simd: S,
         rays: &[Ray],
-        visitor: &mut impl packet::Visitor<S>,
+        visitor: &mut impl packet::Visitor,
         counters: &mut Counters,
     ) {
         simd.vectorize(
@@ -149,7 +149,7 @@ impl Bvh {
     }
 
     #[inline(always)]
-    fn descend_together<S: Simd, V: packet::Visitor<S>>(
+    fn descend_together<S: Simd, V: packet::Visitor>(
         &self,
         simd: S,
         rays: &[Ray],
@@ -165,7 +165,7 @@ impl Bvh {
         let mut stack = [(0u32, [0.0f32; LANES]); STACK];
         let (mut top, mut index) = (0, 0);
         loop {
-            let wanted = near.simd_le(visitor.limits(simd));
+            let wanted = near.simd_le(F32x8::from_slice(simd, visitor.limits()));
             let node = &self.nodes[index];
             let mut below = None;
             if !wanted.any_true() {

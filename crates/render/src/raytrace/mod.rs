@@ -161,9 +161,7 @@ impl Visitor for Closest<'_> {
     fn triangle(&mut self, place: usize) {
         self.tests += 1;
         let Some(t) = self.ray.hit(&self.triangles.corners[place]) else { return };
-        let facets = &self.triangles.facets;
-        let first = |(p, best): (usize, f32)| t < best || (t == best && facets[place] < facets[p]);
-        if facets[place] != self.own && self.best.is_none_or(first) {
+        if self.triangles.replaces(self.best, (place, t), self.own) {
             self.best = Some((place, t));
         }
     }

@@ -19,13 +19,13 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd};
 
 /// Follows the rays of a packet.
-pub(crate) trait Visitor<S: Simd> {
+pub(crate) trait Visitor {
     /// Whether what most rays enter first is wanted first. Else triangles come in the order of the tree, which is the same for
     /// a ray whatever its companions are.
     const NEAREST_FIRST: bool;
 
     /// For each ray a parameter beyond which nothing is wanted; negative where nothing at all is.
-    fn limits(&self, simd: S) -> F32x8<S>;
+    fn limits(&self) -> &[f32; LANES];
 
     /// Ray `lane` meets the triangle at this place of the tree's triangles, at `t`.
     fn hit(&mut self, lane: usize, place: usize, t: f32);
@@ -164,12 +164,7 @@ impl<'r, S: Simd> Packet<'r, S> {
 
     /// Tells `visitor` which rays hit the triangle at `place`; only `wanted` ones are tested.
     #[inline(always)]
-    pub(crate) fn triangle(
-        &self,
-        (place, corners): (usize, &[Vec3; 3]),
-        wanted: Mask8<S>,
-        visitor: &mut impl Visitor<S>,
-    ) {
+    pub(crate) fn triangle(&self, (place, corners): (usize, &[Vec3; 3]), wanted: Mask8<S>, visitor: &mut impl Visitor) {
         let mut lanes = self.may_meet(corners, wanted);
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
@@ -192,19 +187,17 @@ struct Closest<'a> {
     best: [Option<(usize, f32)>; LANES],
 }
 
-impl<S: Simd> Visitor<S> for Closest<'_> {
+impl Visitor for Closest<'_> {
     const NEAREST_FIRST: bool = true;
 
     #[inline(always)]
-    fn limits(&self, simd: S) -> F32x8<S> {
-        F32x8::from_slice(simd, &self.limits)
+    fn limits(&self) -> &[f32; LANES] {
+        &self.limits
     }
 
     #[inline(always)]
     fn hit(&mut self, lane: usize, place: usize, t: f32) {
-        let facets = &self.triangles.facets;
-        let first = |(p, best): (usize, f32)| t < best || (t == best && facets[place] < facets[p]);
-        if facets[place] != self.own[lane] && self.best[lane].is_none_or(first) {
+        if self.triangles.replaces(self.best[lane], (place, t), self.own[lane]) {
             self.best[lane] = Some((place, t));
             self.limits[lane] = t + self.slack[lane];
         }

@@ -72,6 +72,14 @@ impl Triangles {
         all.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[min, max], &p| [min.min(p), max.max(p)])
     }
 
+    /// Whether a hit, its triangle's place and its parameter, is met before the `best` so far by a ray that leaves the facet
+    /// `own`: of equally near ones the lower facet is.
+    #[inline(always)]
+    pub(super) fn replaces(&self, best: Option<(usize, f32)>, (place, t): (usize, f32), own: u32) -> bool {
+        let facet = self.facets[place];
+        facet != own && best.is_none_or(|(p, nearest)| t < nearest || (t == nearest && facet < self.facets[p]))
+    }
+
     /// The same triangles in another order.
     pub(super) fn reordered(&self, order: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
         let corners = order.clone().map(|i| self.corners[i as usize]).collect();

@@ -24,7 +24,7 @@
 use super::FrameConstants;
 use super::composite::fragment;
 use super::group::Lit;
-use super::points::{FragmentPoint, NO_POINT, Points, Source};
+use super::points::{FragmentPoint, NO_POINT, Points, Source, samples_in};
 use crate::PreparedView;
 use crate::marks::MarkColors;
 use crate::shadow::{facet, hash};
@@ -248,8 +248,8 @@ impl DeepPicture<'_> {
         let mut left = of.mask;
         for other in fragments.iter().filter(|f| f.facet != of.facet && self.exponent(tile, f) > 0.0) {
             let common = left & other.mask;
-            for sample in (0..32).filter(|s| common >> s & 1 == 1) {
-                let [own, others] = [of, other].map(|f| depth_of(tile, f, sample));
+            for sample in samples_in(common) {
+                let [own, others] = [of, other].map(|f| tile.points.depth(f, sample));
                 if others > own || (others == own && other.facet < of.facet) {
                     left &= !(1 << sample);
                 }
@@ -323,7 +323,7 @@ impl DeepPicture<'_> {
             if f.mask >> sample & 1 == 0 {
                 continue;
             }
-            let away = self.lens.away(depth_of(tile, f, sample as u32));
+            let away = self.lens.away(tile.points.depth(f, sample as u32));
             let is_next = away > least
                 && nearest.is_none_or(|(n, d)| away < d || (away == d && f.facet < n.facet))
                 && (f.is_mark || faces(f.source as usize));
@@ -360,12 +360,6 @@ struct Start {
     pixel: [u32; 2],
     from: DVec3,
     direction: DVec3,
-}
-
-/// The depth of a fragment at a sample that it covers.
-fn depth_of(tile: &DeepTile, f: &FragmentPoint, sample: u32) -> f32 {
-    let before = f.mask & ((1u32 << sample) - 1);
-    tile.points.depths[(f.start + before.count_ones()) as usize]
 }
 
 /// The direction, turned so that it goes away from the eye.

@@ -6,7 +6,7 @@
 //! the law for all algorithms; everywhere else the list is the order, and how often it was overruled is counted.
 
 use super::FrameConstants;
-use super::points::{FragmentPoint, LayerPoint, Points, middle};
+use super::points::{FragmentPoint, LayerPoint, Points, middle, samples_in};
 use crate::marks::MarkColors;
 use crate::visible::nearer;
 
@@ -56,7 +56,7 @@ impl Points {
             let (is_mark, source) = (marks.index(facet).is_some(), *source);
             if is_mark {
                 // It may have another place at each sample.
-                let samples = (0..32).filter(|s| mask >> s & 1 == 1).map(|s| 1u32 << s);
+                let samples = samples_in(mask).map(|s| 1u32 << s);
                 let at_sample = |place| self.fragment((pixel, facet), place, (source, is_mark));
                 drawn.extend(samples.zip(start..).map(at_sample));
             } else if mask != 0 {
@@ -77,7 +77,7 @@ impl Points {
             let (mut left, mut contradicted) = (f.mask, 0);
             for before in drawn[..i].iter().rev() {
                 let common = before.mask & left;
-                for s in (0..u32::BITS).filter(|s| common >> s & 1 == 1) {
+                for s in samples_in(common) {
                     contradicted |= u32::from(self.is_in_front(before, &f, s)) << s;
                 }
                 left &= !common;
@@ -94,7 +94,7 @@ impl Points {
             let of = |mask, start| ((f.pixel, f.facet), (mask, start), (f.source, f.is_mark));
             drawn.remove(i);
             let mut next = i;
-            for s in (0..u32::BITS).filter(|s| contradicted >> s & 1 == 1) {
+            for s in samples_in(contradicted) {
                 let (start, depth) = (self.depths.len() as u32, self.depth(&f, s));
                 self.depths.push(depth);
                 let (place, at, source) = of(1 << s, start);
@@ -107,7 +107,7 @@ impl Points {
             let agreed = f.mask & !contradicted;
             if agreed != 0 {
                 let start = self.depths.len() as u32;
-                for s in (0..u32::BITS).filter(|s| agreed >> s & 1 == 1) {
+                for s in samples_in(agreed) {
                     self.depths.push(self.depth(&f, s));
                 }
                 let (place, at, source) = of(agreed, start);

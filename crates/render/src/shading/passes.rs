@@ -10,7 +10,7 @@
 
 use super::composite::fragment;
 use super::group::Lit;
-use super::points::{NO_POINT, Points, Source};
+use super::points::{NO_POINT, Points, Source, samples_in};
 use super::{ColorSink, Scratch, group};
 use crate::visible::Peel;
 use vitral_math::lanes::dispatch;
@@ -51,8 +51,8 @@ impl ColorSink<'_> {
             for of in &points.fragments {
                 let fragment = fragment(of, points, lit, self.marks);
                 (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
-                for sample in (0..samples).filter(|s| of.mask >> s & 1 == 1) {
-                    fragment.over(&mut canvas.samples[sample * TILE_PIXELS + of.pixel as usize]);
+                for sample in samples_in(of.mask) {
+                    fragment.over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);
                     layers += 1;
                 }
             }

@@ -34,7 +34,7 @@ pub(crate) struct Points {
     pub overruled: u64,
     keys: Vec<[u32; 2]>,
     key_of_point: Vec<u32>,
-    starts: Vec<u32>,
+    ends: Vec<u32>,
 }
 
 /// A sample without an opaque surface.
@@ -249,8 +249,7 @@ impl Points {
         let mut layers = std::mem::take(&mut self.layers);
         let mut start = 0;
         for pixel in 0..TILE_PIXELS {
-            // Each pixel's start has moved to its end.
-            let end = self.starts[pixel] as usize;
+            let end = self.ends[pixel] as usize;
             let here = &mut layers[start..end];
             start = end;
             if here.is_empty() {
@@ -308,13 +307,8 @@ impl Points {
             middle([(corner[0] + pixel % TILE) as f32, (corner[1] + pixel / TILE) as f32], f.mask, constants)
         };
         let surfaces = || self.fragments.iter().filter(|f| !f.is_mark);
-        if marks.is_empty() {
-            self.facet.extend(self.fragments.iter().map(|f| f.facet));
-            self.place.extend(self.fragments.iter().map(place));
-        } else {
-            self.facet.extend(surfaces().map(|f| f.facet));
-            self.place.extend(surfaces().map(place));
-        }
+        self.facet.extend(surfaces().map(|f| f.facet));
+        self.place.extend(surfaces().map(place));
     }
 
     /// Sorts each pixel's fragments by facet and makes one of those of a facet, as where it was clipped into several
@@ -326,7 +320,7 @@ impl Points {
             let same = (next.pixel, next.facet) == (f.pixel, f.facet);
             if same {
                 let (start, mask) = (self.depths.len() as u32, f.mask | next.mask);
-                for sample in (0..u32::BITS).filter(|s| mask >> s & 1 == 1) {
+                for sample in samples_in(mask) {
                     let depth = |f: &FragmentPoint| if f.covers(sample) { self.depth(f, sample) } else { f32::MIN };
                     self.depths.push(depth(f).max(depth(next)));
                 }
@@ -343,33 +337,16 @@ impl Points {
         self.depths[(f.start + before.count_ones()) as usize]
     }
 
-    /// Fragments pixel by pixel, each pixel's in the order in which they came (a counting sort).
+    /// Fragments pixel by pixel, each pixel's in the order in which they came.
     fn sort_fragments(&mut self, tile: &Tile, fragments: &[Fragment], constants: &FrameConstants<'_>) {
-        let (width, height) = visible_part(tile, constants);
-        let whole = (width, height) == (TILE, TILE);
-        let inside = |f: &&Fragment| {
-            let pixel = usize::from(f.pixel);
-            whole || (pixel % TILE < width && pixel / TILE < height)
-        };
-        let place = |f: &Fragment| usize::from(f.pixel) % TILE_PIXELS;
-        let starts = &mut self.starts;
-        starts.clear();
-        starts.resize(TILE_PIXELS + 1, 0);
-        let mut sum = 0;
-        fragments.iter().filter(inside).for_each(|f| starts[place(f)] += 1);
-        for start in starts.iter_mut() {
-            sum += std::mem::replace(start, sum);
-        }
-        self.fragments.resize(sum as usize, FragmentPoint::default());
-        for fragment in fragments.iter().filter(inside) {
-            let at = &mut starts[place(fragment)];
-            let &Fragment { facet, start, far, near, pixel, mask, count } = fragment;
+        let inside = pixels_inside(tile, constants);
+        let point = |f: &Fragment| {
+            let &Fragment { facet, start, far, near, pixel, mask, count } = f;
             let (pixel, mask, count) = (u32::from(pixel), u32::from(mask), u32::from(count));
-            let (source, is_mark) = (0, false);
-            self.fragments[*at as usize] =
-                FragmentPoint { pixel, facet, mask, start, count, far, near, source, is_mark };
-            *at += 1;
-        }
+            (pixel as usize, FragmentPoint { pixel, facet, mask, start, count, far, near, source: 0, is_mark: false })
+        };
+        let points = fragments.iter().map(point).filter(|(pixel, _)| inside(*pixel));
+        sort_by_slot(&mut self.ends, TILE_PIXELS, &mut self.fragments, points);
     }
 
     /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with all layers at once.
@@ -408,37 +385,21 @@ impl Points {
         self.group(constants);
     }
 
-    /// Layers pixel by pixel, each pixel's in the order in which they came (a counting sort); leaves each pixel's end in
-    /// `starts`.
+    /// Layers pixel by pixel, each pixel's in the order in which they came; leaves each pixel's end in `ends`.
     fn sort_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>) {
-        let (width, height) = visible_part(tile, constants);
-        let whole = (width, height) == (TILE, TILE);
-        let pixel_of = |l: &Layer| l.at as usize % TILE_PIXELS;
-        let inside = |pixel: usize| whole || (pixel % TILE < width && pixel / TILE < height);
-        let starts = &mut self.starts;
-        starts.clear();
-        starts.resize(TILE_PIXELS + 1, 0);
-        for pixel in layers.iter().map(pixel_of).filter(|&p| inside(p)) {
-            starts[pixel + 1] += 1;
-        }
-        for pixel in 0..TILE_PIXELS {
-            starts[pixel + 1] += starts[pixel];
-        }
-        self.layers.clear();
-        self.layers.resize(starts[TILE_PIXELS] as usize, LayerPoint::default());
-        for layer in layers {
-            let (sample, pixel) = (layer.at / TILE_PIXELS as u32, pixel_of(layer));
-            if inside(pixel) {
-                self.layers[starts[pixel] as usize] = LayerPoint { sample, depth: layer.depth, facet: layer.facet };
-                starts[pixel] += 1;
-            }
-        }
+        let inside = pixels_inside(tile, constants);
+        let point = |l: &Layer| {
+            let (sample, pixel) = (l.at / TILE_PIXELS as u32, l.at as usize % TILE_PIXELS);
+            (pixel, LayerPoint { sample, depth: l.depth, facet: l.facet })
+        };
+        let points = layers.iter().map(point).filter(|(pixel, _)| inside(*pixel));
+        sort_by_slot(&mut self.ends, TILE_PIXELS, &mut self.layers, points);
     }
 
     /// Frees what only finding the points took.
     pub(crate) fn forget_workspace(&mut self) {
         (self.layers, self.order, self.keys, self.key_of_point) = Default::default();
-        (self.starts, self.followed, self.groups) = Default::default();
+        (self.ends, self.followed, self.groups) = Default::default();
     }
 
     /// Bytes of what is left then.
@@ -508,28 +469,39 @@ impl Points {
             self.order.extend(0..count);
             return;
         }
-        self.starts.clear();
-        self.starts.resize(self.keys.len() + 1, 0);
-        for &k in &self.key_of_point {
-            self.starts[k as usize + 1] += 1;
-        }
-        for k in 1..self.starts.len() {
-            self.starts[k] += self.starts[k - 1];
-        }
+        let points = self.key_of_point.iter().zip(0..).map(|(&key, point)| (key as usize, point));
+        sort_by_slot(&mut self.ends, self.keys.len(), &mut self.order, points);
         self.groups.clear();
-        self.groups.extend(self.keys.iter().enumerate().map(|(k, &[instance, part])| Group {
-            instance,
-            part,
-            start: self.starts[k],
-            end: self.starts[k + 1],
-        }));
-        self.order.clear();
-        self.order.resize(self.facet.len(), 0);
-        for (point, &k) in self.key_of_point.iter().enumerate() {
-            let place = &mut self.starts[k as usize];
-            self.order[*place as usize] = point as u32;
-            *place += 1;
+        let mut start = 0;
+        for (&[instance, part], &end) in self.keys.iter().zip(&self.ends) {
+            self.groups.push(Group { instance, part, start, end });
+            start = end;
         }
+    }
+}
+
+/// Sorts items by the slots that they come with, those of one slot in the order in which they come (a counting sort). Leaves
+/// each slot's end in `ends`.
+#[inline(always)]
+fn sort_by_slot<T: Copy + Default>(
+    ends: &mut Vec<u32>,
+    slots: usize,
+    sorted: &mut Vec<T>,
+    items: impl Iterator<Item = (usize, T)> + Clone,
+) {
+    ends.clear();
+    ends.resize(slots, 0);
+    items.clone().for_each(|(slot, _)| ends[slot] += 1);
+    let mut sum = 0;
+    for end in ends.iter_mut() {
+        sum += std::mem::replace(end, sum);
+    }
+    sorted.clear();
+    sorted.resize(sum as usize, T::default());
+    for (slot, item) in items {
+        let at = &mut ends[slot];
+        sorted[*at as usize] = item;
+        *at += 1;
     }
 }
 
@@ -537,6 +509,13 @@ impl Points {
 pub(crate) fn visible_part(tile: &Tile, constants: &FrameConstants<'_>) -> (usize, usize) {
     let viewport = constants.view.viewport;
     ((viewport.width - tile.x).min(TILE as u32) as usize, (viewport.height - tile.y).min(TILE as u32) as usize)
+}
+
+/// Whether a pixel of the tile lies in the picture.
+fn pixels_inside(tile: &Tile, constants: &FrameConstants<'_>) -> impl Fn(usize) -> bool {
+    let (width, height) = visible_part(tile, constants);
+    let whole = (width, height) == (TILE, TILE);
+    move |pixel| whole || (pixel % TILE < width && pixel / TILE < height)
 }
 
 /// Sorts a pixel's layers facet by facet, sample by sample; the first so many are left. A clipped facet's pieces may both
@@ -554,6 +533,16 @@ fn settle(layers: &mut [LayerPoint]) -> usize {
         }
     }
     last + 1
+}
+
+/// The samples of a mask, from the lowest.
+pub(super) fn samples_in(mask: u32) -> impl Iterator<Item = u32> {
+    let mut left = mask;
+    std::iter::from_fn(move || {
+        let sample = (left != 0).then(|| left.trailing_zeros());
+        left &= left.wrapping_sub(1);
+        sample
+    })
 }
 
 /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the pixel's centre if it

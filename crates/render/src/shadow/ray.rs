@@ -26,8 +26,7 @@ use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
-use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{LANES, Level, Simd, dispatch};
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -184,13 +183,13 @@ struct Passing<'a> {
     left: [Rgb; LANES],
 }
 
-impl<S: Simd> packet::Visitor<S> for Passing<'_> {
+impl packet::Visitor for Passing<'_> {
     // Parts of light are multiplied with each other, in one order.
     const NEAREST_FIRST: bool = false;
 
     #[inline(always)]
-    fn limits(&self, simd: S) -> F32x8<S> {
-        F32x8::from_slice(simd, &self.limits)
+    fn limits(&self) -> &[f32; LANES] {
+        &self.limits
     }
 
     #[inline(always)]

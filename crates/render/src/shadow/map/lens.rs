@@ -160,12 +160,8 @@ impl Lens {
 
     /// Side of a texel at the distance of a place.
     pub(super) fn texel(&self, place: DVec3) -> f64 {
-        self.texel_at(-self.view_from_world.transform_point3(place).z)
-    }
-
-    /// The same at this distance along the axis.
-    pub(super) fn texel_at(&self, distance: f64) -> f64 {
-        if self.perspective { self.side() * distance.abs() } else { self.side() }
+        let distance = if self.perspective { self.view_from_world.transform_point3(place).z.abs() } else { 1.0 };
+        self.side() * distance
     }
 
     /// Side of a texel at distance 1, or at any for a parallel light.

@@ -10,6 +10,7 @@ use super::texels::{color_from_word, word_from_color};
 use crate::Context;
 use crate::enums::*;
 use std::sync::Arc;
+use vitral_exec::Workers;
 use vitral_raster::Viewport;
 use vitral_raster::forward::{ColorPlane, Plane, Resolve};
 
@@ -30,6 +31,7 @@ struct Plan {
     x: Axis,
     y: Axis,
     linear: bool,
+    workers: Workers,
 }
 
 impl Blit {
@@ -48,7 +50,7 @@ impl Blit {
     }
 
     /// The plan for a source and a destination; `clip` is the part of the destination that may change.
-    fn plan(&self, from: Viewport, clip: [i32; 4]) -> Plan {
+    fn plan(&self, from: Viewport, clip: [i32; 4], workers: Workers) -> Plan {
         let axis = |i: usize, size| {
             Axis::new([self.from[i], self.from[i + 2]], [self.to[i], self.to[i + 2]], [clip[i], clip[i + 2]], size)
         };
@@ -71,7 +73,7 @@ impl Blit {
             }
             Job { clip: rect, shift }
         });
-        Plan { job, x: axis(0, from.width), y: axis(1, from.height), linear: self.filter == LINEAR }
+        Plan { job, x: axis(0, from.width), y: axis(1, from.height), linear: self.filter == LINEAR, workers }
     }
 }
 
@@ -86,9 +88,9 @@ fn with_both<T: Clone>(from: &Shared<T>, into: &Shared<T>, f: impl FnOnce(&T, &m
 }
 
 impl Plan {
-    fn plain<T: Copy>(&self, from: &Plane<T>, into: &mut Plane<T>) {
+    fn plain<T: Copy + Send + Sync>(&self, from: &Plane<T>, into: &mut Plane<T>) {
         match self.job {
-            Some(job) => copy(from, into, job, first_sample),
+            Some(job) => copy(&self.workers, from, into, job, first_sample),
             None => scale_nearest(from, into, &self.x, &self.y),
         }
     }
@@ -108,7 +110,7 @@ impl Plan {
         }
     }
 
-    fn values<T: Copy>(
+    fn values<T: Copy + Send + Sync>(
         &self,
         from: &Plane<T>,
         into: &mut Plane<T>,
@@ -117,9 +119,11 @@ impl Plan {
         value: impl Fn([f32; 4]) -> T,
     ) {
         match self.job {
-            Some(job) => copy(from, into, job, resolve),
+            Some(job) => copy(&self.workers, from, into, job, resolve),
             // A flipped resolve.
-            None if from.samples() > 1 => self.values(&resolved(from, resolve), into, resolve, color, value),
+            None if from.samples() > 1 => {
+                self.values(&resolved(&self.workers, from, resolve), into, resolve, color, value);
+            }
             None if self.linear => scale_linear(from, into, &self.x, &self.y, color, value),
             None => scale_nearest(from, into, &self.x, &self.y),
         }
@@ -173,7 +177,7 @@ impl Context {
         }
         let Some(read) = self.read_surfaces(CALL, false) else { return Ok(()) };
         let (Some(from), Some(to)) = (read.size, draw.size) else { return Ok(()) };
-        let plan = blit.plan(from, self.scissored(to));
+        let plan = blit.plan(from, self.scissored(to), self.workers());
         // The copy counts as a draw, and happens at once.
         if blit.mask == 0 || self.draw_target().is_none() {
             return Ok(());

@@ -2,6 +2,7 @@
 
 use super::mipmap::average4;
 use super::texels::{color_from_word, word_from_color};
+use vitral_exec::Workers;
 use vitral_raster::TILE;
 use vitral_raster::forward::{ColorPlane, Plane, Resolve};
 
@@ -33,33 +34,56 @@ pub(crate) struct Job {
     pub shift: [i32; 2],
 }
 
+/// Tiles in one piece of work.
+const TILES_A_JOB: usize = 8;
+
 /// Copies a rectangle; a multisampled source is resolved into a destination of one sample.
-pub(crate) fn copy<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, job: Job, resolve: Resolve<T>) {
+pub(crate) fn copy<T: Copy + Send + Sync>(
+    workers: &Workers,
+    from: &Plane<T>,
+    into: &mut Plane<T>,
+    job: Job,
+    resolve: Resolve<T>,
+) {
     if job.clip[0] >= job.clip[2] || job.clip[1] >= job.clip[3] {
         return;
     }
     if job.shift == [0, 0] && from.viewport().tiles_x() == into.viewport().tiles_x() {
-        copy_tiles(from, into, job.clip, resolve);
+        copy_tiles(workers, from, into, job.clip, resolve);
     } else {
         copy_rows(from, into, job, resolve);
     }
 }
 
-fn copy_tiles<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, [x0, y0, x1, y1]: [u32; 4], resolve: Resolve<T>) {
+fn copy_tiles<T: Copy + Send + Sync>(
+    workers: &Workers,
+    from: &Plane<T>,
+    into: &mut Plane<T>,
+    [x0, y0, x1, y1]: [u32; 4],
+    resolve: Resolve<T>,
+) {
     let side = TILE as u32;
     let viewport = into.viewport();
     let (source_samples, samples) = (from.samples(), into.samples());
     let row = viewport.tiles_x();
+    // What of a tile is copied, and whether that is all of it; pixels outside the plane do not count.
+    let part = |index: usize| {
+        let (left, low) = (index as u32 % row * side, index as u32 / row * side);
+        let clip = [x0.max(left), y0.max(low), x1.min(left + side), y1.min(low + side)];
+        (clip, clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)])
+    };
+    let source = |index: usize| from.tiles.get(index);
+    workers.for_each_chunk(&mut into.tiles, TILES_A_JOB, |job, tiles| {
+        for (index, tile) in (job * TILES_A_JOB..).zip(tiles) {
+            if let (Some(source), (_, true)) = (source(index), part(index)) {
+                source.copy_to(source_samples, tile, samples, resolve);
+            }
+        }
+    });
     for ty in y0 / side..y1.div_ceil(side) {
         for tx in x0 / side..x1.div_ceil(side) {
             let index = (ty * row + tx) as usize;
-            let Some(source) = from.tiles.get(index) else { continue };
-            let (left, low) = (tx * side, ty * side);
-            let clip = [x0.max(left), y0.max(low), x1.min(left + side), y1.min(low + side)];
-            // Pixels outside the plane do not count.
-            if clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)] {
-                source.copy_to(source_samples, &mut into.tiles[index], samples, resolve);
-            } else {
+            if let (Some(_), (clip, false)) = (source(index), part(index)) {
                 copy_rows(from, into, Job { clip, shift: [0, 0] }, resolve);
             }
         }
@@ -183,10 +207,10 @@ pub(crate) fn scale_linear<T: Copy, U: Copy>(
 }
 
 /// A plane of one sample with the resolved pixels of another.
-pub(crate) fn resolved<T: Copy>(from: &Plane<T>, resolve: Resolve<T>) -> Plane<T> {
+pub(crate) fn resolved<T: Copy + Send + Sync>(workers: &Workers, from: &Plane<T>, resolve: Resolve<T>) -> Plane<T> {
     let viewport = from.viewport();
     let mut out = Plane::new(viewport, 1, from.get(0, 0, 0));
-    copy(from, &mut out, Job { clip: [0, 0, viewport.width, viewport.height], shift: [0, 0] }, resolve);
+    copy(workers, from, &mut out, Job { clip: [0, 0, viewport.width, viewport.height], shift: [0, 0] }, resolve);
     out
 }
 
@@ -205,13 +229,13 @@ mod tests {
         (0..4).for_each(|s| from.set(70, 3, s, [0, 4, 8, 12][s]));
         let mut into = plane(100, 70, 1);
         into.clear(1);
-        copy(&from, &mut into, Job { clip: [0, 0, 100, 70], shift: [0, 0] }, average_words);
+        copy(&Workers::new(2), &from, &mut into, Job { clip: [0, 0, 100, 70], shift: [0, 0] }, average_words);
         assert_eq!(into.tiles[0].uniform(), Some(7));
         assert_eq!(into.tiles[3].uniform(), Some(7));
         assert_eq!((into.get(70, 3, 0), into.get(71, 3, 0)), (6, 7));
         // A part of a cleared tile.
         into.clear(1);
-        copy(&from, &mut into, Job { clip: [2, 2, 5, 4], shift: [0, 0] }, average_words);
+        copy(&Workers::new(2), &from, &mut into, Job { clip: [2, 2, 5, 4], shift: [0, 0] }, average_words);
         assert_eq!([into.get(1, 2, 0), into.get(2, 2, 0), into.get(4, 3, 0), into.get(5, 3, 0)], [1, 7, 7, 1]);
     }
 
@@ -222,11 +246,11 @@ mod tests {
             from.set(x, 5, s, x + s as u32);
         }
         let mut into = plane(80, 10, 1);
-        copy(&from, &mut into, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
+        copy(&Workers::new(2), &from, &mut into, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
         assert_eq!(into.get(0, 4, 0), 4);
         assert_eq!(into.get(77, 4, 0), 81);
         let mut all = plane(80, 10, 4);
-        copy(&from, &mut all, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
+        copy(&Workers::new(2), &from, &mut all, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
         assert_eq!(all.get(0, 4, 3), 5);
     }
 

@@ -26,7 +26,7 @@ impl Context {
     fn copy_texels(&self, surfaces: &Surfaces, format: &InternalFormat, r: &Rectangle) -> Option<TexelData> {
         let transfer = Transfer::new(&self.state.pixel);
         if format.has_depth() {
-            let mut depths = read_depths(&mut lock(surfaces.depth.as_ref()?.depth.as_ref()?), r);
+            let mut depths = read_depths(&self.workers(), &mut lock(surfaces.depth.as_ref()?.depth.as_ref()?), r);
             transfer.depths(&mut depths);
             texels::round_depths(&mut depths, format);
             let stencils = match &surfaces.stencil {

@@ -191,7 +191,7 @@ impl Context {
         if let (Content::Depth | Content::DepthStencil, Some(s)) = (content, &from.depth)
             && let Some(plane) = &s.depth
         {
-            let mut depths = read_depths(&mut lock(plane), &r);
+            let mut depths = read_depths(&self.workers(), &mut lock(plane), &r);
             transfer.depths(&mut depths);
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
             pixels.depths = Some(depths);

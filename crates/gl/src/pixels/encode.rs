@@ -122,42 +122,36 @@ pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &m
     }
 }
 
-/// Words (red lowest) as unsigned bytes of `RGBA`, `BGRA`, `RGB` or `BGR`. `false` for other formats.
-pub(crate) fn words(words: &[u32], format: PixelFormat, out: &mut Vec<u8>) -> bool {
-    if format.kind != UNSIGNED_BYTE {
-        return false;
-    }
-    let first = out.len();
-    match format.format {
-        RGBA | BGRA => {
-            out.resize(first + words.len() * 4, 0);
-            let swapped = format.format == BGRA;
-            for (pixel, &word) in out[first..].chunks_exact_mut(4).zip(words) {
-                let word = if swapped { word.swap_bytes().rotate_right(8) } else { word };
-                pixel.copy_from_slice(&word.to_le_bytes());
-            }
+/// Whether [`words`] makes pixels of a format.
+pub(crate) fn takes_words(format: PixelFormat) -> bool {
+    format.kind == UNSIGNED_BYTE && matches!(format.format, RGBA | BGRA | RGB | BGR)
+}
+
+/// Words (red lowest) as unsigned bytes of `RGBA`, `BGRA`, `RGB` or `BGR`.
+pub(crate) fn words(words: &[u32], format: PixelFormat, out: &mut [u8]) {
+    if matches!(format.format, RGBA | BGRA) {
+        let swapped = format.format == BGRA;
+        for (pixel, &word) in out.chunks_exact_mut(4).zip(words) {
+            let word = if swapped { word.swap_bytes().rotate_right(8) } else { word };
+            pixel.copy_from_slice(&word.to_le_bytes());
         }
-        RGB | BGR => {
-            out.resize(first + words.len() * 3, 0);
-            let swapped = format.format == BGR;
-            let order = |word: u32| if swapped { word.swap_bytes() >> 8 } else { word & 0x00ff_ffff };
-            // Four pixels are three whole words.
-            let mut quads = words.chunks_exact(4);
-            let mut pixels = out[first..].chunks_exact_mut(12);
-            for (bytes, quad) in (&mut pixels).zip(&mut quads) {
-                let [a, b, c, d] = [quad[0], quad[1], quad[2], quad[3]].map(order);
-                bytes[..4].copy_from_slice(&(a | (b << 24)).to_le_bytes());
-                bytes[4..8].copy_from_slice(&((b >> 8) | (c << 16)).to_le_bytes());
-                bytes[8..].copy_from_slice(&((c >> 16) | (d << 8)).to_le_bytes());
-            }
-            let rest = pixels.into_remainder().chunks_exact_mut(3);
-            for (bytes, &word) in rest.zip(quads.remainder()) {
-                bytes.copy_from_slice(&order(word).to_le_bytes()[..3]);
-            }
-        }
-        _ => return false,
+        return;
     }
-    true
+    let swapped = format.format == BGR;
+    let order = |word: u32| if swapped { word.swap_bytes() >> 8 } else { word & 0x00ff_ffff };
+    // Four pixels are three whole words.
+    let mut quads = words.chunks_exact(4);
+    let mut pixels = out.chunks_exact_mut(12);
+    for (bytes, quad) in (&mut pixels).zip(&mut quads) {
+        let [a, b, c, d] = [quad[0], quad[1], quad[2], quad[3]].map(order);
+        bytes[..4].copy_from_slice(&(a | (b << 24)).to_le_bytes());
+        bytes[4..8].copy_from_slice(&((b >> 8) | (c << 16)).to_le_bytes());
+        bytes[8..].copy_from_slice(&((c >> 16) | (d << 8)).to_le_bytes());
+    }
+    let rest = pixels.into_remainder().chunks_exact_mut(3);
+    for (bytes, &word) in rest.zip(quads.remainder()) {
+        bytes.copy_from_slice(&order(word).to_le_bytes()[..3]);
+    }
 }
 
 #[cfg(test)]
@@ -187,22 +181,24 @@ mod tests {
 
     #[test]
     fn words_keep_their_bytes() {
-        let mut out = Vec::new();
-        assert!(words(&[0x0403_0201], format(BGRA, UNSIGNED_BYTE), &mut out));
-        assert!(words(&[0x0403_0201], format(RGB, UNSIGNED_BYTE), &mut out));
-        assert!(words(&[0x0403_0201], format(BGR, UNSIGNED_BYTE), &mut out));
+        let mut out = [0; 10];
+        for (token, place) in [(BGRA, 0..4), (RGB, 4..7), (BGR, 7..10)] {
+            assert!(takes_words(format(token, UNSIGNED_BYTE)));
+            words(&[0x0403_0201], format(token, UNSIGNED_BYTE), &mut out[place]);
+        }
+        assert!(!takes_words(format(RED, UNSIGNED_BYTE)) && !takes_words(format(RGB, BYTE)));
         assert_eq!(out, [3, 2, 1, 4, 1, 2, 3, 3, 2, 1]);
     }
 
     #[test]
     fn runs_of_rgb_are_tight() {
         let source: Vec<u32> = (0..6).map(|i| 0xff00_0000 | (i * 0x0003_0201)).collect();
-        let (mut forward, mut backward) = (Vec::new(), Vec::new());
-        assert!(words(&source, format(RGB, UNSIGNED_BYTE), &mut forward));
-        assert!(words(&source, format(BGR, UNSIGNED_BYTE), &mut backward));
+        let (mut forward, mut backward) = ([0; 18], [0; 18]);
+        words(&source, format(RGB, UNSIGNED_BYTE), &mut forward);
+        words(&source, format(BGR, UNSIGNED_BYTE), &mut backward);
         let expected: Vec<u8> = (0..6u8).flat_map(|i| [i, 2 * i, 3 * i]).collect();
-        assert_eq!(forward, expected);
-        assert_eq!(backward, (0..6u8).flat_map(|i| [3 * i, 2 * i, i]).collect::<Vec<_>>());
+        assert_eq!(forward[..], expected);
+        assert_eq!(backward[..], (0..6u8).flat_map(|i| [3 * i, 2 * i, i]).collect::<Vec<_>>());
     }
 
     #[test]

@@ -11,6 +11,8 @@ use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
 use crate::memory::ClientMemory;
+use vitral_exec::Workers;
+use vitral_raster::TILE;
 use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
 
 /// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
@@ -79,15 +81,30 @@ pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectan
     Some(words)
 }
 
+/// Pixels in one piece of work: small pictures are one.
+const PIXELS_A_JOB: usize = 1 << 14;
+
+/// Calls `read` with each row's place in the window and its part of `out`.
+fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl Fn(u32, &mut [T]) + Sync + Send) {
+    let length = (out.len() / r.size[1].max(1)).max(1);
+    let rows_a_job = (PIXELS_A_JOB / r.size[0].max(1)).max(1);
+    workers.for_each_chunk(out, length * rows_a_job, |job, rows| {
+        for (y, row) in (r.y + (job * rows_a_job) as u32..).zip(rows.chunks_exact_mut(length)) {
+            read(y, row);
+        }
+    });
+}
+
 /// Depths of a rectangle, 0..=1.
-pub(crate) fn read_depths(plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
-    let mut depths = vec![0.0; r.size[0] * r.size[1]];
-    for (y, row) in depths.chunks_exact_mut(r.size[0].max(1)).enumerate() {
-        plane.resolved().read_row(r.x, r.y + y as u32, 0, row);
-    }
-    if plane.scale != 1.0 {
-        depths.iter_mut().for_each(|d| *d /= plane.scale);
-    }
+pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
+    let (mut depths, scale) = (vec![0.0; r.size[0] * r.size[1]], plane.scale);
+    let plane = &*plane.resolved();
+    each_row(workers, r, &mut depths, |y, row| {
+        plane.read_row(r.x, y, 0, row);
+        if scale != 1.0 {
+            row.iter_mut().for_each(|d| *d /= scale);
+        }
+    });
     depths
 }
 
@@ -100,38 +117,50 @@ pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
     values
 }
 
-/// Row by row, from a plane of bytes to the client's bytes. `false` for other planes and formats.
+/// Row by row, from a plane of bytes to the client's bytes; none for other planes and formats.
 fn encode_words(
+    workers: &Workers,
     plane: &ColorPlane,
     stored: &InternalFormat,
     format: PixelFormat,
     r: &Rectangle,
-    out: &mut Vec<u8>,
-) -> bool {
-    let ColorPlane::Rgba8(plane) = plane else { return false };
-    if !matches!(stored.base, RGB | RGBA) {
-        return false;
+) -> Option<Vec<u8>> {
+    let ColorPlane::Rgba8(plane) = plane else { return None };
+    if !matches!(stored.base, RGB | RGBA) || !encode::takes_words(format) {
+        return None;
     }
-    let mut row = vec![0; r.size[0]];
-    out.reserve(r.size[0] * r.size[1] * format.pixel_bytes());
-    (0..r.size[1]).all(|y| {
-        plane.read_row(r.x, r.y + y as u32, 0, &mut row);
-        if stored.base == RGB {
-            row.iter_mut().for_each(|w| *w |= 0xff00_0000);
+    let mut out = vec![0; r.size[0] * r.size[1] * format.pixel_bytes()];
+    each_row(workers, r, &mut out, |y, bytes| {
+        // Pieces of a row, so that words need no memory of their own.
+        let mut words = [0; TILE];
+        let pieces = bytes.chunks_mut(TILE * format.pixel_bytes());
+        for (x, bytes) in (r.x..).step_by(TILE).zip(pieces) {
+            let words = &mut words[..bytes.len() / format.pixel_bytes()];
+            plane.read_row(x, y, 0, words);
+            if stored.base == RGB {
+                words.iter_mut().for_each(|w| *w |= 0xff00_0000);
+            }
+            encode::words(words, format, bytes);
         }
-        encode::words(&row, format, out)
-    })
+    });
+    Some(out)
 }
 
 /// Bytes of the client's format for a rectangle.
-fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, transfer: &Transfer<'_>) -> Vec<u8> {
+fn encode_rectangle(
+    workers: &Workers,
+    surfaces: &Surfaces,
+    format: PixelFormat,
+    r: &Rectangle,
+    transfer: &Transfer<'_>,
+) -> Vec<u8> {
     let mut out = Vec::new();
     let depths = |clamp: bool| {
         let mut depths = surfaces
             .depth
             .as_ref()
             .and_then(|s| s.depth.as_ref())
-            .map_or_else(Vec::new, |plane| read_depths(&mut lock(plane), r));
+            .map_or_else(Vec::new, |plane| read_depths(workers, &mut lock(plane), r));
         transfer.depths(&mut depths);
         if clamp && !transfer.keeps_depths() {
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
@@ -157,8 +186,10 @@ fn encode_rectangle(surfaces: &Surfaces, format: PixelFormat, r: &Rectangle, tra
             let Some(surface) = &surfaces.color else { return out };
             let Some(plane) = &surface.color else { return out };
             let plane = lock(plane);
-            if transfer.keeps_colors() && encode_words(&plane, &surface.format, format, r, &mut out) {
-                return out;
+            if transfer.keeps_colors()
+                && let Some(bytes) = encode_words(workers, &plane, &surface.format, format, r)
+            {
+                return bytes;
             }
             let mut colors = read_colors(&plane, &surface.format, r);
             transfer.colors(&mut colors);
@@ -208,7 +239,7 @@ impl Context {
         {
             return;
         }
-        let bytes = encode_rectangle(&surfaces, format, &r, &Transfer::new(&self.state.pixel));
+        let bytes = encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel));
         let region = Region {
             full: [width as usize, height as usize, 1],
             origin: [r.skip[0], r.skip[1], 0],

@@ -61,6 +61,11 @@ impl Context {
         self.recorder.source = Some(source);
     }
 
+    /// The threads that run passes, for other work on planes.
+    pub(crate) fn workers(&self) -> Workers {
+        self.recorder.source.map_or_else(Workers::single, |source| source().workers.clone())
+    }
+
     /// Records the drawing of `batch` with a snapshot of the state.
     pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>) {
         if !self.draw_framebuffer_complete("draw") {

@@ -14,6 +14,7 @@ pub(crate) mod packet;
 pub mod pyramid;
 pub mod shaft;
 pub mod triangles;
+mod wide;
 
 use crate::trace::{Passed, Step};
 use beam::Beam;

@@ -26,7 +26,7 @@
 
 use crate::surface::tint;
 use crate::{PreparedLight, Reflected, Rgb, Surface};
-use vitral_math::lanes::{Lanes, V3};
+use vitral_math::lanes::{Lanes, V3, inlined};
 
 /// Reflectance of a dielectric at normal incidence (index of refraction 1.5).
 pub const DIELECTRIC_F0: f32 = 0.04;
@@ -78,7 +78,10 @@ pub fn cook_torrance<T: Lanes>(
         let n_l = s.n.dot(incident.l).saturate();
         let visible = visibility(j);
         let arriving = visible.scale(incident.intensity);
-        let enters = |cos: T| -schlick(zero.splat(DIELECTRIC_F0), cos) + 1.0;
+        let enters = inlined(
+            #[inline(always)]
+            |cos: T| -schlick(zero.splat(DIELECTRIC_F0), cos) + 1.0,
+        );
         let entering = match light.irradiance(s.position, s.n) {
             Some(irradiance) => {
                 // At the angle whose cosine is the mean over the shape.

@@ -165,6 +165,19 @@ impl Setup {
         }
         mask
     }
+
+    /// Whether a sample from `low` to `high`, x and y in 1/256 pixel, may be covered: no edge has all of them outside.
+    #[inline]
+    pub fn reaches(&self, [low, high]: [[i32; 2]; 2]) -> bool {
+        (0..3).all(|i| {
+            let j = (i + 1) % 3;
+            let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
+            // The corner where the edge function is largest.
+            let x = if dy > 0 { low[0] } else { high[0] };
+            let y = if dx > 0 { high[1] } else { low[1] };
+            i64::from(dx) * i64::from(y - self.y[i]) >= i64::from(dy) * i64::from(x - self.x[i])
+        })
+    }
 }
 
 /// Whether an edge of a triangle whose edge functions are positive inside (y downwards) is a top or a left edge.
@@ -213,6 +226,37 @@ mod tests {
                 assert_eq!(count, u32::from((0..4).contains(&x) && (0..4).contains(&y)), "({x}, {y})");
             }
         }
+    }
+
+    #[test]
+    fn a_triangle_reaches_where_it_covers_and_not_beside_an_edge() {
+        let mut state = 1u32;
+        let mut random = |range: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as i32 % range as i32
+        };
+        let mut beside = 0;
+        for _ in 0..300 {
+            let corners = [(); 3].map(|()| CornerPosition { x: random(4000), y: random(4000), z: 0.5 });
+            let [a, b, c] = corners;
+            let area = Setup::doubled_area(a, b, c);
+            if area == 0 {
+                continue;
+            }
+            let setup = Setup::new(corners, area, 0);
+            let low = [random(4000), random(4000)];
+            let high = low.map(|v| v + 500);
+            let mut samples = (0..=25).flat_map(|y| (0..=25).map(move |x| [low[0] + x * 20, low[1] + y * 20]));
+            let covered = samples.any(|[x, y]| setup.covers(x, y));
+            assert!(setup.reaches([low, high]) || !covered, "{setup:?} {low:?}");
+            beside += u32::from(!setup.reaches([low, high]));
+        }
+        assert!(beside > 100, "{beside}");
+        // Its box holds the block, its long edge passes the block by.
+        let (a, b, c) = (corner(0, 0, 0.5), corner(64, 64, 0.5), corner(0, 2, 0.5));
+        let slanting = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
+        assert!(!slanting.reaches([[40 * 256, 8 * 256], [47 * 256, 15 * 256]]));
+        assert!(slanting.reaches([[8 * 256, 8 * 256], [15 * 256, 15 * 256]]));
     }
 
     #[test]

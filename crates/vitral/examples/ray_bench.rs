@@ -126,31 +126,38 @@ fn picture(
     Ok((times, counters, facets.collect()))
 }
 
-/// All rays one by one: the facet that each meets.
-fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> Vec<u32> {
-    let mut facets = vec![u32::MAX; rays.len()];
+/// All rays one by one: the facet that each meets, and what that took.
+fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> (Vec<u32>, Counters) {
+    let (mut facets, all) = (vec![u32::MAX; rays.len()], Mutex::new(Counters::default()));
     workers.for_each_chunk(&mut facets, 4096, |chunk, facets| {
         let mut counters = Counters::default();
         for (facet, [origin, direction]) in facets.iter_mut().zip(&rays[chunk * 4096..]) {
             let hit = structure.closest_hit(&Ray::new(*origin, *direction), &mut counters);
             *facet = hit.map_or(u32::MAX, |(facet, _)| facet);
         }
+        let mut all = all.lock().expect("counters are added");
+        (all.boxes, all.triangles) = (all.boxes + counters.boxes, all.triangles + counters.triangles);
     });
-    facets
+    (facets, all.into_inner().expect("counters are added"))
 }
 
 fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<(), Failure> {
     let renderer = renderer(model, threads)?;
     let (workers, budget) = (&renderer.execution().workers, Budget::default());
     let triangles = renderer.session().triangles(renderer.execution())?;
-    let (bvh_ms, bvh) = timed(rounds, || Ok(Bvh::build(&triangles, workers, &budget)?))?;
+    let (bvh_ms, bvh) = timed(rounds, || {
+        let bvh = Bvh::build(&triangles, workers, &budget)?;
+        // The first ray alone builds the rest.
+        bvh.closest_hit(&Ray::new(Vec3::ZERO, Vec3::Z), &mut Counters::default());
+        Ok(bvh)
+    })?;
     let (octree_ms, _) = timed(1, || Ok(Octree::build(&triangles, workers, &budget)?))?;
     let (grid_ms, _) = timed(1, || Ok(Grid::build(&triangles, &budget)?))?;
     let (picture_ms, counters, seen) = picture(&renderer, Acceleration::Bvh, rounds)?;
     let (octree_picture_ms, _, through_octree) = picture(&renderer, Acceleration::Octree, 1)?;
     let (grid_picture_ms, _, through_grid) = picture(&renderer, Acceleration::Grid, 1)?;
     let rays = rays(&prepared(&renderer, Acceleration::Bvh), triangles.center);
-    let (single_ms, single) = timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
+    let (single_ms, (single, single_counters)) = timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
 
     // Count the rays on which answers differ.
     let others: Vec<u32> = std::fs::read(answers)?
@@ -170,6 +177,8 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         "octree_picture_ms": octree_picture_ms[0],
         "grid_picture_ms": grid_picture_ms[0],
         "single_ms": single_ms,
+        "single_boxes": single_counters.boxes,
+        "single_triangles": single_counters.triangles,
         "counters": counters,
         "picture_differs": differ(&seen, &others),
         "single_differs": differ(&single, &others),
@@ -191,11 +200,11 @@ fn check(model: &str, count: usize) -> Result<(), Failure> {
     };
     let mut point = |scale: f32| Vec3::new(random(), random(), random()) * triangles.extent * scale;
     let rays: Vec<[Vec3; 2]> = (0..count).map(|_| [point(1.5), point(0.9)]).map(|[a, b]| [a, b - a]).collect();
-    let expected = follow(&*triangles, &rays, workers);
+    let expected = follow(&*triangles, &rays, workers).0;
     let hits = expected.iter().filter(|&&f| f != u32::MAX).count();
-    let bvh = follow(&Bvh::build(&triangles, workers, &budget)?, &rays, workers);
-    let octree = follow(&Octree::build(&triangles, workers, &budget)?, &rays, workers);
-    let grid = follow(&Grid::build(&triangles, &budget)?, &rays, workers);
+    let bvh = follow(&Bvh::build(&triangles, workers, &budget)?, &rays, workers).0;
+    let octree = follow(&Octree::build(&triangles, workers, &budget)?, &rays, workers).0;
+    let grid = follow(&Grid::build(&triangles, &budget)?, &rays, workers).0;
     let differ = |other: &[u32]| expected.iter().zip(other).filter(|(a, b)| a != b).count();
     println!(
         "{}",

@@ -261,8 +261,11 @@ pub(crate) fn stencil<S: Simd>(
     let Some(tile) = &mut planes.stencil else { return };
     if let Some(value) = tile.uniform() {
         // One value decides for all.
-        let stored = load_stencil(simd, &[value; LANES]);
-        if bits_of(stencil_test(simd, face, stored)) == 0 {
+        let passes = simd.vectorize(
+            #[inline(always)]
+            || bits_of(stencil_test(simd, face, load_stencil(simd, &[value; LANES]))) != 0,
+        );
+        if !passes {
             *masks = [0; SAMPLES];
         }
         return;

@@ -12,6 +12,8 @@
 use super::Probe;
 use super::intersect::Ray;
 use vitral_math::Vec3;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Simd};
 
 /// Relative error of a bound on the parameter, with room to spare.
 pub(super) const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
@@ -59,6 +61,36 @@ impl Beam {
     pub fn around(ray: &Ray, extent: f32) -> Self {
         let width = (ray.origin.abs() + extent) * ROUNDING;
         Self::new(ray.origin, ray.direction, width, ray.direction.abs() * ROUNDING + Vec3::splat(1e-30))
+    }
+}
+
+/// What [`Beam::around`] has on one axis for each ray of a packet, or on each axis for one ray.
+pub(super) struct Lines<S: Simd> {
+    pub(super) upper_start: F32x8<S>,
+    pub(super) lower_start: F32x8<S>,
+    pub(super) inverse_upper_slope: F32x8<S>,
+    pub(super) inverse_lower_slope: F32x8<S>,
+}
+
+impl<S: Simd> Lines<S> {
+    /// From where rays start and where they go.
+    #[inline(always)]
+    pub(super) fn around(simd: S, origin: F32x8<S>, direction: F32x8<S>, extent: f32) -> Self {
+        let width = (lanes::Lanes::abs(origin) + extent) * ROUNDING;
+        let growth = lanes::Lanes::abs(direction) * ROUNDING + 1e-30;
+        let inverse = lanes::inlined(
+            #[inline(always)]
+            |slope: F32x8<S>, tiny: f32| {
+                let flat = lanes::Lanes::lt(lanes::Lanes::abs(slope), F32x8::splat(simd, 1e-20));
+                F32x8::splat(simd, 1.0) / flat.select(F32x8::splat(simd, tiny), slope)
+            },
+        );
+        Self {
+            upper_start: origin + width,
+            lower_start: origin - width,
+            inverse_upper_slope: inverse(direction + growth, 1e-20),
+            inverse_lower_slope: inverse(direction - growth, -1e-20),
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 //! large node, all three axes are filled in one pass over its triangles. Large halves are built at the same time.
 //!
 //! In:   triangles. Out: [`Bvh`], with the triangles in the order of its leaves.
-//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle.
+//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and as much again once a ray goes alone (`wide.rs`).
 //! Source: [Rubin & Whitted 1980], the heuristic after [MacDonald & Booth 1990], bins after [Wald 2007]. Departs from
 //!       them: below a certain depth cuts are at the median, which bounds the stack.
 
@@ -15,12 +15,14 @@ use super::beam::Beam;
 use super::intersect::Ray;
 use super::packet::{self, Packet};
 use super::triangles::{Triangles, bounds_of};
+use super::wide::Wide;
 use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
+use std::sync::OnceLock;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Mask8, Simd};
+use vitral_math::lanes::{F32x8, LANES, Level, Mask8, Simd, dispatch};
 
 /// Most bins an axis.
 const BINS: usize = 16;
@@ -39,19 +41,21 @@ const VISIT: f32 = 1.0;
 
 /// A box, and below it a left child (the next node) and a right one, or triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Node {
-    min: [f32; 3],
+pub(super) struct Node {
+    pub(super) min: [f32; 3],
     /// Triangles of a leaf, 0 for an inner node.
-    count: u32,
-    max: [f32; 3],
+    pub(super) count: u32,
+    pub(super) max: [f32; 3],
     /// First triangle of a leaf; distance to the right child of an inner node.
-    link: u32,
+    pub(super) link: u32,
 }
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
+    /// The same for rays that go alone, once there was one.
+    wide: OnceLock<Wide>,
     triangles: Triangles,
 }
 
@@ -89,12 +93,17 @@ impl Bounds {
         }
     }
 
-    /// Half the surface; NaN for nothing.
     #[inline(always)]
     fn area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|k| self.max[k] - self.min[k]);
-        x * y + y * z + z * x
+        area(&self.min, &self.max)
     }
+}
+
+/// Half the surface of a box; NaN for nothing.
+#[inline(always)]
+pub(super) fn area<const N: usize>(min: &[f32; N], max: &[f32; N]) -> f32 {
+    let [x, y, z] = [0, 1, 2].map(|k| max[k] - min[k]);
+    x * y + y * z + z * x
 }
 
 /// The triangles of a node, in no order yet, the box round them, and the box round their doubled centres.
@@ -117,7 +126,7 @@ impl Bvh {
     pub fn build(triangles: &Triangles, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
         budget.check("building the tree of boxes")?;
         if triangles.count() == 0 {
-            return Ok(Self { nodes: Vec::new(), triangles: triangles.clone() });
+            return Ok(Self { nodes: Vec::new(), wide: OnceLock::new(), triangles: triangles.clone() });
         }
         let mut items = vec![Item::default(); triangles.count()];
         workers.for_each_chunk(&mut items, CHUNK, |chunk, items| {
@@ -130,7 +139,7 @@ impl Bvh {
         let span = Span::new(&mut items);
         let nodes = split(span, workers, budget)?;
         let triangles = triangles.reordered(items.iter().map(|item| item.index));
-        Ok(Self { nodes, triangles })
+        Ok(Self { nodes, wide: OnceLock::new(), triangles })
     }
 
     /// Shows `visitor` what one to eight rays meet.
@@ -210,6 +219,11 @@ impl Bvh {
         }
     }
 
+    /// The tree for rays that go alone. Those of pictures go together.
+    pub(super) fn wide(&self) -> &Wide {
+        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles))
+    }
+
     /// How many nodes there are; they are numbered from the root, each before those below it.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
@@ -247,6 +261,11 @@ impl Structure for Bvh {
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {
         self.descend(beam, visitor)
+    }
+
+    /// With the machine's best instruction set: it makes no difference to what is met.
+    fn closest_hit_from(&self, ray: &Ray, own: u32, counters: &mut Counters) -> Option<(usize, f32)> {
+        dispatch!(Level::new(), simd => self.wide().closest_hit(simd, &self.triangles, (ray, own), counters))
     }
 }
 

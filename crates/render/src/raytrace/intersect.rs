@@ -11,6 +11,8 @@
 //! Source: [Woop, Benthin & Wald 2013]. Departs from it: both sides of a triangle are hit.
 
 use vitral_math::Vec3;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Mask8, Simd};
 
 /// A ray from `origin` along `direction` (any length but 0), made ready for intersection.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +27,7 @@ pub struct Ray {
 
 impl Ray {
     /// Renames the axes and finds the shear.
+    #[inline]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         // The z axis becomes the one along which the ray runs most; x and y keep the winding of triangles.
         let a = direction.abs();
@@ -84,7 +87,7 @@ impl Ray {
 
 /// Three roundings of an edge function, as a part of the square of the largest coordinate: 2 of half a unit for the products,
 /// and one for a difference of at most twice that square.
-pub(super) const ROUNDING: f32 = 2.0 * f32::EPSILON;
+const ROUNDING: f32 = 2.0 * f32::EPSILON;
 
 // With comparisons, since `f32::min` and `f32::max` take several instructions for the sake of NaN.
 #[inline(always)]
@@ -100,6 +103,25 @@ fn larger(a: f32, b: f32) -> f32 {
 /// Doubled area of the triangle from the origin to `p` and `q`.
 fn edge(p: [f32; 3], q: [f32; 3]) -> f32 {
     p[0] * q[1] - p[1] * q[0]
+}
+
+/// What [`Ray::hit`] finds before it looks closer, in lanes: where the ray passes beside the triangle without doubt, given
+/// where the corners are, sheared, from the ray.
+#[inline(always)]
+pub(super) fn surely_beside<S: Simd>(a: [F32x8<S>; 2], b: [F32x8<S>; 2], c: [F32x8<S>; 2]) -> Mask8<S> {
+    let edge = lanes::inlined(
+        #[inline(always)]
+        |p: [F32x8<S>; 2], q: [F32x8<S>; 2]| p[0] * q[1] - p[1] * q[0],
+    );
+    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+    let (least, largest) =
+        (lanes::Lanes::min(lanes::Lanes::min(u, v), w), lanes::Lanes::max(lanes::Lanes::max(u, v), w));
+    let size = lanes::inlined(
+        #[inline(always)]
+        |p: [F32x8<S>; 2]| lanes::Lanes::max(lanes::Lanes::abs(p[0]), lanes::Lanes::abs(p[1])),
+    );
+    let size = lanes::Lanes::max(lanes::Lanes::max(size(a), size(b)), size(c));
+    lanes::Lanes::min(-least, largest).simd_gt(size * size * ROUNDING)
 }
 
 /// [`edge`], whose sign is right: products of two `f32` are exact in `f64`.

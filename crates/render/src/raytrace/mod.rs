@@ -14,6 +14,7 @@ pub(crate) mod packet;
 pub mod pyramid;
 pub mod shaft;
 pub mod triangles;
+mod wide;
 
 use crate::trace::{Passed, Step};
 use beam::Beam;
@@ -115,7 +116,11 @@ pub trait Tree: Structure {
     #[inline(always)]
     fn descend(&self, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
         let Some([min, max]) = self.root() else { return 0 };
-        1 + probe.enters(min, max).map_or(0, |near| self.descend_from(near, probe, visitor))
+        // No closure, which would not have the probe's instruction set if it were not inlined.
+        match probe.enters(min, max) {
+            Some(near) => 1 + self.descend_from(near, probe, visitor),
+            None => 1,
+        }
     }
 }
 

@@ -275,7 +275,9 @@ impl Tree for Octree {
             let cell = &self.cells[index];
             if cell.children == 0 {
                 let entries = &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
-                entries.iter().for_each(|&place| visitor.triangle(place as usize));
+                for &place in entries {
+                    visitor.triangle(place as usize);
+                }
                 continue;
             }
             // Put the children that are met on the stack, the farthest lowest.

@@ -9,9 +9,9 @@
 //! Cost: that of one ray in eight lanes as long as they stay together; rays that part share nothing, and cost as if alone.
 //! Source: \[Wald et al. 2001\].
 
-use super::beam;
+use super::beam::{self, Lines};
 use super::bvh::Bvh;
-use super::intersect::{ROUNDING, Ray};
+use super::intersect::{Ray, surely_beside};
 use super::triangles::Triangles;
 use super::{Counters, Structure};
 use vitral_math::Vec3;
@@ -36,20 +36,13 @@ pub(crate) struct Packet<'r, S: Simd> {
     rays: &'r [Ray],
     /// The lanes that hold a ray.
     live: Mask8<S>,
-    slabs: [Slab<S>; 3],
+    /// The beams' lines on each axis.
+    lines: [Lines<S>; 3],
+    /// Whether the upper and the lower one rise.
+    rise: [[Mask8<S>; 2]; 3],
     origin: [F32x8<S>; 3],
     /// The axes of all rays, renamed as in [`Ray`], and their shear; `None` if they run along different axes.
     sheared: Option<([usize; 3], [F32x8<S>; 2])>,
-}
-
-/// The beams' lines on one axis, see [`beam`].
-struct Slab<S: Simd> {
-    upper_start: F32x8<S>,
-    lower_start: F32x8<S>,
-    inverse_upper: F32x8<S>,
-    inverse_lower: F32x8<S>,
-    upper_rises: Mask8<S>,
-    lower_rises: Mask8<S>,
 }
 
 /// One number of each of up to eight; unused lanes repeat the first.
@@ -70,31 +63,16 @@ impl<'r, S: Simd> Packet<'r, S> {
             #[inline(always)]
             |k: usize| [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])],
         );
-        let slab = lanes::inlined(
+        let [x, y, z] = [component(0), component(1), component(2)];
+        let lines = [
+            Lines::around(simd, x[0], x[1], extent),
+            Lines::around(simd, y[0], y[1], extent),
+            Lines::around(simd, z[0], z[1], extent),
+        ];
+        let zero = F32x8::splat(simd, 0.0);
+        let rises = lanes::inlined(
             #[inline(always)]
-            |k: usize| {
-                // As `Beam::around` has it.
-                let [origin, direction] = component(k);
-                let width = (lanes::Lanes::abs(origin) + extent) * beam::ROUNDING;
-                let growth = lanes::Lanes::abs(direction) * beam::ROUNDING + 1e-30;
-                let one = F32x8::splat(simd, 1.0);
-                let away = lanes::inlined(
-                    #[inline(always)]
-                    |slope: F32x8<S>, tiny: f32| {
-                        let flat = lanes::Lanes::lt(lanes::Lanes::abs(slope), F32x8::splat(simd, 1e-20));
-                        flat.select(F32x8::splat(simd, tiny), slope)
-                    },
-                );
-                let (upper, lower) = (one / away(direction + growth, 1e-20), one / away(direction - growth, -1e-20));
-                Slab {
-                    upper_start: origin + width,
-                    lower_start: origin - width,
-                    inverse_upper: upper,
-                    inverse_lower: lower,
-                    upper_rises: upper.simd_gt(F32x8::splat(simd, 0.0)),
-                    lower_rises: lower.simd_gt(F32x8::splat(simd, 0.0)),
-                }
-            },
+            |lines: &Lines<S>| [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)],
         );
         let axes = rays[0].axes;
         let sheared = rays
@@ -104,8 +82,9 @@ impl<'r, S: Simd> Packet<'r, S> {
         Self {
             rays,
             live: Mask8::from_bitmask(simd, (1 << rays.len()) - 1),
-            slabs: [slab(0), slab(1), slab(2)],
-            origin: [component(0)[0], component(1)[0], component(2)[0]],
+            rise: [rises(&lines[0]), rises(&lines[1]), rises(&lines[2])],
+            lines,
+            origin: [x[0], y[0], z[0]],
             sheared,
         }
     }
@@ -121,13 +100,13 @@ impl<'r, S: Simd> Packet<'r, S> {
     pub(crate) fn enters(&self, simd: S, min: [f32; 3], max: [f32; 3]) -> F32x8<S> {
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let (mut near, mut far) = (F32x8::splat(simd, 0.0), infinity);
-        for (k, slab) in self.slabs.iter().enumerate() {
-            let at_min = (-slab.upper_start + min[k]) * slab.inverse_upper;
-            let at_max = (-slab.lower_start + max[k]) * slab.inverse_lower;
-            near = lanes::Lanes::max(near, slab.upper_rises.select(at_min, -infinity));
-            far = lanes::Lanes::min(far, slab.upper_rises.select(infinity, at_min));
-            far = lanes::Lanes::min(far, slab.lower_rises.select(at_max, infinity));
-            near = lanes::Lanes::max(near, slab.lower_rises.select(-infinity, at_max));
+        for (k, (lines, &[upper_rises, lower_rises])) in self.lines.iter().zip(&self.rise).enumerate() {
+            let at_min = (-lines.upper_start + min[k]) * lines.inverse_upper_slope;
+            let at_max = (-lines.lower_start + max[k]) * lines.inverse_lower_slope;
+            near = lanes::Lanes::max(near, upper_rises.select(at_min, -infinity));
+            far = lanes::Lanes::min(far, upper_rises.select(infinity, at_min));
+            far = lanes::Lanes::min(far, lower_rises.select(at_max, infinity));
+            near = lanes::Lanes::max(near, lower_rises.select(-infinity, at_max));
         }
         let near = near * (1.0 - beam::ROUNDING);
         near.simd_le(far * (1.0 + beam::ROUNDING)).select(near, infinity)
@@ -145,20 +124,7 @@ impl<'r, S: Simd> Packet<'r, S> {
                 [-self.origin[x] + p[x] - shear[0] * away, -self.origin[y] + p[y] - shear[1] * away]
             },
         );
-        let (a, b, c) = (place(corners[0]), place(corners[1]), place(corners[2]));
-        let edge = lanes::inlined(
-            #[inline(always)]
-            |p: [F32x8<S>; 2], q: [F32x8<S>; 2]| p[0] * q[1] - p[1] * q[0],
-        );
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let (least, largest) =
-            (lanes::Lanes::min(lanes::Lanes::min(u, v), w), lanes::Lanes::max(lanes::Lanes::max(u, v), w));
-        let size = lanes::inlined(
-            #[inline(always)]
-            |p: [F32x8<S>; 2]| lanes::Lanes::max(lanes::Lanes::abs(p[0]), lanes::Lanes::abs(p[1])),
-        );
-        let size = lanes::Lanes::max(lanes::Lanes::max(size(a), size(b)), size(c));
-        let beside = lanes::Lanes::min(-least, largest).simd_gt(size * size * ROUNDING);
+        let beside = surely_beside(place(corners[0]), place(corners[1]), place(corners[2]));
         (wanted & !beside).to_bitmask()
     }
 

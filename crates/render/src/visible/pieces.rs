@@ -452,10 +452,15 @@ pub(super) fn draw_layers<const FRONT_FIRST: bool>(
     let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
     let pieces = list.in_tile(index).filter(|(_, piece)| piece.setup as usize >= list.opaque);
     dispatch!(facets.execution().level, simd => {
+        // Loops: a closure that is not inlined would do without the instruction set.
         if FRONT_FIRST {
-            pieces.rev().for_each(|(run, piece)| draw_piece(simd, list, run, piece, &mut sink));
+            for (run, piece) in pieces.rev() {
+                draw_piece(simd, list, run, piece, &mut sink);
+            }
         } else {
-            pieces.for_each(|(run, piece)| draw_piece(simd, list, run, piece, &mut sink));
+            for (run, piece) in pieces {
+                draw_piece(simd, list, run, piece, &mut sink);
+            }
         }
     });
 }

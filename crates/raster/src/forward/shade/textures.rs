@@ -51,15 +51,20 @@ impl Shader<'_> {
         i: usize,
         primary: &Rgba<S>,
     ) -> Rgba<S> {
-        let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
-        for unit in &self.draw.state.units {
-            textures[unit.index % UNITS] = self.texture(simd, groups, i, unit);
-        }
-        let mut color = *primary;
-        for unit in &self.draw.state.units {
-            color = environment(simd, unit, &textures, primary, color);
-        }
-        color
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
+                for unit in &self.draw.state.units {
+                    textures[unit.index % UNITS] = self.texture(simd, groups, i, unit);
+                }
+                let mut color = *primary;
+                for unit in &self.draw.state.units {
+                    color = environment(simd, unit, &textures, primary, color);
+                }
+                color
+            },
+        )
     }
 
     /// The texture of a unit and where its coordinates are in records, if it is of the common kind: two dimensions, 8 bits

@@ -78,6 +78,8 @@ struct Search<'a, S, T, K> {
     taker: K,
     /// Top left pixel within the tile.
     block: (usize, usize),
+    /// The block's samples lie between these places on the screen, in 1/256 pixel.
+    samples: [[i32; 2]; 2],
     stamps: &'a mut Stamps,
     /// Setups tested.
     tests: u64,
@@ -128,6 +130,10 @@ impl<S: Simd, T: Structure, K: Taker<S>> Visitor for Search<'_, S, T, K> {
         }
         for setup in self.cast.setups(found.setups) {
             self.tests += 1;
+            // Many a box that touches the block is that of a long slanting facet, which does not.
+            if !setup.reaches(self.samples) {
+                continue;
+            }
             self.taker.take(self.simd, setup, self.block, &self.cast.view.pattern);
         }
     }
@@ -185,12 +191,13 @@ fn look_at_block<S: Simd, T: Tree>(
     let pyramid = cast.eye.pyramid(simd, low, high);
 
     stamps.next();
-    let mut opaque = Search { simd, cast, taker: Opaque(tile), block, stamps, tests: 0 };
+    let mut opaque = Search { simd, cast, taker: Opaque(tile), block, samples: [low, high], stamps, tests: 0 };
     let mut boxes = descend(cast.structure, &pyramid, &mut opaque, passed.as_deref_mut());
     let mut tests = opaque.tests;
     if !cast.slack[1].is_empty() {
         stamps.next();
-        let mut visitor = Search { simd, cast, taker: Layers(tile, layers), block, stamps, tests: 0 };
+        let mut visitor =
+            Search { simd, cast, taker: Layers(tile, layers), block, samples: [low, high], stamps, tests: 0 };
         boxes += descend(cast.structure, &pyramid, &mut visitor, passed);
         tests += visitor.tests;
     }

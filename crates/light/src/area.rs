@@ -20,7 +20,7 @@
 
 use crate::AreaShape;
 use std::f32::consts::{FRAC_PI_2, PI};
-use vitral_math::lanes::{Lanes, V3};
+use vitral_math::lanes::{Lanes, V3, inlined};
 use vitral_math::{DVec3, func};
 
 /// Corners of the polygon that stands for a disc cut by the horizon.
@@ -153,7 +153,10 @@ impl Shape {
         let one = height.splat(1.0);
         // Along the line where the horizon meets the light's plane.
         let along = V3::splat(zero, self.normal).cross(n);
-        let corner = |edge: &Edge| V3::splat(zero, edge.from) - position;
+        let corner = inlined(
+            #[inline(always)]
+            |edge: &Edge| V3::splat(zero, edge.from) - position,
+        );
         let mut sum = zero;
         let Some(first) = self.outline.first() else { return zero };
         let mut a = corner(first);

@@ -8,13 +8,16 @@
 //! In:   coverage, kt, filter. Out: what passes, RGB.
 //! Source: \[Foley et al. 1990\], 16.5.1.
 
-use vitral_math::lanes::{Lanes, V3};
+use vitral_math::lanes::{Lanes, V3, inlined};
 
 /// What passes of the light from behind.
 #[inline(always)]
 pub fn passes<T: Lanes>(coverage: T, kt: T, filter: [f32; 3]) -> V3<T> {
     let gap = -coverage + 1.0;
-    let channel = |f: f32| (gap + coverage * kt * f).saturate();
+    let channel = inlined(
+        #[inline(always)]
+        |f: f32| (gap + coverage * kt * f).saturate(),
+    );
     V3::new(channel(filter[0]), channel(filter[1]), channel(filter[2]))
 }
 

@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | sanitize | compare`.
+//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | sanitize | vectors | compare`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -11,6 +11,7 @@ mod sanitize;
 mod shell;
 mod tally;
 mod test;
+mod vectors;
 mod wasm;
 
 use std::process::ExitCode;
@@ -22,6 +23,7 @@ cargo xtask bless [FILTER]        write the golden images anew (of the tests who
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
+cargo xtask vectors               look for vector operations that became calls in the release build
 cargo xtask compare [--quick] [--peers-only]
                                   install the peers, run them in turns with vitral, print ratios";
 
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         ["clients"] => clients::run_all(),
         ["sanitize", tools @ ..] => sanitize::run_all(tools),
         ["osmesa"] => osmesa::run_all(),
+        ["vectors"] => vectors::run_all(),
         ["compare", options @ ..] => compare::run(options),
         _ => Err(format!("usage:\n{USAGE}")),
     };

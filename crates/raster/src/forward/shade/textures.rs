@@ -11,7 +11,7 @@ use crate::forward::sample::sample;
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::Swizzle;
 use crate::forward::wide::{Rgba, max, splat, splat_rgba};
-use vitral_math::lanes::{F32x8, Simd};
+use vitral_math::lanes::{self, F32x8, Simd};
 
 impl Shader<'_> {
     /// All units' textures and environments: `colors` are the primary colours before.
@@ -93,14 +93,23 @@ impl Shader<'_> {
             || self.any(simd, weights, (groups.x[i], groups.y[i]), active, unit),
         );
         let Some(swizzle) = unit.texture.swizzle else { return color };
-        swizzle.map(|from| match from {
-            Swizzle::Red => color[0],
-            Swizzle::Green => color[1],
-            Swizzle::Blue => color[2],
-            Swizzle::Alpha => color[3],
-            Swizzle::Zero => splat(simd, 0.0),
-            Swizzle::One => splat(simd, 1.0),
-        })
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let from = lanes::inlined(
+                    #[inline(always)]
+                    |k: usize| match swizzle[k] {
+                        Swizzle::Red => color[0],
+                        Swizzle::Green => color[1],
+                        Swizzle::Blue => color[2],
+                        Swizzle::Alpha => color[3],
+                        Swizzle::Zero => splat(simd, 0.0),
+                        Swizzle::One => splat(simd, 1.0),
+                    },
+                );
+                [from(0), from(1), from(2), from(3)]
+            },
+        )
     }
 
     /// Any texture: sprites, borders, volumes, cubes, depth, anisotropy.

@@ -42,6 +42,28 @@ pub(crate) struct TilePlanes<'a> {
     pub ranges: DepthRanges,
 }
 
+impl<'a> TilePlanes<'a> {
+    /// Planes of whose depths nothing is known yet.
+    pub(crate) fn new(
+        color: Option<ColorTile<'a>>,
+        depth: Option<(&'a mut PlaneTile<f32>, f32)>,
+        stencil: Option<&'a mut PlaneTile<u8>>,
+        samples: usize,
+    ) -> Self {
+        Self { color, depth, stencil, samples, ranges: DepthRanges::new() }
+    }
+
+    /// The same planes, for a while.
+    pub(crate) fn lend(&mut self) -> TilePlanes<'_> {
+        let color = self.color.as_mut().map(|color| match color {
+            ColorTile::Rgba8(tile) => ColorTile::Rgba8(tile),
+            ColorTile::RgbaF32(tile) => ColorTile::RgbaF32(tile),
+        });
+        let depth = self.depth.as_mut().map(|(tile, scale)| (&mut **tile, *scale));
+        TilePlanes::new(color, depth, self.stencil.as_deref_mut(), self.samples)
+    }
+}
+
 /// Most samples a pixel.
 pub(crate) const SAMPLES: usize = 4;
 

@@ -20,6 +20,7 @@ mod shade;
 mod soft;
 mod spare;
 mod state;
+mod strips;
 mod texture;
 mod tile;
 mod tiny;

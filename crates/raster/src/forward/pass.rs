@@ -4,7 +4,6 @@
 //! walks clears, images and the jobs' facets in the order of the commands.
 
 use super::assemble::{Facet, Primitives, screen};
-use super::depth_ranges::DepthRanges;
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, name_draws, pendable};
@@ -13,9 +12,10 @@ use super::sample::packed::Packed;
 use super::shade::Layout;
 use super::spare::{Assembly, Places};
 use super::state::FragmentState;
+use super::strips::{TileCopy, cut, rows};
 use super::tile::TileRun;
 use crate::geometry::Screen;
-use crate::{SamplePattern, TILE, Viewport};
+use crate::{SamplePattern, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
@@ -324,29 +324,38 @@ impl Runner {
         let mut color = target.color.as_ref().map(|p| lock(p));
         let mut depth = target.depth.as_ref().map(|p| lock(p));
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
-        let tiles_x = target.viewport.tiles_x();
-        let count = (tiles_x * target.viewport.tiles_y()) as usize;
+        let count = (target.viewport.tiles_x() * target.viewport.tiles_y()) as usize;
         let mut colors = color_tiles(&mut color, target.viewport);
         let scale = depth.as_ref().map_or(1.0, |d| d.scale);
         let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()), target.viewport);
         let mut stencils = plane_tiles(stencil.as_deref_mut(), target.viewport);
-        let runs: Vec<TileRun<'_>> = (0..count)
-            .map(|index| {
-                let (x, y) = (index as u32 % tiles_x, index as u32 / tiles_x);
-                let planes = TilePlanes {
-                    color: colors.next(),
-                    depth: depths.next().map(|d| (d, scale)),
-                    stencil: stencils.next(),
-                    samples: target.samples,
-                    ranges: DepthRanges::new(),
-                };
-                TileRun::new(index, x * TILE as u32, y * TILE as u32, target.viewport, planes)
-            })
-            .collect();
+        let planes = |_| {
+            let depth = depths.next().map(|d| (d, scale));
+            TilePlanes::new(colors.next(), depth, stencils.next(), target.samples)
+        };
+        let mut tiles: Vec<TilePlanes<'_>> = (0..count).map(planes).collect();
+
+        // The first strip of a tile that is cut is drawn in the tile, the others in copies.
+        let (strips, cut) = cut(self.workers.threads(), count, items);
+        let others: Vec<(usize, Range<usize>)> =
+            cut.iter().flat_map(|&index| (1..strips).map(move |strip| (index, rows(strip, strips)))).collect();
+        let mut copies: Vec<TileCopy> = others.iter().map(|(index, _)| TileCopy::of(&tiles[*index])).collect();
+        let run = |index, rows, planes| TileRun::new(index, rows, target.viewport, planes);
+        let mut runs = Vec::with_capacity(tiles.len() + copies.len());
+        for (index, tile) in tiles.iter_mut().enumerate() {
+            let strips = if cut.contains(&index) { strips } else { 1 };
+            runs.push(run(index, rows(0, strips), tile.lend()));
+        }
+        for ((index, rows), copy) in others.iter().zip(&mut copies) {
+            runs.push(run(*index, rows.clone(), copy.planes(scale, target.samples)));
+        }
         let (many, one) = (pattern(target.samples), pattern(1));
         self.workers.for_each(runs, |mut run| {
             dispatch!(self.level, simd => run.walk(simd, items, &many, &one));
         });
+        for ((index, rows), copy) in others.iter().zip(copies) {
+            copy.give_back(rows, &mut tiles[*index]);
+        }
     }
 }
 

@@ -216,6 +216,37 @@ impl<T: Copy> PlaneTile<T> {
         self.single &= !bits;
     }
 
+    /// The same without what was written before it was cleared.
+    pub(crate) fn copy(&self) -> Self {
+        let values = if self.cleared == u64::MAX { Vec::new() } else { self.values.clone() };
+        Self { values, ..*self }
+    }
+
+    /// Takes blocks over from a tile of as many samples.
+    pub(crate) fn take(&mut self, mut from: Self, blocks: u64, samples: usize)
+    where
+        T: PartialEq,
+    {
+        // There is one value for all cleared blocks of a tile.
+        if from.clear != self.clear && blocks & from.cleared != 0 {
+            from.open(blocks & from.cleared, true, samples);
+        }
+        let written = blocks & !from.cleared;
+        if written != 0 {
+            if self.values.is_empty() {
+                self.values = vec![self.clear; samples * TILE_PIXELS];
+            }
+            for s in 0..samples {
+                let (into, from_sample) = (&mut self.values[s * TILE_PIXELS..], &from.values[s * TILE_PIXELS..]);
+                each_row(if s == 0 { written } else { written & !from.single }, |row| {
+                    into[row..row + BLOCK].copy_from_slice(&from_sample[row..row + BLOCK]);
+                });
+            }
+        }
+        self.cleared = self.cleared & !blocks | from.cleared & blocks;
+        self.single = self.single & !blocks | from.single & blocks;
+    }
+
     /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
     pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
         if samples == target_samples {
@@ -338,6 +369,31 @@ mod tests {
     /// Where block `block`'s pixel `(x, y)` lies in its tile.
     fn place(block: usize, x: usize, y: usize) -> usize {
         (block / BLOCKS * BLOCK + y) * TILE + block % BLOCKS * BLOCK + x
+    }
+
+    #[test]
+    fn blocks_are_taken_over() {
+        const FIRST: u64 = 0xffff_ffff;
+        for (clears, samples) in [(false, 1), (true, 1), (false, SAMPLES), (true, SAMPLES)] {
+            let mut tile = PlaneTile::new(3u32);
+            tile.open(1, true, samples).1[5] = 50;
+            let mut copy = tile.copy();
+            if clears {
+                copy.clear(7);
+            }
+            // In the upper half: a block with a value for all samples, and one with values of their own.
+            let at = |block: usize| block / 8 * BLOCK * TILE + block % 8 * BLOCK;
+            copy.open(1 << 40, true, samples).1[at(40)] = 11;
+            let own = copy.open(1 << 41, false, samples).1;
+            (0..samples).for_each(|s| own[s * TILE_PIXELS + at(41)] = 20 + s as u32);
+            copy.open(1, true, samples).1[6] = 60;
+            tile.take(copy, !FIRST, samples);
+            let clear = if clears { 7 } else { 3 };
+            for s in 0..samples {
+                let found = [5, 6, at(9), at(40), at(40) + 1, at(41), at(41) + 1, at(63)].map(|at| tile.get(s, at));
+                assert_eq!(found, [50, 3, 3, 11, clear, 20 + s as u32, clear, clear], "{clears} {samples} {s}");
+            }
+        }
     }
 
     #[test]

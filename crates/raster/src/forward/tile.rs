@@ -11,9 +11,10 @@ use super::sample::sample;
 use super::shade::{CENTERS, Scratch, Shader};
 use super::state::{Compare, FragmentState};
 use super::wide::{Rgba, splat, splat_rgba};
-use crate::kernel::traverse::{Block, BlockSink, Placed, traverse};
+use crate::kernel::traverse::{Block, BlockSink, Placed, traverse_window};
 use crate::sink::row_depth;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
+use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd};
 
@@ -23,16 +24,19 @@ pub(crate) struct TileRun<'a> {
     pub(super) x: u32,
     pub(super) y: u32,
     width: i32,
-    height: i32,
+    /// The rows that are drawn: those of the target, or a strip of them.
+    rows: Range<usize>,
     pub(super) planes: TilePlanes<'a>,
 }
 
 impl<'a> TileRun<'a> {
-    /// Tile number `index` at pixel `(x, y)`.
-    pub(crate) fn new(index: usize, x: u32, y: u32, viewport: Viewport, planes: TilePlanes<'a>) -> Self {
-        let width = (viewport.width - x).min(TILE as u32) as i32;
-        let height = (viewport.height - y).min(TILE as u32) as i32;
-        Self { index, x, y, width, height, planes }
+    /// Of tile number `index` these rows.
+    pub(crate) fn new(index: usize, rows: Range<usize>, viewport: Viewport, planes: TilePlanes<'a>) -> Self {
+        let (side, across) = (TILE as u32, viewport.tiles_x());
+        let (x, y) = (index as u32 % across * side, index as u32 / across * side);
+        let width = (viewport.width - x).min(side) as i32;
+        let end = rows.end.min((viewport.height - y) as usize);
+        Self { index, x, y, width, rows: rows.start.min(end)..end, planes }
     }
 
     /// Everything that happens in this tile.
@@ -50,7 +54,8 @@ impl<'a> TileRun<'a> {
     /// The part of a rectangle that lies in this tile, in its own pixels.
     fn part(&self, [x0, y0, x1, y1]: [i32; 4]) -> [i32; 4] {
         let (x, y) = (self.x as i32, self.y as i32);
-        [(x0 - x).max(0), (y0 - y).max(0), (x1 - x).min(self.width), (y1 - y).min(self.height)]
+        let (first, end) = (self.rows.start as i32, self.rows.end as i32);
+        [(x0 - x).max(0), (y0 - y).max(first), (x1 - x).min(self.width), (y1 - y).min(end)]
     }
 
     fn clear(&mut self, clear: &Clear) {
@@ -58,8 +63,8 @@ impl<'a> TileRun<'a> {
         if x0 >= x1 || y0 >= y1 {
             return;
         }
-        let whole = [x0, y0] == [0, 0] && [x1, y1] == [self.width, self.height];
         let area = [x0 as usize, y0 as usize, x1 as usize, y1 as usize];
+        let whole = area == [0, self.rows.start, self.width as usize, self.rows.end];
         let samples = self.planes.samples;
         if let (Some((color, masked)), Some(tile)) = (clear.color, &mut self.planes.color) {
             clear_color(tile, color, masked, whole, area, samples);
@@ -88,6 +93,7 @@ impl<'a> TileRun<'a> {
             #[inline(always)]
             || {
                 let mut scratch = Scratch::default();
+                let window = [0..TILE, self.rows.clone()];
                 let (mut clip, mut clip_of) = ([0; 4], u32::MAX);
                 for setup in primitives.batch.tile(self.index) {
                     let facet = facet_of(primitives, setup.facet);
@@ -100,13 +106,13 @@ impl<'a> TileRun<'a> {
                     }
                     let pattern = if draw.multisample { many } else { one };
                     let (x, y) = (self.x, self.y);
+                    let Some(place) = Placed::new(setup, (x, y), &window, pattern) else { continue };
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
                     let mut sink = ForwardSink { run: self, draw, shader, clip, pattern };
-                    let Some(place) = Placed::new(setup, (x, y), &[0..TILE, 0..TILE], pattern) else { continue };
                     if place.is_tiny() && sink.by_rows() {
                         sink.tiny(simd, setup, &place);
                     } else {
-                        traverse(simd, setup, (x, y), pattern, &mut sink);
+                        traverse_window(simd, setup, (x, y), &window, pattern, &mut sink);
                     }
                 }
             },

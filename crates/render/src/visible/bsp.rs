@@ -16,8 +16,9 @@
 
 mod tree;
 
+use super::cut::{Cut, Depth};
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, Depth, Footprint, List, Pieces, Raster, draw, draw_layers, piece_step};
+use super::pieces::{Footprint, List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};

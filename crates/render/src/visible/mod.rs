@@ -2,6 +2,7 @@
 
 pub mod brute_force;
 pub mod bsp;
+mod cut;
 mod facets;
 pub mod painter;
 mod peel;

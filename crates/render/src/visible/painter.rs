@@ -20,8 +20,9 @@
 
 mod compare;
 
+use super::cut::{Cut, bounds, corners};
 use super::facets::{Facets, fill_with};
-use super::pieces::{Cut, List, Pieces, Raster, bounds, corners, draw, draw_layers, piece_step};
+use super::pieces::{List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;

@@ -5,7 +5,7 @@
 //! Source: [Newell, Newell & Sancha 1972]. Departs from it: depths closer than 2^-22 count as equal, and polygons that are
 //! equally far over their whole overlap are ordered by their facets.
 
-use super::super::pieces::{Cut, Depth};
+use super::super::cut::{Cut, Depth};
 use crate::stats::VisibilityCounters;
 use std::ops::Range;
 use vitral_raster::Setup;

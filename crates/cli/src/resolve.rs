@@ -7,7 +7,7 @@ use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::render::{Background, Channels, Global, Lines, registry};
-use vitral::{Channel, State, Viewpoint};
+use vitral::{Channel, State, Viewpoint, default_camera};
 
 /// Largest configuration or state file, in bytes.
 const MAX_STATE_BYTES: u64 = 64 << 20;
@@ -56,6 +56,13 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     }
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
+    }
+    // A figure is seen from its own camera, unless anything is said about the view.
+    if let [model] = &state.models[..]
+        && (args.camera.view, state.turntable) == (None, None)
+        && state.viewpoint == Viewpoint::default()
+    {
+        state.viewpoint.camera_index = default_camera(model);
     }
 
     // Outputs decide which channels are rendered.

@@ -389,6 +389,23 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
 }
 
 #[test]
+fn figures_are_seen_from_their_own_camera_unless_the_view_is_chosen() {
+    let folder = Folder::new("figures");
+    let picture = |name: &str, options: &[&str]| {
+        let output = render(&folder, &[&["builtin:cornell", "-o", name][..], options].concat());
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        folder.read(&name.replace("{frame}", "0"))
+    };
+    let own = picture("own.png", &[]);
+    assert_eq!(own, picture("camera.png", &["--camera-index", "0"]));
+    let framed = picture("framed.png", &["--view", "iso"]);
+    assert_ne!(own, framed);
+    assert_ne!(own, picture("zoomed.png", &["--camera-zoom-factor", "1.5"]));
+    // A turntable goes round the whole scene.
+    assert_ne!(own, picture("turn-{frame}.png", &["--turntable", "2"]));
+}
+
+#[test]
 fn stats_are_json() {
     let folder = Folder::new("stats");
     let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--stats-file", "s.json", "--threads", "1"]);

@@ -3,7 +3,7 @@
 //! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
-use crate::load::{default_camera, default_up, load};
+use crate::load::{default_up, load};
 use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -111,8 +111,7 @@ impl State {
         Ok(scene)
     }
 
-    /// Sets all that a renderer decides: settings, viewpoint, lights. A figure is seen from its own camera, unless the
-    /// viewpoint says anything else.
+    /// Sets all that a renderer decides: settings, viewpoint, lights.
     ///
     /// # Errors
     /// A viewpoint without sense.
@@ -122,13 +121,7 @@ impl State {
         renderer.light_intensity = self.light_intensity;
         renderer.ambient = self.ambient;
         let usual_up = self.models.first().map(default_up).unwrap_or_default();
-        let mut viewpoint = self.viewpoint.clone();
-        if let [figure] = &self.models[..]
-            && viewpoint == Viewpoint::default()
-        {
-            viewpoint.camera_index = default_camera(figure);
-        }
-        viewpoint.apply(renderer, usual_up)
+        self.viewpoint.apply(renderer, usual_up)
     }
 }
 

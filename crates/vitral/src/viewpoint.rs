@@ -3,7 +3,7 @@
 use crate::names::{serde_axis, serde_view};
 use crate::{Axis, Camera, Error, Lens, Projection, Renderer, View};
 use serde::{Deserialize, Serialize};
-use vitral_math::DVec3;
+use vitral_math::{Aabb, DVec3};
 
 /// The choices behind a camera. Without any, the model is framed from the default side. Angles are in degrees here,
 /// because people write this.
@@ -126,7 +126,7 @@ impl Viewpoint {
     /// The camera: a framed one or the scene's, its parts replaced, then moved.
     fn camera(&self, renderer: &Renderer) -> Camera {
         let mut camera = match self.camera_index {
-            Some(index) => renderer.world().cameras[index],
+            Some(index) => aimed_at(&renderer.world().bounds, renderer.world().cameras[index]),
             None => renderer.frame_camera(),
         };
         let point = DVec3::from_array;
@@ -158,6 +158,19 @@ impl Viewpoint {
     }
 }
 
+/// A camera of the scene with a focal point to go round. Files tell where a camera looks, but not how far: if that is no
+/// place in the scene, the one on the axis of view that is nearest to the scene's middle.
+fn aimed_at(bounds: &Aabb, camera: Camera) -> Camera {
+    let Some(forward) = (camera.focal_point - camera.position).try_normalize() else { return camera };
+    let distance = (bounds.center() - camera.position).dot(forward);
+    let is_place = bounds.is_empty() || bounds.contains(camera.focal_point);
+    if is_place || distance <= 0.0 {
+        camera
+    } else {
+        Camera { focal_point: camera.position + forward * distance, ..camera }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,6 +198,18 @@ mod tests {
         assert!((own.position.length() - 5.0).abs() < 1e-9);
         let error = camera(Viewpoint { camera_index: Some(7), ..Viewpoint::default() }).unwrap_err();
         assert_eq!((error.exit_code(), error.to_string().as_str()), (2, "the scene has no camera 7"));
+    }
+
+    #[test]
+    fn moves_of_the_scenes_own_camera_go_round_the_scene() {
+        let own = Viewpoint { camera_index: Some(0), ..Viewpoint::default() };
+        let moved = camera(Viewpoint { azimuth_angle: 180.0, ..own.clone() }).unwrap();
+        let (front, back) = (camera(own.clone()).unwrap().position, moved.position);
+        // A sphere about the origin, seen from a distance of 5 and from somewhat above.
+        assert!((back.length() - 5.0).abs() < 1e-9 && back.distance(front) > 5.0, "{front} {back}");
+        let parallel = camera(Viewpoint { orthographic: true, ..own }).unwrap();
+        let Projection::Parallel { height } = parallel.projection else { panic!() };
+        assert!(height > 1.0, "{height}");
     }
 
     #[test]

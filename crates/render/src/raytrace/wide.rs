@@ -294,11 +294,17 @@ mod tests {
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
 
-    #[test]
-    fn every_instruction_set_finds_what_asking_all_triangles_finds() {
+    /// Its triangles in their own order, and in a tree.
+    fn teapot() -> (Triangles, Bvh) {
         let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
         let list = Triangles::of_world(&world, &Workers::single());
         let bvh = Bvh::build(&list, &Workers::single(), &Budget::default()).unwrap();
+        (list, bvh)
+    }
+
+    #[test]
+    fn every_instruction_set_finds_what_asking_all_triangles_finds() {
+        let (list, bvh) = teapot();
         let wide = bvh.wide();
         let mut hits = 0;
         for i in 0..200u32 {
@@ -323,9 +329,7 @@ mod tests {
 
     #[test]
     fn a_tree_holds_each_triangle_once() {
-        let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
-        let list = Triangles::of_world(&world, &Workers::single());
-        let bvh = Bvh::build(&list, &Workers::single(), &Budget::default()).unwrap();
+        let (list, bvh) = teapot();
         let wide = bvh.wide();
         let mut next = 0;
         let mut runs: Vec<_> = wide.leaves.iter().map(|l| (l.first, l.count)).collect();

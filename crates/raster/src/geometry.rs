@@ -146,10 +146,21 @@ impl GeometryCounters {
     }
 }
 
+/// Whether a batch lists the triangles of each tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TileLists {
+    /// It does.
+    #[default]
+    Kept,
+    /// Nobody is going to ask: all tiles are empty.
+    Unwanted,
+}
+
 /// Triangles set up, and for each tile the ones that touch it, in order.
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     setups: Vec<Setup>,
+    tile_lists: TileLists,
     /// `(tile, index of the setup)`, in the order of submission.
     entries: Vec<[u32; 2]>,
     /// `items[starts[t]..starts[t + 1]]` are the setups of tile `t`.
@@ -210,7 +221,8 @@ impl Screen {
 
 impl Batch {
     /// Empties the batch, keeping its memory.
-    pub fn clear(&mut self) {
+    pub fn clear(&mut self, tile_lists: TileLists) {
+        self.tile_lists = tile_lists;
         self.setups.clear();
         self.entries.clear();
         self.counters = GeometryCounters::default();
@@ -319,6 +331,9 @@ impl Batch {
         let tile = TILE as u32;
         let (tx0, ty0, tx1, ty1) = (x0 / tile, y0 / tile, x1 / tile, y1 / tile);
         self.setups.push(setup);
+        if self.tile_lists == TileLists::Unwanted {
+            return;
+        }
         if tx0 == tx1 && ty0 == ty1 {
             self.entries.push([ty0 * tiles_x + tx0, index]);
             return;

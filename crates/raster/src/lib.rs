@@ -29,7 +29,7 @@ mod testing;
 mod tile;
 
 pub use fragments::{Fragment, FragmentSink};
-pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex};
+pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex, TileLists};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::transform::transform;
 pub use kernel::traverse::{

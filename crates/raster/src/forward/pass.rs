@@ -14,7 +14,7 @@ use super::spare::{Assembly, Places};
 use super::state::FragmentState;
 use super::strips::{TileCopy, cut, rows};
 use super::tile::TileRun;
-use crate::geometry::Screen;
+use crate::geometry::{Screen, TileLists};
 use crate::{SamplePattern, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -258,7 +258,7 @@ impl Runner {
     fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen, out: &mut Primitives, pending: bool) {
         let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
         assembly.exchange(out, pending);
-        out.batch.clear();
+        out.batch.clear(TileLists::Kept);
         out.facets.clear();
         out.shapes.clear();
         out.records.clear();

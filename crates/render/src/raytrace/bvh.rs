@@ -7,7 +7,8 @@
 //! large node, all three axes are filled in one pass over its triangles. Large halves are built at the same time.
 //!
 //! In:   triangles. Out: [`Bvh`], with the triangles in the order of its leaves.
-//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and as much again once a ray goes alone (`wide.rs`).
+//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and up to 100 a triangle for eight boxes a node
+//!       (`wide.rs`), which all but packets of rays go down.
 //! Source: [Rubin & Whitted 1980], the heuristic after [MacDonald & Booth 1990], bins after [Wald 2007]. Departs from
 //!       them: below a certain depth cuts are at the median, which bounds the stack.
 
@@ -54,7 +55,7 @@ pub(super) struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
-    /// The same for rays that go alone, once there was one.
+    /// The same with eight boxes a node, once somebody went down it.
     wide: OnceLock<Wide>,
     triangles: Triangles,
 }
@@ -117,9 +118,9 @@ struct Span<'a> {
 }
 
 impl Bvh {
-    /// Bytes needed while a tree over this many triangles is built.
+    /// Bytes needed while a tree over this many triangles, or the tree with eight boxes a node, is built.
     pub fn bytes(triangles: u64) -> u64 {
-        triangles * (size_of::<Item>() + size_of::<Node>() + size_of::<[Vec3; 3]>() + 4) as u64
+        triangles * (size_of::<Item>() + size_of::<Node>() + size_of::<[Vec3; 3]>() + 4 + Wide::BYTES) as u64
     }
 
     /// Builds the tree. The result does not depend on the number of workers.
@@ -219,14 +220,9 @@ impl Bvh {
         }
     }
 
-    /// The tree for rays that go alone. Those of pictures go together.
+    /// The tree for all but packets of rays.
     pub(super) fn wide(&self) -> &Wide {
         self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles))
-    }
-
-    /// How many nodes there are; they are numbered from the root, each before those below it.
-    pub fn node_count(&self) -> usize {
-        self.nodes.len()
     }
 }
 
@@ -238,16 +234,7 @@ impl Structure for Bvh {
     }
 
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
-        let mut values = vec![f32::NEG_INFINITY; self.nodes.len()];
-        for (i, node) in self.nodes.iter().enumerate().rev() {
-            values[i] = if node.count > 0 {
-                let places = node.link as usize..(node.link + node.count) as usize;
-                places.map(value).fold(f32::NEG_INFINITY, f32::max)
-            } else {
-                values[i + 1].max(values[i + node.link as usize])
-            };
-        }
-        values
+        self.wide().largest(value)
     }
 
     fn step(&self) -> Option<Step> {
@@ -274,47 +261,9 @@ impl Tree for Bvh {
         self.nodes.first().map(|root| [root.min, root.max])
     }
 
-    /// The nearer child comes first.
     #[inline(always)]
     fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
-        let mut visited = 0;
-        let mut stack = [(0u32, 0.0f32); STACK];
-        let mut top = 1;
-        stack[0] = (0, near);
-        while top > 0 {
-            top -= 1;
-            let (mut index, mut near) = (stack[top].0 as usize, stack[top].1);
-            // Go down without the stack while there is one way only.
-            loop {
-                if visitor.skips(index, near) {
-                    break;
-                }
-                visitor.passes(index);
-                let node = &self.nodes[index];
-                if node.count > 0 {
-                    for place in node.link..node.link + node.count {
-                        visitor.triangle(place as usize);
-                    }
-                    break;
-                }
-                visited += 2;
-                let (left, right) = (index + 1, index + node.link as usize);
-                let at_left = probe.enters(self.nodes[left].min, self.nodes[left].max);
-                let at_right = probe.enters(self.nodes[right].min, self.nodes[right].max);
-                (index, near) = match (at_left, at_right) {
-                    (None, None) => break,
-                    (Some(near), None) => (left, near),
-                    (None, Some(near)) => (right, near),
-                    (Some(a), Some(b)) => {
-                        let (next, later) = if a <= b { ((left, a), (right, b)) } else { ((right, b), (left, a)) };
-                        stack[top] = (later.0 as u32, later.1);
-                        top += 1;
-                        next
-                    }
-                };
-            }
-        }
-        visited
+        self.wide().descend_from(near, probe, visitor)
     }
 }
 

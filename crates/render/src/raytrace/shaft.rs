@@ -9,7 +9,8 @@
 //! Cost: up to twelve products and comparisons for each box.
 //! Source: [Haines & Wallace 1991].
 
-use super::Probe;
+use super::{Boxes, Probe};
+use vitral_math::lanes::LANES;
 use vitral_math::{DVec3, DVec4};
 
 /// Relative rounding of a plane's value, with room to spare.
@@ -126,6 +127,26 @@ impl Probe for Shaft {
         };
         (!self.planes.iter().any(beyond)).then_some(0.0)
     }
+
+    #[inline(always)]
+    fn enters_each(&self, boxes: &Boxes) -> ([f32; LANES], u64) {
+        // A box that is not there is beyond every plane.
+        let there = |lane| if boxes[0][0][lane] <= boxes[0][1][lane] { 0.0 } else { -1.0 };
+        let mut least: [f32; LANES] = std::array::from_fn(there);
+        for p in &self.planes {
+            // The corners that lie farthest along the normal.
+            let [x, y, z] = [0, 1, 2].map(|k| &boxes[k][usize::from(p[k] > 0.0)]);
+            for lane in 0..LANES {
+                let value = p[0] * x[lane] + p[1] * y[lane] + (p[2] * z[lane] + p[3]);
+                least[lane] = if value < least[lane] { value } else { least[lane] };
+            }
+            if least.iter().all(|&v| v < 0.0) {
+                break;
+            }
+        }
+        let met = |mask, lane: usize| mask | u64::from(least[lane] >= 0.0) << lane;
+        ([0.0; LANES], (0..LANES).fold(0, met))
+    }
 }
 
 #[cfg(test)]
@@ -147,6 +168,17 @@ mod tests {
         assert!(meets(&to_infinity, [99.0, 99.0, 0.9]) && meets(&to_infinity, [100.5, 99.0, 0.0]));
         assert!(!meets(&to_infinity, [99.0, 102.3, 0.0]) && !meets(&to_infinity, [99.0, 99.0, 1.3]));
         assert!(!meets(&to_infinity, [-5.0, -5.0, 0.0]));
+        // Side by side, with one that is not there.
+        let places = [[99.0, 99.0, 0.9], [99.0, 102.3, 0.0], [1.0, 1.5, -0.5], [5.0; 3], [0.0; 3], [100.5, 99.0, 0.0]];
+        let mut boxes = [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3];
+        for (lane, place) in places.iter().enumerate() {
+            for (k, axis) in boxes.iter_mut().enumerate() {
+                (axis[0][lane], axis[1][lane]) = (place[k] - 0.1, place[k] + 0.1);
+            }
+        }
+        let each = places.iter().enumerate().map(|(lane, &p)| u64::from(meets(&to_infinity, p)) << lane).sum::<u64>();
+        assert_eq!(to_infinity.enters_each(&boxes).1, each);
+        assert_eq!(each, 0b110101);
         // The light in the box: nothing but the box.
         let inside = Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(0.1, 0.2, 0.3, 1.0), 20.0);
         assert!(meets(&inside, [0.9, 0.9, 0.9]) && !meets(&inside, [1.3, 0.0, 0.0]));

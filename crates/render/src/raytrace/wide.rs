@@ -1,33 +1,34 @@
-//! A ray alone, down a tree of boxes with eight boxes a node.
+//! A tree of boxes with eight boxes a node.
 //!
-//! A ray without company has nothing to fill lanes with, so here they hold what it is asked about. Of the tree with two
-//! children a node, the largest nodes below the root are opened until there are eight; their boxes stand side by side and
-//! are tested at once, and those below each make a node again. Whatever holds eight triangles or fewer is a leaf, and its
-//! triangles are tested at once, too, as far as that is a matter of plain rounding; [`Ray::hit`] has the last word.
+//! What goes down a tree alone, be it a ray or the pyramid round a block of pixels, has nothing to fill lanes with, so
+//! here they hold what it is asked about. Of the tree with two children a node, the largest nodes below the root are
+//! opened until there are eight; their boxes stand side by side and are tested at once, and those below each make a node
+//! again. Whatever holds eight triangles or fewer is a leaf. For a ray its triangles are tested at once, too, as far as
+//! that is a matter of plain rounding; [`Ray::hit`] has the last word.
 //!
-//! In:   a tree of boxes with its triangles; rays in their space. Out: what a ray meets first.
+//! In:   a tree of boxes with its triangles; rays and other probes in their space. Out: what a ray meets first, or the
+//!       triangles near a probe.
 //! Cost: linear to build; 60 to 100 bytes a triangle. A ray opens about a third as many nodes as with two children each.
 //! Source: \[Wald, Benthin & Boulos 2008\].
 
-use super::Counters;
 use super::beam::{self, Lines};
 use super::bvh::{self, area};
 use super::intersect::{Ray, surely_beside};
 use super::triangles::Triangles;
+use super::{Boxes, Counters, Probe, Visitor};
 use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd};
 
 /// Marks what is below a box as a leaf.
 const LEAF: u32 = 1 << 31;
-/// Nodes that may wait without memory being asked for. A ray seldom meets more than a few boxes of a node.
-const WAITING: usize = 32;
+/// What may wait without memory being asked for. A ray seldom meets more than a few boxes of a node.
+const WAITING: usize = 64;
 
 /// Eight boxes; those that are not there are met by nothing.
 #[derive(Clone, Debug, PartialEq)]
 struct Node {
-    /// For each axis the least and the largest coordinates.
-    bounds: [[[f32; LANES]; 2]; 3],
+    bounds: Boxes,
     /// The node below each, or a leaf and [`LEAF`].
     below: [u32; LANES],
 }
@@ -49,6 +50,14 @@ pub(super) struct Wide {
     leaves: Vec<Leaf>,
 }
 
+/// What is below boxes that were met, and where those are entered; the nearest of a node's boxes come first.
+struct Waiting {
+    list: [(u32, f32); WAITING],
+    count: usize,
+    /// What found no place.
+    more: Vec<(u32, f32)>,
+}
+
 /// The beam round a ray on one axis, the same in all lanes: where it enters boxes, and where it leaves them.
 #[derive(Clone, Copy)]
 struct Slab<S: Simd> {
@@ -59,6 +68,9 @@ struct Slab<S: Simd> {
 }
 
 impl Wide {
+    /// Bytes a triangle, about the most that models take.
+    pub(super) const BYTES: usize = 100;
+
     /// From a tree with two children a node.
     pub(super) fn new(tree: &[bvh::Node], triangles: &Triangles) -> Self {
         // The triangles below each node.
@@ -138,8 +150,7 @@ impl Wide {
         let slabs = slabs(simd, ray, triangles.extent);
         let slack = ray.rounding(triangles.extent);
         let (mut best, mut limit) = (None, f32::INFINITY);
-        let mut waiting = [(0u32, 0.0f32); WAITING];
-        let (mut top, mut more) = (0, Vec::new());
+        let mut waiting = Waiting::new();
         let mut next = 0;
         if self.nodes.is_empty() {
             return None;
@@ -148,29 +159,12 @@ impl Wide {
             if next & LEAF == 0 {
                 let node = &self.nodes[next as usize];
                 counters.boxes += LANES as u64;
-                let near = node.entered(simd, &slabs, limit);
-                let (near, mut met) = (near.0.to_array(), near.1);
+                let (near, met) = node.entered(simd, &slabs, limit);
                 if met.is_power_of_two() {
                     next = node.below[met.trailing_zeros() as usize];
                     continue;
                 }
-                // Those that are met wait, the farthest lowest.
-                let bottom = top;
-                while met != 0 {
-                    let lane = met.trailing_zeros() as usize % LANES;
-                    met &= met - 1;
-                    if top == WAITING {
-                        more.push((node.below[lane], near[lane]));
-                        continue;
-                    }
-                    let mut at = top;
-                    while at > bottom && waiting[at - 1].1 < near[lane] {
-                        waiting[at] = waiting[at - 1];
-                        at -= 1;
-                    }
-                    waiting[at] = (node.below[lane], near[lane]);
-                    top += 1;
-                }
+                waiting.add(&node.below, &near.to_array(), met);
             } else {
                 let leaf = &self.leaves[(next & !LEAF) as usize];
                 counters.triangles += u64::from(leaf.count);
@@ -188,19 +182,101 @@ impl Wide {
             }
             // What lies behind the hit is passed over.
             next = loop {
-                let (below, near) = match more.pop() {
-                    Some(last) => last,
-                    None if top == 0 => return best,
-                    None => {
-                        top -= 1;
-                        waiting[top % WAITING]
-                    }
-                };
-                if near <= limit {
-                    break below;
+                match waiting.next() {
+                    None => return best,
+                    Some((below, near)) if near <= limit => break below,
+                    Some(_) => {}
                 }
             };
         }
+    }
+
+    /// The number, as a part, of what is below a box: nodes come first, those above before those below, then leaves.
+    #[inline(always)]
+    fn part(&self, below: u32) -> usize {
+        if below & LEAF == 0 { below as usize } else { self.nodes.len() + (below & !LEAF) as usize }
+    }
+
+    /// [`super::Structure::largest`].
+    pub(super) fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
+        let mut values = vec![f32::NEG_INFINITY; self.nodes.len() + self.leaves.len()];
+        let (nodes, leaves) = values.split_at_mut(self.nodes.len());
+        for (largest, leaf) in leaves.iter_mut().zip(&self.leaves) {
+            *largest = leaf.places().map(value).fold(f32::NEG_INFINITY, f32::max);
+        }
+        // Nodes stand before those below them.
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            let there = node.below.iter().zip(&node.bounds[0][0]).filter(|(_, least)| **least < f32::INFINITY);
+            let below =
+                there.map(|(&b, _)| if b & LEAF == 0 { nodes[b as usize] } else { leaves[(b & !LEAF) as usize] });
+            nodes[i] = below.fold(f32::NEG_INFINITY, f32::max);
+        }
+        values
+    }
+
+    /// [`super::Tree::descend_from`]: the nearest of a node's boxes come first.
+    #[inline(always)]
+    pub(super) fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        let mut visited = 0;
+        let mut waiting = Waiting::new();
+        let mut next = Some((0, near));
+        while let Some((below, near)) = next {
+            let part = self.part(below);
+            if !visitor.skips(part, near) {
+                visitor.passes(part);
+                if below & LEAF == 0 {
+                    let node = &self.nodes[below as usize];
+                    let (near, met) = probe.enters_each(&node.bounds);
+                    visited += LANES as u64;
+                    waiting.add(&node.below, &near, met);
+                } else {
+                    // No closure, which would not have the visitor's instruction set if it were not inlined.
+                    for place in self.leaves[(below & !LEAF) as usize].places() {
+                        visitor.triangle(place);
+                    }
+                }
+            }
+            next = waiting.next();
+        }
+        visited
+    }
+}
+
+impl Waiting {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { list: [(0, 0.0); WAITING], count: 0, more: Vec::new() }
+    }
+
+    /// Adds what is below those boxes of a node that were `met`, a bit each, the nearest last.
+    #[inline(always)]
+    fn add(&mut self, below: &[u32; LANES], near: &[f32; LANES], mut met: u64) {
+        let bottom = self.count;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % LANES;
+            met &= met - 1;
+            let entry = (below[lane], near[lane]);
+            if self.count == WAITING {
+                self.more.push(entry);
+                continue;
+            }
+            let mut at = self.count;
+            while at > bottom && self.list[at - 1].1 < entry.1 {
+                self.list[at] = self.list[at - 1];
+                at -= 1;
+            }
+            self.list[at] = entry;
+            self.count += 1;
+        }
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(u32, f32)> {
+        if let Some(last) = self.more.pop() {
+            return Some(last);
+        }
+        self.count = self.count.checked_sub(1)?;
+        Some(self.list[self.count % WAITING])
     }
 }
 
@@ -262,6 +338,12 @@ impl Leaf {
             }
         }
         leaf
+    }
+
+    /// Where its triangles are in [`Triangles`].
+    #[inline(always)]
+    fn places(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
     }
 
     /// The triangles that a ray may meet, a bit each.

@@ -14,7 +14,7 @@ use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
-use vitral_raster::{Batch, LayerList, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid};
+use vitral_raster::{Batch, LayerList, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid, TileLists};
 
 /// Bytes of a triangle: its setup, its entry in a tile's list, and what becomes of that when the lists are sorted.
 pub(super) const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
@@ -50,7 +50,7 @@ impl<'v, 'a> Facets<'v, 'a> {
             execution.budget.check("the view's facets")?;
             let jobs = &jobs[round];
             transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
-            for (layered, batch) in set_up(view, jobs, &vertices, execution) {
+            for (layered, batch) in set_up(view, jobs, &vertices, TileLists::Kept, execution) {
                 resolved.geometry.add(&batch.counters);
                 let list = if layered { &mut facets.layered } else { &mut facets.opaque };
                 list.push(batch);

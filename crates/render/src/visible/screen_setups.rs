@@ -4,7 +4,7 @@ use super::zbuffer::{jobs, set_up, transform_vertices};
 use crate::stats::GeometryStats;
 use crate::{Execution, PreparedView};
 use vitral_exec::{Budget, Limit};
-use vitral_raster::{ScreenVertex, Setup};
+use vitral_raster::{ScreenVertex, Setup, TileLists};
 
 /// The pieces of facets that may be seen, those of one facet in a row.
 #[derive(Debug, Default)]
@@ -23,8 +23,8 @@ impl ScreenSetups {
     pub(super) fn bytes(view: &PreparedView<'_>) -> u64 {
         let draws = view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
         let triangles: u64 = draws.flat_map(|d| &d.ranges).map(|r| u64::from(r.end - r.start)).sum();
-        // Once in batches with their tile lists, once here.
-        triangles * (2 * size_of::<Setup>() + 16) as u64
+        // Once in batches, once here.
+        triangles * (2 * size_of::<Setup>()) as u64
     }
 
     /// Transforms, culls, clips and sets up, as for the z-buffer.
@@ -38,7 +38,7 @@ impl ScreenSetups {
         let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
         transform_vertices(view, &jobs, &mut vertices, execution, stats);
         execution.budget.check("geometry")?;
-        let batches = set_up(view, &jobs, &vertices, execution);
+        let batches = set_up(view, &jobs, &vertices, TileLists::Unwanted, execution);
         let mut all = Self::default();
         for (layered, batch) in &batches {
             stats.add(&batch.counters);

@@ -24,7 +24,7 @@ use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
     Batch, Draw, FragmentSink, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE, Tile,
-    TileGrid, Viewport, VisibilitySink, transform, traverse_by_rows,
+    TileGrid, TileLists, Viewport, VisibilitySink, transform, traverse_by_rows,
 };
 
 /// Triangles in one piece of work.
@@ -78,7 +78,7 @@ impl VisibleSurface for ZBuffer {
             let jobs = &jobs[round.clone()];
             let start = execution.budget.elapsed();
             transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
-            let batches = set_up(view, jobs, &vertices, execution);
+            let batches = set_up(view, jobs, &vertices, TileLists::Kept, execution);
             for (_, batch) in &batches {
                 resolved.geometry.add(&batch.counters);
             }
@@ -183,7 +183,7 @@ pub(crate) fn each_tile(
     execution.budget.check("visibility")?;
     let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
-    let batches = set_up(view, &jobs, &vertices, execution);
+    let batches = set_up(view, &jobs, &vertices, TileLists::Kept, execution);
     let numbers = 0..view.viewport.tiles_x() * rows.min(view.viewport.tiles_y());
     execution.workers.for_each(numbers.collect(), |number: u32| {
         let index = number as usize;
@@ -349,16 +349,17 @@ pub(super) fn retire_vertices(view: &PreparedView<'_>, jobs: &[Job<'_, '_>], ver
     }
 }
 
-/// Sets up each job's triangles and sorts them by tile.
+/// Sets up each job's triangles and, if wanted, sorts them by tile.
 pub(super) fn set_up(
     view: &PreparedView<'_>,
     jobs: &[Job<'_, '_>],
     vertices: &[Vec<ScreenVertex>],
+    tile_lists: TileLists,
     execution: &Execution,
 ) -> Vec<(bool, Batch)> {
     execution.workers.map(jobs.len(), |i| {
         let mut batch = view.session.spare_batches.lock().expect("spare batches").pop().unwrap_or_default();
-        batch.clear();
+        batch.clear(tile_lists);
         for piece in &jobs[i].pieces {
             batch.add(piece.draw, &vertices[piece.item], piece.range.clone(), &view.screen);
         }

@@ -146,19 +146,20 @@ impl Eye {
         self.start as f32
     }
 
-    /// The largest depth, with room for the rounding of all depths but a facet's own, at a place whose distance from the
-    /// eye's plane is `t` at least.
+    /// Whether all depths at places whose distance from the eye's plane is `t` or more are smaller than `depth`; a facet's
+    /// own depths may be wrong by `slack`.
     #[inline(always)]
-    pub(super) fn depth_behind(&self, t: f32) -> f32 {
+    pub(super) fn is_behind(&self, t: f32, slack: f32, depth: f32) -> bool {
         let t = t - t.abs() * self.relative_rounding - self.rounding;
-        let depth = if !self.perspective {
-            self.depth[0] - self.depth[1] * t
-        } else if t > 0.0 {
-            self.depth[0] + self.depth[1] / t
+        let [at_zero, slope] = self.depth;
+        let room = depth - slack - at_zero.abs() * (4.0 * DEPTH_ROUNDING);
+        if self.perspective {
+            // The largest depth is `at_zero + slope / t`; both sides times `t`, since a division takes longer.
+            t > 0.0 && room > 0.0 && (at_zero * t + slope) * (1.0 + 2.0 * DEPTH_ROUNDING) < room * t
         } else {
-            f32::INFINITY
-        };
-        depth + (depth.abs() + self.depth[0].abs()) * DEPTH_ROUNDING
+            let nearest = at_zero - slope * t;
+            nearest + nearest.abs() * DEPTH_ROUNDING < room
+        }
     }
 }
 

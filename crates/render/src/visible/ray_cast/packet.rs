@@ -102,7 +102,7 @@ fn reaches(place: &Place, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool
 impl<S: Simd, T: Structure, K: Taker<S>> Search<'_, S, T, K> {
     #[inline(always)]
     fn is_behind(&self, near: f32, slack: f32) -> bool {
-        self.cast.eye.depth_behind(near) + slack < farthest(self.taker.tile(), self.block)
+        self.cast.eye.is_behind(near, slack, farthest(self.taker.tile(), self.block))
     }
 }
 

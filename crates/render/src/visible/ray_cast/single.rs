@@ -57,12 +57,12 @@ impl<T: Structure> Visitor for Search<'_, T> {
     fn skips(&self, part: usize, near: f32) -> bool {
         let [opaque, layered] = &self.cast.slack;
         let slack = if layered.is_empty() { opaque[part] } else { opaque[part].max(layered[part]) };
-        self.cast.eye.depth_behind(self.cast.eye.start() + near) + slack < self.nearest.0
+        self.cast.eye.is_behind(self.cast.eye.start() + near, slack, self.nearest.0)
     }
 
     #[inline]
     fn done(&self, near: f32) -> bool {
-        self.cast.eye.depth_behind(self.cast.eye.start() + near) + self.cast.largest_slack < self.nearest.0
+        self.cast.eye.is_behind(self.cast.eye.start() + near, self.cast.largest_slack, self.nearest.0)
     }
 
     #[inline]

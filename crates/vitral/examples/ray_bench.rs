@@ -147,8 +147,7 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
     let triangles = renderer.session().triangles(renderer.execution())?;
     let (bvh_ms, bvh) = timed(rounds, || {
         let bvh = Bvh::build(&triangles, workers, &budget)?;
-        // The first ray alone builds the rest.
-        bvh.closest_hit(&Ray::new(Vec3::ZERO, Vec3::Z), &mut Counters::default());
+        bvh.widen(workers);
         Ok(bvh)
     })?;
     let (octree_ms, _) = timed(1, || Ok(Octree::build(&triangles, workers, &budget)?))?;

@@ -220,9 +220,15 @@ impl Bvh {
         }
     }
 
+    /// Builds what all but packets of rays go down, unless it is there. Without this, who goes down it first builds it
+    /// alone.
+    pub fn widen(&self, workers: &Workers) {
+        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles, workers));
+    }
+
     /// The tree for all but packets of rays.
     pub(super) fn wide(&self) -> &Wide {
-        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles))
+        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles, &Workers::single()))
     }
 }
 

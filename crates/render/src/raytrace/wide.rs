@@ -16,12 +16,16 @@ use super::bvh::{self, area};
 use super::intersect::{Ray, surely_beside};
 use super::triangles::Triangles;
 use super::{Boxes, Counters, Probe, Visitor};
+use std::ops::Range;
+use vitral_exec::Workers;
 use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd};
 
 /// Marks what is below a box as a leaf.
 const LEAF: u32 = 1 << 31;
+/// Leaves that are filled at once.
+const CHUNK: usize = 1024;
 /// What may wait without memory being asked for. A ray seldom meets more than a few boxes of a node.
 const WAITING: usize = 64;
 
@@ -33,21 +37,16 @@ struct Node {
     below: [u32; LANES],
 }
 
-/// One to eight triangles.
-#[derive(Clone, Debug, PartialEq)]
-struct Leaf {
-    /// By corner and axis.
-    corners: [[[f32; LANES]; 3]; 3],
-    /// The first one's place, and how many they are.
-    first: u32,
-    count: u32,
-}
+/// The corners of one to eight triangles, by corner and axis.
+type Leaf = [[[f32; LANES]; 3]; 3];
 
 /// See the module.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wide {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
+    /// The places of each leaf's triangles: the first, and the one behind the last.
+    places: Vec<[u32; 2]>,
 }
 
 /// What is below boxes that were met, and where those are entered; the nearest of a node's boxes come first.
@@ -72,7 +71,7 @@ impl Wide {
     pub(super) const BYTES: usize = 100;
 
     /// From a tree with two children a node.
-    pub(super) fn new(tree: &[bvh::Node], triangles: &Triangles) -> Self {
+    pub(super) fn new(tree: &[bvh::Node], triangles: &Triangles, workers: &Workers) -> Self {
         // The triangles below each node.
         let mut runs = vec![[0; 2]; tree.len()];
         for (i, node) in tree.iter().enumerate().rev() {
@@ -83,13 +82,23 @@ impl Wide {
         }
         let mut wide = Self::default();
         if !tree.is_empty() {
-            wide.grow(tree, &runs, triangles, 0);
+            wide.grow(tree, &runs, 0);
         }
+        wide.leaves = vec![[[[0.0; LANES]; 3]; 3]; wide.places.len()];
+        workers.for_each_chunk(&mut wide.leaves, CHUNK, |chunk, leaves| {
+            for (leaf, places) in leaves.iter_mut().zip(&wide.places[chunk * CHUNK..]) {
+                for (lane, corners) in triangles.corners[range(places)].iter().enumerate() {
+                    for (corner, p) in leaf.iter_mut().zip(corners) {
+                        (corner[0][lane], corner[1][lane], corner[2][lane]) = (p.x, p.y, p.z);
+                    }
+                }
+            }
+        });
         wide
     }
 
     /// Makes a node of what is below `top`: its number.
-    fn grow(&mut self, tree: &[bvh::Node], runs: &[[u32; 2]], triangles: &Triangles, top: usize) -> u32 {
+    fn grow(&mut self, tree: &[bvh::Node], runs: &[[u32; 2]], top: usize) -> u32 {
         let is_leaf = |i: usize| (runs[i][1] - runs[i][0]) as usize <= LANES;
         let member = |i: usize| (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) });
         let mut members = [member(top); LANES];
@@ -110,10 +119,10 @@ impl Wide {
         self.nodes.push(Node { bounds: [nowhere; 3], below: [0; LANES] });
         for (lane, &(i, _)) in members[..count].iter().enumerate() {
             let below = if is_leaf(i) {
-                self.leaves.push(Leaf::new(runs[i], triangles));
-                (self.leaves.len() - 1) as u32 | LEAF
+                self.places.push(runs[i]);
+                (self.places.len() - 1) as u32 | LEAF
             } else {
-                self.grow(tree, runs, triangles, i)
+                self.grow(tree, runs, i)
             };
             let node = &mut self.nodes[number];
             for k in 0..3 {
@@ -166,11 +175,12 @@ impl Wide {
                 }
                 waiting.add(&node.below, &near.to_array(), met);
             } else {
-                let leaf = &self.leaves[(next & !LEAF) as usize];
-                counters.triangles += u64::from(leaf.count);
-                let mut met = leaf.may_meet(simd, ray);
+                let leaf = (next & !LEAF) as usize;
+                let places = range(&self.places[leaf]);
+                counters.triangles += places.len() as u64;
+                let mut met = may_meet(simd, &self.leaves[leaf], ray) & ((1 << places.len()) - 1);
                 while met != 0 {
-                    let place = leaf.first as usize + met.trailing_zeros() as usize;
+                    let place = places.start + met.trailing_zeros() as usize;
                     met &= met - 1;
                     if let Some(t) = ray.hit(&triangles.corners[place])
                         && triangles.replaces(best, (place, t), own)
@@ -201,8 +211,8 @@ impl Wide {
     pub(super) fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
         let mut values = vec![f32::NEG_INFINITY; self.nodes.len() + self.leaves.len()];
         let (nodes, leaves) = values.split_at_mut(self.nodes.len());
-        for (largest, leaf) in leaves.iter_mut().zip(&self.leaves) {
-            *largest = leaf.places().map(value).fold(f32::NEG_INFINITY, f32::max);
+        for (largest, places) in leaves.iter_mut().zip(&self.places) {
+            *largest = range(places).map(value).fold(f32::NEG_INFINITY, f32::max);
         }
         // Nodes stand before those below them.
         for (i, node) in self.nodes.iter().enumerate().rev() {
@@ -231,7 +241,7 @@ impl Wide {
                     waiting.add(&node.below, &near, met);
                 } else {
                     // No closure, which would not have the visitor's instruction set if it were not inlined.
-                    for place in self.leaves[(below & !LEAF) as usize].places() {
+                    for place in range(&self.places[(below & !LEAF) as usize]) {
                         visitor.triangle(place);
                     }
                 }
@@ -329,41 +339,28 @@ impl Node {
     }
 }
 
-impl Leaf {
-    fn new([first, end]: [u32; 2], triangles: &Triangles) -> Self {
-        let mut leaf = Self { corners: [[[0.0; LANES]; 3]; 3], first, count: end - first };
-        for (lane, corners) in triangles.corners[first as usize..end as usize].iter().enumerate() {
-            for (corner, p) in leaf.corners.iter_mut().zip(corners) {
-                (corner[0][lane], corner[1][lane], corner[2][lane]) = (p.x, p.y, p.z);
-            }
-        }
-        leaf
-    }
+/// A leaf's places in [`Triangles`].
+#[inline(always)]
+fn range(places: &[u32; 2]) -> Range<usize> {
+    places[0] as usize..places[1] as usize
+}
 
-    /// Where its triangles are in [`Triangles`].
-    #[inline(always)]
-    fn places(&self) -> std::ops::Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
-    }
-
-    /// The triangles that a ray may meet, a bit each.
-    #[inline(always)]
-    fn may_meet<S: Simd>(&self, simd: S, ray: &Ray) -> u64 {
-        let [x, y, z] = ray.axes;
-        let place = lanes::inlined(
-            #[inline(always)]
-            |corner: &[[f32; LANES]; 3]| {
-                let away = lanes::inlined(
-                    #[inline(always)]
-                    |k: usize| F32x8::from_slice(simd, &corner[k]) - ray.origin[k],
-                );
-                let z = away(z);
-                [away(x) - z * ray.shear.x, away(y) - z * ray.shear.y]
-            },
-        );
-        let beside = surely_beside(place(&self.corners[0]), place(&self.corners[1]), place(&self.corners[2]));
-        !beside.to_bitmask() & ((1 << self.count) - 1)
-    }
+/// The triangles of a leaf that a ray may meet, a bit each; those that are not there, too.
+#[inline(always)]
+fn may_meet<S: Simd>(simd: S, leaf: &Leaf, ray: &Ray) -> u64 {
+    let [x, y, z] = ray.axes;
+    let place = lanes::inlined(
+        #[inline(always)]
+        |corner: &[[f32; LANES]; 3]| {
+            let away = lanes::inlined(
+                #[inline(always)]
+                |k: usize| F32x8::from_slice(simd, &corner[k]) - ray.origin[k],
+            );
+            let z = away(z);
+            [away(x) - z * ray.shear.x, away(y) - z * ray.shear.y]
+        },
+    );
+    !surely_beside(place(&leaf[0]), place(&leaf[1]), place(&leaf[2])).to_bitmask()
 }
 
 #[cfg(test)]
@@ -371,7 +368,7 @@ mod tests {
     use super::*;
     use crate::raytrace::Structure;
     use crate::raytrace::bvh::Bvh;
-    use vitral_exec::{Budget, Workers};
+    use vitral_exec::Budget;
     use vitral_math::lanes::{available_levels, dispatch};
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
@@ -414,11 +411,11 @@ mod tests {
         let (list, bvh) = teapot();
         let wide = bvh.wide();
         let mut next = 0;
-        let mut runs: Vec<_> = wide.leaves.iter().map(|l| (l.first, l.count)).collect();
+        let mut runs = wide.places.clone();
         runs.sort_unstable();
-        for (first, count) in runs {
+        for [first, end] in runs {
             assert_eq!(first, next);
-            next += count;
+            next = end;
         }
         assert_eq!(next as usize, list.count());
         let below = wide.nodes.iter().flat_map(|n| n.bounds[0][0].iter().zip(n.below)).filter(|(x, _)| x.is_finite());

@@ -158,6 +158,7 @@ pub(super) fn collect(tree: &Bvh, probe: &impl Probe, list: &mut Vec<u32>) {
 impl Casters {
     pub(super) fn new(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Self, Limit> {
         let tree = session.bvh(execution)?;
+        tree.widen(&execution.workers);
         let triangles = tree.triangles();
         let opaque: Vec<bool> = triangles.facets.iter().map(|&f| occluders.is_opaque(f)).collect();
         let chosen = || (0..triangles.count()).filter(|&i| !opaque[i]);

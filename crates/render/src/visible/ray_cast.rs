@@ -38,6 +38,8 @@ use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
 
 /// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
 const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
+/// Triangles whose places are listed at once.
+const CHUNK: usize = 16384;
 /// No setup: nothing of this triangle is on the screen.
 const NONE: u32 = u32::MAX;
 
@@ -66,7 +68,11 @@ impl VisibleSurface for RayCast {
             let job = Job { view, marks, execution, sink, start: execution.budget.elapsed() };
             let session = view.session;
             match view.acceleration {
-                Acceleration::Bvh => job.run_packets(grid, &*session.bvh(execution)?),
+                Acceleration::Bvh => {
+                    let tree = session.bvh(execution)?;
+                    tree.widen(&execution.workers);
+                    job.run_packets(grid, &*tree)
+                }
                 Acceleration::Octree => job.run_packets(grid, &*session.octree(execution)?),
                 Acceleration::Grid => job.run(grid, &*session.uniform_grid(execution)?, single::look),
                 Acceleration::None => job.run(grid, &*session.triangles(execution)?, single::look),
@@ -142,22 +148,25 @@ struct Cast<'a, T> {
 impl<'a, T: Structure> Cast<'a, T> {
     fn new(view: &'a PreparedView<'a>, execution: &'a Execution, structure: &'a T, on_screen: ScreenSetups) -> Self {
         // Find each facet's setups, and how wrong their depths may be.
-        let mut of_facet = vec![(Place::NOWHERE, f32::NEG_INFINITY); view.session.world.facet_count as usize];
+        let mut of_facet = vec![Place::NOWHERE; view.session.world.facet_count as usize];
         let mut start = 0;
         for &(end, clipped) in &on_screen.runs {
             for (i, setup) in on_screen.setups[start..end].iter().enumerate() {
-                let (place, slack) = &mut of_facet[setup.facet as usize];
-                place.add((start + i) as u32, setup);
-                *slack = slack.max(depth_slack(setup, clipped));
+                of_facet[setup.facet as usize].add((start + i) as u32, setup, clipped);
             }
             start = end;
         }
         let facets = &structure.triangles().facets;
-        let places: Vec<_> = facets.iter().map(|&f| of_facet[f as usize].0).collect();
+        let mut places = vec![Place::NOWHERE; facets.len()];
+        execution.workers.for_each_chunk(&mut places, CHUNK, |chunk, places| {
+            for (place, &f) in places.iter_mut().zip(&facets[chunk * CHUNK..]) {
+                *place = of_facet[f as usize];
+            }
+        });
         let opaque = on_screen.opaque as u32;
         let slack_of = |place: usize, layered: bool| {
-            let (place, slack) = of_facet[facets[place] as usize];
-            if (place.setups[0] >= opaque) == layered { slack } else { f32::NEG_INFINITY }
+            let place = &places[place];
+            if (place.setups[0] >= opaque) == layered { place.slack } else { f32::NEG_INFINITY }
         };
         let any_layered = on_screen.opaque < on_screen.setups.len();
         let slack = [
@@ -210,14 +219,21 @@ struct Place {
     rows: [i16; 2],
     /// The nearest depth.
     nearest: f32,
+    /// How wrong depths may be, -∞ where there are none.
+    slack: f32,
 }
 
 impl Place {
-    const NOWHERE: Self =
-        Self { setups: [NONE; 2], columns: [i16::MAX, i16::MIN], rows: [i16::MAX, i16::MIN], nearest: 0.0 };
+    const NOWHERE: Self = Self {
+        setups: [NONE; 2],
+        columns: [i16::MAX, i16::MIN],
+        rows: [i16::MAX, i16::MIN],
+        nearest: 0.0,
+        slack: f32::NEG_INFINITY,
+    };
 
     /// Adds the setup of this number, which is the first or the one behind those before it.
-    fn add(&mut self, number: u32, setup: &Setup) {
+    fn add(&mut self, number: u32, setup: &Setup, clipped: bool) {
         self.setups = [self.setups[0].min(number), number + 1];
         // Setups lie within the guard band, which 16 bits can hold.
         let pixel = |v: i32| (v >> 8).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
@@ -226,6 +242,7 @@ impl Place {
             *range = [range[0].min(pixel(low)), range[1].max(pixel(high))];
         }
         self.nearest = self.nearest.max(setup.z_max);
+        self.slack = self.slack.max(depth_slack(setup, clipped));
     }
 }
 

@@ -21,6 +21,15 @@ pub struct Primitive {
     pub count: u32,
 }
 
+/// Whether a batch is drawn at once or comes out of a display list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// By Begin and End, or from arrays.
+    Now,
+    /// By a list.
+    Listed,
+}
+
 /// Vertices and what they form. An attribute that is `None` has the current value for all vertices, taken when drawn.
 /// Every attribute that is there has one entry a vertex.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -263,8 +263,8 @@ fn a_smooth_polygon_covers_its_area() {
         c.vertex_2f(x, y);
     }
     c.end();
-    let found = [[10, 4], [4, 10], [20, 4], [20, 12], [10, 17]].map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
-    for (found, expected) in found.iter().zip([0.5, 0.75, 0.25, 0.5, 0.0]) {
+    let found = [[10, 4], [4, 10], [4, 4], [20, 12], [10, 17]].map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
+    for (found, expected) in found.iter().zip([0.5, 0.75, 0.375, 0.5, 0.0]) {
         assert!((found - expected).abs() < 0.01, "{found} instead of {expected}");
     }
     assert!((5..20).all(|x| (5..17).all(|y| c.bytes()[y * 32 + x][3] == 255)));

@@ -84,7 +84,8 @@ pub fn phong<T: Lanes>(
         if !T::any(shining) {
             continue;
         }
-        let lobe = T::select(shining, cos.saturate().pow(shininess), zero);
+        // Above 1 where OpenGL gives normals that are longer: it shines all the more.
+        let lobe = T::select(shining, cos.positive().pow(shininess), zero);
         sum.specular = sum.specular + tint(k.ks, light.specular).times(arriving.scale(lobe));
     }
     sum

@@ -129,6 +129,36 @@ impl Assembled {
         self.pieces[piece].get_or_init(|| make_piece(level, self.triangles(batch, self.range(piece)), &batch.positions))
     }
 
+    /// The triangles of a piece with its quads cut along the other diagonal, from the first corner to the third; `None` if
+    /// that is nothing new. Of a batch without indices. Unless `all`, quads on which everything is linear stay as
+    /// they are, as does one whose halves are in two pieces. The corner that provokes is not in both halves then.
+    pub(crate) fn turned(
+        &self,
+        batch: &VertexBatch,
+        piece: usize,
+        triangles: &[[u32; 3]],
+        all: bool,
+    ) -> Option<Vec<[u32; 3]>> {
+        let range = self.range(piece);
+        let quads = batch.primitives.iter().zip(&self.starts).filter(|(p, _)| p.mode == QUADS);
+        let mut turned: Option<Vec<[u32; 3]>> = None;
+        for (primitive, start) in quads {
+            let first = range.start.max(*start);
+            let first = first + ((first - start) & 1);
+            let end = range.end.min(start + triangle_count(primitive));
+            for triangle in (first..end.saturating_sub(1)).step_by(2) {
+                let vertex = (primitive.first + (triangle - start) * 2) as usize;
+                if all || is_bent(batch, vertex) {
+                    let at = (triangle - range.start) as usize;
+                    let turned = turned.get_or_insert_with(|| triangles.to_vec());
+                    let ([a, b, d], c) = (turned[at], turned[at + 1][1]);
+                    (turned[at], turned[at + 1]) = ([a, b, c], [a, c, d]);
+                }
+            }
+        }
+        turned
+    }
+
     /// Triangles as numbers of vertices.
     fn triangles(&self, batch: &VertexBatch, range: Range<u32>) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(range.len());
@@ -147,6 +177,22 @@ impl Assembled {
         }
         triangles
     }
+}
+
+/// Whether something is not linear on the quad of four vertices from `first` on: it looks different along each diagonal.
+fn is_bent(batch: &VertexBatch, first: usize) -> bool {
+    fn bent<const N: usize>(values: &[[f32; N]], first: usize) -> bool {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| values[first + k]);
+        (0..N).any(|k| {
+            let size = a[k].abs().max(b[k].abs()).max(c[k].abs()).max(d[k].abs());
+            ((a[k] - b[k]) + (c[k] - d[k])).abs() > 1e-5 * size
+        })
+    }
+    bent(&batch.positions, first)
+        || batch.colors.as_ref().is_some_and(|v| bent(v, first))
+        || batch.secondary.as_ref().is_some_and(|v| bent(v, first))
+        || batch.fog.as_ref().is_some_and(|v| bent(v.as_chunks::<1>().0, first))
+        || batch.tex.iter().flatten().any(|v| bent(v, first))
 }
 
 /// How many triangles a primitive has; none for points and lines.

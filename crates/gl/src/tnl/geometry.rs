@@ -30,6 +30,9 @@ pub(crate) struct DrawGeometry {
     pub assembled: Arc<Assembled>,
     /// The batch is a flat grid, and drawn as one.
     pub grid: bool,
+    /// Quads are cut from their first corner to the third, not from the second to the fourth. The specification leaves
+    /// open which; Mesa does so with what is neither indexed nor comes from a list, and where colours vary all see it.
+    pub first_diagonal: bool,
     pub snapshot: Arc<VertexSnapshot>,
     pub primitive: PrimitiveState,
     pub layout: Layout,
@@ -92,6 +95,12 @@ impl Geometry for DrawGeometry {
             if !state.depth_clamp && whole.is_outside(matrix, state.window.near, planes) {
                 return;
             }
+            let turned = self.first_diagonal.then(|| {
+                let all = !self.snapshot.is_linear();
+                self.assembled.turned(&self.batch, piece, triangles, all)
+            });
+            let turned = turned.flatten();
+            let triangles = turned.as_ref().unwrap_or(triangles);
             self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
         } else {
             let all = PieceVertices::Range(0, self.batch.positions.len() as u32);

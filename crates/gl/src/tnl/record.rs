@@ -5,7 +5,7 @@ use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
-use crate::vertex::VertexBatch;
+use crate::vertex::{Sent, VertexBatch};
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::Vec4;
@@ -67,14 +67,15 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>) {
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Sent) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
         let Some(target) = self.draw_target() else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
-        let Some(geometry) = self.draw_geometry(batch, &fragment, &target) else { return };
+        let Some(mut geometry) = self.draw_geometry(batch, &fragment, &target) else { return };
+        geometry.first_diagonal = sent == Sent::Now && geometry.batch.indices.is_none() && !fragment.flat;
         self.recorder.waiting += count;
         self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
     }
@@ -149,12 +150,13 @@ impl Context {
             fade: multisample.then_some(s.points.fade_threshold),
         };
         let clip = primitive.clip;
-        Some(DrawGeometry { assembled, batch, grid, snapshot: Arc::new(snapshot), primitive, layout, clip, points })
+        let snapshot = Arc::new(snapshot);
+        let first_diagonal = false;
+        Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, clip, points })
     }
 
     /// Whether everything that varies on a flat grid is linear, but the colours of one side.
     fn draws_grids(&self, snapshot: &VertexSnapshot, primitive: &PrimitiveState, fragment: &FragmentState) -> bool {
-        let linear = |g: &Generation| matches!(g, Generation::None | Generation::Object(_) | Generation::Eye(_));
         let lit = snapshot.lighting.as_ref();
         // What a perspective projection shows lies ahead.
         let ahead = self.state.matrices.projection.top().row(3) == Vec4::NEG_Z;
@@ -162,7 +164,7 @@ impl Context {
             && !primitive.polygon_smooth
             && !(lit.is_some() && fragment.flat)
             && lit.is_none_or(|lighting| !lighting.two_side && !lighting.separate_specular)
-            && snapshot.units.iter().flat_map(|unit| &unit.generation).all(linear)
+            && snapshot.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
             && (ahead || snapshot.fog != Some(FogSource::Depth))
     }
 

@@ -19,6 +19,13 @@ pub(crate) enum Generation {
     Normal,
 }
 
+impl Generation {
+    /// Whether it is a linear function of the position, or none.
+    pub(crate) fn is_linear(&self) -> bool {
+        matches!(self, Self::None | Self::Object(_) | Self::Eye(_))
+    }
+}
+
 /// A unit's texture coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct UnitSnapshot {
@@ -80,6 +87,11 @@ pub(crate) struct VertexSnapshot {
 }
 
 impl VertexSnapshot {
+    /// Whether vertices get nothing but linear functions of what they are given.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.lighting.is_none() && self.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
+    }
+
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
     pub(crate) fn new(state: &State, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
         let modelview = state.matrices.modelview.top();

@@ -9,7 +9,7 @@
 
 use super::attribute::{CARRIED, COLOR};
 use crate::state::{Current, MaterialFace};
-use crate::vertex::VertexBatch;
+use crate::vertex::{Sent, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 
@@ -180,7 +180,7 @@ impl Context {
         if REUSED.contains(&batch.positions.len()) {
             self.builder.drawn = Some(Arc::clone(&batch));
         }
-        self.draw_batch(batch);
+        self.draw_batch(batch, Sent::Now);
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use super::client;
 use super::compile::{Compiler, Item};
 use crate::state::MAX_LIST_NESTING;
+use crate::vertex::Sent;
 use crate::{Context, enums};
 use std::collections::BTreeMap;
 use std::sync::{Arc, MutexGuard, PoisonError};
@@ -173,7 +174,7 @@ impl Context {
             Item::Batch(batch) => {
                 if !self.refused_inside_begin("glBegin") {
                     self.flush_vertices();
-                    self.draw_batch(batch.clone());
+                    self.draw_batch(batch.clone(), Sent::Listed);
                 }
             }
             Item::Attribute(which, value) => self.exec_attribute(*which, *value),

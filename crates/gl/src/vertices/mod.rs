@@ -25,19 +25,19 @@ pub use lists::{List, ListNames};
 
 use crate::Context;
 use crate::enums;
-use crate::vertex::VertexBatch;
+use crate::vertex::{Sent, VertexBatch};
 use std::sync::Arc;
 
 impl Context {
     /// Draws a batch: to the screen, or to the feedback or selection buffer.
-    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>) {
+    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Sent) {
         if batch.primitives.is_empty() {
             return;
         }
         #[cfg(test)]
         self.builder.log.push(batch.clone());
         if self.feedback.mode == enums::RENDER {
-            self.record_draw(batch);
+            self.record_draw(batch, sent);
         } else {
             self.feed_batch(&batch);
         }

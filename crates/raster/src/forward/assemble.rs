@@ -541,10 +541,13 @@ impl<'a> Assembler<'a> {
                 }
             }
             _ => {
-                for i in 1..corners.len() - 1 {
-                    let piece = [corners[0], corners[i], corners[i + 1]];
+                // Cut from the corner that provokes, as filled polygons are.
+                let (n, first) = (corners.len(), corners.iter().position(|&v| v == provoking).unwrap_or(0));
+                let corner = |i: usize| corners[(first + i) % n];
+                for i in 1..n - 1 {
+                    let piece = [corner(0), corner(i), corner(i + 1)];
                     if self.state.polygon_smooth {
-                        self.smooth_triangle(piece, [i == 1, true, i + 2 == corners.len()], provoking, back);
+                        self.smooth_triangle(piece, [i == 1, true, i + 2 == n], provoking, back);
                     } else {
                         self.triangle(piece, provoking);
                     }

@@ -4,7 +4,7 @@ use super::POSITION;
 use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, store};
 use crate::state::ArrayPointer;
-use crate::vertex::VertexBatch;
+use crate::vertex::{Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
 use crate::vertices::compile::Call;
@@ -198,7 +198,7 @@ impl Context {
             self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
         }
         if executed {
-            self.draw_batch(batch);
+            self.draw_batch(batch, Sent::Now);
         }
     }
 

@@ -117,7 +117,11 @@ fn dot3(gl: &mut Stage<'_>) {
     set(gl, COMBINE_RGB, DOT3_RGBA);
     gl.glEnable(BLEND);
     gl.glBlendFunc(SRC_ALPHA, ZERO);
-    textured(gl, [33.0, 1.0, 63.0, 63.0], 1.0);
+    textured(gl, [33.0, 1.0, 63.0, 31.0], 1.0);
+    gl.glTexEnvf(TEXTURE_ENV, RGB_SCALE, 2.0);
+    textured(gl, [31.0, 33.0, 47.0, 63.0], 1.0);
+    gl.glTexEnvf(TEXTURE_ENV, ALPHA_SCALE, 4.0);
+    textured(gl, [47.0, 33.0, 63.0, 63.0], 1.0);
 }
 
 /// Unit 0 passes the primary colour on, unit 1 reads the texture of unit 0 beside its own.

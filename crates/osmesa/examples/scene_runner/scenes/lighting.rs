@@ -17,6 +17,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("light-material-in-begin", Close, material_in_begin),
     scene("light-normalize", Close, normalize),
     scene("light-rescale", Close, rescale),
+    scene("light-long-normals", Close, long_normals),
     scene("light-flat", Close, flat),
     scene("light-position-at-call", Close, position_at_call),
     scene("light-alpha", Close, alpha),
@@ -208,6 +209,16 @@ fn rescale(gl: &mut Stage<'_>) {
     gl.glTranslatef(0.4, 0.4, 0.2);
     gl.glScalef(0.5, 0.5, 0.5);
     sphere(gl, 0.4, 20, 12);
+}
+
+/// Scaling down makes normals longer; nobody makes them shorter again, so the highlight is wide and bright.
+fn long_normals(gl: &mut Stage<'_>) {
+    lit(gl);
+    shiny(gl, 40.0);
+    gl.glMaterialfv(FRONT, DIFFUSE, &[0.1, 0.1, 0.1, 1.0]);
+    gl.glMaterialfv(FRONT, SPECULAR, &[0.3, 0.1, 0.02, 1.0]);
+    gl.glScalef(0.9, 0.95, 0.92);
+    sphere(gl, 1.7, 40, 24);
 }
 
 fn flat(gl: &mut Stage<'_>) {

@@ -1,11 +1,13 @@
 //! Polygons: kinds, facings, modes, offset, stipple, clipping, and where they go on the screen.
 
 use super::*;
+use crate::gl::at;
 
 pub(crate) const SCENES: &[Scene] = &[
     scene("clear-scissored", Rounded, clear_scissored),
     scene("triangle-kinds", Close, triangle_kinds),
     scene("polygon-kinds", Close, polygon_kinds),
+    scene("quad-ways", Close, quad_ways),
     scene("rect", Rounded, rect),
     scene("shade-flat", Close, shade_flat),
     scene("cull", Rounded, cull),
@@ -83,6 +85,37 @@ fn polygon_kinds(gl: &mut Stage<'_>) {
         gl.glVertex2f(28.0 + (i % 2) as f32 * 3.0, 25.0 + (i / 2) as f32);
     }
     gl.glEnd();
+}
+
+/// Quads whose colours are not linear show along which diagonal they are cut, which depends on how they were sent.
+fn quad_ways(gl: &mut Stage<'_>) {
+    pixels(gl);
+    let corners = |x: f32, y: f32| [[x, y], [x + 18.0, y], [x + 18.0, y + 18.0], [x, y + 18.0]];
+    let colors: [[f32; 3]; 8] =
+        std::array::from_fn(|i| [f32::from(i % 4 == 0), (i % 3) as f32 / 2.0, f32::from(i == 6)]);
+    let send = |gl: &Gl, y: f32| {
+        gl.glBegin(QUADS);
+        for (place, color) in [corners(2.0, y), corners(22.0, y)].as_flattened().iter().zip(&colors) {
+            gl.glColor3fv(color);
+            gl.glVertex2f(place[0], place[1]);
+        }
+        gl.glEnd();
+    };
+    send(gl, 2.0);
+    gl.glNewList(1, COMPILE);
+    send(gl, 22.0);
+    gl.glEndList();
+    gl.glCallList(1);
+
+    let places = [corners(42.0, 2.0), corners(42.0, 22.0)];
+    gl.glEnableClientState(VERTEX_ARRAY);
+    gl.glEnableClientState(COLOR_ARRAY);
+    gl.glVertexPointer(2, FLOAT, 0, at(&places));
+    gl.glColorPointer(3, FLOAT, 0, at(&colors));
+    gl.glDrawArrays(QUADS, 0, 4);
+    gl.glDrawElements(QUADS, 4, UNSIGNED_BYTE, at(&[4u8, 5, 6, 7]));
+    gl.glPolygonMode(BACK, LINE);
+    send(gl, 42.0);
 }
 
 fn rect(gl: &mut Stage<'_>) {

@@ -39,8 +39,8 @@ pub(super) fn combine<S: Simd>(
                 ],
             };
             let alpha = if state.functions[0] == CombineFunction::Dot3Rgba {
-                // The dot product is alpha too; alpha's own function and scale do not count.
-                color[0] * color_scale
+                // The dot product is alpha too; alpha's own function does not count.
+                color[0] * alpha_scale
             } else {
                 let b = [sources.alpha(state.alpha[0]), sources.alpha(state.alpha[1]), sources.alpha(state.alpha[2])];
                 component(simd, state.functions[1], b[0], b[1], b[2]) * alpha_scale

@@ -145,7 +145,7 @@ fn dot_products_go_to_colour_or_to_all() {
     let dot = 4.0 * (0..3).map(|k| (t[k] - 0.5) * (p[k] - 0.5)).sum::<f32>();
     assert!(dot < 0.0, "clamped");
     let bright = CombineSource::TextureUnit(2);
-    for (function, scale, alpha) in [(Dot3Rgb, 2.0, t[3] * p[3] * 4.0), (Dot3Rgba, 2.0, dot * 2.0)] {
+    for (function, scale, alpha) in [(Dot3Rgb, 2.0, t[3] * p[3] * 4.0), (Dot3Rgba, 2.0, dot * 4.0)] {
         let state = combine([function, Modulate], [scale, 4.0]);
         let u = unit(BaseFormat::Rgba, EnvironmentMode::Combine(state));
         check(&u, [dot * 2.0, dot * 2.0, dot * 2.0, alpha], &format!("{function:?}"));

@@ -74,8 +74,7 @@ impl Context {
         let Some(target) = self.draw_target() else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
-        let Some(mut geometry) = self.draw_geometry(batch, &fragment, &target) else { return };
-        geometry.first_diagonal = sent == Sent::Now && geometry.batch.indices.is_none() && !fragment.flat;
+        let Some(geometry) = self.draw_geometry(batch, sent, &fragment, &target) else { return };
         self.recorder.waiting += count;
         self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
     }
@@ -120,6 +119,7 @@ impl Context {
     fn draw_geometry(
         &mut self,
         batch: Arc<VertexBatch>,
+        sent: Sent,
         fragment: &FragmentState,
         target: &Target,
     ) -> Option<DrawGeometry> {
@@ -151,7 +151,7 @@ impl Context {
         };
         let clip = primitive.clip;
         let snapshot = Arc::new(snapshot);
-        let first_diagonal = false;
+        let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
         Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, clip, points })
     }
 

@@ -168,6 +168,7 @@ impl Casters {
             ..*triangles
         };
         let filters = Bvh::build(&clear, &execution.workers, &execution.budget)?;
+        filters.widen(&execution.workers);
         Ok(Self { tree, opaque, filters })
     }
 

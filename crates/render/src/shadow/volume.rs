@@ -165,7 +165,9 @@ impl LightVolumes {
         let bytes = sides.len() as u64 * size_of::<edges::Side>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
-        Ok(Self { from, turned, sides, tree: Bvh::build(&boxes, &execution.workers, &execution.budget)? })
+        let tree = Bvh::build(&boxes, &execution.workers, &execution.budget)?;
+        tree.widen(&execution.workers);
+        Ok(Self { from, turned, sides, tree })
     }
 }
 

@@ -278,7 +278,7 @@ fn outlined<S: Simd, R>(simd: S, f: impl FnOnce() -> R) -> R {
 #[inline(always)]
 fn takes_second(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if matches!(level, Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_)) {
+    if matches!(level, Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_)) {
         return true;
     }
     let _ = level;
@@ -395,7 +395,7 @@ pub fn four<U>(f: impl Fn(usize) -> U) -> [U; 4] {
 }
 
 /// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names
-/// (`scalar`, `sse2`, `avx2`, `best`). An unknown or unavailable name is an error that lists the available ones.
+/// (`scalar`, `sse2`, `avx2`, `avx512`, `best`). An unknown or unavailable name is an error that lists the available ones.
 pub fn level_from_environment() -> Result<Level, String> {
     match std::env::var("VITRAL_SIMD") {
         Err(_) => Ok(Level::new()),
@@ -466,6 +466,7 @@ pub fn available_levels() -> Vec<(&'static str, Level)> {
         let best = Level::new();
         levels.extend(best.as_sse2().map(|s| ("sse2", s.level())));
         levels.extend(best.as_avx2().map(|s| ("avx2", s.level())));
+        levels.extend(best.as_avx512().map(|s| ("avx512", s.level())));
     }
     #[cfg(target_arch = "aarch64")]
     levels.extend(Level::new().as_neon().map(|s| ("neon", s.level())));

@@ -72,6 +72,9 @@ pub struct Session {
     pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
     /// Those of one view.
     pub(crate) shadow_cascades: KeptFor<shadow::map::CascadesKey, shadow::map::Cascades>,
+    /// By whether blended materials keep all light.
+    pub(crate) shadow_casters: KeptFor<bool, shadow::Casters>,
+    pub(crate) shadow_surface: KeptFor<bool, shadow::volume::Surface>,
     pub(crate) shadow_volumes: KeptFor<shadow::Key, shadow::volume::Volumes>,
     pub(crate) lit_polygons: KeptFor<shadow::Key, shadow::object_precision::LitPolygons>,
 }
@@ -169,6 +172,8 @@ impl Session {
             loaded_radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
             shadow_cascades: Mutex::default(),
+            shadow_casters: Mutex::default(),
+            shadow_surface: Mutex::default(),
             shadow_volumes: Mutex::default(),
             lit_polygons: Mutex::default(),
         })
@@ -227,6 +232,8 @@ impl Session {
         self.uniform_grid = Mutex::default();
         self.shadow_maps = Mutex::default();
         self.shadow_cascades = Mutex::default();
+        self.shadow_casters = Mutex::default();
+        self.shadow_surface = Mutex::default();
         self.shadow_volumes = Mutex::default();
         self.lit_polygons = Mutex::default();
     }
@@ -239,6 +246,7 @@ impl Session {
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
         let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.uniform_grid) + kept(&self.triangles);
         let of_shadows = kept(&self.shadow_maps) + kept(&self.shadow_volumes) + kept(&self.lit_polygons);
+        let of_shadows = of_shadows + kept(&self.shadow_casters) + kept(&self.shadow_surface);
         (of_meshes + of_rays + of_shadows + kept(&self.bsp)) as u64
     }
 

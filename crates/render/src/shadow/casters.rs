@@ -10,6 +10,7 @@ use super::ray::clearance;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Probe, Structure, Tree, Visitor};
+use crate::session::keep_for;
 use crate::{Execution, Session};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -18,7 +19,7 @@ use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
 #[derive(Debug)]
-pub(super) struct Casters {
+pub(crate) struct Casters {
     /// All triangles.
     pub(super) tree: Arc<Bvh>,
     /// For each triangle of the tree whether it keeps all light.
@@ -156,7 +157,12 @@ pub(super) fn collect(tree: &Bvh, probe: &impl Probe, list: &mut Vec<u32>) {
 }
 
 impl Casters {
-    pub(super) fn new(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Self, Limit> {
+    /// Those of the session; lights do not matter.
+    pub(super) fn of(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        keep_for(&session.shadow_casters, occluders.key(), || Self::new(session, occluders, execution))
+    }
+
+    fn new(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Self, Limit> {
         let tree = session.bvh(execution)?;
         tree.widen(&execution.workers);
         let triangles = tree.triangles();

@@ -21,6 +21,7 @@ pub mod scan_line;
 mod sources;
 pub mod volume;
 
+pub(crate) use casters::Casters;
 pub(crate) use occluders::{texel, weights};
 pub(crate) use place::{facet, places, weighted};
 pub(crate) use ray::clearance;

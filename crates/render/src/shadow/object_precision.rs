@@ -40,7 +40,7 @@ pub struct ObjectPrecisionShadows;
 /// The lit polygons of all lights.
 #[derive(Debug)]
 pub(crate) struct LitPolygons {
-    casters: Casters,
+    casters: Arc<Casters>,
     lights: Vec<Vec<OfLight>>,
 }
 
@@ -95,7 +95,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
         let polygons = keep_for(&session.lit_polygons, Key::new(lights, settings), || {
-            let casters = Casters::new(session, &occluders, execution)?;
+            let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
                 let places = Source::new(light, settings.light_samples, casters.triangles().center).places();

@@ -15,21 +15,30 @@ pub(super) struct Occluders<'a> {
     /// For each material whether it keeps all light.
     opaque: Vec<bool>,
     all_opaque: bool,
+    /// Blended materials keep all light, too.
+    blend_is_opaque: bool,
     filtered: bool,
     tables: DecodeTables,
 }
 
 impl<'a> Occluders<'a> {
     pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
+        let blend_is_opaque = settings.transparency == Transparency::None;
         let opaque = |m: &Material| match m.alpha_mode {
             AlphaMode::Opaque => true,
             AlphaMode::Mask { .. } => false,
-            AlphaMode::Blend => settings.transparency == Transparency::None,
+            AlphaMode::Blend => blend_is_opaque,
         };
         let opaque: Vec<bool> = session.scene.materials.iter().map(opaque).collect();
         let all_opaque = opaque.iter().all(|&o| o);
         let filtered = settings.transparency == Transparency::Filtered;
-        Self { session, opaque, all_opaque, filtered, tables: DecodeTables::new(settings.color_space) }
+        let tables = DecodeTables::new(settings.color_space);
+        Self { session, opaque, all_opaque, blend_is_opaque, filtered, tables }
+    }
+
+    /// Facets keep all light in one scene and not in another, or with other settings; this tells the settings apart.
+    pub(super) fn key(&self) -> bool {
+        self.blend_is_opaque
     }
 
     /// Whether a facet keeps all light.

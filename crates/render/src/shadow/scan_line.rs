@@ -20,6 +20,7 @@ use super::sources::{Emitter, Shares, Source};
 use super::{Place, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings};
+use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
@@ -29,7 +30,7 @@ use vitral_math::{DVec3, DVec4};
 pub struct ScanLineShadows;
 
 struct Prepared<'a> {
-    casters: Casters,
+    casters: Arc<Casters>,
     occluders: Occluders<'a>,
     /// For each light its places.
     lights: Vec<Vec<Emitter>>,
@@ -45,7 +46,7 @@ impl ShadowAlgorithm for ScanLineShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let casters = Casters::new(session, &occluders, execution)?;
+        let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
         let lights = lights.iter().map(|l| Source::new(l, settings.light_samples, center).places()).collect();
         Ok(Box::new(Prepared { casters, occluders, lights }))

@@ -26,8 +26,7 @@
 mod count;
 mod edges;
 
-use super::casters::{Casters, away, box_around, faces, lifted, near};
-use super::casters::{wide, winding_normal};
+use super::casters::{Casters, away, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
@@ -36,7 +35,7 @@ use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
 use crate::{Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit};
-use edges::Edges;
+pub(crate) use edges::Surface;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
@@ -49,9 +48,8 @@ pub struct VolumeShadows;
 /// The volumes of all lights.
 #[derive(Debug)]
 pub(crate) struct Volumes {
-    casters: Casters,
-    /// For each triangle its plane: the normal by its winding, and what makes the height of its corners 0.
-    planes: Vec<DVec4>,
+    casters: Arc<Casters>,
+    surface: Arc<Surface>,
     lights: Vec<Vec<LightVolumes>>,
 }
 
@@ -123,33 +121,29 @@ impl Volumes {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Self, Limit> {
-        let casters = Casters::new(session, occluders, execution)?;
+        let casters = Casters::of(session, occluders, execution)?;
+        let surface =
+            keep_for(&session.shadow_surface, occluders.key(), || Surface::new(&session.world, &casters, execution))?;
         let triangles = casters.triangles();
-        let plane = |corners: &[Vec3; 3]| {
-            let (normal, at) = (winding_normal(&wide(corners)), corners[0].as_dvec3());
-            normal.extend(-normal.dot(at))
-        };
-        let planes = triangles.corners.iter().map(plane).collect();
-        let edges = Edges::new(&session.world, &casters, execution)?;
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
             let places = Source::new(light, settings.light_samples, triangles.center).places();
-            places.into_iter().map(|place| LightVolumes::new(place, triangles, &edges, execution)).collect()
+            places.into_iter().map(|place| LightVolumes::new(place, triangles, &surface, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
-        Ok(Self { lights: lights?, planes, casters })
+        Ok(Self { lights: lights?, surface, casters })
     }
 
     fn lit<'a>(&'a self, volumes: &'a LightVolumes) -> Lit<'a> {
-        Lit { volumes, casters: &self.casters, planes: &self.planes }
+        Lit { volumes, casters: &self.casters, planes: &self.surface.planes }
     }
 }
 
 impl LightVolumes {
-    fn new(from: Emitter, triangles: &Triangles, edges: &Edges, execution: &Execution) -> Result<Self, Limit> {
+    fn new(from: Emitter, triangles: &Triangles, surface: &Surface, execution: &Execution) -> Result<Self, Limit> {
         let light = from.at;
         execution.budget.check("shadow volumes")?;
         let turned = edges::turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
-        let sides = edges.sides(light, &turned, triangles);
+        let sides = surface.sides(light, &turned, triangles, &execution.workers);
         // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
         let runs = || sides.chunks(RUN);
         let around = |run: &[edges::Side]| {

@@ -213,6 +213,15 @@ pub(super) struct Batch {
     places: Vec<(u32, DVec3)>,
     /// Lists of sides, caps and filters: those of a part are behind those of the part that it was cut from.
     lists: [Vec<u32>; 3],
+    /// What the second half keeps, while a list is gone through.
+    second: Vec<u32>,
+}
+
+/// Half of a part: the box round its places, and the way there.
+struct Half {
+    middle: DVec3,
+    half: DVec3,
+    path: Path,
 }
 
 /// Part of a batch: what is known of it, and where its lists are.
@@ -282,52 +291,90 @@ impl Batch {
         let at = places.len() / 2;
         places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
         let Range { start, end } = part.places;
-        for half in [start..start + at, start + at..end] {
-            let (middle, size) = box_around(self.places[half.clone()].iter().map(|p| p.1), slack);
-            let to = inner(middle, size);
-            let path = Path::new(from, to.extend(1.0), lit.light());
-            let count = count + lit.change(&path, &self.lists[0][sides.clone()], &self.lists[1][caps.clone()]);
-            let lists = self.narrow(lit, &part.lists, middle, size);
-            let lengths = lists.clone().map(|l| l.start);
-            self.part(lit, Part { places: half, known: (to, count), lists }, slack, found);
-            for (list, length) in self.lists.iter_mut().zip(lengths) {
-                list.truncate(length);
+        let ranges = [start..start + at, start + at..end];
+        let halves = [0, 1].map(|k: usize| {
+            let (middle, half) = box_around(self.places[ranges[k].clone()].iter().map(|p| p.1), slack);
+            let to = inner(middle, half);
+            Half { middle, half, path: Path::new(from, to.extend(1.0), lit.light()) }
+        });
+        let lengths = [0, 1, 2].map(|k: usize| self.lists[k].len());
+        let (changes, lists) = self.narrow(lit, &part.lists, &halves);
+        for (((places, half), change), lists) in ranges.into_iter().zip(&halves).zip(changes).zip(lists) {
+            self.part(lit, Part { places, known: (half.path.to, count + change), lists }, slack, found);
+        }
+        for (list, length) in self.lists.iter_mut().zip(lengths) {
+            list.truncate(length);
+        }
+    }
+
+    /// Appends what of the lists touches the boxes of two halves, and gives what the lists add to the counts on the ways there.
+    fn narrow(
+        &mut self,
+        lit: &Lit<'_>,
+        lists: &[Range<usize>; 3],
+        halves: &[Half; 2],
+    ) -> ([i32; 2], [[Range<usize>; 3]; 2]) {
+        let opaque = lit.casters.triangles();
+        let least = near(lit.light(), lit.casters.extent());
+        let mut changes = [0; 2];
+        let sides = self.halve(0, lists[0].clone(), |s| {
+            let side = lit.side(s);
+            let start = before(side.plane, halves[0].path.from);
+            for (half, change) in halves.iter().zip(&mut changes) {
+                let end = before(side.plane, half.path.to);
+                if end != start {
+                    *change += half.path.side(side, i32::from(end) - i32::from(start));
+                }
+            }
+            let touches = |half: &Half| side.touches(half.middle, half.half);
+            [touches(&halves[0]), touches(&halves[1])]
+        });
+        let caps = self.halve(1, lists[1].clone(), |t| {
+            let plane = lit.planes[t as usize];
+            let start = before(plane, halves[0].path.from);
+            for (half, change) in halves.iter().zip(&mut changes) {
+                let end = before(plane, half.path.to);
+                if end != start {
+                    *change += lit.cap(&half.path, t, i32::from(end) - i32::from(start));
+                }
+            }
+            let [a, b, c] = wide(&opaque.corners[t as usize]);
+            let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+            let touches = |half: &Half| {
+                // Room for the rounding of a height.
+                let reach = plane.truncate().abs().dot(half.half) * (1.0 + 1e-9);
+                height(plane, half.middle).abs() <= reach
+                    && !(min.cmpgt(half.middle + half.half) | max.cmplt(half.middle - half.half)).any()
+            };
+            [touches(&halves[0]), touches(&halves[1])]
+        });
+        let filters = self.halve(2, lists[2].clone(), |t| {
+            let solid = Solid::new(&lit.casters.filter(t), lit.light(), least);
+            let touches = |half: &Half| solid.is_some_and(|s| s.touches(half.middle, half.half));
+            [touches(&halves[0]), touches(&halves[1])]
+        });
+        (changes, [0, 1].map(|k: usize| [sides[k].clone(), caps[k].clone(), filters[k].clone()]))
+    }
+
+    /// Appends to a list those of its range that `keep` keeps for the first half, then those for the second.
+    fn halve(&mut self, list: usize, range: Range<usize>, mut keep: impl FnMut(u32) -> [bool; 2]) -> [Range<usize>; 2] {
+        let list = &mut self.lists[list];
+        let start = list.len();
+        self.second.clear();
+        for i in range {
+            let number = list[i];
+            let [first, second] = keep(number);
+            if first {
+                list.push(number);
+            }
+            if second {
+                self.second.push(number);
             }
         }
+        let middle = list.len();
+        list.extend_from_slice(&self.second);
+        [start..middle, middle..list.len()]
     }
-
-    /// Appends what of the lists touches a box.
-    fn narrow(&mut self, lit: &Lit<'_>, lists: &[Range<usize>; 3], middle: DVec3, half: DVec3) -> [Range<usize>; 3] {
-        let (min, max) = (middle - half, middle + half);
-        let opaque = lit.casters.triangles();
-        let touches_cap = |t: u32| {
-            let plane = lit.planes[t as usize];
-            // Room for the rounding of a height.
-            let reach = plane.truncate().abs().dot(half) * (1.0 + 1e-9);
-            let [a, b, c] = wide(&opaque.corners[t as usize]);
-            height(plane, middle).abs() <= reach && !(a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min)).any()
-        };
-        let least = near(lit.light(), lit.casters.extent());
-        let touches_filter =
-            |t: u32| Solid::new(&lit.casters.filter(t), lit.light(), least).is_some_and(|s| s.touches(middle, half));
-        let touches_side = |s: u32| lit.side(s).touches(middle, half);
-        [
-            append(&mut self.lists[0], lists[0].clone(), touches_side),
-            append(&mut self.lists[1], lists[1].clone(), touches_cap),
-            append(&mut self.lists[2], lists[2].clone(), touches_filter),
-        ]
-    }
-}
-
-/// Appends those of a range that `keep` keeps.
-fn append(list: &mut Vec<u32>, range: Range<usize>, keep: impl Fn(u32) -> bool) -> Range<usize> {
-    let start = list.len();
-    for i in range {
-        if keep(list[i]) {
-            list.push(list[i]);
-        }
-    }
-    start..list.len()
 }
 
 /// A place in a box that is unlikely to be in the plane of anything.

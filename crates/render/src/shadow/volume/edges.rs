@@ -1,11 +1,11 @@
-//! The edges of all opaque triangles, and the sides of volumes that a light makes of them.
+//! Which triangles meet at an edge, and the sides of volumes that a light makes of the edges.
 
-use super::super::casters::{Casters, away, ordered, side_normal, turned, wide};
+use super::super::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
 use super::count::height;
 use crate::Execution;
 use crate::raytrace::triangles::Triangles;
 use vitral_exec::{Limit, Workers};
-use vitral_math::{DVec3, DVec4};
+use vitral_math::{DVec3, DVec4, Vec3};
 use vitral_scene::weld::Weld;
 use vitral_scene::{Instance, World};
 
@@ -20,12 +20,17 @@ struct Use {
     corner: u32,
 }
 
-/// See the module.
+/// What volumes are made of, whatever the light.
 #[derive(Debug)]
-pub(super) struct Edges {
-    /// Sorted by their ends.
+pub(crate) struct Surface {
+    /// For each triangle its plane: the normal by its winding, and what makes the height of its corners 0.
+    pub(super) planes: Vec<DVec4>,
+    /// The edges of the opaque triangles, sorted by their ends.
     uses: Vec<Use>,
 }
+
+/// Uses of edges that are looked at in one piece of work.
+const USES_A_JOB: usize = 1 << 14;
 
 /// A side of volumes: from an edge away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,8 +58,8 @@ pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers
     all
 }
 
-impl Edges {
-    /// Of the opaque ones among the world's triangles.
+impl Surface {
+    /// Of the world's triangles.
     pub(super) fn new(world: &World, casters: &Casters, execution: &Execution) -> Result<Self, Limit> {
         let (triangles, budget) = (casters.triangles(), &execution.budget);
         budget.check("shadow volumes")?;
@@ -105,13 +110,30 @@ impl Edges {
             *place += 1;
         }
         uses.chunk_by_mut(|one, two| one.ends[0] == two.ends[0]).for_each(<[Use]>::sort_unstable);
-        Ok(Self { uses })
+        let plane = |corners: &[Vec3; 3]| {
+            let (normal, at) = (winding_normal(&wide(corners)), corners[0].as_dvec3());
+            normal.extend(-normal.dot(at))
+        };
+        Ok(Self { planes: triangles.corners.iter().map(plane).collect(), uses })
     }
 
     /// The sides for a light: edges whose multiplicity is not 0.
-    pub(super) fn sides(&self, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<Side> {
+    pub(super) fn sides(&self, light: DVec4, turned: &[i8], triangles: &Triangles, workers: &Workers) -> Vec<Side> {
+        let jobs = self.uses.len().div_ceil(USES_A_JOB);
+        workers.map(jobs, |job| self.sides_of(job, light, turned, triangles)).concat()
+    }
+
+    /// Where a job begins: no edge is cut in two.
+    fn first_use(&self, job: usize) -> usize {
+        let at = self.uses.len().min(job * USES_A_JOB);
+        let Some(before) = at.checked_sub(1).map(|last| self.uses[last].ends) else { return 0 };
+        at + self.uses[at..].iter().take_while(|u| u.ends == before).count()
+    }
+
+    fn sides_of(&self, job: usize, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<Side> {
         let mut sides = Vec::new();
-        for run in self.uses.chunk_by(|one, two| one.ends == two.ends) {
+        let uses = &self.uses[self.first_use(job)..self.first_use(job + 1)];
+        for run in uses.chunk_by(|one, two| one.ends == two.ends) {
             // Along a triangle that looks at the light, its volume is left of its edges: against the normal of the side.
             let sign = |u: &Use| i32::from(turned[u.triangle as usize]) * if u.corner & 1 == 1 { 1 } else { -1 };
             let multiplicity: i32 = run.iter().map(sign).sum();

@@ -76,7 +76,7 @@ struct Counting<'a> {
 }
 
 /// Sides in one leaf of a tree.
-const RUN: usize = 4;
+const RUN: usize = 8;
 /// No plane of a model is likely to run along it.
 const ODD: DVec3 = DVec3::new(0.7312, -0.3917, 0.5589);
 

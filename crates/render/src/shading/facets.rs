@@ -71,6 +71,11 @@ pub(crate) struct FacetTable {
 const RECENT: usize = 1024;
 
 impl FacetTable {
+    /// The triangle of each record.
+    pub(crate) fn triangles(&self) -> &[u32] {
+        &self.triangles
+    }
+
     /// Makes the records for the points `order`.
     pub(crate) fn fill<S: Simd>(&mut self, simd: S, points: &Points, order: &[u32], subject: &Subject<'_>) {
         self.triangles.clear();

@@ -157,38 +157,64 @@ fn columns<S: Simd>(simd: S, rows: &[&Record; LANES], at: usize) -> [F<S>; 4] {
     ]
 }
 
+/// Slopes and values of the unscaled barycentric coordinates of each lane's point, and the number that comes after them in
+/// the records.
 #[inline(always)]
-fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
+fn weighed<S: Simd>(simd: S, rows: &[&Record; LANES], slots: &Slots) -> ([Edge<S>; 3], [F<S>; 3], F<S>) {
+    let ([c0, a0, b0, c1], [a1, b1, c2, a2]) = (columns(simd, rows, 0), columns(simd, rows, 4));
+    let [b2, x0, y0, next] = columns(simd, rows, 8);
+    let x = F32x8::from_slice(simd, &slots.x) - x0;
+    let y = F32x8::from_slice(simd, &slots.y) - y0;
+    let edges = [Edge { a: a0, b: b0 }, Edge { a: a1, b: b1 }, Edge { a: a2, b: b2 }];
+    (edges, [c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y], next)
+}
+
+/// Barycentric coordinates. Snapping may put a sample a hair outside the facet: stay on it.
+#[inline(always)]
+fn on_facet<S: Simd>(values: [F<S>; 3]) -> [F<S>; 3] {
+    let w = normalized(values);
+    let zero = lanes::Lanes::splat(w[0], 0.0);
+    normalized([lanes::Lanes::max(w[0], zero), lanes::Lanes::max(w[1], zero), lanes::Lanes::max(w[2], zero)])
+}
+
+#[inline(always)]
+fn rows<'a>(records: &'a [Record], slots: &Slots) -> [&'a Record; LANES] {
     let r = &slots.record;
     let row = lanes::inlined(
         #[inline(always)]
         |i: usize| &records[r[i] as usize],
     );
-    let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+    [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)]
+}
+
+/// [`Surface::weights`] alone.
+pub(super) fn point_weights<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> [[f32; LANES]; 3] {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let (_, values, _) = weighed(simd, &rows(records, slots), slots);
+            let [a, b, c] = on_facet(values);
+            [a.to_array(), b.to_array(), c.to_array()]
+        },
+    )
+}
+
+#[inline(always)]
+fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
+    let rows = rows(records, slots);
     let q = lanes::inlined(
         #[inline(always)]
         |i: usize| columns(simd, &rows, 4 * i),
     );
-    let ([c0, a0, b0, c1], [a1, b1, c2, a2]) = (q(0), q(1));
-    let ([b2, x0, y0, nx], [ny, nz, p0x, p0y]) = (q(2), q(3));
+    let (edges, values, nx) = weighed(simd, &rows, slots);
+    let [ny, nz, p0x, p0y] = q(3);
     let ([p0z, p1x, p1y, p1z], [p2x, p2y, p2z, n0x]) = (q(4), q(5));
     let ([n0y, n0z, n1x, n1y], [n1z, n2x, n2y, n2z]) = (q(6), q(7));
-
-    // Weigh the corners.
-    let x = F32x8::from_slice(simd, &slots.x) - x0;
-    let y = F32x8::from_slice(simd, &slots.y) - y0;
-    let edges = [Edge { a: a0, b: b0 }, Edge { a: a1, b: b1 }, Edge { a: a2, b: b2 }];
-    let values = [c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y];
-    let w = normalized(values);
-    // Snapping may put a sample a hair outside the facet: stay on it.
-    let zero = constant(simd, 0.0);
-    let weights =
-        normalized([lanes::Lanes::max(w[0], zero), lanes::Lanes::max(w[1], zero), lanes::Lanes::max(w[2], zero)]);
     Surface {
         positions: [V3::new(p0x, p0y, p0z), V3::new(p1x, p1y, p1z), V3::new(p2x, p2y, p2z)],
         normals: [V3::new(n0x, n0y, n0z), V3::new(n1x, n1y, n1z), V3::new(n2x, n2y, n2z)],
         facet_normal: V3::new(nx, ny, nz),
-        weights,
+        weights: on_facet(values),
         edges,
         values,
     }

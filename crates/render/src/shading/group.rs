@@ -407,7 +407,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         let mirror = looks.mirror(simd, material).scale(looks.coverage);
         let places = match along {
             Some(along) => along.places,
-            None => shadowed::world_places(constants, subject, slots, shadowed::weights(&surface)),
+            None => shadowed::world_places(simd, constants, subject, slots, shadowed::weights(&surface)),
         };
         let soa = [normal, mirror].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]);
         for (lane, &p) in points.iter().enumerate() {

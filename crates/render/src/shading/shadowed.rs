@@ -6,11 +6,11 @@
 use super::FrameConstants;
 use super::facets::{FacetTable, Subject};
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Slots, Surface, blend3, surface};
+use super::geometry::{F, Slots, Surface, blend3, point_weights};
 use super::group::slots;
 use super::phong::interpolated_normal;
 use super::points::Points;
-use crate::shadow::{Place, grey, places};
+use crate::shadow::{Place, Placing, grey};
 use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
@@ -59,14 +59,18 @@ pub(crate) fn arriving<S: Simd>(
     if constants.shadows.is_none() {
         return [Vec::new(), Vec::new()];
     }
+    let placing = placing(constants, subject);
+    let corners: Vec<_> = facets.triangles().iter().map(|&triangle| placing.facet(triangle)).collect();
     let mut all = Vec::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
         let slots = slots(points, eight, records, subject.first_facet);
-        let weights = simd.vectorize(
+        let weights = point_weights(simd, &facets.records, &slots);
+        let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
+        let places = simd.vectorize(
             #[inline(always)]
-            || weights(&surface(simd, &facets.records, &slots)),
+            || placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]),
         );
-        all.extend_from_slice(&world_places(constants, subject, &slots, weights)[..eight.len()]);
+        all.extend_from_slice(&places[..eight.len()]);
     }
     arriving_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
 }
@@ -105,14 +109,22 @@ pub(super) fn weights<S: Simd>(surface: &Surface<S>) -> [[f32; LANES]; 3] {
 }
 
 /// Where eight points are in the world.
-pub(super) fn world_places(
+#[inline(always)]
+pub(super) fn world_places<S: Simd>(
+    simd: S,
     constants: &FrameConstants<'_>,
     subject: &Subject<'_>,
     slots: &Slots,
     weights: [[f32; LANES]; 3],
 ) -> [Place; LANES] {
+    let placing = placing(constants, subject);
+    let facets = slots.triangle.map(|triangle| placing.facet(triangle));
+    placing.places(simd, (&slots.triangle, facets.each_ref()), &weights, [&slots.x, &slots.y])
+}
+
+fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing<'a> {
     let instance = &constants.view.session.world.instances[subject.instance_index as usize];
-    places(constants.view, instance, subject.turns(), &slots.triangle, weights, [&slots.x, &slots.y])
+    Placing::new(constants.view, instance, subject.turns())
 }
 
 /// Attached and cast shadow of eight points, the first the `first` of its group: shares of the lights that have a place

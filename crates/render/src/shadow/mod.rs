@@ -23,7 +23,7 @@ pub mod volume;
 
 pub(crate) use casters::Casters;
 pub(crate) use occluders::{texel, weights};
-pub(crate) use place::{facet, places, weighted};
+pub(crate) use place::{Placing, facet, weighted};
 pub(crate) use ray::clearance;
 pub(crate) use sources::hash;
 

@@ -7,7 +7,8 @@ use super::Place;
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
-use vitral_math::lanes::LANES;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F64x8, LANES, Simd};
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
@@ -44,51 +45,65 @@ pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
 pub(crate) struct Placing<'a> {
     view: &'a PreparedView<'a>,
     instance: &'a Instance,
+    mirrored: bool,
     /// Normals turn to the viewer.
     turns: bool,
     center: DVec3,
 }
 
-/// Places of up to eight points of an object: the triangles of its mesh, the corners' weights, where they are on the
-/// screen. Both sides of the object are seen if it `turns`.
-pub(crate) fn places(
-    view: &PreparedView<'_>,
-    instance: &Instance,
-    turns: bool,
-    triangles: &[u32; LANES],
-    weights: [[f32; LANES]; 3],
-    screen: [&[f32; LANES]; 2],
-) -> [Place; LANES] {
-    let center = Triangles::center_of(&view.session.world);
-    let placing = Placing { view, instance, turns, center };
-    // Neighbours mostly lie on one facet.
-    let mirrored = mirrors(&instance.world_from_model);
-    let mut last = (triangles[0], oriented(instance, triangles[0], center, mirrored));
-    std::array::from_fn(|lane| {
-        if last.0 != triangles[lane] {
-            last = (triangles[lane], oriented(instance, triangles[lane], center, mirrored));
-        }
-        let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
-        let [x, y] = screen.map(|s| (s[lane] * 256.0) as u32);
-        let seed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16);
-        placing.place(&last, weights, seed, Some(screen.map(|s| s[lane])))
-    })
-}
+impl<'a> Placing<'a> {
+    /// For points of an instance, both sides of which are seen if it `turns`.
+    pub(crate) fn new(view: &'a PreparedView<'a>, instance: &'a Instance, turns: bool) -> Self {
+        let center = Triangles::center_of(&view.session.world);
+        Self { view, instance, mirrored: mirrors(&instance.world_from_model), turns, center }
+    }
 
-impl Placing<'_> {
-    fn place(
+    /// A triangle of its mesh.
+    pub(crate) fn facet(&self, triangle: u32) -> Facet {
+        oriented(self.instance, triangle, self.center, self.mirrored)
+    }
+
+    /// Eight points of such triangles: the corners' weights, and where they are on the screen.
+    #[inline(always)]
+    pub(crate) fn places<S: Simd>(
         &self,
-        &(triangle, (corners, outward)): &(u32, Facet),
-        weights: [f32; 3],
-        seed: u32,
-        pixel: Option<[f32; 2]>,
-    ) -> Place {
-        let position = weighted(&corners, weights);
-        let (eye, perspective) = self.view.eye();
-        let towards =
-            if perspective { eye - self.center - position } else { self.view.view.view_from_world.row(2).truncate() };
-        let behind = self.turns && outward.dot(towards) < 0.0;
-        let facet = self.instance.first_facet + triangle;
-        Place { position, normal: if behind { -outward } else { outward }, facet, seed, pixel }
+        simd: S,
+        (triangles, facets): (&[u32; LANES], [&Facet; LANES]),
+        weights: &[[f32; LANES]; 3],
+        screen: [&[f32; LANES]; 2],
+    ) -> [Place; LANES] {
+        // As `weighted`; divisions are what takes long.
+        let (mut sums, mut positions) = ([1.0; LANES], [[0.0; LANES]; 3]);
+        for (lane, (corners, _)) in facets.iter().enumerate() {
+            let w = [f64::from(weights[0][lane]), f64::from(weights[1][lane]), f64::from(weights[2][lane])];
+            let point = corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
+            (positions[0][lane], positions[1][lane], positions[2][lane]) = (point.x, point.y, point.z);
+            sums[lane] = w[0] + w[1] + w[2];
+        }
+        let sums = F64x8::from_slice(simd, &sums);
+        for axis in &mut positions {
+            (F64x8::from_slice(simd, axis) / sums).store_slice(axis);
+        }
+        let [x, y, z] = positions;
+        std::array::from_fn(|lane| {
+            let position = dvec3(x[lane], y[lane], z[lane]);
+            self.place(triangles[lane], facets[lane].1, position, [screen[0][lane], screen[1][lane]])
+        })
+    }
+
+    fn place(&self, triangle: u32, outward: DVec3, position: DVec3, screen: [f32; 2]) -> Place {
+        let behind = self.turns && {
+            let (eye, perspective) = self.view.eye();
+            let parallel = || self.view.view.view_from_world.row(2).truncate();
+            outward.dot(if perspective { eye - self.center - position } else { parallel() }) < 0.0
+        };
+        let [x, y] = screen.map(|s| (s * 256.0) as u32);
+        Place {
+            position,
+            normal: if behind { -outward } else { outward },
+            facet: self.instance.first_facet + triangle,
+            seed: x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16),
+            pixel: Some(screen),
+        }
     }
 }

@@ -26,23 +26,28 @@ struct Eight {
 /// What maps answer to questions: the number of a map, and the place that is asked about, which faces its light.
 pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
     let mut parts = vec![1.0; questions.len()];
-    let mut own = Vec::with_capacity(questions.len());
+    let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
         own.clear();
-        own.extend((0..questions.len()).filter(|&q| questions[q].0 == number));
-        for asked in own.chunks(LANES) {
-            // The last are asked again to fill up.
-            let places = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)]].1);
-            let found = dispatch!(level, simd => map.passing(simd, &places));
-            for (&question, part) in asked.iter().zip(found) {
-                parts[question] = part;
-            }
-        }
+        own.extend((0..questions.len() as u32).filter(|&q| questions[q as usize].0 == number));
+        dispatch!(level, simd => map.answer(simd, &own, questions, &mut parts));
     }
     parts
 }
 
 impl Map {
+    /// Answers the questions of these numbers.
+    #[inline(always)]
+    fn answer<S: Simd>(&self, simd: S, own: &[u32], questions: &[(usize, &Place)], parts: &mut [f32]) {
+        for asked in own.chunks(LANES) {
+            // The last are asked again to fill up.
+            let places = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)] as usize].1);
+            for (&question, part) in asked.iter().zip(self.passing(simd, &places)) {
+                parts[question as usize] = part;
+            }
+        }
+    }
+
     /// The part of light that arrives at each of eight places that face it.
     #[inline(always)]
     fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [f32; LANES] {
@@ -95,8 +100,13 @@ impl Map {
         let (width, height) = (f64::from(lens.width), f64::from(lens.height));
         let before = distance.simd_gt(zero);
         let nowhere = splat(f64::NAN);
-        let u = (point[0] / (distance * lens.extent[0]) + 1.0) * 0.5 * width;
-        let v = (splat(1.0) - point[1] / (distance * lens.extent[1])) * 0.5 * height;
+        let [across, down] = if lens.perspective {
+            [point[0] / (distance * lens.extent[0]), point[1] / (distance * lens.extent[1])]
+        } else {
+            [point[0] * (1.0 / lens.extent[0]), point[1] * (1.0 / lens.extent[1])]
+        };
+        let u = (across + 1.0) * 0.5 * width;
+        let v = (splat(1.0) - down) * 0.5 * height;
         let (u, v) = (before.select(u, nowhere), before.select(v, nowhere));
         let (left, top) = ((u + 0.5).floor() - 1.0, (v + 0.5).floor() - 1.0);
 

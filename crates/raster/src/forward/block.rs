@@ -16,11 +16,21 @@ use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd, U32x8};
 
+/// A block's packed colours.
+pub(crate) type BlockWords = [u32; BLOCK * BLOCK];
+
 /// Colours of a block, packed: one for all pixels, or one each.
-#[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one block")]
-pub(crate) enum Words {
+pub(crate) enum Words<'a> {
     One(u32),
-    Each([u32; BLOCK * BLOCK]),
+    Each(&'a BlockWords),
+}
+
+impl<'a> Words<'a> {
+    /// As [`super::shade::Shader::block`] gives them.
+    #[inline(always)]
+    pub(crate) fn of(one: Option<u32>, each: &'a BlockWords) -> Self {
+        one.map_or(Self::Each(each), Self::One)
+    }
 }
 
 /// What depths meet.
@@ -365,7 +375,7 @@ pub(crate) fn colors<S: Simd>(
     block: &Block,
     planes: &mut TilePlanes<'_>,
     mixing: Mixing,
-    words: &Words,
+    words: &Words<'_>,
     masks: &[u64; SAMPLES],
 ) {
     let samples = planes.samples;

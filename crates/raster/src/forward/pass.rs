@@ -196,6 +196,8 @@ pub(crate) struct DrawContext<'a> {
     pub multisample: bool,
     /// Colours matter: some are written, or decide.
     pub shaded: bool,
+    /// A facet has one colour.
+    pub constant: bool,
     /// Units with the common kind of texture and no sprites.
     pub plain: Vec<(usize, Packed<'a>)>,
     /// Depth planes that units sample.
@@ -433,6 +435,7 @@ fn draw_context<'a>(
         clip,
         multisample: samples > 1 && state.multisample,
         shaded,
+        constant: state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum,
         plain,
         planes,
     }

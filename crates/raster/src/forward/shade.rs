@@ -3,7 +3,7 @@
 mod textures;
 
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
-use super::block::Words;
+use super::block::BlockWords;
 use super::color_grid::ColorGrid;
 use super::environment::UNITS;
 use super::environment::fog::{color_sum, fog};
@@ -231,6 +231,8 @@ pub(crate) struct Shader<'a> {
     tile: [f32; 2],
     scratch: &'a mut Scratch,
     ready: bool,
+    /// Once [`Self::constant`] was asked for.
+    constant: Option<(u32, bool)>,
 }
 
 impl<'a> Shader<'a> {
@@ -242,7 +244,7 @@ impl<'a> Shader<'a> {
         tile: [f32; 2],
         scratch: &'a mut Scratch,
     ) -> Self {
-        Self { draw, facet, primitives, tile, scratch, ready: false }
+        Self { draw, facet, primitives, tile, scratch, ready: false, constant: None }
     }
 
     /// Local geometry of a line, point or smooth polygon.
@@ -398,22 +400,36 @@ impl<'a> Shader<'a> {
         color
     }
 
-    /// The packed colours of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test.
+    /// The packed colour of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test. `None` if each
+    /// has its own: these are in `words` then, where those of other pixels have no meaning.
+    #[inline(always)]
     pub(crate) fn block<S: Simd>(
         &mut self,
         simd: S,
         setup: &Setup,
-        (left, bottom): (usize, usize),
+        place: (usize, usize),
         any: u64,
-    ) -> (Words, u64) {
-        if let Some(color) = self.constant() {
-            let passed = self.draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
-            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
-            return (Words::One(word), if passed { any } else { 0 });
+        words: &mut BlockWords,
+    ) -> (Option<u32>, u64) {
+        if self.draw.constant {
+            let (word, passes) = self.constant();
+            return (Some(word), if passes { any } else { 0 });
         }
+        (None, self.block_apart(simd, setup, place, any, words))
+    }
+
+    #[inline(never)]
+    fn block_apart<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: (usize, usize),
+        any: u64,
+        words: &mut BlockWords,
+    ) -> u64 {
         simd.vectorize(
             #[inline(always)]
-            || self.block_inlined(simd, setup, (left, bottom), any),
+            || self.block_inlined(simd, setup, place, any, words),
         )
     }
 
@@ -424,13 +440,13 @@ impl<'a> Shader<'a> {
         setup: &Setup,
         (left, bottom): (usize, usize),
         any: u64,
-    ) -> (Words, u64) {
+        words: &mut BlockWords,
+    ) -> u64 {
         self.prepare(simd, setup);
-        let (mut words, mut passed) = ([0; BLOCK * BLOCK], 0u64);
         if any.count_ones() > MANY {
-            passed = self.whole(simd, (left, bottom), &mut words) & any;
-            return (Words::Each(words), passed);
+            return self.whole(simd, (left, bottom), words) & any;
         }
+        let mut passed = 0u64;
         // Small facets cover few pixels of a row: eight of any rows go together.
         let (mut rest, tested) = (any, self.draw.state.alpha_test.is_some());
         while rest != 0 {
@@ -449,7 +465,7 @@ impl<'a> Shader<'a> {
                 }
             }
         }
-        (Words::Each(words), if tested { passed } else { any })
+        if tested { passed } else { any }
     }
 
     /// Whether colours are those of the corners and nothing else.
@@ -468,7 +484,7 @@ impl<'a> Shader<'a> {
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
     #[inline(never)]
-    fn whole<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), words: &mut [u32; BLOCK * BLOCK]) -> u64 {
+    fn whole<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), words: &mut BlockWords) -> u64 {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -528,13 +544,16 @@ impl<'a> Shader<'a> {
         passed
     }
 
-    /// The colour of all pixels, where it is the same for all.
-    fn constant(&self) -> Option<[f32; 4]> {
-        let plain = self.draw.state.units.is_empty() && self.draw.state.fog.is_none() && !self.draw.state.color_sum;
-        if !(plain && self.draw.state.flat) {
-            return None;
+    /// The packed colour of all pixels of a facet whose draw is [`DrawContext::constant`], and whether it passes the alpha test.
+    #[inline(always)]
+    fn constant(&mut self) -> (u32, bool) {
+        if self.constant.is_none() {
+            let color = self.provoking_color().map(|c| c.clamp(0.0, 1.0));
+            let passes = self.draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
+            self.constant = Some((word, passes));
         }
-        Some(self.provoking_color().map(|c| c.clamp(0.0, 1.0)))
+        self.constant.unwrap_or_default()
     }
 
     /// Where the colour of the facet's side begins in a record.

@@ -1,7 +1,7 @@
 //! One tile walks a pass: clears, images, facets.
 
 use super::assemble::{FacetKind, Primitives};
-use super::block::{self, DepthRule};
+use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
@@ -93,6 +93,7 @@ impl<'a> TileRun<'a> {
             #[inline(always)]
             || {
                 let mut scratch = Scratch::default();
+                let mut words = [0; BLOCK * BLOCK];
                 let window = [0..TILE, self.rows.clone()];
                 let (mut clip, mut clip_of) = ([0; 4], u32::MAX);
                 for setup in primitives.batch.tile(self.index) {
@@ -108,7 +109,7 @@ impl<'a> TileRun<'a> {
                     let (x, y) = (self.x, self.y);
                     let Some(place) = Placed::new(setup, (x, y), &window, pattern) else { continue };
                     let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
-                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern };
+                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut words };
                     if place.is_tiny() && sink.by_rows() {
                         sink.tiny(simd, setup, &place);
                     } else {
@@ -270,6 +271,8 @@ pub(super) struct ForwardSink<'r, 'a, 'd> {
     /// Allowed pixels within the tile.
     pub(super) clip: [i32; 4],
     pub(super) pattern: &'d SamplePattern,
+    /// Memory for a block's colours.
+    pub(super) words: &'r mut BlockWords,
 }
 
 impl<S: Simd> BlockSink<S> for ForwardSink<'_, '_, '_> {
@@ -353,7 +356,7 @@ impl ForwardSink<'_, '_, '_> {
         if any == 0 || !self.draw.shaded {
             return;
         }
-        let (words, passed) = self.shader.block(simd, setup, place, any);
+        let (one, passed) = self.shader.block(simd, setup, place, any, self.words);
         if late {
             for b in &mut bits {
                 *b &= passed;
@@ -363,6 +366,7 @@ impl ForwardSink<'_, '_, '_> {
                 self.depths(simd, setup, place, block, write, &mut bits);
             }
         }
+        let words = Words::of(one, self.words);
         block::colors(simd, block, &mut self.run.planes, self.draw.ops.mixing, &words, &bits);
     }
 

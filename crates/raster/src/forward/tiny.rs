@@ -3,7 +3,7 @@
 //! [`super::block`].
 
 use super::block;
-use super::block::{DepthRule, Slope};
+use super::block::{DepthRule, Slope, Words};
 use super::fragment::{ColorTile, SAMPLES};
 use super::fragment_ops::compare::compare;
 use super::shade::CENTERS;
@@ -72,13 +72,14 @@ impl ForwardSink<'_, '_, '_> {
             self.shader.prepare(simd, setup);
             return self.plain_rows(simd, corner, &block, any, &passed);
         }
-        let (words, visible) = self.shader.block(simd, setup, corner, any);
+        let (one, visible) = self.shader.block(simd, setup, corner, any, self.words);
         if late {
             for bits in &mut passed {
                 *bits &= visible;
             }
             self.write_depths::<S, N>(simd, setup, place, &block, &passed);
         }
+        let words = Words::of(one, self.words);
         block::colors(simd, &block, &mut self.run.planes, self.draw.ops.mixing, &words, &passed);
     }
 

@@ -331,16 +331,19 @@ impl ForwardSink<'_, '_, '_> {
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
         }
-        let (covered, mut writes_stencil) = (bits, None);
+        // What the stencil is updated by: copied only where it is needed, since a whole that is read before its parts are in
+        // the cache takes long.
+        let mut writes_stencil = None;
         if let Some(test) = &state.stencil {
             let face = if self.shader.facet.back { &test.back } else { &test.front };
+            let covered = bits;
             block::stencil(simd, block, &mut self.run.planes, face, &mut bits);
-            writes_stencil = Some(face).filter(|face| !keeps(face));
-            if bits == [0; SAMPLES] && writes_stencil.is_none() {
+            if !keeps(face) {
+                writes_stencil = Some((face, covered, bits));
+            } else if bits == [0; SAMPLES] {
                 return;
             }
         }
-        let reached = bits;
         let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.
@@ -349,8 +352,8 @@ impl ForwardSink<'_, '_, '_> {
             let early = DepthRule { write: rule.write && !late, ..rule };
             self.depths(simd, setup, place, block, early, &mut bits);
         }
-        if let Some(face) = writes_stencil {
-            block::update_stencil(simd, block, &mut self.run.planes, face, [&covered, &reached, &bits]);
+        if let Some((face, covered, reached)) = &writes_stencil {
+            block::update_stencil(simd, block, &mut self.run.planes, face, [covered, reached, &bits]);
         }
         let any = bits[0] | bits[1] | bits[2] | bits[3];
         if any == 0 || !self.draw.shaded {

@@ -136,6 +136,13 @@ impl<T: Copy> PlaneTile<T> {
 
     /// Copies a sample of the pixels of a row from place `at` on.
     pub fn read(&self, sample: usize, at: usize, out: &mut [T]) {
+        let Some(last) = out.len().checked_sub(1) else { return };
+        let blocks = u64::MAX << block_of(at) & u64::MAX >> (u64::BITS as usize - 1 - block_of(at + last));
+        if self.cleared & blocks == 0 && (sample == 0 || self.single & blocks == 0) {
+            // The row as it lies in memory.
+            let first = sample * TILE_PIXELS + at;
+            return out.copy_from_slice(&self.values[first..=first + last]);
+        }
         let mut done = 0;
         while done < out.len() {
             let here = at + done;
@@ -261,6 +268,10 @@ impl<T: Copy> PlaneTile<T> {
         }
         let plain = if samples == 1 { written } else { written & self.single };
         let values = target.replace(written, true, target_samples);
+        if plain == u64::MAX {
+            values[..TILE_PIXELS].copy_from_slice(&self.values[..TILE_PIXELS]);
+            return;
+        }
         each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
         each_row(written & !plain, |row| {
             let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);

@@ -9,7 +9,7 @@
 use fearless_simd::prelude::*;
 pub use fearless_simd::{
     Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f64x8 as F64x8, i32x4 as I32x4, i32x8 as I32x8,
-    mask32x8 as Mask8, u16x16 as U16x16, u32x8 as U32x8,
+    mask32x8 as Mask8, u8x16 as U8x16, u16x16 as U16x16, u32x8 as U32x8,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -392,6 +392,17 @@ pub fn three<U>(f: impl Fn(usize) -> U) -> [U; 3] {
 #[inline(always)]
 pub fn four<U>(f: impl Fn(usize) -> U) -> [U; 4] {
     [f(0), f(1), f(2), f(3)]
+}
+
+/// Whether the instruction set has an instruction that puts bytes into any order.
+pub fn orders_bytes(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return matches!(level, Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_));
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = level;
+        cfg!(any(target_arch = "aarch64", target_feature = "simd128"))
+    }
 }
 
 /// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names

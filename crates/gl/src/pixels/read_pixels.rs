@@ -146,6 +146,26 @@ fn encode_words(
     Some(out)
 }
 
+/// Row by row, from a plane of depths to the client's floating-point numbers.
+fn encode_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<u8> {
+    const BYTES: usize = size_of::<f32>();
+    let scale = plane.scale;
+    let plane = &*plane.resolved();
+    let mut out = vec![0; r.size[0] * r.size[1] * BYTES];
+    each_row(workers, r, &mut out, |y, bytes| {
+        let mut depths = [0.0; TILE];
+        for (x, bytes) in (r.x..).step_by(TILE).zip(bytes.chunks_mut(TILE * BYTES)) {
+            let depths = &mut depths[..bytes.len() / BYTES];
+            plane.read_row(x, y, 0, depths);
+            if scale != 1.0 {
+                depths.iter_mut().for_each(|d| *d /= scale);
+            }
+            bytes.copy_from_slice(bytemuck::cast_slice(depths));
+        }
+    });
+    out
+}
+
 /// Bytes of the client's format for a rectangle.
 fn encode_rectangle(
     workers: &Workers,
@@ -172,6 +192,10 @@ fn encode_rectangle(
         plane.map_or_else(Vec::new, |plane| read_stencils(&lock(plane), r))
     };
     match format.content() {
+        Content::Depth if format.kind == FLOAT && transfer.keeps_depths() => {
+            let plane = surfaces.depth.as_ref().and_then(|s| s.depth.as_ref());
+            return plane.map_or_else(Vec::new, |plane| encode_depths(workers, &mut lock(plane), r));
+        }
         Content::Depth => encode::depths(&depths(true), format, &mut out),
         Content::Stencil => {
             let values = stencils().into_iter().map(|v| transfer.stencil(i64::from(v)));

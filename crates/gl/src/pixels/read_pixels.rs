@@ -13,7 +13,7 @@ use crate::enums::*;
 use crate::memory::ClientMemory;
 use vitral_exec::Workers;
 use vitral_raster::TILE;
-use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
 
 /// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,13 +99,15 @@ fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl
 pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
     let (mut depths, scale) = (vec![0.0; r.size[0] * r.size[1]], plane.scale);
     let plane = &*plane.resolved();
-    each_row(workers, r, &mut depths, |y, row| {
-        plane.read_row(r.x, y, 0, row);
-        if scale != 1.0 {
-            row.iter_mut().for_each(|d| *d /= scale);
-        }
-    });
+    each_row(workers, r, &mut depths, |y, row| read_depth_row(plane, scale, [r.x, y], row));
     depths
+}
+
+fn read_depth_row(plane: &Plane<f32>, scale: f32, [x, y]: [u32; 2], row: &mut [f32]) {
+    plane.read_row(x, y, 0, row);
+    if scale != 1.0 {
+        row.iter_mut().for_each(|d| *d /= scale);
+    }
 }
 
 /// Stencil values of a rectangle.
@@ -156,10 +158,7 @@ fn encode_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Ve
         let mut depths = [0.0; TILE];
         for (x, bytes) in (r.x..).step_by(TILE).zip(bytes.chunks_mut(TILE * BYTES)) {
             let depths = &mut depths[..bytes.len() / BYTES];
-            plane.read_row(x, y, 0, depths);
-            if scale != 1.0 {
-                depths.iter_mut().for_each(|d| *d /= scale);
-            }
+            read_depth_row(plane, scale, [x, y], depths);
             bytes.copy_from_slice(bytemuck::cast_slice(depths));
         }
     });
@@ -175,12 +174,9 @@ fn encode_rectangle(
     transfer: &Transfer<'_>,
 ) -> Vec<u8> {
     let mut out = Vec::new();
+    let depth_plane = surfaces.depth.as_ref().and_then(|s| s.depth.as_ref());
     let depths = |clamp: bool| {
-        let mut depths = surfaces
-            .depth
-            .as_ref()
-            .and_then(|s| s.depth.as_ref())
-            .map_or_else(Vec::new, |plane| read_depths(workers, &mut lock(plane), r));
+        let mut depths = depth_plane.map_or_else(Vec::new, |plane| read_depths(workers, &mut lock(plane), r));
         transfer.depths(&mut depths);
         if clamp && !transfer.keeps_depths() {
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
@@ -193,8 +189,7 @@ fn encode_rectangle(
     };
     match format.content() {
         Content::Depth if format.kind == FLOAT && transfer.keeps_depths() => {
-            let plane = surfaces.depth.as_ref().and_then(|s| s.depth.as_ref());
-            return plane.map_or_else(Vec::new, |plane| encode_depths(workers, &mut lock(plane), r));
+            return depth_plane.map_or_else(Vec::new, |plane| encode_depths(workers, &mut lock(plane), r));
         }
         Content::Depth => encode::depths(&depths(true), format, &mut out),
         Content::Stencil => {

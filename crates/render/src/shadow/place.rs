@@ -37,8 +37,15 @@ fn oriented(instance: &Instance, triangle: u32, center: DVec3, mirrored: bool) -
 
 /// The point with these weights of the corners.
 pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
+    let (point, sum) = weighed(corners, weights);
+    point / sum
+}
+
+/// The same times the sum of the weights, and this sum.
+#[inline(always)]
+fn weighed(corners: &[DVec3; 3], weights: [f32; 3]) -> (DVec3, f64) {
     let w = [f64::from(weights[0]), f64::from(weights[1]), f64::from(weights[2])];
-    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
+    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2], w[0] + w[1] + w[2])
 }
 
 /// What all points of an object have in common.
@@ -72,13 +79,12 @@ impl<'a> Placing<'a> {
         weights: &[[f32; LANES]; 3],
         screen: [&[f32; LANES]; 2],
     ) -> [Place; LANES] {
-        // As `weighted`; divisions are what takes long.
+        // Divisions are what takes long.
         let (mut sums, mut positions) = ([1.0; LANES], [[0.0; LANES]; 3]);
         for (lane, (corners, _)) in facets.iter().enumerate() {
-            let w = [f64::from(weights[0][lane]), f64::from(weights[1][lane]), f64::from(weights[2][lane])];
-            let point = corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
+            let (point, sum) = weighed(corners, [weights[0][lane], weights[1][lane], weights[2][lane]]);
             (positions[0][lane], positions[1][lane], positions[2][lane]) = (point.x, point.y, point.z);
-            sums[lane] = w[0] + w[1] + w[2];
+            sums[lane] = sum;
         }
         let sums = F64x8::from_slice(simd, &sums);
         for axis in &mut positions {

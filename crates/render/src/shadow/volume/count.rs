@@ -124,23 +124,11 @@ impl Lit<'_> {
         let Some(first) = paths.first() else { return changes };
         for &s in sides {
             let side = self.side(s);
-            let start = before(side.plane, first.from);
-            for (path, change) in paths.iter().zip(&mut changes) {
-                let end = before(side.plane, path.to);
-                if end != start {
-                    *change += path.side(side, i32::from(end) - i32::from(start));
-                }
-            }
+            add_crossings(side.plane, first.from, paths.iter(), &mut changes, |path, along| path.side(side, along));
         }
         for &t in caps {
             let plane = self.planes[t as usize];
-            let start = before(plane, first.from);
-            for (path, change) in paths.iter().zip(&mut changes) {
-                let end = before(plane, path.to);
-                if end != start {
-                    *change += self.cap(path, t, i32::from(end) - i32::from(start));
-                }
-            }
+            add_crossings(plane, first.from, paths.iter(), &mut changes, |path, along| self.cap(path, t, along));
         }
         changes
     }
@@ -202,6 +190,25 @@ impl Lit<'_> {
                 let from_viewer = (place * viewer.w - viewer.truncate()).extend(0.0);
                 self.around(from_viewer) - self.along(&Path::new(place, from_viewer, self.light()))
             }
+        }
+    }
+}
+
+/// For each path from one place that crosses a plane, adds to its change what `met` says: of the path, and whether it goes along
+/// the normal.
+#[inline(always)]
+fn add_crossings<'a>(
+    plane: DVec4,
+    from: DVec3,
+    paths: impl Iterator<Item = &'a Path>,
+    changes: &mut [i32],
+    met: impl Fn(&Path, i32) -> i32,
+) {
+    let start = before(plane, from);
+    for (path, change) in paths.zip(changes) {
+        let end = before(plane, path.to);
+        if end != start {
+            *change += met(path, i32::from(end) - i32::from(start));
         }
     }
 }
@@ -316,28 +323,17 @@ impl Batch {
     ) -> ([i32; 2], [[Range<usize>; 3]; 2]) {
         let opaque = lit.casters.triangles();
         let least = near(lit.light(), lit.casters.extent());
-        let mut changes = [0; 2];
+        let (mut changes, from) = ([0; 2], halves[0].path.from);
+        let paths = || halves.iter().map(|half| &half.path);
         let sides = self.halve(0, lists[0].clone(), |s| {
             let side = lit.side(s);
-            let start = before(side.plane, halves[0].path.from);
-            for (half, change) in halves.iter().zip(&mut changes) {
-                let end = before(side.plane, half.path.to);
-                if end != start {
-                    *change += half.path.side(side, i32::from(end) - i32::from(start));
-                }
-            }
+            add_crossings(side.plane, from, paths(), &mut changes, |path, along| path.side(side, along));
             let touches = |half: &Half| side.touches(half.middle, half.half);
             [touches(&halves[0]), touches(&halves[1])]
         });
         let caps = self.halve(1, lists[1].clone(), |t| {
             let plane = lit.planes[t as usize];
-            let start = before(plane, halves[0].path.from);
-            for (half, change) in halves.iter().zip(&mut changes) {
-                let end = before(plane, half.path.to);
-                if end != start {
-                    *change += lit.cap(&half.path, t, i32::from(end) - i32::from(start));
-                }
-            }
+            add_crossings(plane, from, paths(), &mut changes, |path, along| lit.cap(path, t, along));
             let [a, b, c] = wide(&opaque.corners[t as usize]);
             let (min, max) = (a.min(b).min(c), a.max(b).max(c));
             let touches = |half: &Half| {

@@ -5,10 +5,12 @@
 //! Cost: linear in vertices and triangles, plus one list entry for each tile that a triangle touches.
 
 use crate::clip::{Polygon, clip};
+use crate::kernel::sift::{Sieve, sift};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{GUARD_BAND, SUBPIXEL, SamplePattern, TILE, Viewport};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
+use vitral_math::lanes::{LANES, Level, Simd, dispatch};
 use vitral_math::{Mat4, Vec2, Vec4, vec2};
 
 /// Bits of [`ScreenVertex::flags`].
@@ -175,17 +177,21 @@ pub struct Batch {
 pub struct Screen {
     viewport: Viewport,
     transform: ViewportTransform,
-    sample_x: [i32; 2],
-    sample_y: [i32; 2],
+    pattern: SamplePattern,
     lines: [[i32; 2]; 2],
 }
 
 impl Screen {
     /// The screen for a viewport and sample pattern.
     pub fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
-        let [sample_x, sample_y] = pattern.extent();
         let lines = [pattern.lines(0), pattern.lines(1)];
-        Self { viewport, transform: ViewportTransform::new(viewport), sample_x, sample_y, lines }
+        Self { viewport, transform: ViewportTransform::new(viewport), pattern: pattern.clone(), lines }
+    }
+
+    /// Where samples lie in a pixel.
+    #[inline(always)]
+    pub(crate) fn pattern(&self) -> &SamplePattern {
+        &self.pattern
     }
 
     /// Whether `low..=high` along an axis holds a line of samples.
@@ -197,12 +203,10 @@ impl Screen {
 
     /// Along an axis: the lines of samples (offset and shift of their distance), the outermost samples in a pixel, and how many
     /// pixels there are.
-    #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
     pub(crate) fn along(&self, axis: usize) -> ([i32; 2], [i32; 2], u32) {
         let Viewport { width, height, .. } = self.viewport;
-        let (samples, size) = if axis == 0 { (self.sample_x, width) } else { (self.sample_y, height) };
-        (self.lines[axis], samples, size)
+        (self.lines[axis], self.pattern.extent()[axis], if axis == 0 { width } else { height })
     }
 
     /// The map from ndc to the screen.
@@ -229,27 +233,79 @@ impl Batch {
     }
 
     /// Adds triangles `range` of `draw`, whose vertices were transformed to `vertices`.
-    pub fn add(&mut self, draw: &Draw<'_>, vertices: &[ScreenVertex], range: Range<u32>, screen: &Screen) {
+    pub fn add(
+        &mut self,
+        level: Level,
+        draw: &Draw<'_>,
+        vertices: &[ScreenVertex],
+        range: Range<u32>,
+        screen: &Screen,
+    ) {
+        dispatch!(level, simd => self.add_by_eights(simd, draw, vertices, range, screen));
+    }
+
+    #[inline(always)]
+    fn add_by_eights<S: Simd>(
+        &mut self,
+        simd: S,
+        draw: &Draw<'_>,
+        vertices: &[ScreenVertex],
+        range: Range<u32>,
+        screen: &Screen,
+    ) {
+        let Viewport { width, height, .. } = screen.viewport;
+        let culls = [draw.cull_back && draw.mirrored, draw.cull_back && !draw.mirrored];
+        let sieve = Sieve { outside: flag::FRUSTUM, culls, clip: [0, 0, width as i32, height as i32] };
         self.counters.triangles += u64::from(range.end - range.start);
-        for t in range.start..range.end {
-            let corners = draw.triangles[t as usize];
-            let [a, b, c] = corners.map(|i| vertices[i as usize]);
-            let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
-            let facet = draw.first_facet + t;
-            if any & (flag::NOT_FINITE | flag::CLIP) == 0 && all & flag::FRUSTUM == 0 {
-                let corners = [a.corner(), b.corner(), c.corner()];
-                self.add_corners(corners, draw.cull_back, draw.mirrored, facet, screen);
-            } else if any & flag::NOT_FINITE != 0 {
-                self.counters.not_finite += 1;
-            } else if all & flag::FRUSTUM != 0 {
-                self.counters.outside += 1;
-            } else {
-                let clip_corners = corners.map(|i| {
-                    let p = draw.positions[i as usize];
-                    transform_point(&draw.clip_from_model, p)
-                });
-                self.add_clipped(clip_corners, draw.cull_back, draw.mirrored, facet, screen);
+        let triangles = &draw.triangles[range.start as usize..range.end as usize];
+        for (eight, first) in triangles.chunks(LANES).zip((range.start..).step_by(LANES)) {
+            // A short last chunk repeats its first triangle.
+            let mut corners = [eight[0]; LANES];
+            corners[..eight.len()].copy_from_slice(eight);
+            let sifted = sift(simd, screen, &sieve, vertices, &corners);
+            let whole = 0xff >> (LANES - eight.len());
+            let count = |set: u32| u64::from((set & whole).count_ones());
+            let c = &mut self.counters;
+            c.not_finite += count(sifted.not_finite);
+            c.outside += count(sifted.outside);
+            c.degenerate += count(sifted.degenerate);
+            c.back_facing += count(sifted.culled);
+            let gone = sifted.not_finite | sifted.outside | sifted.degenerate | sifted.culled;
+            c.no_sample += count(!(gone | sifted.others | sifted.seen));
+            let mut left = (sifted.seen | sifted.others) & whole;
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize % LANES;
+                left &= left - 1;
+                let (corners, facet) = (corners[lane], draw.first_facet + first + lane as u32);
+                if sifted.others >> lane & 1 == 1 {
+                    self.add_other(draw, corners, vertices, facet, screen);
+                } else {
+                    let [a, b, c] = corners.map(|i| vertices[i as usize].corner());
+                    let plane = sifted.plane(lane, a);
+                    let setup = Setup::with_plane([a, b, c], i64::from(sifted.area[lane]), &plane, facet);
+                    self.push(setup, sifted.pixels(lane), screen);
+                }
             }
+        }
+    }
+
+    /// Adds a triangle that may be large or cut by a clipping plane.
+    #[inline(never)]
+    fn add_other(
+        &mut self,
+        draw: &Draw<'_>,
+        corners: [u32; 3],
+        vertices: &[ScreenVertex],
+        facet: u32,
+        screen: &Screen,
+    ) {
+        let [a, b, c] = corners.map(|i| vertices[i as usize]);
+        if (a.flags | b.flags | c.flags) & flag::CLIP == 0 {
+            let corners = [a.corner(), b.corner(), c.corner()];
+            self.add_corners(corners, draw.cull_back, draw.mirrored, facet, screen);
+        } else {
+            let corners = corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
+            self.add_clipped(corners, draw.cull_back, draw.mirrored, facet, screen);
         }
     }
 
@@ -424,8 +480,9 @@ pub(crate) fn covered_pixels([a, b, c]: &[CornerPosition; 3], screen: &Screen) -
     if !(screen.crosses_line(min_x, max_x, 0) && screen.crosses_line(min_y, max_y, 1)) {
         return None;
     }
-    let (x0, x1) = Screen::pixels(min_x, max_x, screen.sample_x, screen.viewport.width);
-    let (y0, y1) = Screen::pixels(min_y, max_y, screen.sample_y, screen.viewport.height);
+    let [sample_x, sample_y] = screen.pattern.extent();
+    let (x0, x1) = Screen::pixels(min_x, max_x, sample_x, screen.viewport.width);
+    let (y0, y1) = Screen::pixels(min_y, max_y, sample_y, screen.viewport.height);
     (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])
 }
 

@@ -160,7 +160,7 @@ impl<'a> PreparedView<'a> {
             mirrored: mirrors(&instance.world_from_model),
         };
         let mut batch = Batch::default();
-        batch.add(&draw, &vertices, 0..1, &self.screen);
+        batch.add(level, &draw, &vertices, 0..1, &self.screen);
         batch.setups().to_vec()
     }
 }

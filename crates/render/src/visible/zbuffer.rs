@@ -361,7 +361,7 @@ pub(super) fn set_up(
         let mut batch = view.session.spare_batches.lock().expect("spare batches").pop().unwrap_or_default();
         batch.clear(tile_lists);
         for piece in &jobs[i].pieces {
-            batch.add(piece.draw, &vertices[piece.item], piece.range.clone(), &view.screen);
+            batch.add(execution.level, piece.draw, &vertices[piece.item], piece.range.clone(), &view.screen);
         }
         batch.finish(&view.screen);
         (jobs[i].layered, batch)

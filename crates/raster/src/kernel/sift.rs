@@ -1,0 +1,367 @@
+//! Triangles eight at a time: which of them are seen, and their depth planes.
+//!
+//! Dropped are those outside the view volume, those that face away, and those that cover no sample. Of small boxes the samples
+//! are tested themselves: of a fine mesh, many triangles lie between them, and one that is dropped here is not set up, not sorted into
+//! a tile and not walked. Triangles that clipping must cut and those that extend over more than a tile are left to the caller.
+//!
+//! In:   corners on the screen. Out: [`Eight`], the same bits as [`DepthPlane::new`] and [`Setup::covers`](crate::Setup::covers).
+//! Cost: constant for eight triangles; a few operations for each sample of a small box.
+
+use super::traverse::SMALL;
+use crate::geometry::{Screen, flag};
+use crate::setup::{CornerPosition, DepthPlane};
+use crate::{SUBPIXEL, ScreenVertex};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
+
+/// At most so many samples of a box are tested themselves.
+const TESTED: usize = 16;
+
+/// Which triangles are dropped.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sieve {
+    /// Those outside one of these planes with all corners, bits of [`flag`].
+    pub outside: u32,
+    /// Those whose doubled area is negative, positive.
+    pub culls: [bool; 2],
+    /// Those without pixels in `[x0, y0, x1, y1]`, the upper ends excluded.
+    pub clip: [i32; 4],
+}
+
+/// What is known of eight triangles. Sets are bits.
+pub(crate) struct Eight {
+    /// Twice the areas, in 1/65536 square pixels.
+    pub area: [i32; LANES],
+    /// The pixels they may cover: x0, y0, x1, y1.
+    pub pixels: [[i32; LANES]; 4],
+    dz_dx: [f32; LANES],
+    dz_dy: [f32; LANES],
+    z_min: [f32; LANES],
+    z_max: [f32; LANES],
+    /// These have a corner that is not finite, and are not in the other sets.
+    pub not_finite: u32,
+    /// These are outside the view volume, and not in the other sets.
+    pub outside: u32,
+    /// These must be looked at one by one, and are not in the following sets.
+    pub others: u32,
+    /// These have no area.
+    pub degenerate: u32,
+    /// Of those with an area, these are culled.
+    pub culled: u32,
+    /// These are seen. The rest covers no sample.
+    pub seen: u32,
+}
+
+impl Eight {
+    /// The depth plane of a triangle, whose first corner this is.
+    #[inline(always)]
+    pub(crate) fn plane(&self, lane: usize, first: CornerPosition) -> DepthPlane {
+        DepthPlane {
+            z: first.z,
+            dz_dx: self.dz_dx[lane],
+            dz_dy: self.dz_dy[lane],
+            origin: [first.x, first.y],
+            z_min: self.z_min[lane],
+            z_max: self.z_max[lane],
+        }
+    }
+
+    /// The pixels that a triangle may cover: x0, y0, x1, y1.
+    #[inline(always)]
+    pub(crate) fn pixels(&self, lane: usize) -> [u32; 4] {
+        let p = &self.pixels;
+        [p[0][lane] as u32, p[1][lane] as u32, p[2][lane] as u32, p[3][lane] as u32]
+    }
+}
+
+/// Looks at eight triangles of `vertices`. A function of its own: all in one would be a function over which compilers take
+/// minutes, where they must do without vectors.
+#[inline(never)]
+pub(crate) fn sift<S: Simd>(
+    simd: S,
+    screen: &Screen,
+    sieve: &Sieve,
+    vertices: &[ScreenVertex],
+    triangles: &[[u32; 3]; LANES],
+) -> Eight {
+    simd.vectorize(
+        #[inline(always)]
+        || sift_inlined(simd, screen, sieve, vertices, triangles),
+    )
+}
+
+#[inline(always)]
+fn sift_inlined<S: Simd>(
+    simd: S,
+    screen: &Screen,
+    sieve: &Sieve,
+    vertices: &[ScreenVertex],
+    triangles: &[[u32; 3]; LANES],
+) -> Eight {
+    let corner = lanes::inlined(
+        #[inline(always)]
+        |k: usize| {
+            lanes::columns_of_rows(
+                simd,
+                #[inline(always)]
+                |lane| bytemuck::cast(vertices[triangles[lane][k] as usize]),
+            )
+        },
+    );
+    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let zero = I32x8::splat(simd, 0);
+    let (any, all) = (a[3] | b[3] | c[3], a[3] & b[3] & c[3]);
+    let finite = (any & flag::NOT_FINITE.cast_signed()).simd_eq(zero);
+    let inside = (all & sieve.outside.cast_signed()).simd_eq(zero) & finite;
+    let regular = (any & flag::CLIP.cast_signed()).simd_eq(zero);
+
+    let low = lanes::inlined(
+        #[inline(always)]
+        |k: usize| a[k].min(b[k]).min(c[k]),
+    );
+    let high = lanes::inlined(
+        #[inline(always)]
+        |k: usize| a[k].max(b[k]).max(c[k]),
+    );
+    let (low, high) = ([low(0), low(1)], [high(0), high(1)]);
+    let limit = I32x8::splat(simd, SMALL);
+    let small = (high[0] - low[0]).simd_lt(limit) & (high[1] - low[1]).simd_lt(limit);
+    let ours = inside & regular & small;
+
+    let (dx1, dy1) = (b[0] - a[0], b[1] - a[1]);
+    let (dx2, dy2) = (c[0] - a[0], c[1] - a[1]);
+    let area = dx1 * dy2 - dx2 * dy1;
+    let mut shown = !area.simd_eq(zero);
+    if sieve.culls[1] {
+        shown &= area.simd_lt(zero);
+    }
+    if sieve.culls[0] {
+        shown &= area.simd_gt(zero);
+    }
+    let (pixels, holds) = pixels(simd, screen, sieve.clip, &low, &high);
+    let mut seen = ours & shown & holds;
+    if let Some(side) = tested_side(screen.pattern().len()) {
+        let side = (side - 1) as i32;
+        let narrow = (pixels[2] - pixels[0]).simd_le(I32x8::splat(simd, side))
+            & (pixels[3] - pixels[1]).simd_le(I32x8::splat(simd, side));
+        if (seen & narrow).any_true() {
+            let first = [pixels[0] << 8, pixels[1] << 8];
+            seen &= !narrow | cover(simd, screen, side as usize + 1, first, area, [a, b, c]);
+        }
+    }
+
+    // The operations of `DepthPlane::new`, in their order.
+    let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) = (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
+    let (dz1, dz2) = (z1 - z0, z2 - z0);
+    let real = lanes::inlined(
+        #[inline(always)]
+        |v: I32x8<S>| -> F32x8<S> { v.to_float() },
+    );
+    let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / real(area);
+    let dz_dx = (dz1 * real(dy2) - dz2 * real(dy1)) * scale;
+    let dz_dy = (dz2 * real(dx1) - dz1 * real(dx2)) * scale;
+    let z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
+    let z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
+    let bits = lanes::inlined(
+        #[inline(always)]
+        |mask: Mask8<S>| mask.to_bitmask() as u32 & 0xff,
+    );
+    let degenerate = ours & area.simd_eq(zero);
+    Eight {
+        area: area.to_array(),
+        pixels: [pixels[0].to_array(), pixels[1].to_array(), pixels[2].to_array(), pixels[3].to_array()],
+        dz_dx: dz_dx.to_array(),
+        dz_dy: dz_dy.to_array(),
+        z_min: z_min.to_array(),
+        z_max: z_max.to_array(),
+        not_finite: bits(!finite),
+        outside: bits(finite & !inside),
+        others: bits(inside & !(regular & small)),
+        degenerate: bits(degenerate),
+        culled: bits(ours & !(shown | degenerate)),
+        seen: bits(seen),
+    }
+}
+
+/// The side, in pixels, of boxes whose samples are tested themselves.
+#[inline(always)]
+fn tested_side(samples: usize) -> Option<usize> {
+    (1..=4).rev().find(|side| side * side * samples <= TESTED)
+}
+
+/// The pixels that eight boxes may cover within `clip`, x0, y0, x1, y1 inclusive, and which of them hold any; as
+/// [`crate::geometry::covered_pixels`].
+#[inline(always)]
+fn pixels<S: Simd>(
+    simd: S,
+    screen: &Screen,
+    clip: [i32; 4],
+    low: &[I32x8<S>; 2],
+    high: &[I32x8<S>; 2],
+) -> ([I32x8<S>; 4], Mask8<S>) {
+    let mut pixels = [low[0], low[1], high[0], high[1]];
+    let zero = I32x8::splat(simd, 0);
+    let mut holds = zero.simd_eq(zero);
+    for axis in 0..2 {
+        let (line, samples, size) = screen.along(axis);
+        let (low, high) = (low[axis], high[axis]);
+        let [offset, shift] = line;
+        holds &= ((high - offset) >> shift as u32).simd_gt((low - (1 + offset)) >> shift as u32);
+        let first = (low - (samples[1] - SUBPIXEL + 1)) >> 8;
+        let last = (high - samples[0]) >> 8;
+        let first = first.max(I32x8::splat(simd, clip[axis].max(0)));
+        let last = last.min(I32x8::splat(simd, (clip[axis + 2] - 1).min(size as i32 - 1)));
+        holds &= first.simd_le(last);
+        (pixels[axis], pixels[axis + 2]) = (first, last);
+    }
+    (pixels, holds)
+}
+
+/// Which of eight triangles cover a sample of the `side` by `side` pixels at `first` (1/256 pixel), which they touch.
+#[inline(always)]
+fn cover<S: Simd>(
+    simd: S,
+    screen: &Screen,
+    side: usize,
+    first: [I32x8<S>; 2],
+    area: I32x8<S>,
+    [a, b, c]: [[I32x8<S>; 4]; 3],
+) -> Mask8<S> {
+    let zero = I32x8::splat(simd, 0);
+    let clockwise = area.simd_gt(zero);
+    let select = lanes::inlined(
+        #[inline(always)]
+        |k: usize| [clockwise.select(b[k], c[k]), clockwise.select(c[k], b[k])],
+    );
+    let ([bx, cx], [by, cy]) = (select(0), select(1));
+    // Corners as seen from the first pixel, so that products stay below 2^29.
+    let x = [a[0] - first[0], bx - first[0], cx - first[0]];
+    let y = [a[1] - first[1], by - first[1], cy - first[1]];
+    let (mut right, mut down, mut at_pixel) = ([zero; 3], [zero; 3], [zero; 3]);
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
+        let top_left = dy.simd_lt(zero) | (dy.simd_eq(zero) & dx.simd_gt(zero));
+        let bias = top_left.select(zero, I32x8::splat(simd, -1));
+        at_pixel[i] = dy * x[i] - dx * y[i] + bias;
+        (right[i], down[i]) = (dy, dx);
+    }
+    let [xs, ys] = screen.pattern().axes();
+    let mut outside = I32x8::splat(simd, -1);
+    for s in 0..screen.pattern().len() {
+        let mut row = at_pixel;
+        for i in 0..3 {
+            row[i] += down[i] * ys[s] - right[i] * xs[s];
+        }
+        for _ in 0..side {
+            let mut e = row;
+            for _ in 0..side {
+                outside &= e[0] | e[1] | e[2];
+                for i in 0..3 {
+                    e[i] -= right[i] << 8;
+                }
+            }
+            for i in 0..3 {
+                row[i] += down[i] << 8;
+            }
+        }
+    }
+    outside.simd_ge(zero)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Batch, Draw, SamplePattern, Setup, Viewport};
+    use vitral_math::Mat4;
+    use vitral_math::lanes::available_levels;
+
+    const VIEWPORT: Viewport = Viewport { width: 100, height: 70 };
+
+    /// Corners of triangles of all sizes, on, beside and around the picture, some with flags.
+    fn vertices(triangles: usize) -> Vec<ScreenVertex> {
+        let mut state = 7u32;
+        let mut random = |range: i32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as i32 % range
+        };
+        let mut vertices = Vec::new();
+        for triangle in 0..triangles {
+            let size = [90, 300, 700, 1500, 9000, 30_000][triangle % 6];
+            let middle = [random(110 * SUBPIXEL) - 5 * SUBPIXEL, random(80 * SUBPIXEL) - 5 * SUBPIXEL];
+            for _ in 0..3 {
+                let [x, y] = middle.map(|m| m + random(size) - size / 2);
+                // Corners on samples and on lines between pixels are the hardest.
+                let coarse = |v: i32| if triangle % 5 == 0 { v & !31 } else { v };
+                let flags = [0, flag::LEFT, flag::NOT_FINITE, flag::LEFT | flag::TOP][random(40).max(36) as usize - 36];
+                vertices.push(ScreenVertex { x: coarse(x), y: coarse(y), z: random(1000) as f32 / 1000.0, flags });
+            }
+        }
+        vertices
+    }
+
+    fn samples_of(setup: &Setup, pattern: &SamplePattern) -> bool {
+        let mut pixels = (0..VIEWPORT.height as i32).flat_map(|y| (0..VIEWPORT.width as i32).map(move |x| [x, y]));
+        pixels.any(|[x, y]| {
+            (0..pattern.len()).map(|s| pattern.position(s)).any(|[sx, sy]| {
+                let place = [x * SUBPIXEL + sx, y * SUBPIXEL + sy];
+                let near = |v: [i32; 3], at: i32| v.iter().any(|&v| v <= at) && v.iter().any(|&v| v >= at);
+                near(setup.x, place[0]) && near(setup.y, place[1]) && setup.covers(place[0], place[1])
+            })
+        })
+    }
+
+    #[test]
+    fn eight_at_a_time_drops_what_covers_no_sample_and_keeps_all_else_as_one_by_one() {
+        const COUNT: usize = 301;
+        let vertices = vertices(COUNT);
+        let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        for (samples, (cull_back, mirrored)) in
+            [(1, (false, false)), (4, (true, false)), (2, (true, true)), (16, (false, true))]
+        {
+            let pattern = SamplePattern::new(samples);
+            let screen = Screen::new(VIEWPORT, &pattern);
+            // One by one, without a look at the samples.
+            let mut reference = Batch::default();
+            for (facet, corners) in triangles.iter().enumerate() {
+                let [a, b, c] = corners.map(|i| vertices[i as usize]);
+                if (a.flags | b.flags | c.flags) & flag::NOT_FINITE != 0 {
+                    reference.counters.not_finite += 1;
+                } else if a.flags & b.flags & c.flags != 0 {
+                    reference.counters.outside += 1;
+                } else {
+                    let corners = [a, b, c].map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
+                    reference.add_corners(corners, cull_back, mirrored, facet as u32, &screen);
+                }
+            }
+            let draw = Draw {
+                positions: &[],
+                triangles: &triangles,
+                ranges: Vec::new(),
+                clip_from_model: Mat4::IDENTITY,
+                first_facet: 0,
+                cull_back,
+                mirrored,
+            };
+            for (name, level) in available_levels() {
+                let mut batch = Batch::default();
+                batch.add(level, &draw, &vertices, 0..5, &screen);
+                batch.add(level, &draw, &vertices, 5..COUNT as u32, &screen);
+                let mut kept = batch.setups().iter().peekable();
+                let mut dropped = 0;
+                for setup in reference.setups() {
+                    if kept.next_if_eq(&setup).is_none() {
+                        assert!(!samples_of(setup, &pattern), "{name}, {samples} samples: {setup:?}");
+                        dropped += 1;
+                    }
+                }
+                assert_eq!(kept.next(), None, "{name}: only those of the reference, in their order");
+                assert!(dropped > 20, "{name}, {samples} samples: {dropped}");
+                let mut expected = reference.counters;
+                expected.triangles = COUNT as u64;
+                expected.no_sample += dropped;
+                assert_eq!(batch.counters, expected, "{name}, {samples} samples");
+            }
+        }
+    }
+}

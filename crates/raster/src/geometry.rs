@@ -405,6 +405,11 @@ impl Batch {
 
     /// Sorts the entries by tile, keeping their order. Call it once, after the last triangle.
     pub fn finish(&mut self, screen: &Screen) {
+        self.finish_with(screen, |_, _, _| {});
+    }
+
+    /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its tile and its triangle.
+    pub(crate) fn finish_with(&mut self, screen: &Screen, mut placed: impl FnMut(usize, u32, &Setup)) {
         let tiles = (screen.viewport.tiles_x() * screen.viewport.tiles_y()) as usize;
         self.starts.clear();
         self.starts.resize(tiles + 2, 0);
@@ -420,6 +425,7 @@ impl Batch {
         for &[tile, setup] in &self.entries {
             let place = &mut self.starts[tile as usize + 1];
             self.items[*place as usize] = setup;
+            placed(*place as usize, tile, &self.setups[setup as usize]);
             *place += 1;
         }
         self.counters.set_up = self.setups.len() as u64;
@@ -432,12 +438,10 @@ impl Batch {
         std::mem::swap(&mut self.entries, entries);
     }
 
-    /// Gives each triangle's facet another number.
+    /// How many entries all tiles have, before they are sorted.
     #[cfg(feature = "forward")]
-    pub(crate) fn renumber(&mut self, number: impl Fn(u32) -> u32) {
-        for setup in &mut self.setups {
-            setup.facet = number(setup.facet);
-        }
+    pub(crate) fn entries(&self) -> usize {
+        self.entries.len()
     }
 
     /// All triangles, in order of submission.

@@ -129,7 +129,7 @@ impl DrawGeometry {
         }
         let records = out.records.len();
         self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
-        if let Some(at) = self.layout.grid {
+        if let Some(at) = self.layout.grid.filter(|_| out.records.len() > records) {
             self.emit_colors(level, grid, at, records, out);
         }
     }

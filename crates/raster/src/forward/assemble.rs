@@ -7,9 +7,12 @@
 //! In:   clip-space vertices, projected ones, corners of primitives.
 //! Out:  [`Primitives`]: setups, tile lists, facets, and which vertices to shade.
 
+mod clipped;
 mod eight;
 mod lines;
 
+use self::clipped::Derived;
+use super::boxes::Boxes;
 use super::color_grid::ColorGrid;
 use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
@@ -82,19 +85,6 @@ pub enum Shape {
     },
 }
 
-/// A vertex that clipping made.
-#[derive(Clone, Copy, Debug)]
-struct Derived {
-    /// Its slot.
-    pub slot: u32,
-    /// Slots of its parents.
-    pub parents: [u32; 3],
-    /// Their weights, sum 1.
-    pub weights: [f32; 3],
-    /// `1 / w`.
-    pub inverse_w: f32,
-}
-
 /// How primitives become facets: the part of the state that needs no vertex.
 #[derive(Clone, Debug)]
 pub struct PrimitiveState {
@@ -137,6 +127,10 @@ pub struct PrimitiveState {
 /// What jobs make: primitives of several draws, in order.
 #[derive(Debug, Default)]
 pub struct Primitives {
+    /// The pass stays pending: setups name their draws, and there are neither facets nor records.
+    pub(super) pending: bool,
+    /// What finds triangles then.
+    pub(super) boxes: Boxes,
     /// Setups and tile lists; a setup's facet indexes `facets`.
     pub batch: Batch,
     /// See there.
@@ -224,15 +218,6 @@ enum UserSide {
     Outside,
 }
 
-/// A corner of a polygon that is being clipped.
-#[derive(Clone, Copy, Debug)]
-struct Corner {
-    clip: [f32; 4],
-    weights: [f32; 3],
-    /// The edge from here to the next corner is the polygon's own, not a cut and not a diagonal.
-    boundary: bool,
-}
-
 impl Drop for Assembler<'_> {
     fn drop(&mut self) {
         self.out.scratch.slots = take(&mut self.slots);
@@ -252,7 +237,7 @@ impl<'a> Assembler<'a> {
         let first_slot = out.records.len() as u32;
         let (mut slots, mut used) = (take(&mut out.scratch.slots), take(&mut out.scratch.used));
         slots.clear();
-        slots.resize(vertices.clip.len(), NONE);
+        slots.resize(if out.pending { 0 } else { vertices.clip.len() }, NONE);
         used.clear();
         let stride = stride as u32;
         Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot }
@@ -261,27 +246,15 @@ impl<'a> Assembler<'a> {
     /// The slot of a vertex: where its record begins.
     #[inline(always)]
     fn slot(&mut self, vertex: u32) -> u32 {
+        if self.out.pending {
+            return self.first_slot;
+        }
         let slot = &mut self.slots[vertex as usize];
         if *slot == NONE {
             *slot = self.first_slot + self.used.len() as u32 * self.stride;
             self.used.push(vertex);
         }
         *slot
-    }
-
-    fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {
-        // A corner that is a parent unchanged needs no vertex of its own.
-        for k in 0..3 {
-            if corner.weights[k] == 1.0 {
-                return self.slot(parents[k]);
-            }
-        }
-        let parents = [self.slot(parents[0]), self.slot(parents[1]), self.slot(parents[2])];
-        let slot = self.first_slot + self.used.len() as u32 * self.stride;
-        self.used.push(NONE);
-        let inverse_w = 1.0 / corner.clip[3];
-        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w });
-        slot
     }
 
     /// Triangles that are filled; the last corner provokes.
@@ -398,107 +371,14 @@ impl<'a> Assembler<'a> {
         back: bool,
         shape: u32,
     ) {
-        let facet = self.out.facets.len() as u32;
-        // The setup turns clockwise triangles over.
-        let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
-        self.out.facets.push(Facet {
-            corners,
-            provoking,
-            draw: self.state.draw,
-            kind,
-            back,
-            shape,
-            grid: self.state.grid,
-        });
+        let (mut facet, draw, grid) = (self.state.draw, self.state.draw, self.state.grid);
+        if !self.out.pending {
+            facet = self.out.facets.len() as u32;
+            // The setup turns clockwise triangles over.
+            let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
+            self.out.facets.push(Facet { corners, provoking, draw, kind, back, shape, grid });
+        }
         self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
-    }
-
-    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
-    fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
-        let mut polygon: Vec<Corner> = (0..3)
-            .map(|k| {
-                let mut weights = [0.0; 3];
-                weights[k] = 1.0;
-                Corner { clip: self.vertices.clip[corners[k] as usize], weights, boundary: boundary[k] }
-            })
-            .collect();
-        let planes = self.state.user_planes;
-        for plane in 0..planes {
-            let d = [0, 1, 2].map(|k| self.vertices.user[corners[k] as usize * planes + plane]);
-            polygon = cut(&polygon, |c| d[0] * c.weights[0] + d[1] * c.weights[1] + d[2] * c.weights[2]);
-        }
-        let near = self.state.window.near;
-        if !self.state.depth_clamp {
-            polygon = cut(&polygon, |c| c.clip[2] - near * c.clip[3]);
-            polygon = cut(&polygon, |c| c.clip[3] - c.clip[2]);
-        }
-        // Nothing at or behind the eye survives, whatever the depth range.
-        polygon = cut(&polygon, |c| c.clip[3] - 1e-30);
-        let guard = self.state.window.guard;
-        for axis in 0..2 {
-            polygon = cut(&polygon, |c| guard[axis][1] * c.clip[3] - c.clip[axis]);
-            polygon = cut(&polygon, |c| c.clip[axis] - guard[axis][0] * c.clip[3]);
-        }
-        polygon
-    }
-
-    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are the polygon's.
-    #[cold]
-    fn clipped(&mut self, corners: &[u32; 3], provoking: u32, smooth: Option<[bool; 3]>) {
-        let polygon = self.cut(corners, smooth.unwrap_or_default());
-        if polygon.len() < 3 {
-            return;
-        }
-        let positions: Vec<CornerPosition> = polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
-        let area_of = |i: usize| Setup::doubled_area(positions[0], positions[i], positions[i + 1]);
-        let total: i64 = (1..polygon.len() - 1).map(area_of).sum();
-        if total == 0 {
-            return;
-        }
-        let back = self.is_back(total);
-        if self.state.cull[usize::from(back)] {
-            return;
-        }
-        // One depth plane, that of the largest piece: the pieces of a fan must not differ along their seams.
-        let Some(largest) = (1..polygon.len() - 1).max_by_key(|&i| area_of(i).abs()) else { return };
-        let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
-        let plane = if self.state.depth_clamp {
-            let Some(plane) = self.clamped_plane(corners, positions[0]) else { return };
-            plane
-        } else {
-            let mut plane = self.plane(fan(largest), area_of(largest), 2);
-            let offset = plane.z - positions[0].z;
-            for p in &positions {
-                plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
-                plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
-            }
-            plane
-        };
-        let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
-        let provoking = self.slot(provoking);
-        for i in 1..polygon.len() - 1 {
-            let area = area_of(i);
-            if area == 0 || (area > 0) != (total > 0) {
-                continue;
-            }
-            let slots = [slots[0], slots[i], slots[i + 1]];
-            if smooth.is_some() {
-                let last = i + 2 == polygon.len();
-                let edges = [i == 1 && polygon[0].boundary, polygon[i].boundary, last && polygon[i + 1].boundary];
-                self.push_smooth(fan(i), area, &plane, edges, slots, provoking, back);
-            } else if let Some(pixels) = self.pixels(&fan(i)) {
-                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
-            }
-        }
-    }
-
-    /// The plane of a polygon that near and far do not clip: each fragment's depth is clamped to the depth range. The
-    /// corners that are left may lie near the eye's plane, where depth is not a number; the whole polygon's do not.
-    fn clamped_plane(&self, corners: &[u32; 3], origin: CornerPosition) -> Option<DepthPlane> {
-        let window = &self.state.window;
-        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), [origin.x, origin.y])?;
-        let [z_min, z_max] = window.depth_range();
-        Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) })
     }
 
     /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
@@ -612,19 +492,6 @@ impl<'a> Assembler<'a> {
         self.derive();
     }
 
-    /// Fills the records of the vertices that clipping made from their parents'. The first number is `1 / w`.
-    fn derive(&mut self) {
-        let stride = self.stride as usize;
-        for d in &self.derived {
-            for k in 1..stride {
-                let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
-                let value = parent(0) * d.weights[0] + parent(1) * d.weights[1] + parent(2) * d.weights[2];
-                self.out.records[d.slot as usize + k] = value;
-            }
-            self.out.records[d.slot as usize] = d.inverse_w;
-        }
-    }
-
     /// Whether a used vertex is one of the piece's own.
     pub fn is_own(vertex: u32) -> bool {
         vertex != NONE
@@ -655,40 +522,6 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
     });
     let wide_area = Setup::doubled_area(wide[0], wide[1], wide[2]);
     (wide_area != 0 && (wide_area > 0) == (area > 0)).then_some(wide)
-}
-
-/// The point where the way from the inner to the outer corner leaves.
-fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32, boundary: bool) -> Corner {
-    let t = d_inner / (d_inner - d_outer);
-    let mix = |a: f32, b: f32| a + (b - a) * t;
-    Corner {
-        clip: std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k])),
-        weights: std::array::from_fn(|k| mix(inner.weights[k], outer.weights[k])),
-        boundary,
-    }
-}
-
-/// Keeps the part of a convex polygon where `distance` is not negative.
-fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
-    let d: Vec<f32> = polygon.iter().map(&distance).collect();
-    if d.iter().all(|&d| d >= 0.0) {
-        return polygon.to_vec();
-    }
-    let inside = |i: usize| d[i] >= 0.0;
-    let mut result = Vec::with_capacity(polygon.len() + 1);
-    for i in 0..polygon.len() {
-        let j = (i + 1) % polygon.len();
-        if inside(i) {
-            result.push(polygon[i]);
-        }
-        // Always from the inner to the outer corner: neighbours that share the edge get the same point.
-        if inside(i) && !inside(j) {
-            result.push(between(&polygon[i], &polygon[j], d[i], d[j], false));
-        } else if inside(j) && !inside(i) {
-            result.push(between(&polygon[j], &polygon[i], d[j], d[i], polygon[i].boundary));
-        }
-    }
-    result
 }
 
 /// The screen for a target.

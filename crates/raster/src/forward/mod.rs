@@ -6,6 +6,7 @@
 
 mod assemble;
 mod block;
+mod boxes;
 mod color_grid;
 mod depth_ranges;
 mod environment;

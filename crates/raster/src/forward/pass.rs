@@ -6,7 +6,7 @@
 use super::assemble::{Facet, Primitives, screen};
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
-use super::pending::{PendingDepth, name_draws, pendable};
+use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::packed::Packed;
 use super::shade::Layout;
@@ -241,12 +241,11 @@ impl Runner {
         let places = spare.take(plans.len());
         let jobs: Vec<Primitives> = self.workers.map(plans.len(), |j| {
             let mut job = std::mem::take(&mut *lock(&places[j]));
-            self.emit(&plans[j], &pass.commands, &forward, &mut job, kind.is_some());
+            self.emit(&plans[j], &pass.commands, &forward, &mut job, kind);
             job
         });
         if let Some(kind) = kind {
-            leave_pending(kind, pass, &plans, jobs);
-            return;
+            return self.leave_pending(kind, pass, &plans, jobs);
         }
         let sampled = sampled_planes(&pass.commands);
         let sampled: Vec<(*const Mutex<DepthPlane>, MutexGuard<'_, DepthPlane>)> =
@@ -257,9 +256,17 @@ impl Runner {
         spare.give(jobs);
     }
 
-    fn emit(&self, plan: &Plan, commands: &[Command], forward: &ForwardScreen, out: &mut Primitives, pending: bool) {
+    fn emit(
+        &self,
+        plan: &Plan,
+        commands: &[Command],
+        forward: &ForwardScreen,
+        out: &mut Primitives,
+        pending: Option<PendingKind>,
+    ) {
         let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
-        assembly.exchange(out, pending);
+        assembly.exchange(out);
+        out.pending = pending.is_some();
         out.batch.clear(TileLists::Kept);
         out.facets.clear();
         out.shapes.clear();
@@ -273,26 +280,42 @@ impl Runner {
                 }
             }
         }
-        out.batch.finish(forward.screen(false));
-        if pending {
-            name_draws(out);
+        match pending {
+            None => out.batch.finish(forward.screen(false)),
+            Some(kind) => kind.finish(out, forward),
         }
-        assembly.exchange(out, pending);
+        assembly.exchange(out);
         lock(&self.assemblies).push(assembly);
     }
 
     /// How a pass can be left as it is that draws depths into a texture, if it can: [`pendable`]. What is pending there is
     /// dropped, since the pass clears all of it; its memory serves this pass.
-    fn pendable(&self, pass: &Pass) -> Option<(f32, f32)> {
+    fn pendable(&self, pass: &Pass) -> Option<PendingKind> {
         let mut target = lock(pass.target.depth.as_ref()?);
         if !target.sampled || target.viewport() != pass.target.viewport {
             return None;
         }
-        let kind = pendable(pass)?;
+        let kind = pendable(pass, target.scale)?;
         if let Some(before) = target.pending.take() {
             self.spare_pending.give(before.into_primitives());
         }
         Some(kind)
+    }
+
+    /// Leaves a pass as it is; `jobs` are its primitives.
+    fn leave_pending(&self, kind: PendingKind, pass: &Pass, plans: &[Plan], jobs: Vec<Primitives>) {
+        let Some(target) = &pass.target.depth else { return };
+        let draws = |plan: &Plan| {
+            let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
+                Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
+                _ => None,
+            };
+            plan.pieces.iter().filter_map(draw).collect()
+        };
+        let jobs = plans.iter().zip(jobs).map(|(plan, job)| (job, draws(plan))).collect();
+        let mut target = lock(target);
+        let pending = PendingDepth::new(kind, target.viewport(), jobs, &self.workers, self.level);
+        target.pending = Some(Box::new(pending));
     }
 
     fn item<'a>(
@@ -359,22 +382,6 @@ impl Runner {
             copy.give_back(rows, &mut tiles[*index]);
         }
     }
-}
-
-/// Leaves a pass as it is; `jobs` are its primitives.
-fn leave_pending(kind: (f32, f32), pass: &Pass, plans: &[Plan], jobs: Vec<Primitives>) {
-    let Some(target) = &pass.target.depth else { return };
-    let draws = |plan: &Plan| {
-        let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
-            Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
-            _ => None,
-        };
-        plan.pieces.iter().filter_map(draw).collect()
-    };
-    let jobs = plans.iter().zip(jobs).map(|(plan, job)| (job, draws(plan))).collect();
-    let mut target = lock(target);
-    let pending = PendingDepth::new(kind, target.scale, target.viewport(), jobs);
-    target.pending = Some(Box::new(pending));
 }
 
 fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {

@@ -2,9 +2,9 @@
 //!
 //! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those alone. A pass that
 //! clears a texture's depth plane and draws nothing but depths into it, all kept by the same comparison, leaves its tile lists
-//! behind. A tile of few triangles is never drawn: a texel's value is the nearest (or farthest) of them there, by the same
-//! coverage and depth that drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn when it is
-//! first looked at. Either way the bits are the same, and for a lookup that compares, a bound of all the tile's triangles
+//! behind. The first lookups in a tile go through the boxes of its triangles. Then a tile of few is searched in eights with their
+//! planes and edges, and never drawn: a texel's value is the nearest (or farthest) of them there, by the same coverage and
+//! depth that drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn. Either way the bits are the same, and for a lookup that compares, a bound of all the tile's triangles
 //! often decides alone. Whoever needs all texels draws them: [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
@@ -12,7 +12,7 @@
 
 use super::assemble::Primitives;
 use super::fragment::{stored, stored_depth};
-use super::pass::Pass;
+use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::wide::{max, min};
@@ -22,6 +22,7 @@ use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
+use vitral_exec::Workers;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
 
@@ -65,13 +66,16 @@ enum Known {
 /// Tiles with more entries than this are drawn: four eights are compared in less time than it takes to draw them.
 const FEW: u32 = 32;
 
-/// So many lookups in a tile are answered before it is drawn: small pictures have no more.
-const PATIENCE: u32 = 12;
+/// So many lookups in a tile go through boxes before more is made of it: small pictures have no more.
+const PATIENCE: u32 = 64;
+
+/// Tiles that a thread looks at in one go when a pass is left.
+const PIECE: usize = 256;
 
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct PendingDepth {
-    /// 1 where the larger depth stays, -1 where the smaller does.
+    /// As in [`PendingKind`].
     sign: f32,
     clear: f32,
     scale: f32,
@@ -82,14 +86,42 @@ pub(crate) struct PendingDepth {
     viewport: Viewport,
 }
 
-/// Makes a job's triangles name their draws in place of their facets, of which no more is asked.
-pub(crate) fn name_draws(job: &mut Primitives) {
-    let facets = &job.facets;
-    job.batch.renumber(|facet| facets[facet as usize].draw);
+/// What a pass that can be left pending keeps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PendingKind {
+    /// 1 where the larger depth stays, -1 where the smaller does.
+    sign: f32,
+    /// What it clears to.
+    clear: f32,
+    /// See [`DepthPlane::scale`](super::plane::DepthPlane).
+    scale: f32,
 }
 
-/// Whether a pass can be left pending: 1 or -1 for which depth stays, and the depth it clears to.
-pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
+impl PendingKind {
+    /// Sorts a job's triangles by tile, with their boxes.
+    pub(crate) fn finish(&self, job: &mut Primitives, screen: &ForwardScreen) {
+        let Primitives { batch, boxes, .. } = job;
+        boxes.resize(batch.entries());
+        batch.finish_with(screen.screen(false), |at, tile, setup| {
+            boxes.set(at, setup, origin(screen.viewport, tile), self.bound(setup));
+        });
+    }
+
+    /// The depth, as read, that none of a triangle's texels exceeds; times the sign.
+    fn bound(&self, setup: &Setup) -> f32 {
+        let nearest = if self.sign > 0.0 { setup.z_max } else { setup.z_min };
+        stored(nearest, self.scale) / self.scale * self.sign
+    }
+}
+
+/// The first pixel of a tile.
+fn origin(viewport: Viewport, tile: u32) -> [u32; 2] {
+    let across = viewport.tiles_x();
+    [tile % across * TILE as u32, tile / across * TILE as u32]
+}
+
+/// What a pass keeps whose target has this scale, if it can be left pending.
+pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
     use super::pass::Command;
     let (first, rest) = pass.commands.split_first()?;
     let Command::Clear(clear) = first else { return None };
@@ -116,37 +148,35 @@ pub(crate) fn pendable(pass: &Pass) -> Option<(f32, f32)> {
         }
         sign = its;
     }
-    Some((if sign == 0.0 { 1.0 } else { sign }, clear.depth?))
+    Some(PendingKind { sign: if sign == 0.0 { 1.0 } else { sign }, clear: clear.depth?, scale })
 }
 
 impl PendingDepth {
-    /// Keeps a pass's primitives, after [`name_draws`]. `jobs` are with their draws' states and allowed pixels.
+    /// Keeps a pass's primitives, each job after [`PendingKind::finish`]. `jobs` are with their draws' states and allowed pixels.
     pub(crate) fn new(
-        (sign, clear): (f32, f32),
-        scale: f32,
+        kind: PendingKind,
         viewport: Viewport,
         jobs: Vec<(Primitives, Vec<ClippedState>)>,
+        workers: &Workers,
+        level: Level,
     ) -> Self {
+        let PendingKind { sign, clear, scale } = kind;
         let jobs: Vec<PendingJob> =
             jobs.into_iter().map(|(primitives, draws)| PendingJob { primitives, draws }).collect();
-        let mut touching = Vec::new();
-        let tiles = (0..(viewport.tiles_x() * viewport.tiles_y()) as usize).map(|tile| {
-            let (first, mut most, mut count) = (touching.len(), f32::NEG_INFINITY, 0);
-            for (number, job) in jobs.iter().enumerate() {
-                let batch = &job.primitives.batch;
-                let range = batch.tile_range(tile);
-                if !range.is_empty() {
-                    touching.push(number as u32);
-                    count += range.len() as u32;
-                    let its = |at| if sign > 0.0 { batch.item(at).z_max } else { -batch.item(at).z_min };
-                    most = range.map(its).fold(most, f32::max);
-                }
-            }
-            // As read: stored and divided again. Both keep the order.
-            let bound = if most.is_finite() { stored(most.abs(), scale) / scale * sign } else { most };
-            PendingTile { bound, jobs: first..touching.len(), count, asked: AtomicU32::new(0), known: OnceLock::new() }
+        let count = (viewport.tiles_x() * viewport.tiles_y()) as usize;
+        let pieces = workers.map(count.div_ceil(PIECE), |piece| {
+            let range = piece * PIECE..((piece + 1) * PIECE).min(count);
+            dispatch!(level, simd => tiles(simd, &jobs, range))
         });
-        let tiles = tiles.collect();
+        let (mut tiles, mut touching) = (Vec::with_capacity(count), Vec::new());
+        for (piece_tiles, piece_touching) in pieces {
+            let first = touching.len();
+            tiles.extend(piece_tiles.into_iter().map(|mut tile: PendingTile| {
+                tile.jobs = tile.jobs.start + first..tile.jobs.end + first;
+                tile
+            }));
+            touching.extend(piece_touching);
+        }
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
         Self { sign, clear, scale, jobs, tiles, touching, viewport }
     }
@@ -193,7 +223,7 @@ impl PendingDepth {
                 open &= open - 1;
                 let (x, y) = (x[lane], y[lane]);
                 depths[lane] = match self.known(tile[lane] as usize) {
-                    None => self.scan(x, y, tile[lane] as usize, floors[lane], best),
+                    None => self.scan(simd, x, y, tile[lane] as usize, floors[lane], best),
                     Some(Known::Few { entries, candidates }) => {
                         self.search(simd, x, y, (entries, candidates), floors[lane], best)
                     }
@@ -237,20 +267,29 @@ impl PendingDepth {
         )
     }
 
-    /// The same among all triangles of a tile, one by one.
+    /// The same among those triangles of a tile whose box holds the texel.
     #[inline(never)]
-    fn scan(&self, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
-        let place = [x, y].map(|v| v * SUBPIXEL + SUBPIXEL / 2);
-        let beside = |v: [i32; 3], at: i32| v.iter().all(|v| *v < at) || v.iter().all(|v| *v > at);
-        for &job in &self.touching[self.tiles[tile].jobs.clone()] {
-            let job = &self.jobs[job as usize];
-            for setup in job.primitives.batch.tile(tile) {
-                if !beside(setup.x, place[0]) && !beside(setup.y, place[1]) {
-                    best = self.better(job, setup, [x, y], floor, best);
+    fn scan<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let place = [x % TILE as i32, y % TILE as i32];
+                for &job in &self.touching[self.tiles[tile].jobs.clone()] {
+                    let job = &self.jobs[job as usize];
+                    let Primitives { batch, boxes, .. } = &job.primitives;
+                    let above = best.max(floor);
+                    let found = lanes::inlined(
+                        #[inline(always)]
+                        |at| {
+                            best = self.better(job, batch.item(at), [x, y], floor, best);
+                            best.max(floor)
+                        },
+                    );
+                    boxes.find(simd, batch.tile_range(tile), place, above, found);
                 }
-            }
-        }
-        best
+                best
+            },
+        )
     }
 
     /// A triangle's depth at a texel if it is better than `floor` and `best`, else `best`; times the sign.
@@ -266,12 +305,6 @@ impl PendingDepth {
         self.jobs[job as usize].primitives.batch.item(at as usize)
     }
 
-    /// The first pixel of a tile.
-    fn origin(&self, tile: usize) -> [u32; 2] {
-        let (tile, across) = (tile as u32, self.viewport.tiles_x());
-        [tile % across * TILE as u32, tile / across * TILE as u32]
-    }
-
     /// How the texels of a tile are found; none if it was asked for too seldom.
     #[inline(always)]
     fn known(&self, tile: usize) -> Option<&Known> {
@@ -279,7 +312,7 @@ impl PendingDepth {
         pending.known.get().or_else(
             #[inline(always)]
             || {
-                let patient = pending.count > FEW && pending.asked.fetch_add(1, Ordering::Relaxed) < PATIENCE;
+                let patient = pending.asked.fetch_add(1, Ordering::Relaxed) < PATIENCE;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
             },
         )
@@ -300,7 +333,7 @@ impl PendingDepth {
 
     /// Eights of entries, row by row; what is missing to an eight is below everything.
     fn candidates(&self, entries: &[Entry], tile: usize) -> Box<[f32]> {
-        let origin = self.origin(tile).map(|v| v as i32);
+        let origin = origin(self.viewport, tile as u32).map(|v| v as i32);
         let mut rows = vec![f32::NEG_INFINITY; entries.len().div_ceil(LANES) * ROWS * LANES];
         for (eight, rows) in entries.chunks(LANES).zip(rows.chunks_exact_mut(ROWS * LANES)) {
             for (lane, &entry) in eight.iter().enumerate() {
@@ -316,7 +349,7 @@ impl PendingDepth {
     /// The depths of a tile with everything drawn, as stored.
     #[inline(never)]
     fn draw(&self, tile: usize) -> Box<[f32; TILE_PIXELS]> {
-        let ([x, y], level) = (self.origin(tile), Level::new());
+        let ([x, y], level) = (origin(self.viewport, tile as u32), Level::new());
         let mut nearest = NearestDepths::with_sign((x, y), self.sign);
         for &job in &self.touching[self.tiles[tile].jobs.clone()] {
             let job = &self.jobs[job as usize];
@@ -358,6 +391,27 @@ impl PendingDepth {
             }
         }
     }
+}
+
+/// What may decide the texels of some tiles: their jobs lie in the vector that comes with them.
+#[inline(always)]
+fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<PendingTile>, Vec<u32>) {
+    let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::new());
+    for tile in range {
+        let (first, mut bound, mut count) = (touching.len(), f32::NEG_INFINITY, 0);
+        for (number, job) in jobs.iter().enumerate() {
+            let Primitives { batch, boxes, .. } = &job.primitives;
+            let entries = batch.tile_range(tile);
+            if !entries.is_empty() {
+                touching.push(number as u32);
+                count += entries.len() as u32;
+                bound = bound.max(boxes.largest(simd, entries));
+            }
+        }
+        let jobs = first..touching.len();
+        tiles.push(PendingTile { bound, jobs, count, asked: AtomicU32::new(0), known: OnceLock::new() });
+    }
+    (tiles, touching)
 }
 
 impl PendingJob {

@@ -4,7 +4,7 @@
 //! grows to what its own place needs, not to what the largest does. Passes that stay pending have places of their own, since
 //! they stay while others run, and need long tile lists but no vertices.
 
-use super::assemble::{Facet, PieceScratch, Primitives};
+use super::assemble::{PieceScratch, Primitives};
 use std::sync::{Mutex, PoisonError};
 
 /// Memory of jobs, place by place.
@@ -32,18 +32,13 @@ impl Places {
 pub(crate) struct Assembly {
     scratch: PieceScratch,
     entries: Vec<[u32; 2]>,
-    facets: Vec<Facet>,
 }
 
 impl Assembly {
-    /// Exchanges its memory with that of a job: once before the job's primitives are assembled, once afterwards. A job that
-    /// stays pending does not keep its facets: see `name_draws`.
-    pub(crate) fn exchange(&mut self, job: &mut Primitives, pending: bool) {
+    /// Exchanges its memory with that of a job: once before the job's primitives are assembled, once afterwards.
+    pub(crate) fn exchange(&mut self, job: &mut Primitives) {
         std::mem::swap(&mut self.scratch, &mut job.scratch);
         job.batch.exchange_entries(&mut self.entries);
-        if pending {
-            std::mem::swap(&mut self.facets, &mut job.facets);
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Lines and points become quads: two facets with one depth plane.
 
+use super::clipped::{Corner, between};
 use super::*;
 
 impl Assembler<'_> {

@@ -1,0 +1,185 @@
+//! Triangles that reach beyond the view volume or a plane of the user: cut there, with vertices that are weighted sums of their
+//! corners.
+
+use super::{Assembler, FacetKind, NONE};
+use crate::Setup;
+use crate::setup::{CornerPosition, DepthPlane};
+
+/// A vertex that clipping made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Derived {
+    /// Its slot.
+    slot: u32,
+    /// Slots of its parents.
+    parents: [u32; 3],
+    /// Their weights, sum 1.
+    weights: [f32; 3],
+    /// `1 / w`.
+    inverse_w: f32,
+}
+
+/// A corner of a polygon that is being clipped.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// In clip space.
+    pub clip: [f32; 4],
+    /// Of the triangle's corners, sum 1.
+    pub weights: [f32; 3],
+    /// The edge from here to the next corner is the polygon's own, not a cut and not a diagonal.
+    pub boundary: bool,
+}
+
+impl Assembler<'_> {
+    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
+    fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
+        let mut polygon: Vec<Corner> = (0..3)
+            .map(|k| {
+                let mut weights = [0.0; 3];
+                weights[k] = 1.0;
+                Corner { clip: self.vertices.clip[corners[k] as usize], weights, boundary: boundary[k] }
+            })
+            .collect();
+        let planes = self.state.user_planes;
+        for plane in 0..planes {
+            let d = [0, 1, 2].map(|k| self.vertices.user[corners[k] as usize * planes + plane]);
+            polygon = cut(&polygon, |c| d[0] * c.weights[0] + d[1] * c.weights[1] + d[2] * c.weights[2]);
+        }
+        let near = self.state.window.near;
+        if !self.state.depth_clamp {
+            polygon = cut(&polygon, |c| c.clip[2] - near * c.clip[3]);
+            polygon = cut(&polygon, |c| c.clip[3] - c.clip[2]);
+        }
+        // Nothing at or behind the eye survives, whatever the depth range.
+        polygon = cut(&polygon, |c| c.clip[3] - 1e-30);
+        let guard = self.state.window.guard;
+        for axis in 0..2 {
+            polygon = cut(&polygon, |c| guard[axis][1] * c.clip[3] - c.clip[axis]);
+            polygon = cut(&polygon, |c| c.clip[axis] - guard[axis][0] * c.clip[3]);
+        }
+        polygon
+    }
+
+    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are the polygon's.
+    #[cold]
+    pub(super) fn clipped(&mut self, corners: &[u32; 3], provoking: u32, smooth: Option<[bool; 3]>) {
+        let polygon = self.cut(corners, smooth.unwrap_or_default());
+        if polygon.len() < 3 {
+            return;
+        }
+        let positions: Vec<CornerPosition> = polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
+        let area_of = |i: usize| Setup::doubled_area(positions[0], positions[i], positions[i + 1]);
+        let total: i64 = (1..polygon.len() - 1).map(area_of).sum();
+        if total == 0 {
+            return;
+        }
+        let back = self.is_back(total);
+        if self.state.cull[usize::from(back)] {
+            return;
+        }
+        // One depth plane, that of the largest piece: the pieces of a fan must not differ along their seams.
+        let Some(largest) = (1..polygon.len() - 1).max_by_key(|&i| area_of(i).abs()) else { return };
+        let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
+        let plane = if self.state.depth_clamp {
+            let Some(plane) = self.clamped_plane(corners, positions[0]) else { return };
+            plane
+        } else {
+            let mut plane = self.plane(fan(largest), area_of(largest), 2);
+            let offset = plane.z - positions[0].z;
+            for p in &positions {
+                plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
+                plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
+            }
+            plane
+        };
+        let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
+        let provoking = self.slot(provoking);
+        for i in 1..polygon.len() - 1 {
+            let area = area_of(i);
+            if area == 0 || (area > 0) != (total > 0) {
+                continue;
+            }
+            let slots = [slots[0], slots[i], slots[i + 1]];
+            if smooth.is_some() {
+                let last = i + 2 == polygon.len();
+                let edges = [i == 1 && polygon[0].boundary, polygon[i].boundary, last && polygon[i + 1].boundary];
+                self.push_smooth(fan(i), area, &plane, edges, slots, provoking, back);
+            } else if let Some(pixels) = self.pixels(&fan(i)) {
+                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
+            }
+        }
+    }
+
+    /// The plane of a polygon that near and far do not clip: each fragment's depth is clamped to the depth range. The
+    /// corners that are left may lie near the eye's plane, where depth is not a number; the whole polygon's do not.
+    fn clamped_plane(&self, corners: &[u32; 3], origin: CornerPosition) -> Option<DepthPlane> {
+        let window = &self.state.window;
+        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), [origin.x, origin.y])?;
+        let [z_min, z_max] = window.depth_range();
+        Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) })
+    }
+
+    pub(super) fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {
+        if self.out.pending {
+            return self.first_slot;
+        }
+        // A corner that is a parent unchanged needs no vertex of its own.
+        for k in 0..3 {
+            if corner.weights[k] == 1.0 {
+                return self.slot(parents[k]);
+            }
+        }
+        let parents = [self.slot(parents[0]), self.slot(parents[1]), self.slot(parents[2])];
+        let slot = self.first_slot + self.used.len() as u32 * self.stride;
+        self.used.push(NONE);
+        let inverse_w = 1.0 / corner.clip[3];
+        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w });
+        slot
+    }
+
+    /// Fills the records of the vertices that clipping made from their parents'. The first number is `1 / w`.
+    pub(super) fn derive(&mut self) {
+        let stride = self.stride as usize;
+        for d in &self.derived {
+            for k in 1..stride {
+                let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
+                let value = parent(0) * d.weights[0] + parent(1) * d.weights[1] + parent(2) * d.weights[2];
+                self.out.records[d.slot as usize + k] = value;
+            }
+            self.out.records[d.slot as usize] = d.inverse_w;
+        }
+    }
+}
+
+/// The point where the way from the inner to the outer corner leaves.
+pub(super) fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32, boundary: bool) -> Corner {
+    let t = d_inner / (d_inner - d_outer);
+    let mix = |a: f32, b: f32| a + (b - a) * t;
+    Corner {
+        clip: std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k])),
+        weights: std::array::from_fn(|k| mix(inner.weights[k], outer.weights[k])),
+        boundary,
+    }
+}
+
+/// Keeps the part of a convex polygon where `distance` is not negative.
+fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
+    let d: Vec<f32> = polygon.iter().map(&distance).collect();
+    if d.iter().all(|&d| d >= 0.0) {
+        return polygon.to_vec();
+    }
+    let inside = |i: usize| d[i] >= 0.0;
+    let mut result = Vec::with_capacity(polygon.len() + 1);
+    for i in 0..polygon.len() {
+        let j = (i + 1) % polygon.len();
+        if inside(i) {
+            result.push(polygon[i]);
+        }
+        // Always from the inner to the outer corner: neighbours that share the edge get the same point.
+        if inside(i) && !inside(j) {
+            result.push(between(&polygon[i], &polygon[j], d[i], d[j], false));
+        } else if inside(j) && !inside(i) {
+            result.push(between(&polygon[j], &polygon[i], d[j], d[i], polygon[i].boundary));
+        }
+    }
+    result
+}

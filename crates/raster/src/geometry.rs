@@ -33,6 +33,10 @@ pub mod flag {
     pub const CLIP: u32 = 64;
     /// A coordinate is NaN or infinite: the primitive is dropped.
     pub const NOT_FINITE: u32 = 128;
+    /// Beyond the first of up to six planes of the user; the next bits are the next planes'.
+    pub const USER: u32 = 256;
+    /// All bits of the user's planes.
+    pub const USERS: u32 = 63 * USER;
 }
 
 /// A vertex on the screen. Coordinates are only meaningful without [`flag::CLIP`].
@@ -255,7 +259,7 @@ impl Batch {
     ) {
         let Viewport { width, height, .. } = screen.viewport;
         let culls = [draw.cull_back && draw.mirrored, draw.cull_back && !draw.mirrored];
-        let sieve = Sieve { outside: flag::FRUSTUM, culls, clip: [0, 0, width as i32, height as i32] };
+        let sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls, clip: [0, 0, width as i32, height as i32] };
         self.counters.triangles += u64::from(range.end - range.start);
         let triangles = &draw.triangles[range.start as usize..range.end as usize];
         for (eight, first) in triangles.chunks(LANES).zip((range.start..).step_by(LANES)) {

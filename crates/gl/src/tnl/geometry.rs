@@ -10,7 +10,8 @@ use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::{
-    Assembler, ColorGrid, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, project,
+    Assembler, ColorGrid, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, flag_user_planes,
+    project,
 };
 
 /// Point parameters.
@@ -182,6 +183,7 @@ impl DrawGeometry {
         let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
         project(level, positions, &self.snapshot.clip_from_model, &state.window, clip, window);
         let user = self.user_distances(positions);
+        flag_user_planes(&user, window);
         let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
         let in_piece = Vertices { clip, screen: window, user: &user, sizes: &sizes };
         let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, self.layout.stride, &in_piece);

@@ -176,6 +176,9 @@ pub const NO_GRID: u32 = u32::MAX;
 /// How far over a smooth polygon's edge pixels may be that it covers in part.
 const SOFT_BORDER: f32 = 0.75;
 
+/// Flags of which one is enough for a triangle to be cut, if it is not dropped.
+const CUT: u32 = flag::CLIP | flag::USERS;
+
 /// No slot yet, no shape.
 const NONE: u32 = u32::MAX;
 
@@ -202,20 +205,12 @@ pub struct Assembler<'a> {
 pub struct Vertices<'a> {
     /// Clip space.
     pub clip: &'a [[f32; 4]],
-    /// In the window.
+    /// In the window, after [`flag_user_planes`].
     pub screen: &'a [ScreenVertex],
     /// Distances to the user's planes.
     pub user: &'a [f32],
     /// Point sizes and fade factors; empty where no points are drawn.
     pub sizes: &'a [[f32; 2]],
-}
-
-/// On which side of the user's planes something is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum UserSide {
-    Inside,
-    Across,
-    Outside,
 }
 
 impl Drop for Assembler<'_> {
@@ -259,12 +254,7 @@ impl<'a> Assembler<'a> {
 
     /// Triangles that are filled; the last corner provokes.
     pub fn triangles(&mut self, level: Level, triangles: &[[u32; 3]]) {
-        if self.state.user_planes == 0 {
-            return self.by_eights(level, triangles);
-        }
-        for corners in triangles {
-            self.triangle(*corners, corners[2]);
-        }
+        self.by_eights(level, triangles);
     }
 
     /// A filled triangle.
@@ -275,12 +265,8 @@ impl<'a> Assembler<'a> {
         if all & self.outside() != 0 || any & flag::NOT_FINITE != 0 {
             return;
         }
-        if any & flag::CLIP != 0 || self.state.user_planes > 0 {
-            match self.user_side(corners) {
-                UserSide::Outside => return,
-                UserSide::Inside if any & flag::CLIP == 0 => {}
-                _ => return self.clipped(&corners, provoking, None),
-            }
+        if any & CUT != 0 {
+            return self.clipped(&corners, provoking, None);
         }
         let position = |v: ScreenVertex| CornerPosition { x: v.x, y: v.y, z: v.z };
         let positions = [position(a), position(b), position(c)];
@@ -299,25 +285,11 @@ impl<'a> Assembler<'a> {
         self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
     }
 
-    /// Where a triangle lies to the user's planes.
-    fn user_side(&self, corners: [u32; 3]) -> UserSide {
-        let planes = self.state.user_planes;
-        let mut side = UserSide::Inside;
-        for plane in 0..planes {
-            let inside = |v: u32| self.vertices.user[v as usize * planes + plane] >= 0.0;
-            match (inside(corners[0]), inside(corners[1]), inside(corners[2])) {
-                (true, true, true) => {}
-                (false, false, false) => return UserSide::Outside,
-                _ => side = UserSide::Across,
-            }
-        }
-        side
-    }
-
     /// The flags any of which puts a primitive out of view if all its vertices have it.
     #[inline(always)]
     fn outside(&self) -> u32 {
-        if self.state.depth_clamp { flag::FRUSTUM & !(flag::NEAR | flag::FAR) } else { flag::FRUSTUM }
+        let ignored = if self.state.depth_clamp { flag::NEAR | flag::FAR } else { 0 };
+        (flag::FRUSTUM | flag::USERS) & !ignored
     }
 
     /// With y upwards in the window, counter-clockwise corners have a positive area.
@@ -440,11 +412,11 @@ impl<'a> Assembler<'a> {
     /// coverage of one edge. Edges that clipping makes are hard.
     fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
         let v = corners.map(|v| self.vertices.screen[v as usize]);
-        let flags = v[0].flags | v[1].flags | v[2].flags;
-        match self.user_side(corners) {
-            UserSide::Outside => return,
-            UserSide::Inside if flags & flag::CLIP == 0 => {}
-            _ => return self.clipped(&corners, provoking, Some(boundary)),
+        if v[0].flags & v[1].flags & v[2].flags & flag::USERS != 0 {
+            return;
+        }
+        if (v[0].flags | v[1].flags | v[2].flags) & CUT != 0 {
+            return self.clipped(&corners, provoking, Some(boundary));
         }
         let own = v.map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
         let area = Setup::doubled_area(own[0], own[1], own[2]);
@@ -495,6 +467,17 @@ impl<'a> Assembler<'a> {
     /// Whether a used vertex is one of the piece's own.
     pub fn is_own(vertex: u32) -> bool {
         vertex != NONE
+    }
+}
+
+/// Flags the vertices beyond the user's planes, of whose distances each has as many as there are planes.
+pub fn flag_user_planes(user: &[f32], screen: &mut [ScreenVertex]) {
+    let Some(planes) = user.len().checked_div(screen.len()).filter(|planes| *planes > 0) else { return };
+    for (vertex, distances) in screen.iter_mut().zip(user.chunks_exact(planes)) {
+        for (plane, distance) in distances.iter().enumerate() {
+            // NaN is beyond.
+            vertex.flags |= u32::from(!(*distance >= 0.0)) * (flag::USER << plane);
+        }
     }
 }
 

@@ -39,7 +39,7 @@ struct PendingJob {
 /// What may decide a tile's texels.
 #[derive(Debug)]
 struct PendingTile {
-    /// The largest bound of its triangles, as read; times the sign.
+    /// The largest bound of its triangles' depths as read, times the sign.
     bound: f32,
     /// The jobs that have triangles there, in [`PendingDepth::touching`].
     jobs: Range<usize>,
@@ -102,15 +102,13 @@ impl PendingKind {
     pub(crate) fn finish(&self, job: &mut Primitives, screen: &ForwardScreen) {
         let Primitives { batch, boxes, .. } = job;
         boxes.resize(batch.entries());
+        // Depths as read, times the sign: half a step for rounding when stored, and what two roundings may be off.
+        let margin = if self.scale == 1.0 { 0.0 } else { 0.5 / self.scale + 3e-7 };
+        let larger = self.sign > 0.0;
         batch.finish_with(screen.screen(false), |at, tile, setup| {
-            boxes.set(at, setup, origin(screen.viewport, tile), self.bound(setup));
+            let nearest = if larger { setup.z_max } else { -setup.z_min };
+            boxes.set(at, setup, origin(screen.viewport, tile), nearest + margin);
         });
-    }
-
-    /// The depth, as read, that none of a triangle's texels exceeds; times the sign.
-    fn bound(&self, setup: &Setup) -> f32 {
-        let nearest = if self.sign > 0.0 { setup.z_max } else { setup.z_min };
-        stored(nearest, self.scale) / self.scale * self.sign
     }
 }
 

@@ -22,6 +22,8 @@ const TESTED: usize = 16;
 pub(crate) struct Sieve {
     /// Those outside one of these planes with all corners, bits of [`flag`].
     pub outside: u32,
+    /// Those with a corner of one of these bits must be cut, and are left to the caller.
+    pub cut: u32,
     /// Those whose doubled area is negative, positive.
     pub culls: [bool; 2],
     /// Those without pixels in `[x0, y0, x1, y1]`, the upper ends excluded.
@@ -113,7 +115,7 @@ fn sift_inlined<S: Simd>(
     let (any, all) = (a[3] | b[3] | c[3], a[3] & b[3] & c[3]);
     let finite = (any & flag::NOT_FINITE.cast_signed()).simd_eq(zero);
     let inside = (all & sieve.outside.cast_signed()).simd_eq(zero) & finite;
-    let regular = (any & flag::CLIP.cast_signed()).simd_eq(zero);
+    let regular = (any & sieve.cut.cast_signed()).simd_eq(zero);
 
     let low = lanes::inlined(
         #[inline(always)]

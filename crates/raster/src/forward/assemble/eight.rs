@@ -1,14 +1,14 @@
 //! Filled triangles eight at a time. Those that clipping must cut, and those that extend over more than a tile, go one by one; all
 //! come in their order, with the results of [`Assembler::triangle`].
 
-use super::{Assembler, FacetKind, NONE};
+use super::{Assembler, CUT, FacetKind, NONE};
 use crate::ScreenVertex;
 use crate::kernel::sift::{Eight, Sieve, sift};
 use crate::setup::CornerPosition;
 use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
 
 impl Assembler<'_> {
-    /// Triangles without planes of the user; the last corner provokes.
+    /// Triangles; the last corner provokes.
     pub(super) fn by_eights(&mut self, level: Level, triangles: &[[u32; 3]]) {
         dispatch!(level, simd => self.by_eights_inlined(simd, triangles));
     }
@@ -16,7 +16,7 @@ impl Assembler<'_> {
     #[inline(always)]
     fn by_eights_inlined<S: Simd>(&mut self, simd: S, triangles: &[[u32; 3]]) {
         let [negative, positive] = [-1, 1].map(|area| self.state.cull[usize::from(self.is_back(area))]);
-        let sieve = Sieve { outside: self.outside(), culls: [negative, positive], clip: self.state.clip };
+        let sieve = Sieve { outside: self.outside(), cut: CUT, culls: [negative, positive], clip: self.state.clip };
         let (eights, rest) = triangles.as_chunks::<LANES>();
         for corners in eights {
             let eight = sift(simd, self.screen, &sieve, self.vertices.screen, corners);

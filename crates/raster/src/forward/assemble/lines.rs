@@ -117,16 +117,10 @@ impl Assembler<'_> {
 
     pub(super) fn point_of(&mut self, vertex: u32, provoking: u32, back: bool, offset: usize) {
         let v = self.vertices.screen[vertex as usize];
-        let planes = self.state.user_planes;
-        let user = &self.vertices.user[vertex as usize * planes..][..planes];
         let clip = self.vertices.clip[vertex as usize];
         // The band's flag also tells of near and far, which clamping ignores.
         let outside = self.outside() | if self.state.depth_clamp { 0 } else { flag::CLIP };
-        if v.flags & (flag::NOT_FINITE | outside) != 0
-            || clip[3].is_nan()
-            || clip[3] <= 1e-30
-            || !user.iter().all(|d| *d >= 0.0)
-        {
+        if v.flags & (flag::NOT_FINITE | outside) != 0 || clip[3].is_nan() || clip[3] <= 1e-30 {
             return;
         }
         let [x, y, z] = self.project(clip);

@@ -10,8 +10,7 @@ use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::{
-    Assembler, ColorGrid, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, flag_user_planes,
-    project,
+    Assembler, ForwardScreen, Geometry, Layout, PrimitiveState, Primitives, Vertices, flag_user_planes, project,
 };
 
 /// Point parameters.
@@ -66,7 +65,7 @@ impl Geometry for DrawGeometry {
 
     fn weight(&self, piece: usize) -> usize {
         if let Some(grid) = self.grid() {
-            return if self.layout.grid.is_some() { grid.vertices.len() / 16 } else { 2 };
+            return grid.rectangle.triangles.len();
         }
         if piece < self.filled_pieces() {
             return self.assembled.weight(piece);
@@ -108,10 +107,21 @@ impl Geometry for DrawGeometry {
             self.emit_vertices(level, &all, &state, screen, out, |assembler| self.emit_primitives(assembler));
         }
     }
+
+    fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES] {
+        let Some(grid) = self.grid() else { return [[0.0; 4]; LANES] };
+        let columns = grid.cells[0] as usize + 1;
+        let row = &grid.vertices[row as usize * columns..][..columns];
+        let own = &row[eight as usize * LANES..];
+        let vertices = std::array::from_fn(|lane| own[lane.min(own.len() - 1)]);
+        let lanes = Eight { vertices, count: LANES, batch: &self.batch };
+        let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
+        std::array::from_fn(|lane| [r[lane], g[lane], b[lane], a[lane]])
+    }
 }
 
 impl DrawGeometry {
-    /// The rectangle of a flat grid, and the colours of the grid's vertices.
+    /// The rectangle of a flat grid, and room for the colours of the grid's vertices.
     fn emit_grid(
         &self,
         level: Level,
@@ -127,37 +137,9 @@ impl DrawGeometry {
         }
         if self.layout.grid.is_some() {
             state.grid = out.grids.len() as u32;
+            out.grids.push(out.grid_colors.add(grid.cells.map(|cells| cells + 1), grid.rising));
         }
-        let records = out.records.len();
         self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
-        if let Some(at) = self.layout.grid.filter(|_| out.records.len() > records) {
-            self.emit_colors(level, grid, at, records, out);
-        }
-    }
-
-    /// Shades the grid's vertices round the places that the records from `first` on span.
-    fn emit_colors(&self, level: Level, grid: &Grid, at: usize, first: usize, out: &mut Primitives) {
-        let stride = self.layout.stride;
-        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        for record in out.records[first..].chunks_exact(stride) {
-            for k in 0..2 {
-                (low[k], high[k]) = (low[k].min(record[at + k]), high[k].max(record[at + k]));
-            }
-        }
-        let from = |k: usize| (low[k] as u32).min(grid.cells[k] - 1);
-        let to = |k: usize| (high[k].ceil() as u32).clamp(from(k) + 1, grid.cells[k]);
-        let (origin, end) = ([from(0), from(1)], [to(0), to(1)]);
-        let size = [end[0] - origin[0] + 1, end[1] - origin[1] + 1];
-        out.grids.push(ColorGrid { first: out.grid_colors.len(), origin, size, rising: grid.rising });
-        for row in origin[1]..=end[1] {
-            let start = (row * (grid.cells[0] + 1) + origin[0]) as usize;
-            for eight in grid.vertices[start..start + size[0] as usize].chunks(LANES) {
-                let vertices = std::array::from_fn(|lane| eight[lane.min(eight.len() - 1)]);
-                let lanes = Eight { vertices, count: eight.len(), batch: &self.batch };
-                let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
-                out.grid_colors.extend((0..eight.len()).map(|lane| [r[lane], g[lane], b[lane], a[lane]]));
-            }
-        }
     }
 
     /// Transforms a piece's vertices, assembles, and shades the vertices that primitives use.

@@ -13,7 +13,7 @@ mod lines;
 
 use self::clipped::Derived;
 use super::boxes::Boxes;
-use super::color_grid::ColorGrid;
+use super::color_grid::{ColorGrid, GridColors};
 use super::project::WindowTransform;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
@@ -142,7 +142,7 @@ pub struct Primitives {
     /// Grids of colours, and those.
     pub grids: Vec<ColorGrid>,
     /// See [`ColorGrid::first`].
-    pub grid_colors: Vec<[f32; 4]>,
+    pub grid_colors: GridColors,
     /// Memory of the piece that is being assembled.
     pub scratch: PieceScratch,
 }

@@ -19,7 +19,7 @@ use crate::{SamplePattern, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
-use vitral_math::lanes::{Level, dispatch};
+use vitral_math::lanes::{LANES, Level, dispatch};
 
 /// Where fragments go. All planes have the same number of samples.
 #[derive(Clone, Debug)]
@@ -124,6 +124,9 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
     fn clip(&self) -> [i32; 4];
     /// Adds a piece's primitives as draw number `draw` of the job.
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives);
+    /// Colours, RGBA, of the vertices of its [`ColorGrid`](super::ColorGrid) from column `8 * eight` of row `row` on; beyond the row's
+    /// end, any.
+    fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES];
 }
 
 /// What geometry must know of the target.
@@ -188,6 +191,7 @@ pub(crate) enum Item<'a> {
 
 /// A draw of a job.
 pub(crate) struct DrawContext<'a> {
+    pub geometry: &'a dyn Geometry,
     pub state: &'a FragmentState,
     pub layout: &'a Layout,
     pub ops: FragmentOps,
@@ -436,6 +440,7 @@ fn draw_context<'a>(
     let decides = decides || geometry.layout().line_stipple.is_some();
     let shaded = decides || (pass.target.color.is_some() && state.masked != [true; 4]);
     DrawContext {
+        geometry,
         state,
         layout: geometry.layout(),
         ops: FragmentOps::new(state, samples),

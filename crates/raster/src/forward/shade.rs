@@ -329,7 +329,8 @@ impl<'a> Shader<'a> {
             #[inline(always)]
             || {
                 let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
-                grid.at(simd, &self.primitives.grid_colors, place)
+                let shade = |row: u32, eight: u32| self.draw.geometry.grid_colors(simd.level(), row, eight);
+                grid.at(simd, &self.primitives.grid_colors, place, &shade)
             },
         )
     }

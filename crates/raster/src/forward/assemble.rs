@@ -476,7 +476,7 @@ pub fn flag_user_planes(user: &[f32], screen: &mut [ScreenVertex]) {
     for (vertex, distances) in screen.iter_mut().zip(user.chunks_exact(planes)) {
         for (plane, distance) in distances.iter().enumerate() {
             // NaN is beyond.
-            vertex.flags |= u32::from(!(*distance >= 0.0)) * (flag::USER << plane);
+            vertex.flags |= u32::from(distance.is_nan() || *distance < 0.0) * (flag::USER << plane);
         }
     }
 }

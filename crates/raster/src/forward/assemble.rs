@@ -139,9 +139,9 @@ pub struct Primitives {
     pub shapes: Vec<Shape>,
     /// Shaded vertices, by slot.
     pub records: Vec<f32>,
-    /// Grids of colours, and those.
+    /// Grids of colours.
     pub grids: Vec<ColorGrid>,
-    /// See [`ColorGrid::first`].
+    /// Their vertices' colours, as far as pixels asked for them.
     pub grid_colors: GridColors,
     /// Memory of the piece that is being assembled.
     pub scratch: PieceScratch,

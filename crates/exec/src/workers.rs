@@ -2,6 +2,7 @@
 
 #[cfg(feature = "threads")]
 use std::sync::Arc;
+use std::sync::{Mutex, PoisonError};
 
 /// A pool of worker threads. Cheap to clone; clones share the threads.
 #[derive(Clone)]
@@ -51,27 +52,22 @@ impl Workers {
 
     /// Calls `f` with each item; the order is unspecified.
     pub fn for_each<T: Send>(&self, items: Vec<T>, f: impl Fn(T) + Sync + Send) {
-        #[cfg(feature = "threads")]
-        if let Some(pool) = &self.pool
-            && items.len() > 1
-        {
-            use rayon::prelude::*;
-            pool.install(|| items.into_par_iter().with_max_len(1).for_each(f));
-            return;
-        }
-        items.into_iter().for_each(f);
+        self.share(items.into_iter(), f);
     }
 
     /// `f(0), f(1), ... f(count - 1)`, in this order in the result.
     pub fn map<R: Send>(&self, count: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
-        #[cfg(feature = "threads")]
-        if let Some(pool) = &self.pool
-            && count > 1
-        {
-            use rayon::prelude::*;
-            return pool.install(|| (0..count).into_par_iter().with_max_len(1).map(f).collect());
+        if self.threads < 2 || count < 2 {
+            return (0..count).map(f).collect();
         }
-        (0..count).map(f).collect()
+        let results = Mutex::new(Vec::with_capacity(count));
+        self.share(0..count, |i| {
+            let result = f(i);
+            results.lock().unwrap_or_else(PoisonError::into_inner).push((i, result));
+        });
+        let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+        results.sort_unstable_by_key(|(i, _)| *i);
+        results.into_iter().map(|(_, result)| result).collect()
     }
 
     /// Calls `f(index of the chunk, chunk)` for each piece of `chunk` elements (the last may be shorter).
@@ -79,15 +75,39 @@ impl Workers {
     /// # Panics
     /// If `chunk` is 0.
     pub fn for_each_chunk<T: Send>(&self, slice: &mut [T], chunk: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+        self.share(slice.chunks_mut(chunk).enumerate(), |(i, chunk)| f(i, chunk));
+    }
+
+    /// Hands items to threads, one at a time. The calling thread takes part, so that little work is done before others wake. It
+    /// takes the first, they the last: neighbours, who share cache lines, mostly stay together.
+    fn share<T: Send>(
+        &self,
+        mut items: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
+        f: impl Fn(T) + Sync + Send,
+    ) {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool
-            && slice.len() > chunk
+            && items.len() > 1
         {
-            use rayon::prelude::*;
-            pool.install(|| slice.par_chunks_mut(chunk).enumerate().with_max_len(1).for_each(|(i, c)| f(i, c)));
+            let others = self.threads.min(items.len()) - 1;
+            let items = Mutex::new(items);
+            let first = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let last = || items.lock().unwrap_or_else(PoisonError::into_inner).next_back();
+            pool.in_place_scope(|scope| {
+                for _ in 0..others {
+                    scope.spawn(|_| {
+                        while let Some(item) = last() {
+                            f(item);
+                        }
+                    });
+                }
+                while let Some(item) = first() {
+                    f(item);
+                }
+            });
             return;
         }
-        slice.chunks_mut(chunk).enumerate().for_each(|(i, c)| f(i, c));
+        items.by_ref().for_each(f);
     }
 
     /// Runs both, at the same time where there are threads.

@@ -8,6 +8,7 @@ use super::Place;
 use super::occluders::Occluders;
 use super::ray::clearance;
 use crate::raytrace::bvh::Bvh;
+use crate::raytrace::shaft::Shaft;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Probe, Structure, Tree, Visitor};
 use crate::session::keep_for;
@@ -34,6 +35,9 @@ pub(super) struct Solid {
     /// Normals, turned inwards, and a point on each: the triangle's own plane, those through its edges and the light.
     pub(super) planes: [(DVec3, DVec3); 4],
 }
+
+/// Where more transparent triangles may filter the light on a facet, each place asks for its own.
+const MANY: usize = 512;
 
 /// Whether `a` comes first: any order will do that is the same for all.
 #[inline(always)]
@@ -212,7 +216,8 @@ impl Casters {
         wide(&self.filters.triangles().corners[triangle as usize])
     }
 
-    /// The part of each colour that the transparent triangles of `list` let through to a place (lifted) on the facet `own`.
+    /// The part of each colour that transparent triangles let through to a place (lifted) on the facet `own`. `list` has all
+    /// that may matter, and more.
     pub(super) fn filtered(
         &self,
         occluders: &Occluders<'_>,
@@ -223,6 +228,13 @@ impl Casters {
     ) -> Rgb {
         let triangles = self.filters.triangles();
         let near = near(light, triangles.extent);
+        let mut nearer = Vec::new();
+        let list = if list.len() > MANY {
+            self.filters_near(&Shaft::between(place, place, light, triangles.extent), &mut nearer);
+            &nearer
+        } else {
+            list
+        };
         let hides = |t: &&u32| {
             let facet = triangles.facets[**t as usize];
             facet != own && Solid::new(&self.filter(**t), light, near).is_some_and(|s| s.contains(place))

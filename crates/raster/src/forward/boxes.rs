@@ -56,6 +56,13 @@ impl Boxes {
         most.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
+    /// First and last column and row of an entry's box, and its bound; none if the box holds no pixel.
+    pub(crate) fn get(&self, at: usize) -> Option<([[u8; 2]; 2], f32)> {
+        let [x0, x1, y0, y1] = self.boxes[at].to_le_bytes();
+        let side = |first: u8, before: u8| (first + before < TILE as u8).then(|| [first, TILE as u8 - 1 - before]);
+        Some(([side(x0, x1)?, side(y0, y1)?], self.bounds[at]))
+    }
+
     /// Hands out those of some entries whose box holds pixel `(x, y)` of the tile and whose bound is above `floor`; what is
     /// returned is the next floor.
     #[inline(always)]

@@ -24,6 +24,7 @@ mod state;
 mod strips;
 mod texture;
 mod tile;
+mod tile_index;
 mod tiny;
 mod wide;
 

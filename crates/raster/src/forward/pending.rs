@@ -2,22 +2,24 @@
 //!
 //! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those alone. A pass that
 //! clears a texture's depth plane and draws nothing but depths into it, all kept by the same comparison, leaves its tile lists
-//! behind. The first lookups in a tile go through the boxes of its triangles. Then a tile of few is searched in eights with their
-//! planes and edges, and never drawn: a texel's value is the nearest (or farthest) of them there, by the same coverage and
-//! depth that drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn. Either way the bits are the same, and for a lookup that compares, a bound of all the tile's triangles
-//! often decides alone. Whoever needs all texels draws them: [`PendingDepth::resolve`].
+//! behind. The first lookups in a tile go through the boxes of its triangles. Then those of a tile of few are sorted by blocks of
+//! texels, and it is never drawn: a texel's value is the nearest (or farthest) of them there, by the same coverage and depth that
+//! drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn. Either way the bits are the same,
+//! and for a lookup that compares, a bound of all the tile's triangles often decides alone. Whoever needs all texels draws
+//! them: [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
-//! Cost: a lookup is linear in the triangles of a tile of few, eight a step; constant in others.
+//! Cost: a lookup is linear in the triangles of a block of texels in a tile of few; constant in others.
 
 use super::assemble::Primitives;
 use super::fragment::{stored, stored_depth};
 use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
+use super::tile_index::{self, Candidate, TileIndex};
 use super::wide::{max, min};
 use crate::kernel::nearest::NearestDepths;
-use crate::kernel::traverse::{Edge, Window, center_edges};
+use crate::kernel::traverse::Window;
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -51,23 +53,20 @@ struct PendingTile {
     known: OnceLock<Known>,
 }
 
-/// A job, and an entry of its batch.
-type Entry = [u32; 2];
-
 /// How a tile's texels are found.
 #[derive(Debug)]
 enum Known {
-    /// Among its triangles. Eights of them are rows of [`candidate`].
-    Few { entries: Vec<Entry>, candidates: Box<[f32]> },
+    /// Among its triangles.
+    Few(Box<TileIndex>),
     /// It is drawn, as stored.
     Drawn(Box<[f32; TILE_PIXELS]>),
 }
 
-/// Tiles with more entries than this are drawn: four eights are compared in less time than it takes to draw them.
-const FEW: u32 = 32;
-
-/// So many lookups in a tile go through boxes before more is made of it: small pictures have no more.
+/// So many lookups in a tile of many triangles go through boxes before it is drawn: small pictures have no more.
 const PATIENCE: u32 = 64;
+
+/// So many lookups in a tile of few go through boxes before it has an index.
+const SHORT_PATIENCE: u32 = 24;
 
 /// Tiles that a thread looks at in one go when a pass is left.
 const PIECE: usize = 256;
@@ -79,6 +78,8 @@ pub(crate) struct PendingDepth {
     sign: f32,
     clear: f32,
     scale: f32,
+    /// See [`margin`].
+    margin: f32,
     jobs: Vec<PendingJob>,
     tiles: Vec<PendingTile>,
     /// Numbers of jobs, tile by tile.
@@ -102,14 +103,19 @@ impl PendingKind {
     pub(crate) fn finish(&self, job: &mut Primitives, screen: &ForwardScreen) {
         let Primitives { batch, boxes, .. } = job;
         boxes.resize(batch.entries());
-        // Depths as read, times the sign: half a step for rounding when stored, and what two roundings may be off.
-        let margin = if self.scale == 1.0 { 0.0 } else { 0.5 / self.scale + 3e-7 };
+        let margin = margin(self.scale);
         let larger = self.sign > 0.0;
         batch.finish_with(screen.screen(false), |at, tile, setup| {
             let nearest = if larger { setup.z_max } else { -setup.z_min };
             boxes.set(at, setup, origin(screen.viewport, tile), nearest + margin);
         });
     }
+}
+
+/// How much larger a depth may be as read than as computed: half a step for rounding when stored, and what two roundings may be
+/// off.
+fn margin(scale: f32) -> f32 {
+    if scale == 1.0 { 0.0 } else { 0.5 / scale + 3e-7 }
 }
 
 /// The first pixel of a tile.
@@ -176,7 +182,7 @@ impl PendingDepth {
             touching.extend(piece_touching);
         }
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, jobs, tiles, touching, viewport }
+        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, touching, viewport }
     }
 
     /// The primitives, to use their memory again.
@@ -185,8 +191,8 @@ impl PendingDepth {
     }
 
     /// The depths of eight texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
-    /// triangles that cannot beat `known` are not looked at. Pass `None` for the exact depths. Lanes without their bit in
-    /// `active` yield the clear value.
+    /// triangles that cannot beat `known` are not looked at, and one that does is enough. Pass `None` for the exact depths.
+    /// Lanes without their bit in `active` yield the clear value.
     #[inline(always)]
     pub(crate) fn texels<S: Simd>(
         &self,
@@ -210,6 +216,7 @@ impl PendingDepth {
             Some(known) => known * self.sign,
             None => splat(f32::NEG_INFINITY),
         };
+        let settled = known.is_some();
         let open =
             F32x8::from_slice(simd, &bounds).simd_gt(floors) & F32x8::from_slice(simd, &bounds).simd_gt(splat(best));
         let mut open = open.to_bitmask() as u32 & active;
@@ -221,10 +228,8 @@ impl PendingDepth {
                 open &= open - 1;
                 let (x, y) = (x[lane], y[lane]);
                 depths[lane] = match self.known(tile[lane] as usize) {
-                    None => self.scan(simd, x, y, tile[lane] as usize, floors[lane], best),
-                    Some(Known::Few { entries, candidates }) => {
-                        self.search(simd, x, y, (entries, candidates), floors[lane], best)
-                    }
+                    None => self.scan(simd, [x, y], tile[lane] as usize, settled, floors[lane], best),
+                    Some(Known::Few(index)) => self.search([x, y], index, settled, floors[lane], best),
                     Some(Known::Drawn(drawn)) => {
                         drawn[y as usize % TILE * TILE + x as usize % TILE] / self.scale * self.sign
                     }
@@ -234,53 +239,33 @@ impl PendingDepth {
         F32x8::from_slice(simd, &depths) * self.sign
     }
 
-    /// The best of a few triangles at a texel, if better than `floor` and `best`; times the sign.
+    /// The best of a few triangles at a texel, if better than `floor` and `best`, or one that is if that settles it; times the
+    /// sign.
     #[inline(never)]
-    fn search<S: Simd>(
-        &self,
-        simd: S,
-        x: i32,
-        y: i32,
-        (entries, candidates): (&[Entry], &[f32]),
-        floor: f32,
-        mut best: f32,
-    ) -> f32 {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                // Places within the tile, as the candidates' planes take them.
-                let (u, v) = ((x % TILE as i32) as f32, (y % TILE as i32) as f32);
-                for (eight, rows) in entries.chunks(LANES).zip(candidates.chunks_exact(ROWS * LANES)) {
-                    let mut bits = above(simd, rows, u, v, best.max(floor));
-                    while bits != 0 {
-                        let [job, at] = eight[bits.trailing_zeros() as usize];
-                        bits &= bits - 1;
-                        let job = &self.jobs[job as usize];
-                        let setup = job.primitives.batch.item(at as usize);
-                        best = self.better(job, setup, [x, y], floor, best);
-                    }
-                }
-                best
-            },
-        )
+    fn search(&self, at: [i32; 2], index: &TileIndex, settled: bool, floor: f32, mut best: f32) -> f32 {
+        index.find(at.map(|v| v as usize), next_floor(settled, floor, best), |job, setup| {
+            best = self.better(&self.jobs[job as usize], setup, at, floor, best);
+            next_floor(settled, floor, best)
+        });
+        best
     }
 
     /// The same among those triangles of a tile whose box holds the texel.
     #[inline(never)]
-    fn scan<S: Simd>(&self, simd: S, x: i32, y: i32, tile: usize, floor: f32, mut best: f32) -> f32 {
+    fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
         simd.vectorize(
             #[inline(always)]
             || {
-                let place = [x % TILE as i32, y % TILE as i32];
+                let place = at.map(|v| v % TILE as i32);
                 for &job in &self.touching[self.tiles[tile].jobs.clone()] {
                     let job = &self.jobs[job as usize];
                     let Primitives { batch, boxes, .. } = &job.primitives;
-                    let above = best.max(floor);
+                    let above = next_floor(settled, floor, best);
                     let found = lanes::inlined(
                         #[inline(always)]
-                        |at| {
-                            best = self.better(job, batch.item(at), [x, y], floor, best);
-                            best.max(floor)
+                        |entry| {
+                            best = self.better(job, batch.item(entry), at, floor, best);
+                            next_floor(settled, floor, best)
                         },
                     );
                     boxes.find(simd, batch.tile_range(tile), place, above, found);
@@ -294,13 +279,13 @@ impl PendingDepth {
     #[inline(always)]
     fn better(&self, job: &PendingJob, setup: &Setup, [x, y]: [i32; 2], floor: f32, best: f32) -> f32 {
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
-        let depth = stored(setup.depth(px, py), self.scale) / self.scale * self.sign;
-        if depth > best.max(floor) && setup.covers(px, py) && job.allows(setup, x, y) { depth } else { best }
-    }
-
-    #[inline(always)]
-    fn setup(&self, [job, at]: Entry) -> &Setup {
-        self.jobs[job as usize].primitives.batch.item(at as usize)
+        let (depth, above) = (setup.depth(px, py), best.max(floor));
+        // Rounding as stored takes a division: most need none.
+        if depth * self.sign + self.margin <= above || !setup.covers(px, py) {
+            return best;
+        }
+        let depth = stored(depth, self.scale) / self.scale * self.sign;
+        if depth > above && job.allows(setup, x, y) { depth } else { best }
     }
 
     /// How the texels of a tile are found; none if it was asked for too seldom.
@@ -310,7 +295,8 @@ impl PendingDepth {
         pending.known.get().or_else(
             #[inline(always)]
             || {
-                let patient = pending.asked.fetch_add(1, Ordering::Relaxed) < PATIENCE;
+                let patience = if pending.count as usize > tile_index::MOST { PATIENCE } else { SHORT_PATIENCE };
+                let patient = pending.asked.fetch_add(1, Ordering::Relaxed) < patience;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
             },
         )
@@ -319,29 +305,17 @@ impl PendingDepth {
     #[inline(never)]
     fn know(&self, tile: usize) -> Known {
         let pending = &self.tiles[tile];
-        if pending.count > FEW {
+        if pending.count as usize > tile_index::MOST {
             return Known::Drawn(self.draw(tile));
         }
-        let range = |job: u32| self.jobs[job as usize].primitives.batch.tile_range(tile);
-        let touching = self.touching[pending.jobs.clone()].iter();
-        let entries: Vec<Entry> = touching.flat_map(|&job| range(job).map(move |at| [job, at as u32])).collect();
-        let candidates = self.candidates(&entries, tile);
-        Known::Few { entries, candidates }
-    }
-
-    /// Eights of entries, row by row; what is missing to an eight is below everything.
-    fn candidates(&self, entries: &[Entry], tile: usize) -> Box<[f32]> {
-        let origin = origin(self.viewport, tile as u32).map(|v| v as i32);
-        let mut rows = vec![f32::NEG_INFINITY; entries.len().div_ceil(LANES) * ROWS * LANES];
-        for (eight, rows) in entries.chunks(LANES).zip(rows.chunks_exact_mut(ROWS * LANES)) {
-            for (lane, &entry) in eight.iter().enumerate() {
-                let row = candidate(self.setup(entry), origin, self.sign, self.scale);
-                for k in 0..ROWS {
-                    rows[k * LANES + lane] = row[k];
-                }
-            }
+        let mut candidates = Vec::with_capacity(pending.count as usize);
+        for &job in &self.touching[pending.jobs.clone()] {
+            let Primitives { batch, boxes, .. } = &self.jobs[job as usize].primitives;
+            candidates.extend(batch.tile_range(tile).filter_map(|at| {
+                boxes.get(at).map(|(within, bound)| Candidate { within, bound, job, setup: batch.item(at) })
+            }));
         }
-        rows.into_boxed_slice()
+        Known::Few(Box::new(TileIndex::new(candidates)))
     }
 
     /// The depths of a tile with everything drawn, as stored.
@@ -426,54 +400,8 @@ impl PendingJob {
     }
 }
 
-/// Numbers of a candidate: its plane at the tile's corner (with a margin for rounding), the change with x and y, and the
-/// bound of its depths, all times the sign; and the change with x and y of its three edge functions, and their values there
-/// (with a margin).
-const ROWS: usize = 13;
-
-fn candidate(setup: &Setup, origin: [i32; 2], sign: f32, scale: f32) -> [f32; ROWS] {
-    let bound = if sign > 0.0 { stored(setup.z_max, scale) / scale } else { -stored(setup.z_min, scale) / scale };
-    let (dx, dy) = (setup.dz_dx * sign, setup.dz_dy * sign);
-    let at = |k: usize| ((origin[k] * SUBPIXEL + SUBPIXEL / 2 - setup.origin[k]) as f32) / SUBPIXEL as f32;
-    let (x, y) = (at(0) * dx, at(1) * dy);
-    let size = setup.z.abs() + x.abs() + y.abs() + (dx.abs() + dy.abs()) * TILE as f32;
-    // Half a step for rounding when stored, and what five roundings may be off.
-    let margin = size * 1.8e-7 + if scale == 1.0 { 0.0 } else { 0.5 / scale };
-    let corner = setup.z * sign + x + y + margin;
-    let mut row = [0.0; ROWS];
-    row[3] = bound;
-    if corner.is_finite() && dx.is_finite() && dy.is_finite() {
-        [row[0], row[1], row[2]] = [corner, dx, dy];
-    } else {
-        row[0] = f32::MAX;
-    }
-    let corner = |v: [i32; 3], k: usize| v.map(|v| v - origin[k] * SUBPIXEL);
-    let (edges, constants) = center_edges(&corner(setup.x, 0), &corner(setup.y, 1));
-    for ((Edge { a, b }, c), row) in edges.into_iter().zip(constants).zip(row[4..].chunks_exact_mut(3)) {
-        let [a, b, c] = [a, b, c].map(|v| v as f32);
-        let margin = ((a.abs() + b.abs()) * TILE as f32 + c.abs()) * 4e-7;
-        row.copy_from_slice(&[a, b, c + margin]);
-    }
-    row
-}
-
-/// Which of a block's eight candidates may cover a place of the tile, and be above `floor` there.
+/// What later triangles must be above. Nothing is above infinity: what is better than the floor may settle it.
 #[inline(always)]
-fn above<S: Simd>(simd: S, block: &[f32], u: f32, v: f32, floor: f32) -> u32 {
-    let row = lanes::inlined(
-        #[inline(always)]
-        |k: usize| F32x8::from_slice(simd, &block[k * LANES..(k + 1) * LANES]),
-    );
-    let plane = row(0) + row(1) * u + row(2) * v;
-    let splat = |value| <F32x8<S> as SimdBase<S>>::splat(simd, value);
-    let nearer = plane.simd_gt(splat(floor)) & row(3).simd_gt(splat(floor));
-    if !nearer.any_true() {
-        return 0;
-    }
-    let edge = lanes::inlined(
-        #[inline(always)]
-        |k: usize| row(k) * u + row(k + 1) * v + row(k + 2),
-    );
-    let inside = lanes::Lanes::min(lanes::Lanes::min(edge(4), edge(7)), edge(10));
-    (nearer & inside.simd_ge(splat(0.0))).to_bitmask() as u32
+fn next_floor(settled: bool, floor: f32, best: f32) -> f32 {
+    if settled && best > floor { f32::INFINITY } else { best.max(floor) }
 }

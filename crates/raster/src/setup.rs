@@ -7,7 +7,7 @@
 //! Source: edge functions after [Pineda 1988].
 
 use crate::SUBPIXEL;
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 
 /// A corner on the screen: `x`, `y` in 1/256 pixel from the top left, `z` is depth, 1 near, 0 far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub fn snap(pixels: f32) -> i32 {
 }
 
 /// A triangle ready to be walked. Its corners run so that all edge functions are positive inside.
-#[derive(Clone, Copy, Debug, PartialEq, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Setup {
     /// Corners' x in 1/256 pixel.

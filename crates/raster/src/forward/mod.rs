@@ -26,6 +26,7 @@ mod texture;
 mod tile;
 mod tile_index;
 mod tiny;
+mod tiny_eight;
 mod wide;
 
 pub use assemble::{

@@ -1,6 +1,9 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
 
+mod plain;
 mod textures;
+
+pub(crate) use plain::PlainEight;
 
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
@@ -103,6 +106,9 @@ pub(crate) struct Scratch {
     differences: Differences,
 }
 
+/// `1 / w` of a facet's corners differs much if it differs by more than this factor.
+const MOST_W: f32 = 8.0;
+
 /// A facet made ready to be interpolated. With `l` a corner's screen-space barycentric coordinate, `l1 / w1`, `l2 / w2` and
 /// `Σ l / w` are planes over the pixels: their value at `origin`, their change with x, with y. The origin is corner 0, so that
 /// what lies on a grid of pixels stays exact. But where `1 / w` differs much, corners lie far away or near the eye: then
@@ -126,7 +132,7 @@ impl Interpolation {
     fn prepare(&mut self, setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) {
         let inverse_w = facet.corners.map(|slot| records[slot as usize]);
         let least = inverse_w[0].min(inverse_w[1]).min(inverse_w[2]);
-        let steep = inverse_w.iter().any(|w| *w > 8.0 * least);
+        let steep = inverse_w.iter().any(|w| *w > MOST_W * least);
         if steep || !setup.is_small() {
             self.far(setup, inverse_w, steep, tile);
         } else {
@@ -469,12 +475,12 @@ impl<'a> Shader<'a> {
         if tested { passed } else { any }
     }
 
-    /// Whether colours are those of the corners and nothing else.
+    /// Whether a draw's colours are those of the corners and nothing else.
     #[inline(always)]
-    pub(crate) fn is_plain(&self) -> bool {
-        let state = self.draw.state;
+    pub(crate) fn is_plain(draw: &DrawContext<'_>) -> bool {
+        let state = draw.state;
         let alone = state.units.is_empty() && state.fog.is_none() && !state.color_sum;
-        alone && !state.flat && self.draw.layout.grid.is_none()
+        alone && !state.flat && draw.layout.grid.is_none()
     }
 
     /// The packed colours of the eight pixels with centres `x`, `y` of a facet that [`Self::is_plain`] and prepared.
@@ -560,11 +566,12 @@ impl<'a> Shader<'a> {
     /// Where the colour of the facet's side begins in a record.
     #[inline(always)]
     fn color_at(&self) -> usize {
-        if self.facet.back {
-            self.draw.layout.back_color.unwrap_or(self.draw.layout.color)
-        } else {
-            self.draw.layout.color
-        }
+        Self::color_of(self.draw, self.facet)
+    }
+
+    #[inline(always)]
+    fn color_of(draw: &DrawContext<'_>, facet: &Facet) -> usize {
+        if facet.back { draw.layout.back_color.unwrap_or(draw.layout.color) } else { draw.layout.color }
     }
 
     #[inline(always)]

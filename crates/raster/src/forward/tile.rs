@@ -1,6 +1,6 @@
 //! One tile walks a pass: clears, images, facets.
 
-use super::assemble::{FacetKind, Primitives};
+use super::assemble::FacetKind;
 use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
@@ -8,8 +8,9 @@ use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, 
 use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::{CENTERS, Scratch, Shader};
+use super::shade::{CENTERS, Shader};
 use super::state::{Compare, FragmentState};
+use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
 use crate::kernel::traverse::{Block, BlockSink, Placed, traverse_window};
 use crate::sink::row_depth;
@@ -42,11 +43,16 @@ impl<'a> TileRun<'a> {
     /// Everything that happens in this tile.
     #[inline(always)]
     pub(crate) fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+        let mut memory = None;
         for item in items {
             match item {
                 Item::Clear(clear) => self.clear(clear),
                 Item::Image(image, state, ops) => self.image(simd, image, state, ops),
-                Item::Job { primitives, draws } => self.job(simd, primitives, draws, many, one),
+                Item::Job { primitives, draws } if !primitives.batch.tile_range(self.index).is_empty() => {
+                    let memory = memory.get_or_insert_with(Box::<FacetMemory>::default);
+                    self.job(simd, &JobContext { primitives, draws, many, one }, memory);
+                }
+                Item::Job { .. } => {}
             }
         }
     }
@@ -81,41 +87,44 @@ impl<'a> TileRun<'a> {
     }
 
     /// The facets of a job.
-    fn job<S: Simd>(
-        &mut self,
-        simd: S,
-        primitives: &Primitives,
-        draws: &[DrawContext<'_>],
-        many: &SamplePattern,
-        one: &SamplePattern,
-    ) {
+    fn job<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut scratch = Scratch::default();
-                let mut words = [0; BLOCK * BLOCK];
-                let window = [0..TILE, self.rows.clone()];
-                let (mut clip, mut clip_of) = ([0; 4], u32::MAX);
-                for setup in primitives.batch.tile(self.index) {
-                    let facet = facet_of(primitives, setup.facet);
-                    let draw = &draws[facet.draw as usize];
-                    if clip_of != facet.draw {
-                        (clip, clip_of) = (self.part(draw.clip), facet.draw);
+                let (x, y) = (self.x, self.y);
+                let (mut clip, mut window, mut tiny) = ([0; 4], [0..0, 0..0], false);
+                let mut known = u32::MAX;
+                let batch = &job.primitives.batch;
+                for entry in batch.tile_range(self.index) {
+                    let setup = batch.item(entry);
+                    let facet = facet_of(job.primitives, setup.facet);
+                    let draw = &job.draws[facet.draw as usize];
+                    let pattern = job.pattern(draw);
+                    if known != facet.draw {
+                        known = facet.draw;
+                        clip = self.part(draw.clip);
+                        let [x0, y0, x1, y1] = clip.map(|v| v.max(0) as usize);
+                        window = [x0..x1, y0..y1];
+                        tiny = by_eights(draw, self);
                     }
-                    if clip[0] >= clip[2] || clip[1] >= clip[3] {
+                    let Some(place) = Placed::new(setup, (x, y), &window, pattern) else { continue };
+                    if tiny && place.is_tiny() && facet.kind == FacetKind::Polygon {
+                        if !memory.waiting.takes(facet.draw) {
+                            self.tiny_facets(simd, job, memory);
+                        }
+                        memory.waiting.push(entry, facet.draw, setup, &place);
                         continue;
                     }
-                    let pattern = if draw.multisample { many } else { one };
-                    let (x, y) = (self.x, self.y);
-                    let Some(place) = Placed::new(setup, (x, y), &window, pattern) else { continue };
-                    let shader = Shader::new(facet, draw, primitives, [x as f32, y as f32], &mut scratch);
-                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut words };
+                    self.tiny_facets(simd, job, memory);
+                    let shader = Shader::new(facet, draw, job.primitives, [x as f32, y as f32], &mut memory.scratch);
+                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut memory.words };
                     if place.is_tiny() && sink.by_rows() {
                         sink.tiny(simd, setup, &place);
                     } else {
                         traverse_window(simd, setup, (x, y), &window, pattern, &mut sink);
                     }
                 }
+                self.tiny_facets(simd, job, memory);
             },
         );
     }

@@ -6,7 +6,7 @@ use super::block;
 use super::block::{DepthRule, Slope, Words};
 use super::fragment::{ColorTile, SAMPLES};
 use super::fragment_ops::compare::compare;
-use super::shade::CENTERS;
+use super::shade::{CENTERS, Shader};
 use super::state::Compare;
 use super::tile::ForwardSink;
 use super::wide::{bits_of, mask_of, select, splat};
@@ -68,7 +68,7 @@ impl ForwardSink<'_, '_, '_> {
             return;
         }
         let corner = (self.run.x as usize + left, self.run.y as usize + top);
-        if self.shader.is_plain() && !late {
+        if Shader::is_plain(self.draw) && !late {
             self.shader.prepare(simd, setup);
             return self.plain_rows(simd, corner, &block, any, &passed);
         }

@@ -2,5 +2,7 @@
 
 pub(crate) mod nearest;
 pub(crate) mod sift;
+#[cfg(any(test, feature = "forward"))]
+pub(crate) mod tiny;
 pub(crate) mod transform;
 pub(crate) mod traverse;

@@ -290,6 +290,13 @@ impl Placed {
         x1 - x0 < BLOCK && y1 - y0 < BLOCK && self.is_small()
     }
 
+    /// The corners' x and y in 1/256 pixel of the tile.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn corners(&self) -> ([i32; 3], [i32; 3]) {
+        (self.x, self.y)
+    }
+
     /// Where rows of eight pixels begin that hold its columns and do not reach beyond the tile.
     #[inline(always)]
     pub(crate) fn left(&self) -> usize {

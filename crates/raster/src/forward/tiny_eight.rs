@@ -1,0 +1,213 @@
+//! Tiny facets of one draw, eight at a time, where pixels have one sample and nothing but depths and colours is tested and
+//! written.
+//!
+//! Coverage and depths of all eight are computed together, then each facet's pixels meet the stored depths, one after the other,
+//! since two facets may lie in one pixel. Where colours are those of corners they are computed together again; else each facet
+//! colours its own pixels. The results are those of [`super::tiny`]; with four samples a pixel there are so many that rows are
+//! faster.
+
+use super::assemble::Primitives;
+use super::block::{self, BlockWords, Words};
+use super::fragment::{ColorTile, Mixing, SAMPLES, stored_depth};
+use super::fragment_ops::compare::holds;
+use super::pass::{DrawContext, facet_of};
+use super::shade::{PlainEight, Scratch, Shader};
+use super::state::{Compare, DepthTest};
+use super::tile::TileRun;
+use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
+use crate::kernel::traverse::Placed;
+use crate::{BLOCK, SamplePattern, Setup, TILE_PIXELS};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{LANES, Simd};
+
+/// Tiny facets of one draw that wait until there are eight.
+#[derive(Default)]
+pub(super) struct TinyFacets {
+    eight: TinyEight,
+    /// Their places among the setups of all tiles.
+    entries: [usize; LANES],
+    /// Their draw.
+    draw: u32,
+}
+
+/// What a tile's facets are drawn with, kept so that it need not be cleared.
+pub(super) struct FacetMemory {
+    pub(super) scratch: Scratch,
+    /// A block's colours.
+    pub(super) words: BlockWords,
+    /// Colours at places of tiny facets, of all eight.
+    each: [[u32; LANES]; PLACES],
+    pub(super) waiting: TinyFacets,
+}
+
+impl Default for FacetMemory {
+    fn default() -> Self {
+        Self {
+            scratch: Scratch::default(),
+            words: [0; BLOCK * BLOCK],
+            each: [[0; LANES]; PLACES],
+            waiting: TinyFacets::default(),
+        }
+    }
+}
+
+/// What all facets of a tile's job share.
+pub(super) struct JobContext<'a> {
+    pub(super) primitives: &'a Primitives,
+    pub(super) draws: &'a [DrawContext<'a>],
+    pub(super) many: &'a SamplePattern,
+    pub(super) one: &'a SamplePattern,
+}
+
+impl JobContext<'_> {
+    /// Where the samples of a draw's pixels lie.
+    #[inline(always)]
+    pub(super) fn pattern(&self, draw: &DrawContext<'_>) -> &SamplePattern {
+        if draw.multisample { self.many } else { self.one }
+    }
+}
+
+impl TinyFacets {
+    /// Whether one more of `draw` finds a place.
+    #[inline(always)]
+    pub(super) fn takes(&self, draw: u32) -> bool {
+        self.eight.len() == 0 || (self.draw == draw && self.eight.len() < LANES)
+    }
+
+    /// One more: [`Self::takes`] it.
+    #[inline(always)]
+    pub(super) fn push(&mut self, entry: usize, draw: u32, setup: &Setup, place: &Placed) {
+        self.entries[self.eight.len() % LANES] = entry;
+        self.draw = draw;
+        self.eight.push(setup, place);
+    }
+}
+
+/// Whether a draw's tiny facets may come this way.
+pub(super) fn by_eights(draw: &DrawContext<'_>, run: &TileRun<'_>) -> bool {
+    let state = draw.state;
+    draw.ops.direct
+        && state.stencil.is_none()
+        && state.alpha_test.is_none()
+        && !draw.layout.smooth[2]
+        && run.planes.samples == 1
+        && !matches!(run.planes.color, Some(ColorTile::RgbaF32(_)))
+}
+
+impl TileRun<'_> {
+    /// Draws those that wait.
+    #[inline(always)]
+    pub(super) fn tiny_facets<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+        if memory.waiting.eight.len() != 0 {
+            self.tiny_facets_apart(simd, job, memory);
+            memory.waiting.eight.clear();
+        }
+    }
+
+    #[inline(never)]
+    fn tiny_facets_apart<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.tiny_facets_inlined(simd, job, memory),
+        );
+    }
+
+    #[inline(always)]
+    fn tiny_facets_inlined<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+        let FacetMemory { scratch, words, each, waiting } = memory;
+        let TinyFacets { eight, entries, draw } = waiting;
+        let draw = &job.draws[*draw as usize];
+        let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
+        let mut masks = eight.cover(
+            simd,
+            (self.x, self.y),
+            job.one.position(0),
+            #[inline(always)]
+            |depth| stored_depth(simd, depth, scale),
+        );
+        let mut touched = 0;
+        for facet in (0..eight.len()).filter(|&facet| masks[facet] != 0) {
+            touched |= eight.block(facet, masks[facet]).touched();
+        }
+        if touched == 0 {
+            return;
+        }
+        if let (Some(rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) {
+            if rule.write {
+                self.planes.ranges.forget(touched);
+            }
+            if let Some(stored) = tile.open(touched, false, 1).1.first_chunk_mut() {
+                test(eight, &mut masks, rule, stored);
+            }
+        }
+        if !draw.shaded || masks == [0; LANES] {
+            return;
+        }
+        let batch = &job.primitives.batch;
+        let facet_at = |lane: usize| facet_of(job.primitives, batch.item(entries[lane]).facet);
+        let plain = !draw.constant && draw.ops.mixing == Mixing::Replace && Shader::is_plain(draw);
+        if plain && let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color {
+            // Lanes without a facet of their own repeat the first one's.
+            let mut facets = [facet_at(0); LANES];
+            for lane in 1..eight.len() {
+                facets[lane] = facet_at(lane);
+            }
+            let tile = [self.x, self.y];
+            if let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) {
+                let Some(values) = plane.open(touched, false, 1).1.first_chunk_mut::<TILE_PIXELS>() else { return };
+                for place in places(masks.iter().fold(0, |all, mask| all | mask)) {
+                    colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
+                }
+                for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
+                    let first = eight.first(facet);
+                    for place in places(mask) {
+                        values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
+                    }
+                }
+                return;
+            }
+        }
+        for facet in (0..eight.len()).filter(|&facet| masks[facet] != 0) {
+            let setup = batch.item(entries[facet]);
+            let tile = [self.x as f32, self.y as f32];
+            let mut shader = Shader::new(facet_at(facet), draw, job.primitives, tile, scratch);
+            let block = eight.block(facet, masks[facet]);
+            let corner = (self.x as usize + block.x, self.y as usize + block.y);
+            let (one, _) = shader.block(simd, setup, corner, masks[facet], words);
+            let each = [masks[facet]; SAMPLES];
+            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &each);
+        }
+    }
+}
+
+/// Depth tests of the pixels of `masks`, facet by facet, with their writes: those that pass remain.
+#[inline(always)]
+fn test(eight: &TinyEight, masks: &mut [u64; LANES], rule: DepthTest, stored: &mut [f32; TILE_PIXELS]) {
+    match rule.func {
+        Compare::Less => test_by(eight, masks, rule.write, stored, |new, old| new < old),
+        Compare::LessOrEqual => test_by(eight, masks, rule.write, stored, |new, old| new <= old),
+        func => test_by(eight, masks, rule.write, stored, |new, old| holds(func, new, old)),
+    }
+}
+
+#[inline(always)]
+fn test_by(
+    eight: &TinyEight,
+    masks: &mut [u64; LANES],
+    write: bool,
+    stored: &mut [f32; TILE_PIXELS],
+    passes: impl Fn(f32, f32) -> bool,
+) {
+    for (facet, mask) in masks.iter_mut().enumerate().take(eight.len()) {
+        let (first, covered) = (eight.first(facet), *mask);
+        for place in places(covered) {
+            let old = &mut stored[pixel(first, place) % TILE_PIXELS];
+            let new = eight.depth(facet, place);
+            let pass = passes(new, *old);
+            *mask ^= u64::from(!pass) << place;
+            if write {
+                *old = if pass { new } else { *old };
+            }
+        }
+    }
+}

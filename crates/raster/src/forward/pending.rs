@@ -9,15 +9,16 @@
 //! them: [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
-//! Cost: a lookup is linear in the triangles of a block of texels in a tile of few; constant in others.
+//! Cost: a lookup is linear in the triangles of a block of texels in a tile of few, shared by the texels of a tile that are
+//! looked up together; constant in others.
 
 use super::assemble::Primitives;
 use super::fragment::{stored, stored_depth};
 use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
-use super::tile_index::{self, Candidate, TileIndex};
-use super::wide::{max, min};
+use super::tile_index::{self, Candidate, Texels, TileIndex};
+use super::wide::{mask_of, max, min, select, splat};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::Window;
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
@@ -63,7 +64,7 @@ enum Known {
 }
 
 /// So many lookups in a tile of many triangles go through boxes before it is drawn: small pictures have no more.
-const PATIENCE: u32 = 64;
+const PATIENCE: u32 = 48;
 
 /// So many lookups in a tile of few go through boxes before it has an index.
 const SHORT_PATIENCE: u32 = 24;
@@ -203,76 +204,133 @@ impl PendingDepth {
         known: Option<F32x8<S>>,
     ) -> F32x8<S> {
         const SHIFT: u32 = TILE.trailing_zeros();
-        let tile = ((y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT)).to_array();
-        let mut bounds = [f32::NEG_INFINITY; LANES];
+        let tile = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
+        let (tiles, mut bounds) = (tile.to_array(), [f32::NEG_INFINITY; LANES]);
         for lane in 0..LANES {
-            if let Some(tile) = self.tiles.get(tile[lane] as u32 as usize) {
+            if let Some(tile) = self.tiles.get(tiles[lane] as u32 as usize) {
                 bounds[lane] = tile.bound;
             }
         }
         let best = self.clear / self.scale * self.sign;
-        let splat = |v| <F32x8<S> as SimdBase<S>>::splat(simd, v);
         let floors = match known {
             Some(known) => known * self.sign,
-            None => splat(f32::NEG_INFINITY),
+            None => splat(simd, f32::NEG_INFINITY),
         };
         let settled = known.is_some();
-        let open =
-            F32x8::from_slice(simd, &bounds).simd_gt(floors) & F32x8::from_slice(simd, &bounds).simd_gt(splat(best));
+        let bounds = F32x8::from_slice(simd, &bounds);
+        let open = bounds.simd_gt(floors) & bounds.simd_gt(splat(simd, best));
         let mut open = open.to_bitmask() as u32 & active;
-        let mut depths = [best; LANES];
-        if open != 0 {
-            let (x, y, floors) = (x.to_array(), y.to_array(), floors.to_array());
-            while open != 0 {
-                let lane = open.trailing_zeros() as usize % LANES;
-                open &= open - 1;
-                let (x, y) = (x[lane], y[lane]);
-                depths[lane] = match self.known(tile[lane] as usize) {
-                    None => self.scan(simd, [x, y], tile[lane] as usize, settled, floors[lane], best),
-                    Some(Known::Few(index)) => self.search([x, y], index, settled, floors[lane], best),
-                    Some(Known::Drawn(drawn)) => {
-                        drawn[y as usize % TILE * TILE + x as usize % TILE] / self.scale * self.sign
-                    }
-                };
-            }
+        let mut depths = splat(simd, best);
+        while open != 0 {
+            // All texels of a tile go together.
+            let lane = open.trailing_zeros() as usize % LANES;
+            let together = tile.simd_eq(I32x8::splat(simd, tiles[lane])).to_bitmask() as u32 & open;
+            open &= !together;
+            let active = mask_of(simd, together);
+            let texels = Texels { x, y, active };
+            let found = match self.known(tiles[lane] as usize, together.count_ones()) {
+                Some(Known::Few(index)) => self.search(simd, index, &texels, settled, floors, best),
+                Some(Known::Drawn(drawn)) => {
+                    let at = ((y & (TILE as i32 - 1)) * TILE as i32 + (x & (TILE as i32 - 1))).to_array();
+                    F32x8::from_slice(simd, &at.map(|at| drawn[at as usize % TILE_PIXELS])) / self.scale * self.sign
+                }
+                None => self.scan_all(simd, tiles[lane] as usize, &texels, settled, floors, best),
+            };
+            depths = select(active, found, depths);
         }
-        F32x8::from_slice(simd, &depths) * self.sign
+        depths * self.sign
     }
 
-    /// The best of a few triangles at a texel, if better than `floor` and `best`, or one that is if that settles it; times the
+    /// The best of a few triangles at texels, if better than `floors` and `best`, or one that is if that settles it; times the
     /// sign.
     #[inline(never)]
-    fn search(&self, at: [i32; 2], index: &TileIndex, settled: bool, floor: f32, mut best: f32) -> f32 {
-        index.find(at.map(|v| v as usize), next_floor(settled, floor, best), |job, setup| {
-            best = self.better(&self.jobs[job as usize], setup, at, floor, best);
-            next_floor(settled, floor, best)
-        });
-        best
-    }
-
-    /// The same among those triangles of a tile whose box holds the texel.
-    #[inline(never)]
-    fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
+    fn search<S: Simd>(
+        &self,
+        simd: S,
+        index: &TileIndex,
+        texels: &Texels<S>,
+        settled: bool,
+        floors: F32x8<S>,
+        best: f32,
+    ) -> F32x8<S> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let place = at.map(|v| v % TILE as i32);
-                for &job in &self.touching[self.tiles[tile].jobs.clone()] {
-                    let job = &self.jobs[job as usize];
-                    let Primitives { batch, boxes, .. } = &job.primitives;
-                    let above = next_floor(settled, floor, best);
-                    let found = lanes::inlined(
-                        #[inline(always)]
-                        |entry| {
-                            best = self.better(job, batch.item(entry), at, floor, best);
-                            next_floor(settled, floor, best)
-                        },
-                    );
-                    boxes.find(simd, batch.tile_range(tile), place, above, found);
-                }
+                let mut best = splat(simd, best);
+                let next = lanes::inlined(
+                    #[inline(always)]
+                    |best: F32x8<S>| {
+                        let higher = max(best, floors);
+                        if settled { select(best.simd_gt(floors), splat(simd, f32::INFINITY), higher) } else { higher }
+                    },
+                );
+                let mut above = next(best);
+                index.find(
+                    simd,
+                    texels,
+                    above,
+                    #[inline(always)]
+                    |setup, covered| {
+                        let depth = depths_at(simd, setup, texels);
+                        // Rounding as stored takes a division: most need none.
+                        let near = covered & (depth * self.sign + self.margin).simd_gt(above);
+                        if near.any_true() {
+                            let depth = stored_depth(simd, depth, self.scale) / self.scale * self.sign;
+                            best = select(near & depth.simd_gt(above), depth, best);
+                            above = next(best);
+                        }
+                        above
+                    },
+                );
                 best
             },
         )
+    }
+
+    /// The same for a tile of which little is known, texel by texel.
+    #[inline(never)]
+    fn scan_all<S: Simd>(
+        &self,
+        simd: S,
+        tile: usize,
+        texels: &Texels<S>,
+        settled: bool,
+        floors: F32x8<S>,
+        best: f32,
+    ) -> F32x8<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (x, y, floors) = (texels.x.to_array(), texels.y.to_array(), floors.to_array());
+                let (mut rest, mut depths) = (texels.active.to_bitmask(), [best; LANES]);
+                while rest != 0 {
+                    let lane = rest.trailing_zeros() as usize % LANES;
+                    rest &= rest - 1;
+                    depths[lane] = self.scan(simd, [x[lane], y[lane]], tile, settled, floors[lane], best);
+                }
+                F32x8::from_slice(simd, &depths)
+            },
+        )
+    }
+
+    /// The same among those triangles of a tile whose box holds the texel.
+    #[inline(always)]
+    fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
+        let place = at.map(|v| v % TILE as i32);
+        for &job in &self.touching[self.tiles[tile].jobs.clone()] {
+            let job = &self.jobs[job as usize];
+            let Primitives { batch, boxes, .. } = &job.primitives;
+            let above = next_floor(settled, floor, best);
+            let found = lanes::inlined(
+                #[inline(always)]
+                |entry| {
+                    best = self.better(job, batch.item(entry), at, floor, best);
+                    next_floor(settled, floor, best)
+                },
+            );
+            boxes.find(simd, batch.tile_range(tile), place, above, found);
+        }
+        best
     }
 
     /// A triangle's depth at a texel if it is better than `floor` and `best`, else `best`; times the sign.
@@ -288,15 +346,15 @@ impl PendingDepth {
         if depth > above && job.allows(setup, x, y) { depth } else { best }
     }
 
-    /// How the texels of a tile are found; none if it was asked for too seldom.
+    /// How the texels of a tile are found, of which now so many are asked for; none if it was asked for too seldom.
     #[inline(always)]
-    fn known(&self, tile: usize) -> Option<&Known> {
+    fn known(&self, tile: usize, count: u32) -> Option<&Known> {
         let pending = &self.tiles[tile];
         pending.known.get().or_else(
             #[inline(always)]
             || {
                 let patience = if pending.count as usize > tile_index::MOST { PATIENCE } else { SHORT_PATIENCE };
-                let patient = pending.asked.fetch_add(1, Ordering::Relaxed) < patience;
+                let patient = pending.asked.fetch_add(count, Ordering::Relaxed) < patience;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
             },
         )
@@ -310,12 +368,14 @@ impl PendingDepth {
         }
         let mut candidates = Vec::with_capacity(pending.count as usize);
         for &job in &self.touching[pending.jobs.clone()] {
-            let Primitives { batch, boxes, .. } = &self.jobs[job as usize].primitives;
+            let PendingJob { primitives: Primitives { batch, boxes, .. }, draws, .. } = &self.jobs[job as usize];
             candidates.extend(batch.tile_range(tile).filter_map(|at| {
-                boxes.get(at).map(|(within, bound)| Candidate { within, bound, job, setup: batch.item(at) })
+                let ((within, bound), setup) = (boxes.get(at)?, batch.item(at));
+                Some(Candidate { within, bound, setup, clip: draws[setup.facet as usize].1 })
             }));
         }
-        Known::Few(Box::new(TileIndex::new(candidates)))
+        let origin = origin(self.viewport, tile as u32).map(|v| v as i32);
+        Known::Few(Box::new(TileIndex::new(origin, candidates)))
     }
 
     /// The depths of a tile with everything drawn, as stored.
@@ -398,6 +458,21 @@ impl PendingJob {
         let [x0, y0, x1, y1] = self.draws[setup.facet as usize].1;
         (x0..x1).contains(&x) && (y0..y1).contains(&y)
     }
+}
+
+/// A triangle's depths at eight texels, by the operations of [`Setup::depth`].
+#[inline(always)]
+fn depths_at<S: Simd>(simd: S, setup: &Setup, texels: &Texels<S>) -> F32x8<S> {
+    let away = lanes::inlined(
+        #[inline(always)]
+        |texel: I32x8<S>, axis: usize| -> F32x8<S> {
+            let distance: F32x8<S> =
+                ((texel << SUBPIXEL.trailing_zeros()) + (SUBPIXEL / 2 - setup.origin[axis])).to_float();
+            distance * (1.0 / SUBPIXEL as f32)
+        },
+    );
+    let z = (away(texels.y, 1) * setup.dz_dy + setup.z) + away(texels.x, 0) * setup.dz_dx;
+    min(max(z, splat(simd, setup.z_min)), splat(simd, setup.z_max))
 }
 
 /// What later triangles must be above. Nothing is above infinity: what is better than the floor may settle it.

@@ -1,16 +1,19 @@
-//! A tile's triangles by blocks of its texels: which of them may matter at a texel, without a look at the others.
+//! A tile's triangles by blocks of its texels: which of them may matter at some texels, without a look at the others.
 //!
 //! Each block of 8×8 texels has a bit for each triangle whose box reaches it. The triangles stand in falling order of their
 //! bounds: the first that covers a texel is mostly the one that is kept there, and what comes after the first bound that is too
-//! low needs no look.
+//! low needs no look. Eight texels go through the triangles of all their blocks together.
 //!
-//! In:   a tile's entries with their boxes and bounds. Out: entries that may matter at a texel.
-//! Cost: an operation a row of blocks for each triangle; a lookup is linear in the triangles of its block.
+//! In:   a tile's entries with their boxes and bounds. Out: triangles that may matter at texels.
+//! Cost: an operation a row of blocks for each triangle; a lookup is linear in the triangles of its blocks.
 
-use crate::{Setup, TILE};
+use crate::kernel::traverse::{Edge, center_edges};
+use crate::{SUBPIXEL, Setup, TILE};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, Simd};
 
 /// As many triangles fit.
-pub(crate) const MOST: usize = u64::BITS as usize;
+pub(crate) const MOST: usize = u128::BITS as usize;
 
 /// Texels along a side of a block.
 const BLOCK: usize = 8;
@@ -24,22 +27,44 @@ pub(crate) struct Candidate<'a> {
     pub(crate) within: [[u8; 2]; 2],
     /// The depth that none of its texels exceeds.
     pub(crate) bound: f32,
-    pub(crate) job: u32,
     pub(crate) setup: &'a Setup,
+    /// The texels that its draw may touch: x0, y0, x1, y1, the ends excluded.
+    pub(crate) clip: [i32; 4],
+}
+
+/// What is looked at: copied, as triangles lie all over the memory.
+#[derive(Debug)]
+struct Indexed {
+    bound: f32,
+    /// Edge functions of texels within the tile, not negative inside.
+    edges: [Edge; 3],
+    constants: [i32; 3],
+    setup: Setup,
+    clip: [i32; 4],
 }
 
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct TileIndex {
-    bounds: Vec<f32>,
-    /// With their jobs; copied, as they lie all over the memory.
-    setups: Vec<(u32, Setup)>,
-    blocks: [u64; BLOCKS * BLOCKS],
+    /// The tile's first texel.
+    origin: [i32; 2],
+    triangles: Vec<Indexed>,
+    blocks: [u128; BLOCKS * BLOCKS],
+}
+
+/// Eight texels of a tile.
+#[derive(Clone, Copy)]
+pub(crate) struct Texels<S: Simd> {
+    /// Places in the plane.
+    pub(crate) x: I32x8<S>,
+    pub(crate) y: I32x8<S>,
+    /// Which of them matter.
+    pub(crate) active: Mask8<S>,
 }
 
 impl TileIndex {
-    /// Of at most [`MOST`] candidates.
-    pub(crate) fn new(mut candidates: Vec<Candidate<'_>>) -> Self {
+    /// Of at most [`MOST`] candidates in the tile whose first texel is `origin`.
+    pub(crate) fn new(origin: [i32; 2], mut candidates: Vec<Candidate<'_>>) -> Self {
         candidates.truncate(MOST);
         candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
         let mut blocks = [0; BLOCKS * BLOCKS];
@@ -49,27 +74,54 @@ impl TileIndex {
                 row[left..=right].iter_mut().for_each(|block| *block |= 1 << number);
             }
         }
-        Self {
-            bounds: candidates.iter().map(|c| c.bound).collect(),
-            setups: candidates.iter().map(|c| (c.job, *c.setup)).collect(),
-            blocks,
-        }
+        let indexed = |candidate: Candidate<'_>| {
+            let Candidate { bound, setup, clip, .. } = candidate;
+            let from = |v: [i32; 3], axis: usize| v.map(|v| v - origin[axis] * SUBPIXEL);
+            let (edges, constants) = center_edges(&from(setup.x, 0), &from(setup.y, 1));
+            Indexed { bound, edges, constants, setup: *setup, clip }
+        };
+        Self { origin, triangles: candidates.into_iter().map(indexed).collect(), blocks }
     }
 
-    /// Hands out the triangles that may lie above `floor` at texel `(x, y)` of the tile, with their jobs; what is returned is the
-    /// next floor.
+    /// Hands out the triangles that cover some of the texels and may lie above `floors` there, with which texels; what is
+    /// returned are the next floors.
     #[inline(always)]
-    pub(crate) fn find(&self, [x, y]: [usize; 2], mut floor: f32, mut found: impl FnMut(u32, &Setup) -> f32) {
-        let mut bits = self.blocks[y % TILE / BLOCK * BLOCKS + x % TILE / BLOCK];
+    pub(crate) fn find<S: Simd>(
+        &self,
+        simd: S,
+        texels: &Texels<S>,
+        mut floors: F32x8<S>,
+        mut found: impl FnMut(&Setup, Mask8<S>) -> F32x8<S>,
+    ) {
+        let Texels { x, y, active } = *texels;
+        let (column, row) = (x - self.origin[0], y - self.origin[1]);
+        let block = ((row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros())).to_array();
+        let (mut bits, mut lanes) = (0, active.to_bitmask());
+        while lanes != 0 {
+            bits |= self.blocks[block[lanes.trailing_zeros() as usize % LANES] as usize % self.blocks.len()];
+            lanes &= lanes - 1;
+        }
+        let zero = I32x8::splat(simd, 0);
         while bits != 0 {
-            let number = bits.trailing_zeros() as usize;
+            let Some(triangle) = self.triangles.get(bits.trailing_zeros() as usize) else { return };
+            bits &= bits - 1;
             // NaN, which is above nothing, stands first.
-            let (Some(&bound), Some((job, setup))) = (self.bounds.get(number), self.setups.get(number)) else { return };
-            if bound <= floor {
+            let above = active & <F32x8<S> as SimdBase<S>>::splat(simd, triangle.bound).simd_gt(floors);
+            if !above.any_true() {
                 return;
             }
-            floor = found(*job, setup);
-            bits &= bits - 1;
+            let mut e = [zero; 3];
+            for i in 0..3 {
+                let Edge { a, b } = triangle.edges[i];
+                e[i] = column * a + row * b + triangle.constants[i];
+            }
+            let mut covered = above & (e[0] | e[1] | e[2]).simd_ge(zero);
+            if !covered.any_true() {
+                continue;
+            }
+            let [x0, y0, x1, y1] = triangle.clip.map(|v| I32x8::splat(simd, v));
+            covered &= x.simd_ge(x0) & x.simd_lt(x1) & y.simd_ge(y0) & y.simd_lt(y1);
+            floors = found(&triangle.setup, covered);
         }
     }
 }
@@ -79,44 +131,61 @@ mod tests {
     use super::*;
     use crate::forward::boxes::Boxes;
     use crate::testing::triangles;
+    use vitral_math::lanes::{available_levels, dispatch};
+
+    /// What triangles must be above.
+    const FLOORS: [f32; 3] = [f32::NEG_INFINITY, 0.5, f32::INFINITY];
 
     #[test]
-    fn a_texel_finds_the_triangles_that_may_matter_from_the_highest_bound_on() {
+    fn texels_find_the_triangles_that_cover_them_from_the_highest_bound_on() {
         let setups = triangles(MOST as u32, 64);
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
         setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, setup, [64, 64], setup.z_max));
         let candidate = |at: usize| {
             let (within, bound) = boxes.get(at)?;
-            Some(Candidate { within, bound, job: 7, setup: &setups[at] })
+            Some(Candidate { within, bound, setup: &setups[at], clip: [0, 0, 80 + at as i32 % 40, 1000] })
         };
         let candidates: Vec<_> = (0..setups.len()).filter_map(candidate).collect();
         assert!(candidates.len() > 10 && candidates.len() < setups.len(), "some lie elsewhere: {}", candidates.len());
-        let index = TileIndex::new(candidates.clone());
-        let mut handed_out = 0;
-        for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
-            for floor in [f32::NEG_INFINITY, 0.5] {
-                let mut found = Vec::new();
-                index.find([x, y], floor, |job, setup| {
-                    found.push((job, *setup));
-                    floor
-                });
-                assert!(found.iter().all(|(job, setup)| *job == 7 && setup.z_max > floor));
-                assert!(found.is_sorted_by(|a, b| a.1.z_max >= b.1.z_max));
-                let holds = |c: &&Candidate<'_>| {
-                    let [columns, rows] = c.within.map(|[first, last]| usize::from(first)..=usize::from(last));
-                    columns.contains(&x) && rows.contains(&y) && c.bound > floor
-                };
-                assert!(candidates.iter().filter(holds).all(|c| found.contains(&(7, *c.setup))), "{x} {y} {floor}");
-                handed_out += found.len();
+        let index = TileIndex::new([64; 2], candidates.clone());
+        for (name, level) in available_levels() {
+            let (mut found_once, mut clipped) = (0, 0);
+            for eight in 0..TILE * TILE / LANES {
+                // Texels of all blocks, those of a lane far from those of the next; the last is not asked for.
+                let at: [i32; LANES] =
+                    std::array::from_fn(|lane| ((eight * LANES + lane) * 1237 % (TILE * TILE)) as i32);
+                let (x, y) = (at.map(|at| 64 + at % TILE as i32), at.map(|at| 64 + at / TILE as i32));
+                for floor in FLOORS {
+                    let mut found = Vec::new();
+                    dispatch!(level, simd => {
+                        let (lanes_x, lanes_y) = (I32x8::from_slice(simd, &x), I32x8::from_slice(simd, &y));
+                        let active = Mask8::from_bitmask(simd, 0x7f);
+                        let floors = <F32x8<_> as SimdBase<_>>::splat(simd, floor);
+                        index.find(simd, &Texels { x: lanes_x, y: lanes_y, active }, floors, |setup, covered| {
+                            found.push((*setup, covered.to_bitmask()));
+                            floors
+                        });
+                    });
+                    assert!(found.is_sorted_by(|a, b| a.0.z_max >= b.0.z_max), "{name}");
+                    for candidate in &candidates {
+                        let setup = candidate.setup;
+                        let covers = |lane: &usize| {
+                            let place = [x[*lane], y[*lane]].map(|v| v * SUBPIXEL + SUBPIXEL / 2);
+                            setup.z_max > floor && setup.covers(place[0], place[1])
+                        };
+                        let inside = |lane: &usize| x[*lane] < candidate.clip[2];
+                        let bits =
+                            |lanes: &mut dyn Iterator<Item = usize>| lanes.fold(0, |bits, lane| bits | 1u64 << lane);
+                        let expected = bits(&mut (0..LANES - 1).filter(covers).filter(inside));
+                        let given = found.iter().find(|(s, _)| s == setup).map_or(0, |(_, bits)| *bits);
+                        assert_eq!(given, expected, "{name}, floor {floor}");
+                        found_once += expected.count_ones();
+                        clipped += (bits(&mut (0..LANES - 1).filter(covers)) ^ expected).count_ones();
+                    }
+                }
             }
+            assert!(found_once > 300 && clipped > 100, "{found_once} {clipped}");
         }
-        assert!(handed_out < TILE * TILE * candidates.len(), "not all of them, everywhere");
-        let mut first = 0;
-        index.find([32, 32], f32::NEG_INFINITY, |_, _| {
-            first += 1;
-            f32::INFINITY
-        });
-        assert!(first <= 1, "nothing is above infinity");
     }
 }

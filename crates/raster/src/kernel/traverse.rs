@@ -101,7 +101,7 @@ fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> b
 }
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
     pub(crate) a: i32,
     pub(crate) b: i32,

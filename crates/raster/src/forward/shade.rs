@@ -554,13 +554,17 @@ impl<'a> Shader<'a> {
     /// The packed colour of all pixels of a facet whose draw is [`DrawContext::constant`], and whether it passes the alpha test.
     #[inline(always)]
     fn constant(&mut self) -> (u32, bool) {
-        if self.constant.is_none() {
-            let color = self.provoking_color().map(|c| c.clamp(0.0, 1.0));
-            let passes = self.draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
-            let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
-            self.constant = Some((word, passes));
-        }
-        self.constant.unwrap_or_default()
+        *self.constant.get_or_insert_with(|| Self::constant_of(self.draw, self.facet, self.primitives))
+    }
+
+    /// The packed colour of a facet whose draw is [`DrawContext::constant`], and whether it passes the alpha test.
+    #[inline(always)]
+    pub(crate) fn constant_of(draw: &DrawContext<'_>, facet: &Facet, primitives: &Primitives) -> (u32, bool) {
+        let from = facet.provoking as usize + Self::color_of(draw, facet);
+        let color = primitives.records[from..].first_chunk::<4>().map_or([0.0; 4], |c| c.map(|c| c.clamp(0.0, 1.0)));
+        let passes = draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+        let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
+        (word, passes)
     }
 
     /// Where the colour of the facet's side begins in a record.

@@ -1,10 +1,8 @@
-//! Tiny facets of one draw, eight at a time, where pixels have one sample and nothing but depths and colours is tested and
-//! written.
+//! Tiny facets of one draw, eight at a time, where nothing but depths and colours is tested and written.
 //!
 //! Coverage and depths of all eight are computed together, then each facet's pixels meet the stored depths, one after the other,
 //! since two facets may lie in one pixel. Where colours are those of corners they are computed together again; else each facet
-//! colours its own pixels. The results are those of [`super::tiny`]; with four samples a pixel there are so many that rows are
-//! faster.
+//! colours its own pixels. The results are those of [`super::tiny`].
 
 use super::assemble::Primitives;
 use super::block::{self, BlockWords, Words};
@@ -90,7 +88,7 @@ pub(super) fn by_eights(draw: &DrawContext<'_>, run: &TileRun<'_>) -> bool {
         && state.stencil.is_none()
         && state.alpha_test.is_none()
         && !draw.layout.smooth[2]
-        && run.planes.samples == 1
+        && matches!(run.planes.samples, 1 | SAMPLES)
         && !matches!(run.planes.color, Some(ColorTile::RgbaF32(_)))
 }
 
@@ -99,94 +97,143 @@ impl TileRun<'_> {
     #[inline(always)]
     pub(super) fn tiny_facets<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
         if memory.waiting.eight.len() != 0 {
-            self.tiny_facets_apart(simd, job, memory);
+            if job.pattern(&job.draws[memory.waiting.draw as usize]).len() == 1 {
+                self.tiny_facets_apart::<S, 1>(simd, job, memory);
+            } else {
+                self.tiny_facets_apart::<S, SAMPLES>(simd, job, memory);
+            }
             memory.waiting.eight.clear();
         }
     }
 
     #[inline(never)]
-    fn tiny_facets_apart<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+    fn tiny_facets_apart<S: Simd, const N: usize>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
         simd.vectorize(
             #[inline(always)]
-            || self.tiny_facets_inlined(simd, job, memory),
+            || self.tiny_facets_inlined::<S, N>(simd, job, memory),
         );
     }
 
     #[inline(always)]
-    fn tiny_facets_inlined<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+    fn tiny_facets_inlined<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+    ) {
         let FacetMemory { scratch, words, each, waiting } = memory;
         let TinyFacets { eight, entries, draw } = waiting;
         let draw = &job.draws[*draw as usize];
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
-        let mut masks = eight.cover(
-            simd,
-            (self.x, self.y),
-            job.one.position(0),
-            #[inline(always)]
-            |depth| stored_depth(simd, depth, scale),
-        );
+        let (pattern, samples) = (job.pattern(draw), self.planes.samples);
+        let (mut masks, mut any) = ([[0; LANES]; SAMPLES], [0; LANES]);
+        for sample in 0..N {
+            masks[sample] = eight.cover(
+                simd,
+                (self.x, self.y),
+                (sample, pattern.position(sample)),
+                #[inline(always)]
+                |depth| stored_depth(simd, depth, scale),
+            );
+            join(&mut any, &masks[sample]);
+        }
         let mut touched = 0;
-        for facet in (0..eight.len()).filter(|&facet| masks[facet] != 0) {
-            touched |= eight.block(facet, masks[facet]).touched();
+        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
+            touched |= eight.block(facet, any[facet]).touched();
         }
         if touched == 0 {
             return;
+        }
+        // A draw without multisampling covers all samples of a pixel alike; where all have one depth, one stands for all.
+        let mut alike = N == 1;
+        if alike {
+            masks = [masks[0]; SAMPLES];
         }
         if let (Some(rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) {
             if rule.write {
                 self.planes.ranges.forget(touched);
             }
-            if let Some(stored) = tile.open(touched, false, 1).1.first_chunk_mut() {
-                test(eight, &mut masks, rule, stored);
+            any = [0; LANES];
+            let (count, stored) = tile.open(touched, alike, samples);
+            for (sample, stored) in stored.as_chunks_mut().0.iter_mut().enumerate().take(count) {
+                test(eight, &mut masks[sample], sample % N, rule, stored);
+                join(&mut any, &masks[sample]);
+            }
+            alike &= count == 1;
+            if alike {
+                masks = [masks[0]; SAMPLES];
             }
         }
-        if !draw.shaded || masks == [0; LANES] {
+        if !draw.shaded || any == [0; LANES] {
             return;
         }
         let batch = &job.primitives.batch;
         let facet_at = |lane: usize| facet_of(job.primitives, batch.item(entries[lane]).facet);
-        let plain = !draw.constant && draw.ops.mixing == Mixing::Replace && Shader::is_plain(draw);
-        if plain && let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color {
-            // Lanes without a facet of their own repeat the first one's.
-            let mut facets = [facet_at(0); LANES];
-            for lane in 1..eight.len() {
-                facets[lane] = facet_at(lane);
-            }
+        let replaced = alike && draw.ops.mixing == Mixing::Replace;
+        if replaced && let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color {
             let tile = [self.x, self.y];
-            if let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) {
-                let Some(values) = plane.open(touched, false, 1).1.first_chunk_mut::<TILE_PIXELS>() else { return };
-                for place in places(masks.iter().fold(0, |all, mask| all | mask)) {
-                    colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
+            let shown = any.iter().fold(0, |all, mask| all | mask);
+            let mut known = draw.constant;
+            if draw.constant {
+                let mut words = [0; LANES];
+                for facet in 0..eight.len() {
+                    words[facet] = Shader::constant_of(draw, facet_at(facet), job.primitives).0;
                 }
-                for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
-                    let first = eight.first(facet);
-                    for place in places(mask) {
-                        values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
+                places(shown).for_each(|place| each[place] = words);
+            } else if Shader::is_plain(draw) {
+                // Lanes without a facet of their own repeat the first one's.
+                let mut facets = [facet_at(0); LANES];
+                for lane in 1..eight.len() {
+                    facets[lane] = facet_at(lane);
+                }
+                if let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) {
+                    known = true;
+                    for place in places(shown) {
+                        colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
+                    }
+                }
+            }
+            if known {
+                let (count, values) = plane.open(touched, true, samples);
+                for values in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().take(count) {
+                    for (facet, &mask) in any.iter().enumerate().take(eight.len()) {
+                        let first = eight.first(facet);
+                        for place in places(mask) {
+                            values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
+                        }
                     }
                 }
                 return;
             }
         }
-        for facet in (0..eight.len()).filter(|&facet| masks[facet] != 0) {
+        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
             let setup = batch.item(entries[facet]);
             let tile = [self.x as f32, self.y as f32];
             let mut shader = Shader::new(facet_at(facet), draw, job.primitives, tile, scratch);
-            let block = eight.block(facet, masks[facet]);
+            let block = eight.block(facet, any[facet]);
             let corner = (self.x as usize + block.x, self.y as usize + block.y);
-            let (one, _) = shader.block(simd, setup, corner, masks[facet], words);
-            let each = [masks[facet]; SAMPLES];
+            let (one, _) = shader.block(simd, setup, corner, any[facet], words);
+            let each = [masks[0][facet], masks[1][facet], masks[2][facet], masks[3][facet]];
             block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &each);
         }
     }
 }
 
-/// Depth tests of the pixels of `masks`, facet by facet, with their writes: those that pass remain.
+/// Adds pixels to those of each facet.
 #[inline(always)]
-fn test(eight: &TinyEight, masks: &mut [u64; LANES], rule: DepthTest, stored: &mut [f32; TILE_PIXELS]) {
+fn join(all: &mut [u64; LANES], more: &[u64; LANES]) {
+    for facet in 0..LANES {
+        all[facet] |= more[facet];
+    }
+}
+
+/// Depth tests of a sample of the pixels of `masks`, facet by facet, with their writes: those that pass remain.
+#[inline(always)]
+fn test(eight: &TinyEight, masks: &mut [u64; LANES], sample: usize, rule: DepthTest, stored: &mut [f32; TILE_PIXELS]) {
     match rule.func {
-        Compare::Less => test_by(eight, masks, rule.write, stored, |new, old| new < old),
-        Compare::LessOrEqual => test_by(eight, masks, rule.write, stored, |new, old| new <= old),
-        func => test_by(eight, masks, rule.write, stored, |new, old| holds(func, new, old)),
+        Compare::Less => test_by(eight, masks, sample, rule.write, stored, |new, old| new < old),
+        Compare::LessOrEqual => test_by(eight, masks, sample, rule.write, stored, |new, old| new <= old),
+        func => test_by(eight, masks, sample, rule.write, stored, |new, old| holds(func, new, old)),
     }
 }
 
@@ -194,6 +241,7 @@ fn test(eight: &TinyEight, masks: &mut [u64; LANES], rule: DepthTest, stored: &m
 fn test_by(
     eight: &TinyEight,
     masks: &mut [u64; LANES],
+    sample: usize,
     write: bool,
     stored: &mut [f32; TILE_PIXELS],
     passes: impl Fn(f32, f32) -> bool,
@@ -202,7 +250,7 @@ fn test_by(
         let (first, covered) = (eight.first(facet), *mask);
         for place in places(covered) {
             let old = &mut stored[pixel(first, place) % TILE_PIXELS];
-            let new = eight.depth(facet, place);
+            let new = eight.depth(facet, place, sample);
             let pass = passes(new, *old);
             *mask ^= u64::from(!pass) << place;
             if write {

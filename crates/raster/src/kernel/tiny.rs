@@ -12,6 +12,9 @@ use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
 
+/// As many samples a pixel may have.
+pub(crate) const SAMPLES: usize = 4;
+
 /// Pixels of a box.
 pub(crate) const PLACES: usize = BLOCK * BLOCK;
 
@@ -31,8 +34,8 @@ pub(crate) struct TinyEight {
     /// The largest of their ends: columns, rows.
     size: [usize; 2],
     count: usize,
-    /// Depths at places, of all triangles.
-    depths: [[f32; LANES]; PLACES],
+    /// Depths of samples at places, of all triangles.
+    depths: [[[f32; LANES]; PLACES]; SAMPLES],
 }
 
 impl Default for TinyEight {
@@ -47,7 +50,7 @@ impl Default for TinyEight {
             boxes: [0; LANES],
             size: [0; 2],
             count: 0,
-            depths: [[0.0; LANES]; PLACES],
+            depths: [[[0.0; LANES]; PLACES]; SAMPLES],
         }
     }
 }
@@ -108,10 +111,10 @@ impl TinyEight {
         [self.left[triangle] as usize, self.top[triangle] as usize]
     }
 
-    /// The depth of a triangle at a place, once [`Self::cover`] was asked.
+    /// The depth of a triangle at a place, once [`Self::cover`] was asked for the sample.
     #[inline(always)]
-    pub(crate) fn depth(&self, triangle: usize, place: usize) -> f32 {
-        self.depths[place % PLACES][triangle % LANES]
+    pub(crate) fn depth(&self, triangle: usize, place: usize, sample: usize) -> f32 {
+        self.depths[sample % SAMPLES][place % PLACES][triangle % LANES]
     }
 
     /// Where the first pixel of a triangle's box lies in the tile, row by row.
@@ -147,14 +150,14 @@ impl TinyEight {
         [left + (place % BLOCK) as i32, top + (place / BLOCK) as i32]
     }
 
-    /// The pixels whose sample at `[x, y]` of a pixel, in 1/256 pixel, is covered, of each triangle. `stored` says how depths
+    /// The pixels of each triangle whose sample of this number, at `[x, y]` of a pixel in 1/256 pixel, is covered. `stored` says how depths
     /// are stored; `tile` is the tile's first pixel.
     #[inline(always)]
     pub(crate) fn cover<S: Simd>(
         &mut self,
         simd: S,
         tile: (u32, u32),
-        [sx, sy]: [i32; 2],
+        (sample, [sx, sy]): (usize, [i32; 2]),
         stored: impl Fn(F32x8<S>) -> F32x8<S>,
     ) -> [u64; LANES] {
         let zero = I32x8::splat(simd, 0);
@@ -207,7 +210,7 @@ impl TinyEight {
                 halves[r / 4] |= bit & !outside;
                 let depth = line + dx * dz_dx;
                 let depth = lanes::Lanes::min(lanes::Lanes::max(depth, z_min), z_max);
-                stored(depth).store_slice(&mut self.depths[BLOCK * r + c]);
+                stored(depth).store_slice(&mut self.depths[sample % SAMPLES][BLOCK * r + c]);
                 bit <<= 1;
                 dx += 1.0;
                 for i in 0..3 {
@@ -254,11 +257,16 @@ mod tests {
                     assert_eq!(eight.len(), setups.len());
                     for sample in 0..samples {
                         let [sx, sy] = pattern.position(sample);
-                        let masks = dispatch!(level, simd => eight.cover(simd, tile, [sx, sy], |depth| depth * 0.5));
+                        let masks =
+                            dispatch!(level, simd => eight.cover(simd, tile, (sample, [sx, sy]), |depth| depth * 0.5));
                         let mut found = Vec::new();
                         for (triangle, &mask) in masks.iter().enumerate() {
                             let pixel_of = |place| {
-                                (triangle, pixel(eight.first(triangle), place), 2.0 * eight.depth(triangle, place))
+                                (
+                                    triangle,
+                                    pixel(eight.first(triangle), place),
+                                    2.0 * eight.depth(triangle, place, sample),
+                                )
                             };
                             found.extend(places(mask).map(pixel_of));
                         }

@@ -169,7 +169,7 @@ impl TileRun<'_> {
         }
         let batch = &job.primitives.batch;
         let facet_at = |lane: usize| facet_of(job.primitives, batch.item(entries[lane]).facet);
-        let replaced = alike && draw.ops.mixing == Mixing::Replace;
+        let replaced = draw.ops.mixing == Mixing::Replace;
         if replaced && let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color {
             let tile = [self.x, self.y];
             let shown = any.iter().fold(0, |all, mask| all | mask);
@@ -194,9 +194,9 @@ impl TileRun<'_> {
                 }
             }
             if known {
-                let (count, values) = plane.open(touched, true, samples);
-                for values in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().take(count) {
-                    for (facet, &mask) in any.iter().enumerate().take(eight.len()) {
+                let (count, values) = plane.open(touched, alike, samples);
+                for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&masks).take(count) {
+                    for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
                         let first = eight.first(facet);
                         for place in places(mask) {
                             values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];

@@ -122,10 +122,34 @@ impl TileRun<'_> {
         memory: &mut FacetMemory,
     ) {
         let FacetMemory { scratch, words, each, waiting } = memory;
-        let TinyFacets { eight, entries, draw } = waiting;
-        let draw = &job.draws[*draw as usize];
+        let draw = &job.draws[waiting.draw as usize];
+        let Some(passed) = self.tiny_tested::<S, N>(simd, draw, job.pattern(draw), &mut waiting.eight) else { return };
+        if !draw.shaded || passed.any == [0; LANES] || self.tiny_replaced(simd, job, waiting, &passed, each) {
+            return;
+        }
+        let (eight, Passed { masks, any, .. }) = (&waiting.eight, &passed);
+        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
+            let setup = job.primitives.batch.item(waiting.entries[facet]);
+            let (own, tile) = (facet_of(job.primitives, setup.facet), [self.x as f32, self.y as f32]);
+            let mut shader = Shader::new(own, draw, job.primitives, tile, scratch);
+            let block = eight.block(facet, any[facet]);
+            let corner = (self.x as usize + block.x, self.y as usize + block.y);
+            let (one, _) = shader.block(simd, setup, corner, any[facet], words);
+            let each = [masks[0][facet], masks[1][facet], masks[2][facet], masks[3][facet]];
+            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &each);
+        }
+    }
+
+    /// Coverage and depth test. `None` if nothing is covered.
+    #[inline(always)]
+    fn tiny_tested<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        draw: &DrawContext<'_>,
+        pattern: &SamplePattern,
+        eight: &mut TinyEight,
+    ) -> Option<Passed> {
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
-        let (pattern, samples) = (job.pattern(draw), self.planes.samples);
         let (mut masks, mut any) = ([[0; LANES]; SAMPLES], [0; LANES]);
         for sample in 0..N {
             masks[sample] = eight.cover(
@@ -142,7 +166,7 @@ impl TileRun<'_> {
             touched |= eight.block(facet, any[facet]).touched();
         }
         if touched == 0 {
-            return;
+            return None;
         }
         // A draw without multisampling covers all samples of a pixel alike; where all have one depth, one stands for all.
         let mut alike = N == 1;
@@ -154,7 +178,7 @@ impl TileRun<'_> {
                 self.planes.ranges.forget(touched);
             }
             any = [0; LANES];
-            let (count, stored) = tile.open(touched, alike, samples);
+            let (count, stored) = tile.open(touched, alike, self.planes.samples);
             for (sample, stored) in stored.as_chunks_mut().0.iter_mut().enumerate().take(count) {
                 test(eight, &mut masks[sample], sample % N, rule, stored);
                 join(&mut any, &masks[sample]);
@@ -164,59 +188,72 @@ impl TileRun<'_> {
                 masks = [masks[0]; SAMPLES];
             }
         }
-        if !draw.shaded || any == [0; LANES] {
-            return;
+        Some(Passed { masks, any, touched, alike })
+    }
+
+    /// Colours what passed, if colours replace what is there and are one a facet or those of corners; whether they are.
+    #[inline(always)]
+    fn tiny_replaced<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        waiting: &TinyFacets,
+        passed: &Passed,
+        each: &mut [[u32; LANES]; PLACES],
+    ) -> bool {
+        let (eight, draw) = (&waiting.eight, &job.draws[waiting.draw as usize]);
+        let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return false };
+        if draw.ops.mixing != Mixing::Replace {
+            return false;
         }
         let batch = &job.primitives.batch;
-        let facet_at = |lane: usize| facet_of(job.primitives, batch.item(entries[lane]).facet);
-        let replaced = draw.ops.mixing == Mixing::Replace;
-        if replaced && let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color {
+        let facet_at = |lane: usize| facet_of(job.primitives, batch.item(waiting.entries[lane]).facet);
+        // Lanes without a facet of their own repeat the first one's.
+        let mut facets = [facet_at(0); LANES];
+        for lane in 1..eight.len() {
+            facets[lane] = facet_at(lane);
+        }
+        let shown = places(passed.any.iter().fold(0, |all, mask| all | mask));
+        if draw.constant {
+            let mut words = [0; LANES];
+            for lane in 0..LANES {
+                words[lane] = Shader::constant_of(draw, facets[lane], job.primitives).0;
+            }
+            shown.for_each(|place| each[place] = words);
+        } else if Shader::is_plain(draw) {
             let tile = [self.x, self.y];
-            let shown = any.iter().fold(0, |all, mask| all | mask);
-            let mut known = draw.constant;
-            if draw.constant {
-                let mut words = [0; LANES];
-                for facet in 0..eight.len() {
-                    words[facet] = Shader::constant_of(draw, facet_at(facet), job.primitives).0;
-                }
-                places(shown).for_each(|place| each[place] = words);
-            } else if Shader::is_plain(draw) {
-                // Lanes without a facet of their own repeat the first one's.
-                let mut facets = [facet_at(0); LANES];
-                for lane in 1..eight.len() {
-                    facets[lane] = facet_at(lane);
-                }
-                if let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) {
-                    known = true;
-                    for place in places(shown) {
-                        colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
-                    }
+            let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) else {
+                return false;
+            };
+            for place in shown {
+                colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
+            }
+        } else {
+            return false;
+        }
+        let (count, values) = plane.open(passed.touched, passed.alike, self.planes.samples);
+        for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&passed.masks).take(count) {
+            for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
+                let first = eight.first(facet);
+                for place in places(mask) {
+                    values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
                 }
             }
-            if known {
-                let (count, values) = plane.open(touched, alike, samples);
-                for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&masks).take(count) {
-                    for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
-                        let first = eight.first(facet);
-                        for place in places(mask) {
-                            values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
-                        }
-                    }
-                }
-                return;
-            }
         }
-        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
-            let setup = batch.item(entries[facet]);
-            let tile = [self.x as f32, self.y as f32];
-            let mut shader = Shader::new(facet_at(facet), draw, job.primitives, tile, scratch);
-            let block = eight.block(facet, any[facet]);
-            let corner = (self.x as usize + block.x, self.y as usize + block.y);
-            let (one, _) = shader.block(simd, setup, corner, any[facet], words);
-            let each = [masks[0][facet], masks[1][facet], masks[2][facet], masks[3][facet]];
-            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &each);
-        }
+        true
     }
+}
+
+/// What eight tiny facets cover and passed the depth test.
+struct Passed {
+    /// Pixels of each facet, sample by sample.
+    masks: [[u64; LANES]; SAMPLES],
+    /// Those of which some samples did.
+    any: [u64; LANES],
+    /// Bits of the tile's blocks that were covered.
+    touched: u64,
+    /// All samples of a pixel are alike.
+    alike: bool,
 }
 
 /// Adds pixels to those of each facet.

@@ -84,7 +84,8 @@ impl Shader<'_> {
                 #[inline(always)]
                 || {
                     let slopes = Slopes::new(self, packed, at);
-                    self.looked_up(simd, weights, active, (unit, packed, at), &slopes)
+                    let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
+                    packed.at(simd, place, level, active)
                 },
             );
         }
@@ -188,33 +189,37 @@ impl Shader<'_> {
             #[inline(always)]
             || {
                 let (slopes, format) = (Slopes::new(self, packed, at), format_of(&unit.texture));
+                // Places and levels of all groups come first: each takes long, but they need not wait for each other.
+                let mut places = [self.place(simd, &groups.weights[0], (unit, packed, at), &slopes); N];
+                for i in 1..N {
+                    places[i] = self.place(simd, &groups.weights[i], (unit, packed, at), &slopes);
+                }
                 for i in 0..N {
-                    let weights = &groups.weights[i];
-                    let texture = self.looked_up(simd, weights, groups.active, (unit, packed, at), &slopes);
+                    let (place, level) = places[i];
+                    let texture = packed.at(simd, place, level, groups.active);
                     colors[i] = modulate(format, &texture, colors[i]);
                 }
             },
         );
     }
 
-    /// A texture of the common kind at eight pixels.
+    /// Coordinates of a texture of the common kind at eight pixels, and the level of detail.
     #[inline(always)]
-    fn looked_up<S: Simd>(
+    fn place<S: Simd>(
         &self,
         simd: S,
         weights: &Weights<S>,
-        active: u32,
         (unit, packed, at): (&Unit, &Packed<'_>, usize),
         slopes: &Slopes,
-    ) -> Rgba<S> {
+    ) -> ([F32x8<S>; 2], F32x8<S>) {
         let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
         let bias = splat(simd, unit.lod_bias);
         if slopes.divided {
             let (place, level) = self.divided(simd, weights, packed.size(), at, place);
-            return packed.at(simd, place, level + bias, active);
+            return (place, level + bias);
         }
         let level = if packed.needs_lod() { slopes.level(simd, weights, &place) + bias } else { bias };
-        packed.at(simd, place, level, active)
+        (place, level)
     }
 
     /// Coordinates divided by q, and the level of detail.

@@ -7,7 +7,7 @@
 //! In:   corners on the screen. Out: [`Eight`], the same bits as [`DepthPlane::new`] and [`Setup::covers`](crate::Setup::covers).
 //! Cost: constant for eight triangles; a few operations for each sample of a small box.
 
-use super::traverse::SMALL;
+use super::traverse::{SMALL, biases};
 use crate::geometry::{Screen, flag};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{SUBPIXEL, ScreenVertex};
@@ -243,9 +243,7 @@ fn cover<S: Simd>(
     for i in 0..3 {
         let j = (i + 1) % 3;
         let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-        let top_left = dy.simd_lt(zero) | (dy.simd_eq(zero) & dx.simd_gt(zero));
-        let bias = top_left.select(zero, I32x8::splat(simd, -1));
-        at_pixel[i] = dy * x[i] - dx * y[i] + bias;
+        at_pixel[i] = dy * x[i] - dx * y[i] + biases(simd, dx, dy);
         (right[i], down[i]) = (dy, dx);
     }
     let [xs, ys] = screen.pattern().axes();

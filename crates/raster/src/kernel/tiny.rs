@@ -7,7 +7,7 @@
 //! In:   triangles of a tile whose boxes hold at most 8x8 pixels. Out: masks of covered pixels, and depths.
 //! Cost: some operations for each pixel of the largest box, shared by eight triangles.
 
-use super::traverse::{Block, Placed};
+use super::traverse::{Block, Placed, biases};
 use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
@@ -150,8 +150,8 @@ impl TinyEight {
         [left + (place % BLOCK) as i32, top + (place / BLOCK) as i32]
     }
 
-    /// The pixels of each triangle whose sample of this number, at `[x, y]` of a pixel in 1/256 pixel, is covered. `stored` says how depths
-    /// are stored; `tile` is the tile's first pixel.
+    /// The pixels of each triangle whose sample of this number, at `[x, y]` of a pixel in 1/256 pixel, is covered. `stored` says
+    /// how depths are stored; `tile` is the tile's first pixel.
     #[inline(always)]
     pub(crate) fn cover<S: Simd>(
         &mut self,
@@ -168,10 +168,9 @@ impl TinyEight {
         for i in 0..3 {
             let j = (i + 1) % 3;
             let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-            let top_left = dy.simd_lt(zero) | (dy.simd_eq(zero) & dx.simd_gt(zero));
-            let bias = top_left.select(zero, I32x8::splat(simd, -1));
             (a[i], b[i]) = (zero - dy, dx);
-            row[i] = ((dy * x[i] - dx * y[i] + bias + (dx * sy - dy * sx)) >> 8) + a[i] * left + b[i] * top;
+            row[i] =
+                ((dy * x[i] - dx * y[i] + biases(simd, dx, dy) + (dx * sy - dy * sx)) >> 8) + a[i] * left + b[i] * top;
         }
         // Depths by the operations of `Setup::depth`, in their order; distances from the origin are exact.
         let words = lanes::inlined(

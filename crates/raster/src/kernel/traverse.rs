@@ -129,6 +129,14 @@ fn far_edge(x: &[i32; 3], y: &[i32; 3], i: usize) -> (Edge, impl Fn([i32; 2]) ->
     (Edge { a: -dy, b: dx }, constant)
 }
 
+/// What is added to the edge functions of eight edges `(dx, dy)`, so that 0 counts as inside on top and left edges alone.
+#[inline(always)]
+pub(crate) fn biases<S: Simd>(simd: S, dx: I32x8<S>, dy: I32x8<S>) -> I32x8<S> {
+    let zero = I32x8::splat(simd, 0);
+    let top_left = dy.simd_lt(zero) | (dy.simd_eq(zero) & dx.simd_gt(zero));
+    top_left.select(zero, I32x8::splat(simd, -1))
+}
+
 /// Larger constants decide the sign by themselves: `|a x + b y| < 2^30` inside a tile.
 const FAR_AWAY: i64 = 1 << 30;
 

@@ -29,13 +29,10 @@ pub(crate) fn lod<S: Simd>(
     half_log2(max(across, up))
 }
 
-/// The logarithm to base 2 of a step, given its squared length; off by less than 5e-4, a ninth of the steps that weights have.
+/// The logarithm to base 2 of a step, given its squared length.
 #[inline(always)]
 pub(crate) fn half_log2<S: Simd>(square: F32x8<S>) -> F32x8<S> {
-    let (exponent, mantissa) = max(square, splat(square.token(), f32::MIN_POSITIVE)).split_exponent();
-    // Least largest error of all cubic polynomials that are exact at 1 and 2.
-    let t = mantissa - 1.0;
-    (exponent + ((t * 0.159_219_79 - 0.582_084_81) * t + 1.422_865) * t) * 0.5
+    square.log2() * 0.5
 }
 
 /// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of

@@ -20,8 +20,7 @@ use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::topology::Solidity;
-use vitral_scene::{Scene, World};
+use vitral_scene::{Scene, Solidity, World};
 
 /// Who computes, with which instructions, and how much is allowed.
 #[derive(Clone, Debug)]
@@ -138,6 +137,11 @@ impl MeshKnowledge {
 impl Session {
     /// Flattens the scene and checks that its parts fit together.
     pub fn new(scene: Arc<Scene>) -> Result<Self, Error> {
+        Self::with_workers(scene, &Workers::single())
+    }
+
+    /// [`Self::new`] with all of `workers`.
+    pub fn with_workers(scene: Arc<Scene>, workers: &Workers) -> Result<Self, Error> {
         for mesh in &scene.meshes {
             mesh.check().map_err(Error::Scene)?;
             let materials = scene.materials.len();
@@ -154,7 +158,7 @@ impl Session {
                 return Err(Error::Scene(format!("material `{name}`: texture {}, there are {count}", bad.texture)));
             }
         }
-        let world = World::new(&scene)?;
+        let world = World::with_workers(&scene, workers)?;
         let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
         Ok(Self {
             scene,
@@ -252,7 +256,9 @@ impl Session {
 
     pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {
         let known = &self.meshes[mesh as usize].tree;
-        known.get_or_init(|| BoundsTree::over_triangles(&self.scene.meshes[mesh as usize]))
+        let (runs, triangles) =
+            (&self.world.run_bounds[mesh as usize], self.scene.meshes[mesh as usize].triangles.len());
+        known.get_or_init(|| BoundsTree::over_runs(runs, triangles))
     }
 
     pub(crate) fn faces(&self, mesh: u32) -> &FaceTable {

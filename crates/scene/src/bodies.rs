@@ -10,8 +10,9 @@
 //! Cost: `O(triangles)` expected for the materials asked about.
 //! Source: as [`crate::topology`].
 
+use crate::disjoint_sets::DisjointSets;
 use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge};
-use crate::topology::{DisjointSets, position};
+use crate::topology::position;
 use crate::weld::Weld;
 use crate::{Corners, Mesh};
 use std::collections::BTreeMap;
@@ -28,12 +29,6 @@ pub enum Side {
     Behind,
     /// In front of it: the skin is wound inside out.
     InFront,
-}
-
-#[derive(Default)]
-struct Joints {
-    neighbours: Vec<[u32; 2]>,
-    broken: Vec<u32>,
 }
 
 /// The side of each triangle of the materials that are `wanted`; [`Side::None`] for the others.
@@ -57,19 +52,17 @@ pub fn sides(mesh: &Mesh, wanted: impl Fn(Option<u32>) -> bool, workers: &Worker
 fn sides_of(mesh: &Mesh, triangles: Vec<Corners>, workers: &Workers) -> Vec<Side> {
     let part = Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() };
     let weld = Weld::new(&part.positions, workers);
-    let visit = |joints: &mut Joints, _, _, uses: &[Use]| match uses {
-        [a, b] if a.reversed() != b.reversed() => joints.neighbours.push([a.face(), b.face()]),
-        _ => joints.broken.extend(uses.iter().map(|u| u.face())),
-    };
-    let joints = for_each_edge(&part, &weld.representative, Outlines::SoundTriangles, workers, visit);
-
     // Join the skins; one broken edge opens the whole skin.
     let count = part.triangles.len();
-    let mut skins = DisjointSets::new(count);
-    joints.iter().flat_map(|j| &j.neighbours).for_each(|&[a, b]| skins.join(a, b));
+    let skins = DisjointSets::new(count);
+    let visit = |broken: &mut Vec<u32>, _, _, uses: &[Use]| match uses {
+        [a, b] if a.reversed() != b.reversed() => skins.join(a.face(), b.face()),
+        _ => broken.extend(uses.iter().map(|u| u.face())),
+    };
+    let broken = for_each_edge(&part, &weld.representative, Outlines::SoundTriangles, workers, visit);
     let roots: Vec<usize> = (0..count as u32).map(|t| skins.find(t) as usize).collect();
     let mut open = vec![false; count];
-    joints.iter().flat_map(|j| &j.broken).for_each(|&t| open[roots[t as usize]] = true);
+    broken.iter().flatten().for_each(|&t| open[roots[t as usize]] = true);
 
     // Six times the volume of each, and the box round it.
     let center = part.bounds().center();

@@ -1,6 +1,6 @@
 //! The faces round each vertex, and which of them are smooth together.
 //!
-//! Idea: list the corners of faces at every vertex (a counting sort). At a vertex, each face is averaged with those
+//! Idea: list the corners of faces at every vertex (dealt into buckets of vertices, then a counting sort). At a vertex, each face is averaged with those
 //! that the rule allows: faces within the crease angle of *it*, or faces of its smoothing group. Faces that end up
 //! with the same sum share one normal.
 //!
@@ -10,14 +10,20 @@
 //!       direction into cells about 6° wide, and the cells are compared: at most 1536² pairs, whatever the mesh.
 //! Source: the crease angle is that of \[VRML97\]; smoothing groups are those of \[OBJ\].
 
+use crate::buckets::{Buckets, Source, shift_and_count};
 use crate::normals::{DEFAULT_NORMAL, FaceData, face_corner_list, unit};
+use crate::solidity::{Seen, Skins};
 use crate::weld::Weld;
-use crate::{Faces, Mesh};
+use crate::{Faces, Mesh, Solidity};
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 use vitral_exec::Workers;
 use vitral_math::func;
 
-/// Vertices that are worked on together.
-const BATCH: usize = 1 << 12;
+/// Vertices or corners that are worked on together, where each is little work.
+const PIECE: usize = 1 << 16;
 /// With more faces at one vertex, they are gathered into cells.
 const MANY: usize = 256;
 
@@ -44,109 +50,139 @@ impl Rule<'_> {
     }
 }
 
-/// Corners by vertex.
-struct Fans {
-    /// Where each vertex's corners begin in `corners`; one more than there are vertices.
-    starts: Vec<u32>,
-    /// Corners of faces, vertex by vertex, in the order of the faces.
-    corners: Vec<u32>,
-    /// For each corner its place in `corners`.
-    place: Vec<u32>,
-    /// For each corner its face; `None` if faces are triangles, three corners each.
-    face: Option<Vec<u32>>,
+/// Corners of faces, dealt by the welded vertex that they lie at.
+struct Corners<'a> {
+    list: &'a [u32],
+    weld: &'a Weld,
+    shift: u32,
 }
 
-impl Fans {
-    fn new(mesh: &Mesh, weld: &Weld) -> Self {
-        let list = face_corner_list(mesh);
-        let mut starts = vec![0u32; mesh.positions.len() + 1];
-        for &v in list {
-            starts[weld.representative[v as usize] as usize + 1] += 1;
-        }
-        for v in 0..mesh.positions.len() {
-            starts[v + 1] += starts[v];
-        }
-        let mut next = starts.clone();
-        let (mut corners, mut place) = (vec![0; list.len()], vec![0; list.len()]);
-        for (c, &v) in list.iter().enumerate() {
-            let at = &mut next[weld.representative[v as usize] as usize];
-            (corners[*at as usize], place[c]) = (c as u32, *at);
-            *at += 1;
-        }
-        let face = matches!(mesh.faces, Faces::Polygons { .. })
-            .then(|| (0..mesh.face_count()).flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect());
-        Self { starts, corners, place, face }
-    }
-
-    fn face(&self, corner: u32) -> usize {
-        self.face.as_ref().map_or(corner / 3, |face| face[corner as usize]) as usize
-    }
-
-    fn at(&self, v: usize) -> &[u32] {
-        &self.corners[self.starts[v] as usize..self.starts[v + 1] as usize]
+impl Corners<'_> {
+    fn vertex(&self, corner: u32) -> u32 {
+        self.weld.representative[self.list[corner as usize] as usize]
     }
 }
 
-/// The normals of a batch of vertices.
-#[derive(Default)]
+impl Source<u32> for Corners<'_> {
+    fn items(&self) -> usize {
+        self.list.len()
+    }
+
+    fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, u32)) {
+        for c in range {
+            put((self.vertex(c as u32) >> self.shift) as usize, c as u32);
+        }
+    }
+}
+
+/// What was made of the fans.
+pub(crate) struct FanNormals {
+    /// The normals: one for each vertex, or as `of_corner` says.
+    pub(crate) values: Vec<[f32; 3]>,
+    /// For each corner of a face, which normal it takes, if some vertex has two.
+    pub(crate) of_corner: Option<Vec<u32>>,
+    /// What was seen on the way, if faces are triangles.
+    pub(crate) solidity: Option<Solidity>,
+}
+
+/// The normals at a bucket's vertices.
 struct Batch {
+    seen: Seen,
     values: Vec<[f32; 3]>,
-    /// For each place in the batch's part of [`Fans::corners`], an index into `values`.
-    slots: Vec<u32>,
-    /// Whether some vertex has two normals.
-    split: bool,
+    /// Where each vertex's values begin; one more than there are vertices.
+    first: Vec<u32>,
 }
 
-/// Normals; with `None`, one for each vertex, else for each corner of a face an index into them.
-pub(crate) fn fan_normals(
-    mesh: &Mesh,
-    weld: &Weld,
-    faces: &FaceData,
-    rule: Rule,
-    workers: &Workers,
-) -> (Vec<[f32; 3]>, Option<Vec<u32>>) {
-    let fans = Fans::new(mesh, weld);
-    let vertices = mesh.positions.len();
-    let batches = workers.map(vertices.div_ceil(BATCH), |b| {
-        let mut batch = Batch::default();
-        let mut scratch = Scratch::default();
-        for v in b * BATCH..vertices.min((b + 1) * BATCH) {
-            let before = batch.values.len();
-            scratch.vertex(&fans, v, faces, rule, &mut batch);
-            batch.split |= batch.values.len() > before + 1;
+/// Makes the normals of all corners.
+pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, faces: &FaceData, rule: Rule, workers: &Workers) -> FanNormals {
+    let (list, vertices) = (face_corner_list(mesh), mesh.positions.len());
+    let (shift, count) = shift_and_count(vertices);
+    let source = Corners { list, weld, shift };
+    let face_of_corner: Option<Vec<u32>> = matches!(mesh.faces, Faces::Polygons { .. })
+        .then(|| (0..mesh.face_count()).flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect());
+    let skins = if face_of_corner.is_none() { Skins::new(mesh, weld) } else { None };
+    let dealt = Buckets::deal(&source, count, workers);
+    // For each corner, which of its vertex's values it takes; made when the first vertex with two is found.
+    let which: OnceLock<Vec<AtomicU32>> = OnceLock::new();
+    let batches = workers.map(count, |b| {
+        let (starts, corners) = by_vertex(&dealt, b, &source);
+        let mut scratch = Scratch::new(faces, face_of_corner.as_deref());
+        let (values, first) = (Vec::with_capacity(starts.len()), Vec::with_capacity(starts.len()));
+        let mut batch = Batch { seen: Seen::default(), values, first };
+        for (v, ends) in ((b << shift) as u32..).zip(starts.windows(2)) {
+            let first = batch.values.len();
+            batch.first.push(first as u32);
+            let corners = &corners[ends[0] as usize..ends[1] as usize];
+            scratch.vertex(corners, rule, &mut batch.values);
+            if let Some(skins) = &skins {
+                skins.vertex(&mut batch.seen, v, corners);
+            }
+            if batch.values.len() > first + 1 {
+                let which = which.get_or_init(|| list.iter().map(|_| AtomicU32::new(0)).collect());
+                for (&c, slot) in corners.iter().zip(&scratch.slots) {
+                    which[c as usize].store(slot - first as u32, Relaxed);
+                }
+            }
         }
+        batch.first.push(batch.values.len() as u32);
         batch
     });
+    drop(dealt);
+    let solidity = skins.map(|skins| skins.solidity(batches.iter().map(|b| &b.seen), workers));
+    let place = |v: u32| (&batches[(v >> shift) as usize], (v & ((1 << shift) - 1)) as usize);
 
     // One normal a vertex: no indices needed.
-    if !batches.iter().any(|b| b.split) {
-        let normal = |&v: &u32| {
-            let (v, batch) = (v as usize, &batches[v as usize / BATCH]);
-            let place = fans.starts[v] - fans.starts[v / BATCH * BATCH];
-            let some = fans.starts[v] < fans.starts[v + 1];
-            if some { batch.values[batch.slots[place as usize] as usize] } else { DEFAULT_NORMAL }
-        };
-        return (weld.representative.iter().map(normal).collect(), None);
-    }
+    let Some(which) = which.into_inner() else {
+        let mut normals = vec![DEFAULT_NORMAL; vertices];
+        workers.for_each_chunk(&mut normals, PIECE, |k, part| {
+            for (normal, &v) in part.iter_mut().zip(&weld.representative[k * PIECE..]) {
+                let (batch, at) = place(v);
+                if batch.first[at] < batch.first[at + 1] {
+                    *normal = batch.values[batch.first[at] as usize];
+                }
+            }
+        });
+        return FanNormals { values: normals, of_corner: None, solidity };
+    };
 
-    let mut first = 0;
-    let firsts: Vec<u32> = batches
+    let mut before = 0;
+    let before: Vec<u32> = batches
         .iter()
         .map(|b| {
-            first += b.values.len() as u32;
-            first - b.values.len() as u32
+            before += b.values.len() as u32;
+            before - b.values.len() as u32
         })
         .collect();
-    let list = face_corner_list(mesh);
-    let mut of_corner = vec![0; list.len()];
-    workers.for_each_chunk(&mut of_corner, 1 << 16, |k, part| {
+    let mut of_corner: Vec<u32> = which.into_iter().map(AtomicU32::into_inner).collect();
+    workers.for_each_chunk(&mut of_corner, PIECE, |k, part| {
         for (c, index) in part.iter_mut().enumerate() {
-            let c = (k << 16) + c;
-            let b = weld.representative[list[c] as usize] as usize / BATCH;
-            *index = firsts[b] + batches[b].slots[(fans.place[c] - fans.starts[b * BATCH]) as usize];
+            let v = source.vertex((k * PIECE + c) as u32);
+            let (batch, at) = place(v);
+            *index += before[(v >> shift) as usize] + batch.first[at];
         }
     });
-    (batches.into_iter().flat_map(|b| b.values).collect(), Some(of_corner))
+    let values = batches.into_iter().flat_map(|b| b.values).collect();
+    FanNormals { values, of_corner: Some(of_corner), solidity }
+}
+
+/// The corners of bucket `b` in order of their vertex, and where each vertex begins.
+fn by_vertex(dealt: &Buckets<u32>, b: usize, source: &Corners) -> (Vec<u32>, Vec<u32>) {
+    let base = (b << source.shift) as u32;
+    let mut starts = vec![0u32; (1 << source.shift) + 1];
+    for &c in dealt.pieces(b).flatten() {
+        starts[(source.vertex(c) - base) as usize + 1] += 1;
+    }
+    for v in 0..1 << source.shift {
+        starts[v + 1] += starts[v];
+    }
+    let mut next = starts.clone();
+    let mut corners = vec![0; starts[1 << source.shift] as usize];
+    for &c in dealt.pieces(b).flatten() {
+        let at = &mut next[(source.vertex(c) - base) as usize];
+        corners[*at as usize] = c;
+        *at += 1;
+    }
+    (starts, corners)
 }
 
 /// Faces that are treated as one: a face, or a cell of directions.
@@ -158,82 +194,91 @@ struct Member {
     sum: [f32; 3],
 }
 
-#[derive(Default)]
-struct Scratch {
+struct Scratch<'a> {
+    faces: &'a FaceData,
+    /// For each corner its face; `None` if faces are triangles, three corners each.
+    face_of_corner: Option<&'a [u32]>,
     members: Vec<Member>,
     /// Pairs of a sorting key and a position in the fan.
     keyed: Vec<(u32, u32)>,
+    /// For each corner, which value it takes.
     slots: Vec<u32>,
 }
 
-impl Scratch {
-    /// Appends the normals at one vertex and the slots of its corners to `batch`.
-    fn vertex(&mut self, fans: &Fans, v: usize, faces: &FaceData, rule: Rule, batch: &mut Batch) {
-        let corners = fans.at(v);
+impl<'a> Scratch<'a> {
+    fn new(faces: &'a FaceData, face_of_corner: Option<&'a [u32]>) -> Self {
+        Self { faces, face_of_corner, members: Vec::new(), keyed: Vec::new(), slots: Vec::new() }
+    }
+
+    /// Appends the normals at a vertex with these corners to `values`; `slots` says which each corner takes.
+    fn vertex(&mut self, corners: &[u32], rule: Rule, values: &mut Vec<[f32; 3]>) {
+        let (faces, face_of_corner) = (self.faces, self.face_of_corner);
+        let face = |c: u32| face_of_corner.map_or(c / 3, |face| face[c as usize]) as usize;
         let member = |&c: &u32| {
-            let (n, w) = (faces.normals[fans.face(c)], faces.weights[c as usize]);
+            let (n, w) = (faces.normals[face(c)], faces.weights[c as usize]);
             Member { direction: n, sum: n.map(|k| k * w) }
         };
         self.members.clear();
         self.members.extend(corners.iter().map(member));
         match rule {
             Rule::Groups(groups) => {
-                let group = corners.iter().map(|&c| groups[fans.face(c)]);
+                let group = corners.iter().map(|&c| groups[face(c)]);
                 self.keyed.clear();
                 self.keyed.extend(group.zip(0..));
-                self.by_group(batch);
+                self.by_group(values);
             }
             Rule::Angle { whole, half } if corners.len() > MANY => {
                 self.keyed.clear();
                 self.keyed.extend(self.members.iter().map(|m| cell(m.direction)).zip(0..));
                 let cells = self.merge_cells();
-                self.by_angle(whole, half, batch);
+                self.by_angle(whole, half, values);
                 // From cells back to faces.
-                let cell_slots = std::mem::take(&mut self.slots);
-                batch.slots.extend(cells.iter().map(|&c| cell_slots[c as usize]));
+                let of_cell = std::mem::take(&mut self.slots);
+                self.slots.extend(cells.iter().map(|&c| of_cell[c as usize]));
             }
-            Rule::Angle { whole, half } => {
-                self.by_angle(whole, half, batch);
-                batch.slots.append(&mut self.slots);
-            }
+            Rule::Angle { whole, half } => self.by_angle(whole, half, values),
         }
     }
 
-    /// Finds the normal of each member, with those within the angle; `slots` says which value of `batch` it is.
-    fn by_angle(&mut self, whole: f32, half: f32, batch: &mut Batch) {
-        let all = total(self.members.iter());
-        let first = batch.values.len();
+    /// Finds the normal of each member, with those within the angle.
+    fn by_angle(&mut self, whole: f32, half: f32, values: &mut Vec<[f32; 3]>) {
         self.slots.clear();
+        if self.members.is_empty() {
+            return;
+        }
+        let all = total(self.members.iter());
+        let first = values.len();
 
         // Faces within half the angle of their average are within the angle of each other: no pairs to compare.
         let near =
             |mean: &[f32; 3]| self.members.iter().all(|m| m.direction == [0.0; 3] || dot(*mean, m.direction) >= half);
         if let Some(mean) = unit(all).filter(near) {
-            batch.values.push(mean);
+            values.push(mean);
             self.slots.resize(self.members.len(), first as u32);
             return;
         }
         for m in &self.members {
             let near = self.members.iter().filter(|o| dot(m.direction, o.direction) >= whole);
             let normal = if m.direction == [0.0; 3] { unit(all) } else { unit(total(near)).or(Some(m.direction)) };
-            let slot = share(&mut batch.values, first, normal.unwrap_or(DEFAULT_NORMAL));
+            let slot = share(values, first, normal.unwrap_or(DEFAULT_NORMAL));
             self.slots.push(slot);
         }
     }
 
     /// One normal for each group (`keyed` holds the groups), one for each face without a group.
-    fn by_group(&mut self, batch: &mut Batch) {
+    fn by_group(&mut self, values: &mut Vec<[f32; 3]>) {
         self.keyed.sort_unstable();
-        let (first_value, first_slot) = (batch.values.len(), batch.slots.len());
+        let first_value = values.len();
         let few = self.keyed.len() <= MANY;
-        batch.slots.resize(first_slot + self.keyed.len(), 0);
+        self.slots.clear();
+        self.slots.resize(self.keyed.len(), 0);
         for group in self.keyed.chunk_by(|a, b| a.0 == b.0 && a.0 != 0) {
             let members = || group.iter().map(|k| &self.members[k.1 as usize]);
             let direction = members().map(|m| m.direction).find(|d| *d != [0.0; 3]);
             let normal = unit(total(members())).or(direction).unwrap_or(DEFAULT_NORMAL);
-            let from = if few { first_value } else { batch.values.len() };
-            let slot = share(&mut batch.values, from, normal);
-            group.iter().for_each(|k| batch.slots[first_slot + k.1 as usize] = slot);
+            let from = if few { first_value } else { values.len() };
+            let slot = share(values, from, normal);
+            group.iter().for_each(|k| self.slots[k.1 as usize] = slot);
         }
     }
 

@@ -22,6 +22,11 @@ pub(crate) const MAX_FACES: usize = 1 << 31;
 pub(crate) struct Use(u64);
 
 impl Use {
+    /// The side of `face` between a vertex and `higher`; `reversed` if it runs from there.
+    pub(crate) fn new(higher: u32, face: u32, reversed: bool) -> Self {
+        Self(u64::from(higher) << 32 | u64::from(face << 1 | u32::from(reversed)))
+    }
+
     /// The face (or triangle).
     pub(crate) fn face(self) -> u32 {
         (self.0 as u32) >> 1
@@ -127,13 +132,18 @@ pub(crate) fn for_each_edge<R: Default + Send>(
         let mut result = R::default();
         for (v, range) in starts.windows(2).enumerate() {
             let around = &mut uses[range[0] as usize..range[1] as usize];
-            around.sort_unstable_by_key(|u| u.0);
-            for edge in around.chunk_by(|x, y| x.higher() == y.higher()) {
-                visit(&mut result, ((b << shift) + v) as u32, edge[0].higher(), edge);
-            }
+            edges_at(around, |higher, edge| visit(&mut result, ((b << shift) + v) as u32, higher, edge));
         }
         result
     })
+}
+
+/// Calls `visit(higher vertex, uses)` for every edge among the uses at one lower vertex.
+pub(crate) fn edges_at(uses: &mut [Use], mut visit: impl FnMut(u32, &[Use])) {
+    uses.sort_unstable_by_key(|u| u.0);
+    for edge in uses.chunk_by(|x, y| x.higher() == y.higher()) {
+        visit(edge[0].higher(), edge);
+    }
 }
 
 /// The uses of bucket `b` in order of their lower vertex, and where each vertex begins.

@@ -10,8 +10,8 @@
 //! Cost: constant; linear in the points where points are fitted.
 //! Source: elementary geometry. The names of the views are those of technical drawing.
 
-use crate::{Camera, Projection};
-use vitral_math::{Aabb, DVec3, func};
+use crate::{Camera, Instance, Projection, TRIANGLES_A_RUN, World};
+use vitral_math::{Aabb, DMat4, DVec3, func};
 
 /// The part of the picture's width or height that a framed box fills.
 pub const FILL: f64 = 0.9;
@@ -163,63 +163,113 @@ pub fn frame(bounds: &Aabb, view: View, up: Axis, lens: Lens, aspect: f64) -> Ca
 /// box fills `fill` (0 to 1, more zooms in) of the picture. An empty or single-point box is shown as a unit sphere's.
 pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Camera {
     let bounds = presentable(bounds);
-    fit(bounds.corners(), &bounds, eye, view_up, lens, aspect, fill)
+    let fit = Fit::new(&bounds, eye, view_up, lens, aspect, fill);
+    let need = bounds.corners().into_iter().fold(0.0, |most, corner| fit.need(corner).max(most));
+    fit.camera(need)
 }
 
-/// As [`frame_from`], fitting `points` (world space; those that are not finite are passed over) instead of the
-/// corners of `bounds`, the box round them: closer where the model leaves the corners of its box empty.
-pub fn frame_points(
-    points: impl IntoIterator<Item = DVec3>,
-    bounds: &Aabb,
-    eye: DVec3,
-    view_up: DVec3,
-    lens: Lens,
-    aspect: f64,
-    fill: f64,
-) -> Camera {
-    let visible = presentable(bounds);
-    if visible != *bounds {
-        return frame_from(bounds, eye, view_up, lens, aspect, fill);
+/// As [`frame_from`], fitting all finite points of a world instead of the corners of the box round it: closer where the
+/// model leaves the corners of its box empty.
+///
+/// What a point needs is convex, so no point of a box needs more than its neediest corner: runs of triangles are looked
+/// at neediest box first, until no box can need more than a point that was seen.
+pub fn frame_world(world: &World, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Camera {
+    if presentable(&world.bounds) != world.bounds {
+        return frame_from(&world.bounds, eye, view_up, lens, aspect, fill);
     }
-    fit(points.into_iter().filter(|p| p.is_finite()), bounds, eye, view_up, lens, aspect, fill)
-}
-
-/// Fits `points` round the middle of `bounds`.
-fn fit(
-    points: impl IntoIterator<Item = DVec3>,
-    bounds: &Aabb,
-    eye: DVec3,
-    view_up: DVec3,
-    lens: Lens,
-    aspect: f64,
-    fill: f64,
-) -> Camera {
-    let fill = if fill.is_finite() && fill > 0.0 { fill } else { FILL };
-    let (aspect, angle) = (sane_aspect(aspect), lens.view_angle());
-    let center = bounds.center();
-    let eye = eye.try_normalize().unwrap_or(DVec3::Z);
-    let mut camera = Camera {
-        position: center + eye,
-        focal_point: center,
-        view_up,
-        projection: Projection::Perspective { view_angle: angle },
-        clip: None,
+    let fit = Fit::new(&world.bounds, eye, view_up, lens, aspect, fill);
+    let mut most = 0.0f64;
+    let mut include = |instance: &Instance, vertices: &[u32]| {
+        for &v in vertices {
+            let p = instance.mesh.positions[v as usize];
+            let p = instance.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from)));
+            if p.is_finite() {
+                most = most.max(fit.need(p));
+            }
+        }
+        most
     };
 
-    // The points as seen from the middle of the box: to the right, up, and towards the eye. All on the line of view
-    // would need no room at all: keep some.
-    let view = camera.view_from_world();
-    let (least, seen) = (1e-3 * bounds.diagonal(), points.into_iter().map(|p| view.transform_vector3(p - center)));
-    if lens == Lens::Parallel {
-        let half = seen.fold(least, |h, p| h.max(p.y.abs()).max(p.x.abs() / aspect));
-        camera.position = center + eye * bounds.diagonal();
-        camera.projection = Projection::Parallel { height: 2.0 * half / fill };
-        return camera;
+    let mut runs = Vec::new();
+    let mut seen = 0.0;
+    for instance in &world.instances {
+        include(instance, instance.mesh.lines.as_flattened());
+        seen = include(instance, &instance.mesh.points);
+        for (run, bounds) in world.run_bounds[instance.mesh_index as usize].iter().enumerate() {
+            if !bounds.is_empty() {
+                let corners = bounds.corners().map(|c| fit.need(instance.world_from_model.transform_point3(c)));
+                runs.push((corners.into_iter().fold(0.0, f64::max), instance, run));
+            }
+        }
     }
-    let (high, wide) = (1.0 / (func::tan(angle * 0.5) * fill), 1.0 / (func::tan(angle * 0.5) * fill * aspect));
-    let distance = seen.fold(least * high, |d, p| d.max(p.z + (p.y.abs() * high).max(p.x.abs() * wide)));
-    camera.position = center + eye * distance.max(least);
-    camera
+    runs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (need, instance, run) in runs {
+        // A hair more, for what rounding may do to corners.
+        if need * (1.0 + 1e-9) < seen {
+            break;
+        }
+        let triangles = instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
+        seen = include(instance, triangles.as_flattened());
+    }
+    fit.camera(seen)
+}
+
+/// A camera that looks at the middle of a box, at a distance that is still to be found.
+struct Fit {
+    camera: Camera,
+    lens: Lens,
+    /// From the middle to the eye, unit.
+    eye: DVec3,
+    view_from_world: DMat4,
+    /// What a point's width and height need, of the distance or of the picture's height.
+    per_width: f64,
+    per_height: f64,
+    /// All points on the line of view would need no room at all: this is kept.
+    least: f64,
+    diagonal: f64,
+    fill: f64,
+}
+
+impl Fit {
+    fn new(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Self {
+        let fill = if fill.is_finite() && fill > 0.0 { fill } else { FILL };
+        let (aspect, angle) = (sane_aspect(aspect), lens.view_angle());
+        let eye = eye.try_normalize().unwrap_or(DVec3::Z);
+        let center = bounds.center();
+        let camera = Camera {
+            position: center + eye,
+            focal_point: center,
+            view_up,
+            projection: Projection::Perspective { view_angle: angle },
+            clip: None,
+        };
+        let half = func::tan(angle * 0.5) * fill;
+        let (per_width, per_height) =
+            if lens == Lens::Parallel { (1.0 / aspect, 1.0) } else { (1.0 / (half * aspect), 1.0 / half) };
+        let diagonal = bounds.diagonal();
+        let view_from_world = camera.view_from_world();
+        Self { camera, lens, eye, view_from_world, per_width, per_height, least: 1e-3 * diagonal, diagonal, fill }
+    }
+
+    /// How far from the middle the eye must be to see `point` (world space), or half the height of a parallel picture.
+    fn need(&self, point: DVec3) -> f64 {
+        // As seen from the middle of the box: to the right, up, and towards the eye.
+        let p = self.view_from_world.transform_vector3(point - self.camera.focal_point);
+        let flat = (p.y.abs() * self.per_height).max(p.x.abs() * self.per_width);
+        if self.lens == Lens::Parallel { flat } else { p.z + flat }
+    }
+
+    /// The camera that gives the neediest point its room.
+    fn camera(mut self, need: f64) -> Camera {
+        if self.lens == Lens::Parallel {
+            self.camera.position = self.camera.focal_point + self.eye * self.diagonal;
+            self.camera.projection = Projection::Parallel { height: 2.0 * need.max(self.least) / self.fill };
+        } else {
+            let distance = need.max(self.least * self.per_height).max(self.least);
+            self.camera.position = self.camera.focal_point + self.eye * distance;
+        }
+        self.camera
+    }
 }
 
 /// A camera for pictures in which the model turns about `up` through the middle of the box: the framed view of the box
@@ -310,14 +360,15 @@ mod tests {
     #[test]
     fn fitting_the_points_of_a_ball_shows_it_larger_than_its_box_would() {
         let ball = crate::builtin::solids::sphere(1.0, 64, 32);
-        let points = || ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+        let points: Vec<_> = ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let bounds = ball.bounds();
+        let world = World::new(&crate::Scene::from_mesh(ball)).unwrap();
         for lens in [Lens::default(), Lens::Parallel] {
             let (eye, up) = View::Iso.eye_and_up(Axis::PlusY);
-            let camera = frame_points(points(), &bounds, eye, up, lens, 1.0, FILL);
+            let camera = frame_world(&world, eye, up, lens, 1.0, FILL);
             let clip = camera.transform(1.0, depth_range(&camera, &bounds)).clip_from_world();
-            let reach =
-                points().map(|p| clip * p.extend(1.0)).fold(0.0f64, |r, p| r.max(p.x.abs() / p.w).max(p.y.abs() / p.w));
+            let seen = points.iter().map(|p| clip * p.extend(1.0));
+            let reach = seen.fold(0.0f64, |r, p| r.max(p.x.abs() / p.w).max(p.y.abs() / p.w));
             assert!((reach - FILL).abs() < 1e-6, "{lens:?}: {reach}");
         }
     }

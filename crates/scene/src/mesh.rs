@@ -7,8 +7,13 @@
 //! corners is cut into exactly `n - 2` triangles (its *facets*), in order, so that triangle numbers follow from
 //! corner numbers.
 
+use crate::KnownSolidity;
 use std::ops::Range;
+use vitral_exec::Workers;
 use vitral_math::{Aabb, DVec3};
+
+/// Consecutive triangles that share a box of [`Mesh::run_bounds`].
+pub const TRIANGLES_A_RUN: usize = 256;
 
 /// Three indices, one a corner of a triangle.
 pub type Corners = [u32; 3];
@@ -40,6 +45,9 @@ pub struct Mesh {
     pub line_material: Option<u32>,
     /// Smoothing group of each face (OBJ; 0 = none), if the file has any: faces of one group are smooth together.
     pub smoothing_groups: Option<Vec<u32>>,
+    /// What was found out about the surface while normals were made; counts as long as positions and triangles stay as
+    /// they were then.
+    pub solidity: Option<KnownSolidity>,
 }
 
 /// Values at corners.
@@ -132,27 +140,40 @@ impl Mesh {
         }
     }
 
-    /// Which vertices some triangle, line or point uses.
-    pub fn used_vertices(&self) -> Vec<bool> {
-        let mut used = vec![false; self.positions.len()];
-        let indices = self.triangles.as_flattened().iter().chain(self.lines.as_flattened()).chain(&self.points);
-        for &i in indices {
-            if let Some(used) = used.get_mut(i as usize) {
-                *used = true;
+    /// The boxes round the finite corners of each [`TRIANGLES_A_RUN`] triangles in order, model space.
+    pub fn run_bounds(&self, workers: &Workers) -> Vec<Aabb> {
+        const BATCH: usize = 64;
+        let mut boxes = vec![Aabb::EMPTY; self.triangles.len().div_ceil(TRIANGLES_A_RUN)];
+        workers.for_each_chunk(&mut boxes, BATCH, |batch, boxes| {
+            let runs = self.triangles[batch * BATCH * TRIANGLES_A_RUN..].chunks(TRIANGLES_A_RUN);
+            for (of_run, run) in boxes.iter_mut().zip(runs) {
+                *of_run = self.bounds_of(run.as_flattened());
             }
-        }
-        used
+        });
+        boxes
     }
 
     /// The box round all finite positions that something uses, model space: a stray vertex is not to be seen.
     pub fn bounds(&self) -> Aabb {
+        self.bounds_from(&self.run_bounds(&Workers::single()))
+    }
+
+    /// [`Self::bounds`] where the result of [`Self::run_bounds`] is known.
+    pub fn bounds_from(&self, run_bounds: &[Aabb]) -> Aabb {
+        let free = self.bounds_of(self.lines.as_flattened()).union(&self.bounds_of(&self.points));
+        run_bounds.iter().fold(free, |all, run| all.union(run))
+    }
+
+    /// The box round the finite ones among these vertices.
+    fn bounds_of(&self, vertices: &[u32]) -> Aabb {
         // f32 throughout: exact, and quicker than widening each point.
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for (p, _) in self.positions.iter().zip(self.used_vertices()).filter(|(_, used)| *used) {
-            if p.iter().all(|c| c.is_finite()) {
+        for p in vertices.iter().filter_map(|&i| self.positions.get(i as usize)) {
+            // 0 but for NaN and infinity, which make NaN.
+            if (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]) == 0.0 {
                 for k in 0..3 {
-                    min[k] = min[k].min(p[k]);
-                    max[k] = max[k].max(p[k]);
+                    min[k] = if p[k] < min[k] { p[k] } else { min[k] };
+                    max[k] = if p[k] > max[k] { p[k] } else { max[k] };
                 }
             }
         }
@@ -169,11 +190,14 @@ impl Mesh {
     /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
     pub fn check(&self) -> Result<(), String> {
         let vertices = self.positions.len();
-        let in_range =
-            |what: &str, indices: &[u32], count: usize| match indices.iter().position(|&i| i as usize >= count) {
-                Some(k) => Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k])),
-                None => Ok(()),
-            };
+        let in_range = |what: &str, indices: &[u32], count: usize| {
+            // The greatest is found many at a time; which one is bad only matters where one is.
+            if indices.iter().max().is_none_or(|&greatest| (greatest as usize) < count) {
+                return Ok(());
+            }
+            let k = indices.iter().position(|&i| i as usize >= count).unwrap_or_default();
+            Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k]))
+        };
         in_range("triangle corner", self.triangles.as_flattened(), vertices)?;
         in_range("line end", self.lines.as_flattened(), vertices)?;
         in_range("point", &self.points, vertices)?;

@@ -10,18 +10,21 @@
 //! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
 //! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
 //! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see `corner_fans`).
-//! Source: [Gouraud 1971] (the average); [Thürmer & Wüthrich 1998] (the angle as weight); Newell's normal after
-//! [Sutherland, Sproull & Schumacker 1974]; arc tangent: [Abramowitz & Stegun 1964], 4.4.49.
+//! Source: [Gouraud 1971] (the average); [Thürmer & Wüthrich 1998] (the angle as weight).
 //!
 //! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial normal. Where the
 //! faces of a vertex cancel each other (two sheets back to back, smoothed together), it gets its first face's normal.
 
+mod faces;
+
 use crate::corner_fans::{Rule, fan_normals};
 use crate::weld::Weld;
-use crate::{Attribute, Corners, Faces, Mesh};
-use std::f64::consts::{FRAC_PI_2, PI};
+use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solidity};
+use faces::{face_data, outline_normal};
+use std::f64::consts::PI;
 use vitral_exec::Workers;
-use vitral_math::DVec3;
+
+pub(crate) use faces::FaceData;
 
 /// The normal of a vertex without any face that has one.
 pub(crate) const DEFAULT_NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
@@ -39,7 +42,8 @@ pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
     if mesh.triangles.is_empty() || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing)) {
         return;
     }
-    let made = all_normals(mesh, crease_angle, workers);
+    let (made, solidity) = all_normals(mesh, crease_angle, workers);
+    mesh.solidity = solidity.map(|solidity| KnownSolidity::new(mesh, solidity, workers));
     mesh.normals = Some(match mesh.normals.take() {
         None => made,
         Some(given) => fill_gaps(given, made, &mesh.triangles, missing),
@@ -62,14 +66,6 @@ pub fn face_normals(mesh: &Mesh, workers: &Workers) -> Vec<[f32; 3]> {
     normals
 }
 
-/// What the faces say to their vertices.
-pub(crate) struct FaceData {
-    /// Unit normal of each face; zero without area.
-    pub(crate) normals: Vec<[f32; 3]>,
-    /// Angle of the face at each of its corners, radians.
-    pub(crate) weights: Vec<f32>,
-}
-
 /// The outlines of all faces, one after the other.
 pub(crate) fn face_corner_list(mesh: &Mesh) -> &[u32] {
     match &mesh.faces {
@@ -86,138 +82,19 @@ fn first_corner(mesh: &Mesh, f: usize) -> usize {
     }
 }
 
-fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> Attribute<[f32; 3]> {
+fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solidity>) {
     let weld = Weld::new(&mesh.positions, workers);
     let faces = face_data(mesh, workers);
     let rule = match &mesh.smoothing_groups {
         Some(groups) if groups.len() == mesh.face_count() => Rule::Groups(groups),
         _ if crease_angle.is_nan() || crease_angle >= PI => {
-            return Attribute::per_vertex(smooth(mesh, &weld, &faces, workers));
+            return (Attribute::per_vertex(smooth(mesh, &weld, &faces, workers)), None);
         }
         _ => Rule::within(crease_angle),
     };
-    match fan_normals(mesh, &weld, &faces, rule, workers) {
-        (values, None) => Attribute::per_vertex(values),
-        (values, Some(of_corner)) => Attribute { values, corners: Some(triangle_corners(mesh, &of_corner, workers)) },
-    }
-}
-
-/// Normals and angles of all faces.
-fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
-    let faces = mesh.face_count();
-    let mut normals = vec![[0.0; 3]; faces];
-    let mut weights = vec![0.0; face_corner_list(mesh).len()];
-
-    // Cut both arrays at the same faces, so that each batch writes to its own piece of both.
-    let mut batches = Vec::new();
-    let mut rest = weights.as_mut_slice();
-    for (batch, normals) in normals.chunks_mut(BATCH).enumerate() {
-        let first = batch * BATCH;
-        let corners = first_corner(mesh, first + normals.len()) - first_corner(mesh, first);
-        let (weights, after) = rest.split_at_mut(corners);
-        rest = after;
-        batches.push((first, normals, weights));
-    }
-    workers.for_each(batches, |(first, normals, mut weights)| {
-        for (k, normal) in normals.iter_mut().enumerate() {
-            let outline = mesh.face_corners(first + k);
-            let (mine, after) = weights.split_at_mut(outline.len());
-            *normal = measure(mesh, outline, mine).as_vec3().to_array();
-            weights = after;
-        }
-    });
-    FaceData { normals, weights }
-}
-
-/// The normal of one outline, and its interior angles into `angles`; all zero without area.
-fn measure(mesh: &Mesh, outline: &[u32], angles: &mut [f32]) -> DVec3 {
-    if let (&[a, b, c], [at_a, at_b, at_c]) = (outline, &mut *angles) {
-        let [a, b, c] = [a, b, c].map(|i| point(mesh, i));
-        let (normal, of) = measure_triangle(b - a, c - a);
-        (*at_a, *at_b, *at_c) = (of[0], of[1], of[2]);
-        return normal;
-    }
-    let normal = outline_normal(mesh, outline);
-    if normal == DVec3::ZERO {
-        return normal;
-    }
-    let n = outline.len();
-    for k in 0..n {
-        let at = point(mesh, outline[k]);
-        let forth = point(mesh, outline[if k + 1 == n { 0 } else { k + 1 }]) - at;
-        let back = point(mesh, outline[if k == 0 { n - 1 } else { k - 1 }]) - at;
-        let cross = forth.cross(back);
-        let angle = angle_from(cross.length(), forth.dot(back));
-        let reflex = cross.dot(normal) < 0.0;
-        angles[k] = if reflex { 2.0 * PI - angle } else { angle } as f32;
-    }
-    normal
-}
-
-/// The same for a triangle given by two sides from its first corner: all three angles share one cross product.
-fn measure_triangle(ab: DVec3, ac: DVec3) -> (DVec3, [f32; 3]) {
-    let cross = ab.cross(ac);
-    let length = cross.length();
-    if !has_area(length, ab.length_squared().max(ac.length_squared())) {
-        return (DVec3::ZERO, [0.0; 3]);
-    }
-    let at_a = angle_from(length, ab.dot(ac));
-    let at_b = angle_from(length, ab.dot(ab - ac));
-    let at_c = (PI - at_a - at_b).max(0.0);
-    (cross / length, [at_a as f32, at_b as f32, at_c as f32])
-}
-
-/// Newell's normal as a fan of cross products from the first corner, unit; zero without area or with bad coordinates.
-fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
-    let origin = point(mesh, outline[0]);
-    let (mut sum, mut longest) = (DVec3::ZERO, 0.0f64);
-    let mut previous = point(mesh, outline[1]) - origin;
-    for &corner in &outline[2..] {
-        let next = point(mesh, corner) - origin;
-        sum += previous.cross(next);
-        longest = longest.max(previous.length_squared()).max(next.length_squared());
-        previous = next;
-    }
-    let length = sum.length();
-    if has_area(length, longest) { sum / length } else { DVec3::ZERO }
-}
-
-/// Whether a normal of this length, before it is made unit, means anything, for the largest squared distance between
-/// corners. A sliver only as wide as the rounding of its coordinates has no direction worth averaging.
-fn has_area(length: f64, longest_squared: f64) -> bool {
-    length.is_finite() && length > 1e-7 * longest_squared
-}
-
-fn point(mesh: &Mesh, i: u32) -> DVec3 {
-    let [x, y, z] = mesh.positions[i as usize];
-    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
-}
-
-/// The angle in `0..=π` whose sine and cosine are proportional to `y >= 0` and `x`; 0 for the zero vector. Absolute
-/// error below 2e-8.
-fn angle_from(y: f64, x: f64) -> f64 {
-    let (low, high) = (y.min(x.abs()), y.max(x.abs()));
-    if high == 0.0 {
-        return 0.0;
-    }
-    let t = low / high;
-    let t2 = t * t;
-    let mut p = 0.002_866_225_7;
-    for c in [
-        -0.016_165_736_7,
-        0.042_909_613_8,
-        -0.075_289_640_0,
-        0.106_562_639_3,
-        -0.142_088_994_4,
-        0.199_935_508_5,
-        -0.333_331_452_8,
-        1.0,
-    ] {
-        p = p * t2 + c;
-    }
-    let first_octant = p * t;
-    let quadrant = if y > x.abs() { FRAC_PI_2 - first_octant } else { first_octant };
-    if x < 0.0 { PI - quadrant } else { quadrant }
+    let made = fan_normals(mesh, &weld, &faces, rule, workers);
+    let corners = made.of_corner.map(|of_corner| triangle_corners(mesh, &of_corner, workers));
+    (Attribute { values: made.values, corners }, made.solidity)
 }
 
 /// One normal per vertex, all faces averaged.

@@ -1,16 +1,14 @@
-//! Topology: is the surface closed, does it have an inside, and is the inside inside?
+//! Topology: is the surface closed, and what is it made of?
 //!
 //! Idea: after welding, count the triangles at every edge. One: the surface has a boundary there. Two: it goes on.
-//! More: it branches. If every edge has exactly two triangles and they run along it in opposite directions, the
-//! surface is the skin of solids, and back faces can never be seen from outside; but only if the triangles look
-//! outwards, which the sign of the enclosed volume tells, body by body.
+//! More: it branches.
 //!
 //! In:   a mesh, model space. Faces with more than three corners count as triangulated.
-//! Out:  [`Topology`] for the reader of `vitral info`, [`Solidity`] for back-face culling.
-//! Cost: `O(triangles)` expected; about 50 ms for a million triangles on two cores.
-//! Source: [Mäntylä 1988] (manifolds, Euler's formula); [Mirtich 1996] and others for the volume as a sum of signed
-//! tetrahedra; union-find after [Tarjan 1975].
+//! Out:  [`Topology`] for the reader of `vitral info`.
+//! Cost: `O(triangles)` expected.
+//! Source: [Mäntylä 1988] (manifolds, Euler's formula).
 
+use crate::disjoint_sets::DisjointSets;
 use crate::edge_table::{MAX_FACES, Outlines, for_each_edge};
 use crate::weld::Weld;
 use crate::{Mesh, buckets};
@@ -115,75 +113,9 @@ pub fn is_closed(mesh: &Mesh, workers: &Workers) -> bool {
     !for_each_edge(mesh, &weld.representative, Outlines::AllTriangles, workers, visit).contains(&true)
 }
 
-/// What back-face culling must know. Triangles with two corners at one position are left out: they are invisible.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Solidity {
-    /// Every edge has exactly two triangles.
-    pub closed: bool,
-    /// Neighbours run along their common edge in opposite directions.
-    pub consistent: bool,
-    /// Every body encloses a positive volume: its triangles are counter-clockwise seen from outside. Only a closed and
-    /// consistent mesh has this. A hollow solid, whose inner skin counts as a body of negative volume, has it not.
-    pub outward: bool,
-}
-
-impl Solidity {
-    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges.
-    pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
-        if mesh.triangles.is_empty() || mesh.triangles.len() >= MAX_FACES {
-            return Self::default();
-        }
-        let weld = Weld::new(&mesh.positions, workers);
-        let visit = |skin: &mut Skin, _, _, uses: &[crate::edge_table::Use]| match uses {
-            [a, b] => {
-                skin.twisted |= a.reversed() == b.reversed();
-                skin.neighbours.push([a.face(), b.face()]);
-            }
-            _ => skin.open = true,
-        };
-        let skins = for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
-        let some = skins.iter().any(|s| !s.neighbours.is_empty());
-        let closed = some && !skins.iter().any(|s| s.open);
-        let consistent = !skins.iter().any(|s| s.twisted);
-        let outward = closed && consistent && {
-            let mut bodies = DisjointSets::new(mesh.triangles.len());
-            skins.iter().flat_map(|s| &s.neighbours).for_each(|&[a, b]| bodies.join(a, b));
-            all_outward(mesh, &mut bodies)
-        };
-        Self { closed, consistent, outward }
-    }
-
-    /// Whether back faces can never be seen from a point outside the mesh.
-    pub fn is_solid(&self) -> bool {
-        self.closed && self.consistent && self.outward
-    }
-}
-
-#[derive(Default)]
-struct Skin {
-    open: bool,
-    twisted: bool,
-    neighbours: Vec<[u32; 2]>,
-}
-
-/// Whether no body has a negative volume. A flat body (two sheets back to back) has none at all and passes.
-fn all_outward(mesh: &Mesh, bodies: &mut DisjointSets) -> bool {
-    let center = mesh.bounds().center();
-    let mut volumes = vec![[0.0f64; 2]; mesh.triangles.len()];
-    for (t, corners) in mesh.triangles.iter().enumerate() {
-        // Six times the tetrahedron from the centre to the triangle; with its magnitude, to know what rounding may do.
-        let [a, b, c] = corners.map(|i| position(mesh, i) - center);
-        let volume = a.dot(b.cross(c));
-        let body = &mut volumes[bodies.find(t as u32) as usize];
-        body[0] += volume;
-        body[1] += volume.abs();
-    }
-    volumes.iter().all(|[signed, magnitude]| *signed >= -1e-9 * magnitude)
-}
-
 /// Number of bodies, of vertices in use, and of vertices in use by triangles with three different corners.
 fn bodies(mesh: &Mesh, weld: &Weld) -> (usize, usize, usize) {
-    let mut sets = DisjointSets::new(mesh.positions.len());
+    let sets = DisjointSets::new(mesh.positions.len());
     let mut used = vec![0u8; mesh.positions.len()];
     for corners in &mesh.triangles {
         let [a, b, c] = corners.map(|i| weld.representative[i as usize]);
@@ -244,35 +176,10 @@ pub(crate) fn position(mesh: &Mesh, i: u32) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Union-find; the root of a set is its lowest member, so that results do not depend on the order of joining.
-pub(crate) struct DisjointSets {
-    parent: Vec<u32>,
-}
-
-impl DisjointSets {
-    pub(crate) fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    pub(crate) fn find(&mut self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            // Halve the path on the way.
-            let grandparent = self.parent[self.parent[x as usize] as usize];
-            self.parent[x as usize] = grandparent;
-            x = grandparent;
-        }
-        x
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Solidity;
     use crate::builtin::solids;
 
     fn of(mesh: &Mesh) -> Topology {

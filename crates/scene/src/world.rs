@@ -2,6 +2,7 @@
 
 use crate::{Camera, Mesh, Scene};
 use std::sync::Arc;
+use vitral_exec::Workers;
 use vitral_light::Light;
 use vitral_math::{Aabb, DMat4, DVec3};
 
@@ -37,6 +38,8 @@ pub struct World {
     pub cameras: Vec<Camera>,
     /// The box round all instances.
     pub bounds: Aabb,
+    /// For each mesh of the scene, the boxes round its runs of triangles ([`Mesh::run_bounds`]), model space.
+    pub run_bounds: Vec<Vec<Aabb>>,
     /// Number of surfaces (faces of all instances).
     pub surface_count: u32,
     /// Number of facets (triangles of all instances).
@@ -73,8 +76,14 @@ pub enum WorldError {
 impl World {
     /// Walks the graph from its roots. Bounds of each mesh are computed once, however many instances it has.
     pub fn new(scene: &Scene) -> Result<Self, WorldError> {
-        let bounds: Vec<Aabb> = scene.meshes.iter().map(|m| m.bounds()).collect();
-        let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, ..Self::default() };
+        Self::with_workers(scene, &Workers::single())
+    }
+
+    /// [`Self::new`] with all of `workers`.
+    pub fn with_workers(scene: &Scene, workers: &Workers) -> Result<Self, WorldError> {
+        let run_bounds: Vec<Vec<Aabb>> = scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
+        let bounds: Vec<Aabb> = scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();
+        let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
         let mut seen = vec![false; scene.nodes.len()];
         // A stack of our own: a deep graph must not overflow the thread's.
         let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();

@@ -113,7 +113,8 @@ proptest! {
         let points: Vec<DVec3> = mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let finite = || points.iter().copied().filter(|p| p.is_finite());
         let bounds = mesh.bounds();
-        let used = || points.iter().zip(mesh.used_vertices()).filter(|(_, used)| *used).map(|(p, _)| *p);
+        let indices = || mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+        let used = || indices().map(|&i| points[i as usize]);
         prop_assert_eq!(bounds, Aabb::from_points(used()));
         prop_assert!(used().filter(|p| p.is_finite()).all(|p| bounds.contains(p)));
         let (obb, sphere) = (Obb::from_points(&points), Sphere::from_points(&points));

@@ -116,7 +116,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
     settings.visibility = entrant.algorithm.name.to_owned();
     settings.acceleration = entrant.acceleration.map(|(_, value)| value);
     let viewport = settings.check()?;
-    let session = Session::new(Arc::clone(task.scene))?;
+    let session = Session::with_workers(Arc::clone(task.scene), &execution.workers)?;
     let budget = execution.budget.renewed().with_time_limit(task.time_limit).with_memory_limit(task.memory_limit);
     let execution = Execution { budget, ..execution.clone() };
     let samples = settings.samples as usize;

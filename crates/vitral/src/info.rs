@@ -226,7 +226,7 @@ pub struct CameraInfo {
 /// # Errors
 /// A scene graph that is not sound.
 pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
-    let world = World::new(scene).map_err(vitral_render::Error::from)?;
+    let world = World::with_workers(scene, workers).map_err(vitral_render::Error::from)?;
     let shown = |index: usize| world.instances.iter().filter(|i| i.mesh_index as usize == index).count();
     let mesh = |(index, mesh): (usize, &std::sync::Arc<Mesh>)| MeshInfo::of(mesh, shown(index), workers);
     let meshes: Vec<MeshInfo> = scene.meshes.iter().enumerate().map(mesh).collect();

@@ -8,8 +8,11 @@ use std::sync::Arc;
 use vitral_io::{NoFiles, Resolver};
 use vitral_scene::{Mesh, builtin, lab, normals};
 
-/// Meshes with fewer triangles get their normals side by side, larger ones share the threads one after the other.
+/// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by side; larger ones share the
+/// threads one after the other.
 const SMALL_MESH: usize = 1 << 16;
+/// Below this, sharing costs more than it saves.
+const TINY_MESH: usize = 1 << 11;
 
 /// How a model is read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,12 +68,17 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) ->
         return Ok(scene);
     }
     let bytes = files::read(path, options.max_file_bytes)?;
-    if name == "-" {
-        return load_bytes(&bytes, "standard input", &NoFiles, options, workers);
-    }
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
-    load_bytes(&bytes, &name, &resolver, options, workers)
+    let mut scene = if name == "-" {
+        vitral_io::load(&bytes, "standard input", &NoFiles, workers)?
+    } else {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+        vitral_io::load(&bytes, &name, &resolver, workers)?
+    };
+    // The file is not needed any more, and normals take room.
+    drop(bytes);
+    finish(&mut scene, options, workers);
+    Ok(scene)
 }
 
 /// Reads a model from memory. `name` is for messages, and its extension decides where the content leaves a doubt;
@@ -124,8 +132,11 @@ fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
 
 /// Makes missing normals, small meshes in parallel, large ones in parallel within.
 fn make_normals(scene: &mut Scene, crease_angle: f64, workers: &Workers) {
-    let (large, small): (Vec<_>, Vec<_>) =
-        scene.meshes.iter_mut().filter(|m| lacks_normals(m)).partition(|m| m.triangles.len() >= SMALL_MESH);
+    let lacking: Vec<_> = scene.meshes.iter_mut().filter(|m| lacks_normals(m)).collect();
+    let all: usize = lacking.iter().map(|m| m.triangles.len()).sum();
+    // A thread with more than half of its fair share in one piece may be the last to end.
+    let large = (all / (2 * workers.threads())).clamp(TINY_MESH, SMALL_MESH);
+    let (large, small): (Vec<_>, Vec<_>) = lacking.into_iter().partition(|m| m.triangles.len() >= large);
     for mesh in large {
         normals::generate(Arc::make_mut(mesh), crease_angle, workers);
     }

@@ -66,7 +66,7 @@ impl Renderer {
             lights: None,
             light_intensity: 1.0,
             ambient: [0.0; 3],
-            session: Session::new(Arc::new(scene))?,
+            session: Session::with_workers(Arc::new(scene), &execution.workers)?,
             execution,
         })
     }
@@ -101,7 +101,7 @@ impl Renderer {
     /// # Errors
     /// A scene whose parts do not fit together; the old one stays.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), Error> {
-        self.session = Session::new(Arc::new(scene))?;
+        self.session = Session::with_workers(Arc::new(scene), &self.execution.workers)?;
         Ok(())
     }
 
@@ -119,15 +119,9 @@ impl Renderer {
     fn framed_camera(&self) -> Camera {
         let world = self.world();
         let boxed = framing::frame(&world.bounds, self.view, self.up, self.lens, self.aspect());
-        let points = world.instances.iter().flat_map(|instance| {
-            let to_world = instance.world_from_model;
-            let point = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            let used = instance.mesh.positions.iter().zip(instance.mesh.used_vertices()).filter(|(_, used)| *used);
-            used.map(move |(p, _)| to_world.transform_point3(point(p)))
-        });
         let eye = boxed.position - boxed.focal_point;
         let (lens, aspect) = (self.lens, self.aspect());
-        framing::frame_points(points, &world.bounds, eye, boxed.view_up, lens, aspect, framing::FILL)
+        framing::frame_world(world, eye, boxed.view_up, lens, aspect, framing::FILL)
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with

@@ -10,7 +10,7 @@
 //! Source: [Foley et al. 1990], 15.2.4.
 
 use vitral_math::DVec3;
-use vitral_scene::topology::Solidity;
+use vitral_scene::Solidity;
 
 /// Which side of a face is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,12 +7,9 @@
 //! Source: [Clark 1976].
 
 use std::ops::Range;
+use vitral_math::Aabb;
 use vitral_math::frustum::{Containment, Frustum};
-use vitral_math::{Aabb, DVec3};
-use vitral_scene::Mesh;
-
-/// Triangles in a leaf of a mesh's tree.
-pub const TRIANGLES_A_LEAF: usize = 256;
+use vitral_scene::TRIANGLES_A_RUN;
 
 /// A complete binary tree: node `i` has the children `2 i + 1` and `2 i + 2`; leaves fill the last places.
 #[derive(Clone, Debug)]
@@ -30,20 +27,9 @@ impl BoundsTree {
         Self::build(boxes, boxes.len(), 1)
     }
 
-    /// A tree over a mesh's triangles in order, [`TRIANGLES_A_LEAF`] a leaf, model space. Corners that are not finite
-    /// are passed over, as the rasteriser passes over their triangles.
-    pub fn over_triangles(mesh: &Mesh) -> Self {
-        let boxes: Vec<Aabb> = mesh
-            .triangles
-            .chunks(TRIANGLES_A_LEAF)
-            .map(|run| {
-                Aabb::from_points(run.iter().flatten().map(|&i| {
-                    let p = mesh.positions[i as usize];
-                    DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
-                }))
-            })
-            .collect();
-        Self::build(&boxes, mesh.triangles.len(), TRIANGLES_A_LEAF)
+    /// A tree over a mesh's triangles in order, [`TRIANGLES_A_RUN`] a leaf, from the boxes round them.
+    pub fn over_runs(run_bounds: &[Aabb], triangles: usize) -> Self {
+        Self::build(run_bounds, triangles, TRIANGLES_A_RUN)
     }
 
     fn build(boxes: &[Aabb], items: usize, items_a_leaf: usize) -> Self {
@@ -100,7 +86,7 @@ impl BoundsTree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::DMat4;
+    use vitral_math::{DMat4, DVec3};
 
     fn unit(x: f64) -> Aabb {
         Aabb { min: DVec3::new(x, 0.0, 0.4), max: DVec3::new(x + 0.1, 0.1, 0.6) }

@@ -5,12 +5,13 @@
 //! Cost: one box test for whatever is wholly outside or inside; the tests in between go with the border.
 //! Source: [Clark 1976].
 
-use super::bounds_tree::{BoundsTree, TRIANGLES_A_LEAF};
+use super::bounds_tree::BoundsTree;
 use crate::Session;
 use crate::stats::CullCounters;
 use std::ops::Range;
 use vitral_math::DMat4;
 use vitral_math::frustum::{Containment, Frustum};
+use vitral_scene::TRIANGLES_A_RUN;
 
 /// An instance and which of its triangles to draw.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +50,7 @@ pub fn cull(
     for i in runs.into_iter().flatten().map(|i| i as usize) {
         let instance = &instances[i];
         let frustum = Frustum::from_matrix(&(*clip_from_world * instance.world_from_model));
-        let ranges = if instance.mesh.triangles.len() <= 4 * TRIANGLES_A_LEAF {
+        let ranges = if instance.mesh.triangles.len() <= 4 * TRIANGLES_A_RUN {
             vec![all(i)]
         } else {
             counters.box_tests += 1;

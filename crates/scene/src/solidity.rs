@@ -1,0 +1,226 @@
+//! Solidity: is the surface the skin of solids, and are their insides inside?
+//!
+//! Idea: if every edge has exactly two triangles and they run along it in opposite directions, the surface is the skin of
+//! solids, and back faces can never be seen from outside; but only if the triangles look outwards, which the sign of the
+//! enclosed volume tells, body by body.
+//!
+//! In:   a mesh, model space. Faces with more than three corners count as triangulated.
+//! Out:  [`Solidity`] for back-face culling.
+//! Cost: `O(triangles)` expected. Who lists the triangles round every vertex anyway, as for normals, has most of it for
+//!       nothing: the mesh keeps the answer, and what it is an answer to.
+//! Source: [Mirtich 1996] and others for the volume as a sum of signed tetrahedra.
+
+use crate::Mesh;
+use crate::disjoint_sets::DisjointSets;
+use crate::edge_table::{MAX_FACES, Outlines, Use, edges_at, for_each_edge};
+use crate::topology::position;
+use crate::weld::Weld;
+use vitral_exec::Workers;
+
+/// What back-face culling must know. Triangles with two corners at one position are left out: they are invisible.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Solidity {
+    /// Every edge has exactly two triangles.
+    pub closed: bool,
+    /// Neighbours run along their common edge in opposite directions.
+    pub consistent: bool,
+    /// Every body encloses a positive volume: its triangles are counter-clockwise seen from outside. Only a closed and
+    /// consistent mesh has this. A hollow solid, whose inner skin counts as a body of negative volume, has it not.
+    pub outward: bool,
+}
+
+impl Solidity {
+    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges.
+    pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
+        if let Some(known) = &mesh.solidity
+            && known.surface == fingerprint(mesh, workers)
+        {
+            return known.solidity;
+        }
+        let weld = Weld::new(&mesh.positions, workers);
+        let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
+        let visit = |seen: &mut Seen, _, _, uses: &[Use]| skins.edge(seen, uses);
+        let seen = for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
+        skins.solidity(&seen, workers)
+    }
+
+    /// Whether back faces can never be seen from a point outside the mesh.
+    pub fn is_solid(&self) -> bool {
+        self.closed && self.consistent && self.outward
+    }
+}
+
+/// A mesh's solidity, and what surface it is that of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KnownSolidity {
+    solidity: Solidity,
+    surface: u64,
+}
+
+impl KnownSolidity {
+    /// `solidity`, found out for the mesh as it is now.
+    pub(crate) fn new(mesh: &Mesh, solidity: Solidity, workers: &Workers) -> Self {
+        Self { solidity, surface: fingerprint(mesh, workers) }
+    }
+}
+
+/// A hash of positions and triangles. Reading them once is little against finding neighbours again.
+fn fingerprint(mesh: &Mesh, workers: &Workers) -> u64 {
+    const PIECE: usize = 1 << 16;
+    let hash = |words: &[u32]| {
+        let pieces = workers.map(words.len().div_ceil(PIECE), |k| {
+            hash_words(&words[k * PIECE..words.len().min((k + 1) * PIECE)]).map(|h| [h as u32, (h >> 32) as u32])
+        });
+        let whole = hash_words(pieces.as_flattened().as_flattened());
+        whole.iter().fold(words.len() as u64, |all, h| mixed(all, *h))
+    };
+    mixed(hash(bytemuck::cast_slice(&mesh.positions)), hash(mesh.triangles.as_flattened()))
+}
+
+/// Eight hashes side by side, so that no step waits for the one before.
+fn hash_words(words: &[u32]) -> [u64; 8] {
+    let mut hashes = [0u64; 8];
+    for eight in words.chunks(8) {
+        hashes.iter_mut().zip(eight).for_each(|(h, &word)| *h = mixed(*h, u64::from(word)));
+    }
+    hashes
+}
+
+fn mixed(hash: u64, word: u64) -> u64 {
+    let product = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    product ^ product >> 29
+}
+
+/// The skins of a mesh, while its edges are looked at.
+pub(crate) struct Skins<'a> {
+    mesh: &'a Mesh,
+    weld: &'a Weld,
+    bodies: DisjointSets,
+}
+
+/// What was seen of some of the edges.
+#[derive(Default)]
+pub(crate) struct Seen {
+    some: bool,
+    open: bool,
+    twisted: bool,
+    /// Memory for the sides at a vertex.
+    sides: Vec<Use>,
+}
+
+impl<'a> Skins<'a> {
+    /// `None` if there are no triangles, or more than can be told apart.
+    pub(crate) fn new(mesh: &'a Mesh, weld: &'a Weld) -> Option<Self> {
+        let countable = !mesh.triangles.is_empty() && mesh.triangles.len() < MAX_FACES;
+        countable.then(|| Self { mesh, weld, bodies: DisjointSets::new(mesh.triangles.len()) })
+    }
+
+    /// Looks at an edge, given the triangles that use it.
+    fn edge(&self, seen: &mut Seen, uses: &[Use]) {
+        seen.some = true;
+        match uses {
+            [a, b] => {
+                seen.twisted |= a.reversed() == b.reversed();
+                self.bodies.join(a.face(), b.face());
+            }
+            _ => seen.open = true,
+        }
+    }
+
+    /// Looks at the edges from a welded vertex to those with higher numbers. `corners` are all corners of triangles that
+    /// lie there, three a triangle in order.
+    pub(crate) fn vertex(&self, seen: &mut Seen, vertex: u32, corners: &[u32]) {
+        let mut sides = std::mem::take(&mut seen.sides);
+        sides.clear();
+        for &corner in corners {
+            let (triangle, k) = (corner / 3, corner as usize % 3);
+            let at = self.mesh.triangles[triangle as usize].map(|i| self.weld.representative[i as usize]);
+            if at[0] == at[1] || at[1] == at[2] || at[2] == at[0] {
+                continue;
+            }
+            let (to, from) = (at[(k + 1) % 3], at[(k + 2) % 3]);
+            if to > vertex {
+                sides.push(Use::new(to, triangle, false));
+            }
+            if from > vertex {
+                sides.push(Use::new(from, triangle, true));
+            }
+        }
+        edges_at(&mut sides, |_, uses| self.edge(seen, uses));
+        seen.sides = sides;
+    }
+
+    /// The answer, when all edges were looked at.
+    pub(crate) fn solidity<'b>(self, seen: impl IntoIterator<Item = &'b Seen> + Clone, workers: &Workers) -> Solidity {
+        let any = |of: fn(&Seen) -> bool| seen.clone().into_iter().any(of);
+        let closed = any(|s| s.some) && !any(|s| s.open);
+        let consistent = !any(|s| s.twisted);
+        Solidity { closed, consistent, outward: closed && consistent && self.all_outward(workers) }
+    }
+
+    /// Whether no body has a negative volume. A flat body (two sheets back to back) has none at all and passes.
+    fn all_outward(&self, workers: &Workers) -> bool {
+        const BATCH: usize = 1 << 14;
+        let mesh = self.mesh;
+        let center = mesh.bounds_from(&mesh.run_bounds(workers)).center();
+        let batches = workers.map(mesh.triangles.len().div_ceil(BATCH), |batch| {
+            // Neighbours in the list are mostly of one body.
+            let mut volumes: Vec<Volume> = Vec::new();
+            let first = batch * BATCH;
+            for (t, corners) in (first..).zip(mesh.triangles[first..].iter().take(BATCH)) {
+                let [a, b, c] = corners.map(|i| position(mesh, i) - center);
+                let tetrahedron = a.dot(b.cross(c));
+                let body = self.bodies.find(t as u32);
+                match volumes.last_mut() {
+                    Some(last) if last.body == body => {
+                        last.signed += tetrahedron;
+                        last.magnitude += tetrahedron.abs();
+                    }
+                    _ => volumes.push(Volume { body, signed: tetrahedron, magnitude: tetrahedron.abs() }),
+                }
+            }
+            volumes
+        });
+        let mut volumes = batches.into_iter().flatten().collect::<Vec<_>>();
+        volumes.sort_by_key(|v| v.body);
+        volumes.chunk_by(|a, b| a.body == b.body).all(|parts| {
+            let sum = |of: fn(&Volume) -> f64| parts.iter().map(of).sum::<f64>();
+            sum(|v| v.signed) >= -1e-9 * sum(|v| v.magnitude)
+        })
+    }
+}
+
+/// A body's volume, times six, and the sum of the magnitudes it was added up from, to know what rounding may do.
+struct Volume {
+    body: u32,
+    signed: f64,
+    magnitude: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builtin::solids;
+    use crate::normals;
+
+    #[test]
+    fn what_normals_found_out_holds_until_the_surface_is_changed() {
+        let mut ball = solids::sphere(1.0, 32, 16);
+        (ball.normals, ball.faces, ball.solidity) = (None, crate::Faces::Triangles, None);
+        let alone = Solidity::of(&ball, &Workers::single());
+        assert!(alone.is_solid());
+        normals::generate(&mut ball, 1.0, &Workers::new(2));
+        assert_eq!(ball.solidity.as_ref().map(|known| known.solidity), Some(alone));
+        assert_eq!(fingerprint(&ball, &Workers::single()), fingerprint(&ball, &Workers::new(3)));
+
+        // The mesh still carries the old answer, which is none any more.
+        let mut turned = ball.clone();
+        turned.triangles[5].swap(0, 1);
+        assert!(!Solidity::of(&turned, &Workers::single()).consistent);
+        let mut inside_out = ball.clone();
+        inside_out.positions.iter_mut().for_each(|p| p[0] = -p[0]);
+        assert!(!Solidity::of(&inside_out, &Workers::single()).outward);
+        ball.triangles.pop();
+        assert!(!Solidity::of(&ball, &Workers::single()).closed);
+    }
+}

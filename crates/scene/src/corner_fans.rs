@@ -168,17 +168,18 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, faces: &FaceData, rule: Rule
 /// The corners of bucket `b` in order of their vertex, and where each vertex begins.
 fn by_vertex(dealt: &Buckets<u32>, b: usize, source: &Corners) -> (Vec<u32>, Vec<u32>) {
     let base = (b << source.shift) as u32;
+    let vertices: Vec<u32> = dealt.pieces(b).flatten().map(|&c| source.vertex(c) - base).collect();
     let mut starts = vec![0u32; (1 << source.shift) + 1];
-    for &c in dealt.pieces(b).flatten() {
-        starts[(source.vertex(c) - base) as usize + 1] += 1;
+    for &v in &vertices {
+        starts[v as usize + 1] += 1;
     }
     for v in 0..1 << source.shift {
         starts[v + 1] += starts[v];
     }
     let mut next = starts.clone();
-    let mut corners = vec![0; starts[1 << source.shift] as usize];
-    for &c in dealt.pieces(b).flatten() {
-        let at = &mut next[(source.vertex(c) - base) as usize];
+    let mut corners = vec![0; vertices.len()];
+    for (&c, &v) in dealt.pieces(b).flatten().zip(&vertices) {
+        let at = &mut next[v as usize];
         corners[*at as usize] = c;
         *at += 1;
     }

@@ -35,6 +35,10 @@ impl DisjointSets {
     }
 
     pub(crate) fn join(&self, mut a: u32, mut b: u32) {
+        // Neighbours mostly have the same parent already.
+        if self.parent[a as usize].load(Relaxed) == self.parent[b as usize].load(Relaxed) {
+            return;
+        }
         loop {
             (a, b) = (self.find(a), self.find(b));
             if a == b {

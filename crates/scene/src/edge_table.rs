@@ -37,7 +37,8 @@ impl Use {
         self.0 & 1 == 1
     }
 
-    fn higher(self) -> u32 {
+    /// The edge's vertex with the higher number.
+    pub(crate) fn higher(self) -> u32 {
         (self.0 >> 32) as u32
     }
 }

@@ -64,6 +64,9 @@ impl KnownSolidity {
     }
 }
 
+/// With more sides at a vertex they are sorted.
+const MANY: usize = 8;
+
 /// A hash of positions and triangles. Reading them once is little against finding neighbours again.
 fn fingerprint(mesh: &Mesh, workers: &Workers) -> u64 {
     const PIECE: usize = 1 << 16;
@@ -80,9 +83,13 @@ fn fingerprint(mesh: &Mesh, workers: &Workers) -> u64 {
 /// Eight hashes side by side, so that no step waits for the one before.
 fn hash_words(words: &[u32]) -> [u64; 8] {
     let mut hashes = [0u64; 8];
-    for eight in words.chunks(8) {
-        hashes.iter_mut().zip(eight).for_each(|(h, &word)| *h = mixed(*h, u64::from(word)));
+    let (sixteens, rest) = words.as_chunks::<16>();
+    for sixteen in sixteens {
+        for (h, pair) in hashes.iter_mut().zip(sixteen.as_chunks::<2>().0) {
+            *h = mixed(*h, u64::from(pair[0]) | u64::from(pair[1]) << 32);
+        }
     }
+    rest.iter().for_each(|&word| hashes[0] = mixed(hashes[0], u64::from(word)));
     hashes
 }
 
@@ -104,8 +111,9 @@ pub(crate) struct Seen {
     some: bool,
     open: bool,
     twisted: bool,
-    /// Memory for the sides at a vertex.
-    sides: Vec<Use>,
+    /// Memory for the sides at a vertex: of triangles that leave, and of those that come back.
+    out: Vec<Use>,
+    back: Vec<Use>,
 }
 
 impl<'a> Skins<'a> {
@@ -130,8 +138,9 @@ impl<'a> Skins<'a> {
     /// Looks at the edges from a welded vertex to those with higher numbers. `corners` are all corners of triangles that
     /// lie there, three a triangle in order.
     pub(crate) fn vertex(&self, seen: &mut Seen, vertex: u32, corners: &[u32]) {
-        let mut sides = std::mem::take(&mut seen.sides);
-        sides.clear();
+        let (mut out, mut back) = (std::mem::take(&mut seen.out), std::mem::take(&mut seen.back));
+        out.clear();
+        back.clear();
         for &corner in corners {
             let (triangle, k) = (corner / 3, corner as usize % 3);
             let at = self.mesh.triangles[triangle as usize].map(|i| self.weld.representative[i as usize]);
@@ -140,14 +149,32 @@ impl<'a> Skins<'a> {
             }
             let (to, from) = (at[(k + 1) % 3], at[(k + 2) % 3]);
             if to > vertex {
-                sides.push(Use::new(to, triangle, false));
+                out.push(Use::new(to, triangle, false));
             }
             if from > vertex {
-                sides.push(Use::new(from, triangle, true));
+                back.push(Use::new(from, triangle, true));
             }
         }
-        edges_at(&mut sides, |_, uses| self.edge(seen, uses));
-        seen.sides = sides;
+        // Almost always one triangle leaves by each edge and one comes back, and there are few.
+        if out.len() != back.len() || out.len() > MANY || !self.pairs(seen, &out, &back) {
+            out.append(&mut back);
+            edges_at(&mut out, |_, uses| self.edge(seen, uses));
+        }
+        (seen.out, seen.back) = (out, back);
+    }
+
+    /// Joins the triangles on both sides of each edge, if every edge has one that leaves by it and one that comes back; as
+    /// many leave as come.
+    fn pairs(&self, seen: &mut Seen, out: &[Use], back: &[Use]) -> bool {
+        for (k, side) in out.iter().enumerate() {
+            let other = back.iter().find(|b| b.higher() == side.higher());
+            let (Some(other), false) = (other, out[..k].iter().any(|o| o.higher() == side.higher())) else {
+                return false;
+            };
+            self.bodies.join(side.face(), other.face());
+            seen.some = true;
+        }
+        true
     }
 
     /// The answer, when all edges were looked at.
@@ -162,13 +189,14 @@ impl<'a> Skins<'a> {
     fn all_outward(&self, workers: &Workers) -> bool {
         const BATCH: usize = 1 << 14;
         let mesh = self.mesh;
-        let center = mesh.bounds_from(&mesh.run_bounds(workers)).center();
+        // Volumes are taken as seen from some place near.
+        let near = position(mesh, mesh.triangles[0][0]);
         let batches = workers.map(mesh.triangles.len().div_ceil(BATCH), |batch| {
             // Neighbours in the list are mostly of one body.
             let mut volumes: Vec<Volume> = Vec::new();
             let first = batch * BATCH;
             for (t, corners) in (first..).zip(mesh.triangles[first..].iter().take(BATCH)) {
-                let [a, b, c] = corners.map(|i| position(mesh, i) - center);
+                let [a, b, c] = corners.map(|i| position(mesh, i) - near);
                 let tetrahedron = a.dot(b.cross(c));
                 let body = self.bodies.find(t as u32);
                 match volumes.last_mut() {

@@ -178,6 +178,7 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer) -> Result<Drawn
             stats["seconds"]["encode"] = json!(encode_start.elapsed().as_secs_f64());
             drawn.frames.push(stats);
         }
+        renderer.recycle(rendered);
         progress.step();
     }
     progress.finish();

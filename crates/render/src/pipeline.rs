@@ -3,7 +3,7 @@
 use crate::global::Whitted;
 use crate::marks;
 use crate::radiosity::{enclosure::direct_lights, solution};
-use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants};
+use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants, TileRows};
 use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::transparency::registry::{ORDERS, order};
@@ -168,7 +168,12 @@ fn render_color(
         }
         None => None,
     };
-    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, execution.level, grid.tiles.len());
+    let pixels = viewport.width as usize * viewport.height as usize;
+    let spare = std::mem::take(&mut *session.spare_picture.lock().expect("spare picture"));
+    // The old contents do not matter: every tile is written whole.
+    let mut picture = if spare.len() == pixels { spare } else { vec![[0; 4]; pixels] };
+    let rows = TileRows::new(viewport, &mut picture);
+    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, execution.level, rows);
     if settings.channels.passes {
         sink.show_passes();
     }
@@ -176,7 +181,7 @@ fn render_color(
     let marks = (!mark_colors.is_empty()).then_some(&mark_batch);
     let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
     stats.picture = sink.counters();
-    let pictures = sink.finish(&execution.workers);
+    let passes = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Vec::new()) };
     let t3 = clock();
     let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
     drop(constants);
@@ -188,9 +193,8 @@ fn render_color(
     (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
 
     // Put the tiles together.
-    let (pictures, passes) = pictures?;
-    let data = assemble(viewport, &pictures, |picture: &Vec<[u8; 4]>| picture, &execution.workers);
-    frame.color = Plane::from_rows(viewport.width, viewport.height, data);
+    let passes = passes?;
+    frame.color = Plane::from_rows(viewport.width, viewport.height, picture);
     let count = passes.iter().map(|p| p.lock().expect("finished tile").len()).max().unwrap_or(0);
     let bytes = count as u64 * u64::from(viewport.width) * u64::from(viewport.height) * 4;
     execution.budget.charge(bytes, "pictures after each pass")?;

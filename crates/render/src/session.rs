@@ -9,12 +9,13 @@ use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::FaceTable;
+use crate::shading::{FaceTable, Scratch};
 use crate::shadow;
 use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
+use vitral_frame::Frame;
 use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
 use vitral_raster::{Batch, ScreenVertex, TileGrid};
@@ -61,6 +62,8 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    pub(crate) spare_picture: Mutex<Vec<[u8; 4]>>,
+    pub(crate) spare_scratch: Mutex<Vec<Scratch>>,
     pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
     triangles: Kept<Triangles>,
     bvh: Kept<Bvh>,
@@ -167,6 +170,8 @@ impl Session {
             grid: None,
             spare_vertices: Mutex::default(),
             spare_batches: Mutex::default(),
+            spare_picture: Mutex::default(),
+            spare_scratch: Mutex::default(),
             bsp: Mutex::default(),
             triangles: Mutex::default(),
             bvh: Mutex::default(),
@@ -181,6 +186,13 @@ impl Session {
             shadow_volumes: Mutex::default(),
             lit_polygons: Mutex::default(),
         })
+    }
+
+    /// Takes back a picture that is not needed any more; the next one of its size is made in the same memory.
+    pub fn recycle(&mut self, frame: Frame) {
+        if let Some(color) = frame.color {
+            self.spare_picture = Mutex::new(color.into_data());
+        }
     }
 
     /// The scene.

@@ -78,7 +78,8 @@ fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
         let start = Instant::now();
         let rendered = renderer.render_from(&camera)?;
         milliseconds.push(start.elapsed().as_secs_f64() * 1e3);
-        bytes += rendered.frame.color.map_or(0, |c| c.data().as_flattened().len());
+        bytes += rendered.frame.color.as_ref().map_or(0, |c| c.data().as_flattened().len());
+        renderer.recycle(rendered);
     }
     milliseconds.sort_by(f64::total_cmp);
     let parts_ms = parts(plan, renderer.execution())?;

@@ -165,6 +165,12 @@ impl Renderer {
         Ok(render(&mut self.session, &shot, &self.settings, &self.execution)?)
     }
 
+    /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every
+    /// picture has to get new pages from the system.
+    pub fn recycle(&mut self, rendered: Rendered) {
+        self.session.recycle(rendered.frame);
+    }
+
     /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
     /// from above. A framed camera keeps its distance, far enough for all of them.
     pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {

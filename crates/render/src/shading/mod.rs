@@ -40,7 +40,7 @@ use facets::FacetTable;
 use std::sync::Mutex;
 use vitral_exec::{Limit, Workers};
 use vitral_math::lanes::{Level, dispatch};
-use vitral_raster::{LayerList, TILE_PIXELS, Tile};
+use vitral_raster::{LayerList, TILE, TILE_PIXELS, Tile, Viewport};
 
 use crate::global::{Whitted, whitted::Forest};
 use crate::marks::MarkColors;
@@ -55,25 +55,70 @@ pub(crate) struct ColorSink<'a> {
     /// Keeps tiles that need the whole picture to be composed.
     deep: Option<DeepImage<'a>>,
     level: Level,
-    /// One picture for each tile, row by row within the tile.
-    pub tiles: Vec<Mutex<Vec<[u8; 4]>>>,
+    /// Where the rows of each tile go.
+    tiles: TileRows<'a>,
     /// What each pass made of each tile, the opaque tile first; empty where nobody asked.
-    pub passes: Vec<Mutex<Vec<Vec<[u8; 4]>>>>,
-    spare: Mutex<Vec<Scratch>>,
+    passes: Passes,
+    /// The session's.
+    spare: &'a Mutex<Vec<Scratch>>,
     counters: Mutex<PictureCounters>,
 }
 
-/// Pictures of all tiles, and after each pass.
-type Pictures = (Vec<Mutex<Vec<[u8; 4]>>>, Vec<Mutex<Vec<Vec<[u8; 4]>>>>);
+/// The pictures of each tile after each pass.
+pub(crate) type Passes = Vec<Mutex<Vec<Vec<[u8; 4]>>>>;
+
+/// A picture cut into its tiles, so that each can be written by whoever finishes it.
+pub(crate) struct TileRows<'a> {
+    tiles: Vec<Mutex<Vec<&'a mut [[u8; 4]]>>>,
+}
+
+impl<'a> TileRows<'a> {
+    /// Cuts `picture`, row by row, the top row first.
+    pub(crate) fn new(viewport: Viewport, picture: &'a mut [[u8; 4]]) -> Self {
+        let mut tiles = Vec::new();
+        for band in picture.chunks_mut(viewport.width as usize * TILE) {
+            let first = tiles.len();
+            tiles.resize_with(first + viewport.tiles_x() as usize, || Vec::with_capacity(TILE));
+            for row in band.chunks_mut(viewport.width as usize) {
+                row.chunks_mut(TILE).zip(&mut tiles[first..]).for_each(|(part, tile)| tile.push(part));
+            }
+        }
+        Self { tiles: tiles.into_iter().map(Mutex::new).collect() }
+    }
+
+    fn len(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// Writes the picture of a whole tile, once.
+    fn write(&self, index: usize, tile: &[[u8; 4]]) {
+        let rows = std::mem::take(&mut *self.tiles[index].lock().expect("rows of a tile"));
+        assert!(!rows.is_empty(), "tile {index} is finished only once");
+        rows.into_iter().zip(tile.chunks(TILE)).for_each(|(row, of_tile)| row.copy_from_slice(&of_tile[..row.len()]));
+    }
+
+    /// Nothing may be left from what the memory was used for before.
+    fn check(&self) {
+        let written = |tile: &Mutex<Vec<_>>| tile.lock().is_ok_and(|rows| rows.is_empty());
+        assert!(self.tiles.iter().all(written), "every tile is finished");
+    }
+}
 
 /// Memory of one tile's work, used again for the next.
 #[derive(Default)]
-struct Scratch {
+pub(crate) struct Scratch {
     points: Points,
     facets: FacetTable,
     lit: Lit,
     forest: Forest,
     composer: Composer,
+    picture: Vec<[u8; 4]>,
+}
+
+impl std::fmt::Debug for Scratch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Scratch").finish_non_exhaustive()
+    }
 }
 
 impl<'a> ColorSink<'a> {
@@ -83,7 +128,7 @@ impl<'a> ColorSink<'a> {
         tracer: Option<&'a Whitted<'a>>,
         deep: Option<DeepImage<'a>>,
         level: Level,
-        tile_count: usize,
+        tiles: TileRows<'a>,
     ) -> Self {
         Self {
             constants,
@@ -91,9 +136,9 @@ impl<'a> ColorSink<'a> {
             tracer,
             deep,
             level,
-            tiles: (0..tile_count).map(|_| Mutex::default()).collect(),
+            tiles,
             passes: Vec::new(),
-            spare: Mutex::default(),
+            spare: &constants.view.session.spare_scratch,
             counters: Mutex::default(),
         }
     }
@@ -107,9 +152,12 @@ impl<'a> ColorSink<'a> {
         *self.counters.lock().expect("counters")
     }
 
-    /// Composes what was kept until the whole picture is there. Gives the tiles, finished.
-    pub(crate) fn finish(self, workers: &Workers) -> Result<Pictures, Limit> {
-        let Some(deep) = self.deep else { return Ok((self.tiles, self.passes)) };
+    /// When all tiles were handed over: composes what was kept until the whole picture is there. Gives what each pass made.
+    pub(crate) fn finish(self, workers: &Workers) -> Result<Passes, Limit> {
+        let Some(deep) = self.deep else {
+            self.tiles.check();
+            return Ok(self.passes);
+        };
         let deep = deep.finish()?;
         let (level, tiles) = (self.level, self.tiles);
         let composed = workers.map(tiles.len(), |index| {
@@ -118,11 +166,12 @@ impl<'a> ColorSink<'a> {
             let (mut composer, mut picture) = (Composer::default(), vec![[0; 4]; TILE_PIXELS]);
             let (constants, marks, whole) = (self.constants, self.marks, Some((&deep, index)));
             dispatch!(level, simd => composer.compose(simd, tile, points, &mut lit, constants, marks, whole, &mut picture));
-            *tiles[index].lock().expect("tile picture") = picture;
+            tiles.write(index, &picture);
             Ok(())
         });
         composed.into_iter().collect::<Result<(), Limit>>()?;
-        Ok((tiles, self.passes))
+        tiles.check();
+        Ok(self.passes)
     }
 }
 
@@ -146,7 +195,7 @@ impl TileSink for ColorSink<'_> {
         let shown = !self.passes.is_empty();
         let (mut pictures, layer_samples, shaded) = self.compose_in_passes(tile, &mut scratch, pass, shown);
         if let Some(last) = pictures.last() {
-            self.tiles[index].lock().expect("tile picture").clone_from(last);
+            self.tiles.write(index, last);
         }
         if let Some(passes) = self.passes.get(index) {
             *passes.lock().expect("tile pictures") = std::mem::take(&mut pictures);
@@ -159,7 +208,7 @@ impl TileSink for ColorSink<'_> {
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
-        let Scratch { points, facets, lit, forest, composer } = &mut scratch;
+        let Scratch { points, facets, lit, forest, composer, picture } = &mut scratch;
         let constants = self.constants;
         let layer_samples = layers.sample_count() as u64;
         let front = self.tracer.map(|tracer| tracer.frontmost(tile, layers, self.marks));
@@ -189,10 +238,10 @@ impl TileSink for ColorSink<'_> {
         if let Some(deep) = &self.deep {
             deep.keep(index, tile, std::mem::take(points), std::mem::take(lit));
         } else {
-            let mut picture = vec![[0; 4]; TILE_PIXELS];
+            picture.resize(TILE_PIXELS, [0; 4]);
             let marks = self.marks;
-            dispatch!(self.level, simd => composer.compose(simd, tile, points, lit, constants, marks, None, &mut picture));
-            *self.tiles[index].lock().expect("tile picture") = picture;
+            dispatch!(self.level, simd => composer.compose(simd, tile, points, lit, constants, marks, None, picture));
+            self.tiles.write(index, picture);
         }
         self.spare.lock().expect("spare scratch").push(scratch);
     }

@@ -26,11 +26,6 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
 use report::Failure;
 
-/// Memory comes in huge pages where the system lends them: a picture touches tens of megabytes once, and each small page costs a
-/// trip into the kernel.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 fn main() {
     let code = run().unwrap_or_else(|failure| failure.tell());
     // Freeing the scene piece by piece would only take time: the process ends here.

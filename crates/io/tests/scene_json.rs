@@ -64,6 +64,8 @@ fn full_mesh() -> Mesh {
         points: vec![2],
         line_material: Some(0),
         smoothing_groups: Some(vec![1, 0]),
+        // Found out again where it is needed, not written.
+        solidity: None,
     }
 }
 

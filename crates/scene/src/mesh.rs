@@ -169,8 +169,7 @@ impl Mesh {
         // f32 throughout: exact, and quicker than widening each point.
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for p in vertices.iter().filter_map(|&i| self.positions.get(i as usize)) {
-            // 0 but for NaN and infinity, which make NaN.
-            if (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]) == 0.0 {
+            if p[0].is_finite() & p[1].is_finite() & p[2].is_finite() {
                 for k in 0..3 {
                     min[k] = if p[k] < min[k] { p[k] } else { min[k] };
                     max[k] = if p[k] > max[k] { p[k] } else { max[k] };

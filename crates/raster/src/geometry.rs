@@ -160,6 +160,17 @@ pub enum TileLists {
     Kept,
     /// Nobody is going to ask: all tiles are empty.
     Unwanted,
+    /// It does, and keeps [`packed_box`] of each triangle in each tile.
+    #[cfg(feature = "forward")]
+    WithBoxes,
+}
+
+/// Pixels of a tile as four bytes: how far columns and rows begin behind the tile's first, and end before its last ones. In
+/// the lowest byte the first column, then the last, the first row, the last.
+#[inline(always)]
+pub(crate) fn packed_box([x0, y0, x1, y1]: [i32; 4]) -> i32 {
+    let last = TILE as i32 - 1;
+    x0 | (last - x1) << 8 | y0 << 16 | (last - y1) << 24
 }
 
 /// Triangles set up, and for each tile the ones that touch it, in order.
@@ -169,6 +180,8 @@ pub struct Batch {
     tile_lists: TileLists,
     /// `(tile, index of the setup)`, in the order of submission.
     entries: Vec<[u32; 2]>,
+    /// The box of each entry, if they were wanted.
+    entry_boxes: Vec<i32>,
     /// `items[starts[t]..starts[t + 1]]` are the setups of tile `t`.
     starts: Vec<u32>,
     items: Vec<u32>,
@@ -233,6 +246,7 @@ impl Batch {
         self.tile_lists = tile_lists;
         self.setups.clear();
         self.entries.clear();
+        self.entry_boxes.clear();
         self.counters = GeometryCounters::default();
     }
 
@@ -395,16 +409,30 @@ impl Batch {
             return;
         }
         if tx0 == tx1 && ty0 == ty1 {
-            self.entries.push([ty0 * tiles_x + tx0, index]);
+            self.enter([tx0, ty0], index, [x0, y0, x1, y1], tiles_x);
             return;
         }
         for ty in ty0..=ty1 {
             for tx in tx0..=tx1 {
                 if touches_tile(&setup, tx as i32, ty as i32) {
-                    self.entries.push([ty * tiles_x + tx, index]);
+                    self.enter([tx, ty], index, [x0, y0, x1, y1], tiles_x);
                 }
             }
         }
+    }
+
+    /// Enters triangle `index`, which may cover these pixels, in the list of a tile.
+    #[inline(always)]
+    fn enter(&mut self, [tx, ty]: [u32; 2], index: u32, pixels: [u32; 4], tiles_x: u32) {
+        self.entries.push([ty * tiles_x + tx, index]);
+        #[cfg(feature = "forward")]
+        if self.tile_lists == TileLists::WithBoxes {
+            let within = |v: u32, tile: u32| (v as i32 - (tile * TILE as u32) as i32).clamp(0, TILE as i32 - 1);
+            let [x0, y0, x1, y1] = pixels;
+            self.entry_boxes.push(packed_box([within(x0, tx), within(y0, ty), within(x1, tx), within(y1, ty)]));
+        }
+        #[cfg(not(feature = "forward"))]
+        let _ = pixels;
     }
 
     /// Sorts the entries by tile, keeping their order. Call it once, after the last triangle.
@@ -412,8 +440,9 @@ impl Batch {
         self.finish_with(screen, |_, _, _| {});
     }
 
-    /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its tile and its triangle.
-    pub(crate) fn finish_with(&mut self, screen: &Screen, mut placed: impl FnMut(usize, u32, &Setup)) {
+    /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its number before, and its triangle.
+    #[inline(always)]
+    fn finish_with(&mut self, screen: &Screen, mut placed: impl FnMut(usize, usize, &Setup)) {
         let tiles = (screen.viewport.tiles_x() * screen.viewport.tiles_y()) as usize;
         self.starts.clear();
         self.starts.resize(tiles + 2, 0);
@@ -426,20 +455,30 @@ impl Batch {
         }
         self.items.clear();
         self.items.resize(self.entries.len(), 0);
-        for &[tile, setup] in &self.entries {
+        for (number, &[tile, setup]) in self.entries.iter().enumerate() {
             let place = &mut self.starts[tile as usize + 1];
             self.items[*place as usize] = setup;
-            placed(*place as usize, tile, &self.setups[setup as usize]);
+            placed(*place as usize, number, &self.setups[setup as usize]);
             *place += 1;
         }
         self.counters.set_up = self.setups.len() as u64;
         self.counters.tile_entries = self.entries.len() as u64;
     }
 
+    /// [`Self::finish`] of a batch with boxes; `placed` gets each entry's place among those of all tiles, its box and its
+    /// triangle.
+    #[cfg(feature = "forward")]
+    pub(crate) fn finish_with_boxes(&mut self, screen: &Screen, mut placed: impl FnMut(usize, i32, &Setup)) {
+        let boxes = std::mem::take(&mut self.entry_boxes);
+        self.finish_with(screen, |place, number, setup| placed(place, boxes[number], setup));
+        self.entry_boxes = boxes;
+    }
+
     /// Exchanges the memory of what is needed up to [`Batch::finish`].
     #[cfg(feature = "forward")]
-    pub(crate) fn exchange_entries(&mut self, entries: &mut Vec<[u32; 2]>) {
+    pub(crate) fn exchange_entries(&mut self, entries: &mut Vec<[u32; 2]>, boxes: &mut Vec<i32>) {
         std::mem::swap(&mut self.entries, entries);
+        std::mem::swap(&mut self.entry_boxes, boxes);
     }
 
     /// How many entries all tiles have, before they are sorted.

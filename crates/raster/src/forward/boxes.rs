@@ -8,7 +8,10 @@
 //! Cost: some ten operations for eight entries.
 
 use super::wide::max;
-use crate::{SUBPIXEL, Setup, TILE};
+#[cfg(test)]
+use crate::Setup;
+use crate::TILE;
+use crate::geometry::packed_box;
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, I32x8, LANES, Simd};
@@ -32,14 +35,10 @@ impl Boxes {
         self.bounds.resize(entries + LANES, f32::NEG_INFINITY);
     }
 
-    /// Sets an entry: a triangle in the tile that begins at pixel `origin`, and the depth that none of its pixels exceeds.
-    pub(crate) fn set(&mut self, at: usize, setup: &Setup, origin: [u32; 2], bound: f32) {
-        let side = |v: [i32; 3], axis: usize| {
-            let first = origin[axis] as i32 * SUBPIXEL + SUBPIXEL / 2;
-            let (low, high) = (v[0].min(v[1]).min(v[2]) - first, v[0].max(v[1]).max(v[2]) - first);
-            [((low + SUBPIXEL - 1) >> 8).clamp(0, TILE as i32), (high >> 8).clamp(-1, TILE as i32 - 1)]
-        };
-        self.boxes[at] = pack(side(setup.x, 0), side(setup.y, 1));
+    /// Sets an entry: the [`packed_box`] of a triangle in the tile, and the depth that none of its pixels exceeds.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, at: usize, packed: i32, bound: f32) {
+        self.boxes[at] = packed;
         self.bounds[at] = bound;
     }
 
@@ -74,7 +73,7 @@ impl Boxes {
         mut floor: f32,
         mut found: impl FnMut(usize) -> f32,
     ) {
-        let place = I32x8::splat(simd, pack([x, x], [y, y]) | HIGH);
+        let place = I32x8::splat(simd, packed_box([x, y, x, y]) | HIGH);
         let high = I32x8::splat(simd, HIGH);
         for at in entries.clone().step_by(LANES) {
             let boxes = I32x8::from_slice(simd, &self.boxes[at..at + LANES]);
@@ -91,17 +90,26 @@ impl Boxes {
     }
 }
 
-/// First and last column, first and last row as bytes; nothing lies within where the last is before the first.
-#[inline(always)]
-fn pack([x0, x1]: [i32; 2], [y0, y1]: [i32; 2]) -> i32 {
-    let last = TILE as i32 - 1;
-    x0 | (last - x1) << 8 | y0 << 16 | (last - y1) << 24
+/// The box of a triangle's middles of pixels in the tile at pixel `origin`; where there is none, nothing lies within.
+#[cfg(test)]
+pub(crate) fn box_of(setup: &Setup, origin: [i32; 2]) -> i32 {
+    use crate::SUBPIXEL;
+    let side = |v: [i32; 3], axis: usize| {
+        let first = origin[axis] * SUBPIXEL + SUBPIXEL / 2;
+        let (low, high) = (v[0].min(v[1]).min(v[2]) - first, v[0].max(v[1]).max(v[2]) - first);
+        [((low + SUBPIXEL - 1) >> 8).clamp(0, TILE as i32), (high >> 8).clamp(-1, TILE as i32 - 1)]
+    };
+    let ([x0, x1], [y0, y1]) = (side(setup.x, 0), side(setup.y, 1));
+    packed_box([x0, y0, x1, y1])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Screen;
+    use crate::setup::CornerPosition;
     use crate::testing::triangles;
+    use crate::{Batch, SUBPIXEL, SamplePattern, TileLists, Viewport};
     use vitral_math::lanes::{available_levels, dispatch};
 
     #[test]
@@ -110,7 +118,7 @@ mod tests {
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
         for (at, setup) in setups.iter().enumerate() {
-            boxes.set(at, setup, [64, 64], setup.z_max);
+            boxes.set(at, box_of(setup, [64, 64]), setup.z_max);
         }
         let within = |v: [i32; 3], at: i32| {
             let middle = (at + 64) * SUBPIXEL + SUBPIXEL / 2;
@@ -135,5 +143,38 @@ mod tests {
                 assert_eq!(largest, expected, "{name} {range:?}");
             }
         }
+    }
+
+    /// What a batch enters for each tile of a triangle is the box of the pixels whose middles it may cover there.
+    #[test]
+    fn a_batch_keeps_the_boxes_of_its_entries() {
+        let viewport = Viewport::new(4 * TILE as u32, 3 * TILE as u32).unwrap();
+        let screen = Screen::new(viewport, &SamplePattern::new(1));
+        let mut batch = Batch::default();
+        batch.clear(TileLists::WithBoxes);
+        let mut triangles = triangles(800, 100);
+        triangles.extend(triangles_at(&triangles, 90 * SUBPIXEL));
+        for t in &triangles {
+            let corner = |k: usize| CornerPosition { x: t.x[k], y: t.y[k], z: t.z };
+            batch.add_corners([corner(0), corner(1), corner(2)], false, false, t.facet, &screen);
+        }
+        let mut entries = Vec::new();
+        batch.finish_with_boxes(&screen, |place, packed, setup| entries.push((place, packed, *setup)));
+        entries.sort_by_key(|e| e.0);
+        let mut seen = 0;
+        for tile in 0..12 {
+            let origin = [(tile % 4 * TILE) as i32, (tile / 4 * TILE) as i32];
+            for (_, packed, setup) in &entries[batch.tile_range(tile)] {
+                assert_eq!(*packed, box_of(setup, origin), "tile {tile}, {setup:?}");
+                seen += 1;
+            }
+        }
+        assert!(seen == entries.len() && seen > batch.setups().len(), "{seen}");
+    }
+
+    /// The same triangles elsewhere.
+    fn triangles_at(triangles: &[Setup], shift: i32) -> Vec<Setup> {
+        let moved = |t: &Setup| Setup { x: t.x.map(|x| x + shift), y: t.y.map(|y| y + shift / 2), ..*t };
+        triangles.iter().map(moved).collect()
     }
 }

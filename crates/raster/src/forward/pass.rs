@@ -271,7 +271,7 @@ impl Runner {
         let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
         assembly.exchange(out);
         out.pending = pending.is_some();
-        out.batch.clear(TileLists::Kept);
+        out.batch.clear(if pending.is_some() { TileLists::WithBoxes } else { TileLists::Kept });
         out.facets.clear();
         out.shapes.clear();
         out.records.clear();

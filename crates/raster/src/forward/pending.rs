@@ -106,9 +106,9 @@ impl PendingKind {
         boxes.resize(batch.entries());
         let margin = margin(self.scale);
         let larger = self.sign > 0.0;
-        batch.finish_with(screen.screen(false), |at, tile, setup| {
+        batch.finish_with_boxes(screen.screen(false), |at, packed, setup| {
             let nearest = if larger { setup.z_max } else { -setup.z_min };
-            boxes.set(at, setup, origin(screen.viewport, tile), nearest + margin);
+            boxes.set(at, packed, nearest + margin);
         });
     }
 }

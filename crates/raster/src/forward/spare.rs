@@ -32,13 +32,14 @@ impl Places {
 pub(crate) struct Assembly {
     scratch: PieceScratch,
     entries: Vec<[u32; 2]>,
+    boxes: Vec<i32>,
 }
 
 impl Assembly {
     /// Exchanges its memory with that of a job: once before the job's primitives are assembled, once afterwards.
     pub(crate) fn exchange(&mut self, job: &mut Primitives) {
         std::mem::swap(&mut self.scratch, &mut job.scratch);
-        job.batch.exchange_entries(&mut self.entries);
+        job.batch.exchange_entries(&mut self.entries, &mut self.boxes);
     }
 }
 

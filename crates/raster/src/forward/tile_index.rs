@@ -129,7 +129,7 @@ impl TileIndex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::forward::boxes::Boxes;
+    use crate::forward::boxes::{Boxes, box_of};
     use crate::testing::triangles;
     use vitral_math::lanes::{available_levels, dispatch};
 
@@ -141,7 +141,7 @@ mod tests {
         let setups = triangles(MOST as u32, 64);
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
-        setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, setup, [64, 64], setup.z_max));
+        setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, box_of(setup, [64, 64]), setup.z_max));
         let candidate = |at: usize| {
             let (within, bound) = boxes.get(at)?;
             Some(Candidate { within, bound, setup: &setups[at], clip: [0, 0, 80 + at as i32 % 40, 1000] })

@@ -498,6 +498,25 @@ impl Batch {
         self.starts[tile] as usize..self.starts[tile + 1] as usize
     }
 
+    /// Hands out those of some tiles that have triangles, in order.
+    #[cfg(feature = "forward")]
+    #[inline(always)]
+    pub(crate) fn touched_tiles<S: Simd>(&self, simd: S, tiles: Range<usize>, mut touched: impl FnMut(u32)) {
+        use vitral_math::lanes::{U32x8, prelude::*};
+        let mut tile = tiles.start;
+        while tile + LANES <= tiles.end {
+            let starts = &self.starts[tile..tile + LANES + 1];
+            let (first, next) = (U32x8::from_slice(simd, &starts[..LANES]), U32x8::from_slice(simd, &starts[1..]));
+            let mut some = !first.simd_eq(next).to_bitmask() & 0xff;
+            while some != 0 {
+                touched(tile as u32 + some.trailing_zeros());
+                some &= some - 1;
+            }
+            tile += LANES;
+        }
+        (tile..tiles.end).filter(|&t| !self.tile_range(t).is_empty()).for_each(|t| touched(t as u32));
+    }
+
     /// The setup of an entry.
     #[cfg(feature = "forward")]
     #[inline(always)]

@@ -428,17 +428,27 @@ impl PendingDepth {
 /// What may decide the texels of some tiles: their jobs lie in the vector that comes with them.
 #[inline(always)]
 fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<PendingTile>, Vec<u32>) {
-    let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::new());
+    // Most jobs touch few tiles: those without triangles are passed over eight at a time.
+    let mut touched = Vec::new();
+    for (number, job) in (0..).zip(jobs) {
+        job.primitives.batch.touched_tiles(simd, range.clone(), |tile| touched.push([tile, number]));
+    }
+    // Jobs come in their order; this brings them together by tile.
+    touched.sort_by_key(|t| t[0]);
+
+    let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
+    let mut rest = touched.as_slice();
     for tile in range {
+        let here = rest.iter().take_while(|t| t[0] as usize == tile).count();
+        let (mine, after) = rest.split_at(here);
+        rest = after;
         let (first, mut bound, mut count) = (touching.len(), f32::NEG_INFINITY, 0);
-        for (number, job) in jobs.iter().enumerate() {
-            let Primitives { batch, boxes, .. } = &job.primitives;
+        for &[_, number] in mine {
+            let Primitives { batch, boxes, .. } = &jobs[number as usize].primitives;
             let entries = batch.tile_range(tile);
-            if !entries.is_empty() {
-                touching.push(number as u32);
-                count += entries.len() as u32;
-                bound = bound.max(boxes.largest(simd, entries));
-            }
+            touching.push(number);
+            count += entries.len() as u32;
+            bound = bound.max(boxes.largest(simd, entries));
         }
         let jobs = first..touching.len();
         tiles.push(PendingTile { bound, jobs, count, asked: AtomicU32::new(0), known: OnceLock::new() });

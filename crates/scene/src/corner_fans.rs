@@ -1,8 +1,8 @@
 //! The faces round each vertex, and which of them are smooth together.
 //!
-//! Idea: list the corners of faces at every vertex (dealt into buckets of vertices, then a counting sort). At a vertex, each face is averaged with those
-//! that the rule allows: faces within the crease angle of *it*, or faces of its smoothing group. Faces that end up
-//! with the same sum share one normal.
+//! Idea: list the corners of faces at every vertex (dealt into buckets of vertices, then a counting sort). At a vertex, each
+//! face is averaged with those that the rule allows: faces within the crease angle of *it*, or faces of its smoothing
+//! group. Faces that end up with the same sum share one normal.
 //!
 //! In:   faces with normals and angles, welded vertices.
 //! Out:  normals, and for each corner of a face which one it takes.
@@ -167,13 +167,14 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, faces: &FaceData, rule: Rule
 
 /// The corners of bucket `b` in order of their vertex, and where each vertex begins.
 fn by_vertex(dealt: &Buckets<u32>, b: usize, source: &Corners) -> (Vec<u32>, Vec<u32>) {
-    let base = (b << source.shift) as u32;
-    let vertices: Vec<u32> = dealt.pieces(b).flatten().map(|&c| source.vertex(c) - base).collect();
-    let mut starts = vec![0u32; (1 << source.shift) + 1];
+    let base = b << source.shift;
+    let size = (1 << source.shift).min(source.weld.representative.len() - base);
+    let vertices: Vec<u32> = dealt.pieces(b).flatten().map(|&c| source.vertex(c) - base as u32).collect();
+    let mut starts = vec![0u32; size + 1];
     for &v in &vertices {
         starts[v as usize + 1] += 1;
     }
-    for v in 0..1 << source.shift {
+    for v in 0..size {
         starts[v + 1] += starts[v];
     }
     let mut next = starts.clone();

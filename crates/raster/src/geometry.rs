@@ -160,13 +160,14 @@ pub enum TileLists {
     Kept,
     /// Nobody is going to ask: all tiles are empty.
     Unwanted,
-    /// It does, and keeps [`packed_box`] of each triangle in each tile.
+    /// It does, and keeps the box of the pixels that each triangle may cover in each tile.
     #[cfg(feature = "forward")]
     WithBoxes,
 }
 
 /// Pixels of a tile as four bytes: how far columns and rows begin behind the tile's first, and end before its last ones. In
 /// the lowest byte the first column, then the last, the first row, the last.
+#[cfg(feature = "forward")]
 #[inline(always)]
 pub(crate) fn packed_box([x0, y0, x1, y1]: [i32; 4]) -> i32 {
     let last = TILE as i32 - 1;

@@ -9,7 +9,7 @@ use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::{FaceTable, Scratch};
+use crate::shading::{BackgroundKey, BackgroundRows, FaceTable, Scratch};
 use crate::shadow;
 use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
@@ -64,6 +64,7 @@ pub struct Session {
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
     pub(crate) spare_picture: Mutex<Vec<[u8; 4]>>,
     pub(crate) spare_scratch: Mutex<Vec<Scratch>>,
+    pub(crate) background: KeptFor<BackgroundKey, BackgroundRows>,
     pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
     triangles: Kept<Triangles>,
     bvh: Kept<Bvh>,
@@ -97,11 +98,11 @@ fn keep<T>(kept: &Kept<T>, make: impl FnOnce() -> Result<T, Limit>) -> Result<Ar
 pub(crate) type KeptFor<K, T> = Mutex<Option<(K, Arc<T>)>>;
 
 /// What is kept for this key, or else what `make` makes. The old one need not stay while the new one is made.
-pub(crate) fn keep_for<K: PartialEq, T>(
+pub(crate) fn keep_for<K: PartialEq, T, E>(
     kept: &KeptFor<K, T>,
     key: K,
-    make: impl FnOnce() -> Result<T, Limit>,
-) -> Result<Arc<T>, Limit> {
+    make: impl FnOnce() -> Result<T, E>,
+) -> Result<Arc<T>, E> {
     let mut kept = kept.lock().expect("no thread panics while it makes what is kept");
     if let Some((known, value)) = &*kept
         && *known == key
@@ -172,6 +173,7 @@ impl Session {
             spare_batches: Mutex::default(),
             spare_picture: Mutex::default(),
             spare_scratch: Mutex::default(),
+            background: Mutex::default(),
             bsp: Mutex::default(),
             triangles: Mutex::default(),
             bvh: Mutex::default(),

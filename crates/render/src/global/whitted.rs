@@ -469,7 +469,7 @@ impl<'a> Whitted<'a> {
 
     /// What a ray sees that meets nothing.
     fn background(&self, ray: &Branch) -> [f32; 4] {
-        let rows = &self.constants.background;
+        let rows = &self.constants.background.colors;
         let row = match ray.row {
             Some(row) => row as usize,
             None => self.sky.row(self.view_from_world * ray.direction, rows.len()),

@@ -287,7 +287,7 @@ impl DeepPicture<'_> {
             let (place, surface) = met?;
             let color = match surface {
                 Some(surface) => surface.color,
-                None => self.constants.background[place[1] as usize],
+                None => self.constants.background.colors[place[1] as usize],
             };
             (0..3).for_each(|k| light[k] += weight[k] * color[k]);
             light[3] += opacity * color[3];

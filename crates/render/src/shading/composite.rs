@@ -53,7 +53,7 @@ impl Composer {
     pub(super) fn begin(&mut self, tile: &Tile, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
         let (width, height) = visible_part(tile, constants);
         for y in 0..height {
-            out[y * TILE..y * TILE + width].fill(constants.background_bytes[tile.y as usize + y]);
+            out[y * TILE..y * TILE + width].fill(constants.background.bytes[tile.y as usize + y]);
         }
         self.places.clear();
         self.colors.clear();
@@ -92,7 +92,7 @@ impl Composer {
             if index == u32::MAX {
                 return;
             }
-            let background = constants.background[tile.y as usize + index as usize / TILE];
+            let background = constants.background.colors[tile.y as usize + index as usize / TILE];
             let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
             let mut source = Source::Point(NO_POINT);
             if of_surface == index {

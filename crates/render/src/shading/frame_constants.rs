@@ -4,6 +4,7 @@ use super::group::{Model, model};
 use super::points::offset;
 use crate::prepare::{is_solid, mirrors};
 use crate::radiosity::Solution;
+use crate::session::keep_for;
 use crate::settings::Kay;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
@@ -11,6 +12,8 @@ use crate::{
     Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency,
     TransparencyOrder,
 };
+use std::convert::Infallible;
+use std::sync::Arc;
 use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
 use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef, Transmission, scattering_exponent};
@@ -109,10 +112,19 @@ pub(crate) struct FrameConstants<'a> {
     pub in_passes: bool,
     /// Surfaces are drawn in the background's colour.
     pub surfaces_are_background: bool,
-    /// Background of each row in the space in which colours are composed, and 0 or 1 for its alpha.
-    pub background: Vec<[f32; 4]>,
-    /// The same as display bytes.
-    pub background_bytes: Vec<[u8; 4]>,
+    pub background: Arc<BackgroundRows>,
+}
+
+/// What the rows of the background depend on: what it is, the picture's height, whether the colour space is raw.
+pub(crate) type BackgroundKey = (Background, u32, bool);
+
+/// The background of each row of a picture.
+#[derive(Debug)]
+pub(crate) struct BackgroundRows {
+    /// In the space in which colours are composed, and 0 or 1 for its alpha.
+    pub colors: Vec<[f32; 4]>,
+    /// As display bytes.
+    pub bytes: Vec<[u8; 4]>,
 }
 
 impl<'a> FrameConstants<'a> {
@@ -136,9 +148,9 @@ impl<'a> FrameConstants<'a> {
             Global::RayTrace => facets_that_follow(view, &materials),
             _ => Vec::new(),
         };
-        let background = background_rows(&settings.background, settings.height, raw);
-        let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
-        let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
+        let key = (settings.background, settings.height, raw);
+        let make = || Ok::<_, Infallible>(background_rows(&settings.background, settings.height, raw));
+        let Ok(background) = keep_for(&session.background, key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
         Self {
@@ -160,7 +172,6 @@ impl<'a> FrameConstants<'a> {
             middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
             in_passes: settings.transparency_order == TransparencyOrder::MultiPass,
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
-            background_bytes: background.iter().map(bytes).collect(),
             background,
         }
     }
@@ -273,17 +284,19 @@ fn material_constants<'a>(
     }
 }
 
-fn background_rows(background: &Background, height: u32, raw: bool) -> Vec<[f32; 4]> {
+fn background_rows(background: &Background, height: u32, raw: bool) -> BackgroundRows {
     let light = |c: [f32; 3]| if raw { c } else { c.map(Lanes::linear_from_srgb) };
     let opaque = |c: [f32; 3]| [c[0], c[1], c[2], 1.0];
-    (0..height)
-        .map(|y| match background {
-            Background::Transparent => [0.0; 4],
-            Background::Color { color } => opaque(light(*color)),
-            Background::Gradient { top, bottom } => {
-                let t = (y as f32 + 0.5) / height as f32;
-                opaque(light([0, 1, 2].map(|k| top[k] + (bottom[k] - top[k]) * t)))
-            }
-        })
-        .collect()
+    let row = |y: u32| match background {
+        Background::Transparent => [0.0; 4],
+        Background::Color { color } => opaque(light(*color)),
+        Background::Gradient { top, bottom } => {
+            let t = (y as f32 + 0.5) / height as f32;
+            opaque(light([0, 1, 2].map(|k| top[k] + (bottom[k] - top[k]) * t)))
+        }
+    };
+    let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
+    let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
+    let colors: Vec<[f32; 4]> = (0..height).map(row).collect();
+    BackgroundRows { bytes: colors.iter().map(bytes).collect(), colors }
 }

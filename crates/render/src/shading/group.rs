@@ -167,7 +167,7 @@ pub(crate) fn shade_all<S: Simd>(
 ) {
     if constants.surfaces_are_background {
         for (color, place) in lit.colors.iter_mut().zip(&points.place) {
-            *color = constants.background[(place[1] as usize).min(constants.background.len() - 1)];
+            *color = constants.background.colors[(place[1] as usize).min(constants.background.colors.len() - 1)];
         }
         return;
     }

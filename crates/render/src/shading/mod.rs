@@ -28,7 +28,7 @@ mod shadowed;
 
 pub(crate) use channels::{ChannelSink, DataPlanes};
 pub use flat::FaceTable;
-pub(crate) use frame_constants::{DecodeTables, FrameConstants};
+pub(crate) use frame_constants::{BackgroundKey, BackgroundRows, DecodeTables, FrameConstants};
 
 pub(crate) use behind::DeepImage;
 

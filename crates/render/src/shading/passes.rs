@@ -64,8 +64,8 @@ impl ColorSink<'_> {
     /// What is opaque, and the background.
     fn canvas(&self, tile: &Tile, points: &Points, lit: &Lit, samples: usize) -> Canvas {
         let background = |pixel: usize| {
-            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.len() - 1);
-            self.constants.background[row]
+            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.colors.len() - 1);
+            self.constants.background.colors[row]
         };
         let mut canvas = Canvas {
             samples: (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect(),

@@ -308,7 +308,7 @@ fn take_grid(
     execution: &Execution,
 ) -> Result<TileGrid, Error> {
     let bytes = TileGrid::bytes(viewport, samples);
-    // Pictures, tile by tile and as a whole, take 8 bytes a pixel.
+    // Colours take 4 bytes a pixel; channels of 4 bytes lie there tile by tile and as a whole.
     let pictures = u64::from(viewport.width) * u64::from(viewport.height) * 8;
     execution.budget.charge(bytes + pictures, "the picture")?;
     execution.budget.release(bytes + pictures);

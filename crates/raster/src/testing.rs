@@ -29,3 +29,17 @@ pub(crate) fn triangles(count: u32, origin: i32) -> Vec<Setup> {
     }
     setups
 }
+
+/// The box of a triangle's middles of pixels in the tile at pixel `origin`; where there is none, nothing lies within.
+#[cfg(feature = "forward")]
+pub(crate) fn box_of(setup: &Setup, origin: [i32; 2]) -> i32 {
+    use crate::TILE;
+    use crate::geometry::packed_box;
+    let side = |v: [i32; 3], axis: usize| {
+        let first = origin[axis] * SUBPIXEL + SUBPIXEL / 2;
+        let (low, high) = (v[0].min(v[1]).min(v[2]) - first, v[0].max(v[1]).max(v[2]) - first);
+        [((low + SUBPIXEL - 1) >> 8).clamp(0, TILE as i32), (high >> 8).clamp(-1, TILE as i32 - 1)]
+    };
+    let ([x0, x1], [y0, y1]) = (side(setup.x, 0), side(setup.y, 1));
+    packed_box([x0, y0, x1, y1])
+}

@@ -12,7 +12,6 @@
 
 use crate::disjoint_sets::DisjointSets;
 use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge};
-use crate::topology::position;
 use crate::weld::Weld;
 use crate::{Corners, Mesh};
 use std::collections::BTreeMap;
@@ -68,7 +67,7 @@ fn sides_of(mesh: &Mesh, triangles: Vec<Corners>, workers: &Workers) -> Vec<Side
     let center = part.bounds().center();
     let (mut volumes, mut boxes) = (vec![0.0; count], vec![Aabb::EMPTY; count]);
     for (corners, &root) in part.triangles.iter().zip(&roots) {
-        let [a, b, c] = corners.map(|i| position(&part, i) - center);
+        let [a, b, c] = corners.map(|i| part.position(i) - center);
         volumes[root] += a.dot(b.cross(c));
         [a, b, c].into_iter().for_each(|p| boxes[root].include(p));
     }

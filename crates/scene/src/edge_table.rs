@@ -69,7 +69,7 @@ impl Sides<'_> {
 
     fn visit_triangle(&self, t: usize, put: &mut impl FnMut(usize, [u32; 3])) {
         let [a, b, c] = self.mesh.triangles[t].map(|i| self.representative[i as usize]);
-        if self.outlines == Outlines::SoundTriangles && (a == b || b == c || c == a) {
+        if self.outlines == Outlines::SoundTriangles && is_collapsed([a, b, c]) {
             return;
         }
         self.put_side(a, b, t, put);
@@ -137,6 +137,11 @@ pub(crate) fn for_each_edge<R: Default + Send>(
         }
         result
     })
+}
+
+/// Whether a triangle of welded vertices has two corners at one position.
+pub(crate) fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
+    a == b || b == c || c == a
 }
 
 /// Calls `visit(higher vertex, uses)` for every edge among the uses at one lower vertex.

@@ -181,8 +181,7 @@ pub fn frame_world(world: &World, eye: DVec3, view_up: DVec3, lens: Lens, aspect
     let mut most = 0.0f64;
     let mut include = |instance: &Instance, vertices: &[u32]| {
         for &v in vertices {
-            let p = instance.mesh.positions[v as usize];
-            let p = instance.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from)));
+            let p = instance.world_from_model.transform_point3(instance.mesh.position(v));
             if p.is_finite() {
                 most = most.max(fit.need(p));
             }

@@ -140,6 +140,11 @@ impl Mesh {
         }
     }
 
+    /// The position of vertex `i`.
+    pub(crate) fn position(&self, i: u32) -> DVec3 {
+        DVec3::from_array(self.positions[i as usize].map(f64::from))
+    }
+
     /// The boxes round the finite corners of each [`TRIANGLES_A_RUN`] triangles in order, model space.
     pub fn run_bounds(&self, workers: &Workers) -> Vec<Aabb> {
         const BATCH: usize = 64;

@@ -12,8 +12,7 @@
 
 use crate::Mesh;
 use crate::disjoint_sets::DisjointSets;
-use crate::edge_table::{MAX_FACES, Outlines, Use, edges_at, for_each_edge};
-use crate::topology::position;
+use crate::edge_table::{MAX_FACES, Outlines, Use, edges_at, for_each_edge, is_collapsed};
 use crate::weld::Weld;
 use vitral_exec::Workers;
 
@@ -123,6 +122,10 @@ impl<'a> Skins<'a> {
         countable.then(|| Self { mesh, weld, bodies: DisjointSets::new(mesh.triangles.len()) })
     }
 
+    fn welded(&self, corners: &[u32; 3]) -> [u32; 3] {
+        corners.map(|i| self.weld.representative[i as usize])
+    }
+
     /// Looks at an edge, given the triangles that use it.
     fn edge(&self, seen: &mut Seen, uses: &[Use]) {
         seen.some = true;
@@ -143,8 +146,8 @@ impl<'a> Skins<'a> {
         back.clear();
         for &corner in corners {
             let (triangle, k) = (corner / 3, corner as usize % 3);
-            let at = self.mesh.triangles[triangle as usize].map(|i| self.weld.representative[i as usize]);
-            if at[0] == at[1] || at[1] == at[2] || at[2] == at[0] {
+            let at = self.welded(&self.mesh.triangles[triangle as usize]);
+            if is_collapsed(at) {
                 continue;
             }
             let (to, from) = (at[(k + 1) % 3], at[(k + 2) % 3]);
@@ -190,13 +193,17 @@ impl<'a> Skins<'a> {
         const BATCH: usize = 1 << 14;
         let mesh = self.mesh;
         // Volumes are taken as seen from some place near.
-        let near = position(mesh, mesh.triangles[0][0]);
+        let near = mesh.position(mesh.triangles[0][0]);
         let batches = workers.map(mesh.triangles.len().div_ceil(BATCH), |batch| {
             // Neighbours in the list are mostly of one body.
             let mut volumes: Vec<Volume> = Vec::new();
             let first = batch * BATCH;
             for (t, corners) in (first..).zip(mesh.triangles[first..].iter().take(BATCH)) {
-                let [a, b, c] = corners.map(|i| position(mesh, i) - near);
+                // What has collapsed is no part of a body: its volume is nothing but rounding.
+                if is_collapsed(self.welded(corners)) {
+                    continue;
+                }
+                let [a, b, c] = corners.map(|i| mesh.position(i) - near);
                 let tetrahedron = a.dot(b.cross(c));
                 let body = self.bodies.find(t as u32);
                 match volumes.last_mut() {
@@ -250,5 +257,16 @@ mod tests {
         assert!(!Solidity::of(&inside_out, &Workers::single()).outward);
         ball.triangles.pop();
         assert!(!Solidity::of(&ball, &Workers::single()).closed);
+    }
+
+    #[test]
+    fn collapsed_triangles_have_no_say() {
+        let mut ball = solids::sphere(1.0, 32, 16);
+        (ball.normals, ball.faces, ball.solidity) = (None, crate::Faces::Triangles, None);
+        let sound = ball.triangles.clone();
+        ball.triangles.extend(sound.iter().flat_map(|&[a, b, c]| [[a, a, b], [b, c, c], [c, a, c]]));
+        assert!(Solidity::of(&ball, &Workers::single()).is_solid());
+        normals::generate(&mut ball, 1.0, &Workers::single());
+        assert!(Solidity::of(&ball, &Workers::single()).is_solid());
     }
 }

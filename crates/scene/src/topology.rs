@@ -9,7 +9,7 @@
 //! Source: [Mäntylä 1988] (manifolds, Euler's formula).
 
 use crate::disjoint_sets::DisjointSets;
-use crate::edge_table::{MAX_FACES, Outlines, for_each_edge};
+use crate::edge_table::{MAX_FACES, Outlines, for_each_edge, is_collapsed};
 use crate::weld::Weld;
 use crate::{Mesh, buckets};
 use std::ops::Range;
@@ -161,19 +161,10 @@ impl buckets::Source<[u32; 3]> for SortedTriangles<'_> {
     }
 }
 
-fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
-    a == b || b == c || c == a
-}
-
 fn has_no_area(mesh: &Mesh, t: usize) -> bool {
-    let [a, b, c] = mesh.triangles[t].map(|i| position(mesh, i));
+    let [a, b, c] = mesh.triangles[t].map(|i| mesh.position(i));
     let normal = (b - a).cross(c - a);
     normal == DVec3::ZERO
-}
-
-pub(crate) fn position(mesh: &Mesh, i: u32) -> DVec3 {
-    let [x, y, z] = mesh.positions[i as usize].map(f64::from);
-    DVec3::new(x, y, z)
 }
 
 #[cfg(test)]

@@ -129,8 +129,8 @@ impl TileIndex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::forward::boxes::{Boxes, box_of};
-    use crate::testing::triangles;
+    use crate::forward::boxes::Boxes;
+    use crate::testing::{box_of, triangles};
     use vitral_math::lanes::{available_levels, dispatch};
 
     /// What triangles must be above.

@@ -43,7 +43,7 @@ pub fn facing_along(n: DVec3, v: DVec3) -> Facing {
 
 /// Whether back faces of a mesh can never be seen from outside.
 pub fn applies(solidity: Solidity) -> bool {
-    solidity.closed && solidity.consistent && solidity.outward
+    solidity.is_solid()
 }
 
 #[cfg(test)]

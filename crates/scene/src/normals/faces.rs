@@ -148,9 +148,9 @@ struct Angle {
 /// The interior angle at corner `k` of an outline with this normal.
 fn corner_angle(mesh: &Mesh, outline: &[u32], k: usize, normal: DVec3) -> Angle {
     let n = outline.len();
-    let at = point(mesh, outline[k]);
-    let forth = point(mesh, outline[if k + 1 == n { 0 } else { k + 1 }]) - at;
-    let back = point(mesh, outline[if k == 0 { n - 1 } else { k - 1 }]) - at;
+    let at = mesh.position(outline[k]);
+    let forth = mesh.position(outline[if k + 1 == n { 0 } else { k + 1 }]) - at;
+    let back = mesh.position(outline[if k == 0 { n - 1 } else { k - 1 }]) - at;
     let cross = forth.cross(back);
     Angle { sine: cross.length(), cosine: forth.dot(back), reflex: cross.dot(normal) < 0.0 }
 }
@@ -189,11 +189,11 @@ impl Angles {
 
 /// Newell's normal as a fan of cross products from the first corner, unit; zero without area or with bad coordinates.
 pub(super) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
-    let origin = point(mesh, outline[0]);
+    let origin = mesh.position(outline[0]);
     let (mut sum, mut longest) = (DVec3::ZERO, 0.0f64);
-    let mut previous = point(mesh, outline[1]) - origin;
+    let mut previous = mesh.position(outline[1]) - origin;
     for &corner in &outline[2..] {
-        let next = point(mesh, corner) - origin;
+        let next = mesh.position(corner) - origin;
         sum += previous.cross(next);
         longest = longest.max(previous.length_squared()).max(next.length_squared());
         previous = next;
@@ -206,11 +206,6 @@ pub(super) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
 /// corners. A sliver only as wide as the rounding of its coordinates has no direction worth averaging.
 fn has_area(length: f64, longest_squared: f64) -> bool {
     length.is_finite() && length > 1e-7 * longest_squared
-}
-
-fn point(mesh: &Mesh, i: u32) -> DVec3 {
-    let [x, y, z] = mesh.positions[i as usize];
-    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
 }
 
 #[inline(always)]

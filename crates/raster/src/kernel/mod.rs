@@ -2,6 +2,7 @@
 
 pub(crate) mod nearest;
 pub(crate) mod sift;
+pub(crate) mod slender;
 #[cfg(any(test, feature = "forward"))]
 pub(crate) mod tiny;
 pub(crate) mod transform;

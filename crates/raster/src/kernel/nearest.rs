@@ -8,6 +8,7 @@
 //! In:   facets set up, in any order. Out: depths.
 //! Cost: linear in the rows of eight pixels that facets touch.
 
+use super::slender;
 use super::traverse::{Edge, Extremes, Placed, Window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use std::ops::Range;
@@ -83,8 +84,8 @@ impl NearestDepths {
     #[inline(always)]
     fn facet<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, window: &Window) {
         let Some(place) = Placed::new(setup, self.tile, window, &self.pattern) else { return };
-        let [x0, x1] = place.columns;
-        if x1 - x0 < LANES && place.is_small() {
+        let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+        if x1 - x0 < LANES && place.is_small() && (y1 - y0 < 2 * LANES || !place.is_slender()) {
             self.narrow::<S, CLIPPED>(simd, setup, &place, &window[0]);
         } else {
             self.wide::<S, CLIPPED>(simd, setup, &place, &window[0]);
@@ -164,6 +165,10 @@ impl NearestDepths {
             return;
         }
         let (edges, constants) = place.center_edges();
+        if place.is_slender() {
+            self.slender(simd, setup, place, (&edges, &constants));
+            return;
+        }
         let extremes = Extremes::new(simd, &edges, &constants.map(|c| [c]), 1);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let zero = I32x8::splat(simd, 0);
@@ -219,6 +224,31 @@ impl NearestDepths {
         }
     }
 
+    /// A facet that is thin.
+    #[inline(always)]
+    fn slender<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed, edges: (&[Edge; 3], &[i32; 3])) {
+        let plane = Plane::new(simd, setup, self, 0);
+        let upright = place.is_upright();
+        let nothing = F32x8::splat(simd, f32::NEG_INFINITY);
+        let depths: &mut [f32; TILE_PIXELS] = self.depths.as_mut_slice().try_into().expect("a tile");
+        slender::each_eight(
+            simd,
+            place,
+            edges,
+            #[inline(always)]
+            |along, across, inside| {
+                let [x, y] = if upright { [across, along] } else { [along, across] };
+                let new = lanes::Lanes::select(inside, plane.at(x, y), nothing).to_array();
+                let at = (x + y * TILE as i32).to_array();
+                // No two are the same.
+                for lane in 0..LANES {
+                    let depth = &mut depths[at[lane] as usize % TILE_PIXELS];
+                    *depth = if new[lane] > *depth { new[lane] } else { *depth };
+                }
+            },
+        );
+    }
+
     /// Brings `far` up to date once enough rows were walked in a block. When does not matter to depths.
     #[inline(always)]
     fn note<S: Simd>(&mut self, simd: S, block: usize, rows: u32) {
@@ -251,8 +281,10 @@ struct Plane<S: Simd> {
     low: F32x8<S>,
     high: F32x8<S>,
     z: f32,
+    dz_dx: f32,
     dz_dy: f32,
-    /// From the plane's origin to the middles of the tile's first row, in 1/256 pixel.
+    /// From the plane's origin to the middles of the first column and the tile's first row, in 1/256 pixel.
+    right: i32,
     down: i32,
 }
 
@@ -269,9 +301,25 @@ impl<S: Simd> Plane<S> {
             low: F32x8::splat(simd, low),
             high: F32x8::splat(simd, high),
             z: setup.z * sign,
+            dz_dx: setup.dz_dx * sign,
             dz_dy: setup.dz_dy * sign,
+            right: first,
             down: tile.1 as i32 * SUBPIXEL + SUBPIXEL / 2 - setup.origin[1],
         }
+    }
+
+    /// At eight pixels, counted from the first column and the tile's first row.
+    #[inline(always)]
+    fn at(&self, x: I32x8<S>, y: I32x8<S>) -> F32x8<S> {
+        let away = lanes::inlined(
+            #[inline(always)]
+            |pixel: I32x8<S>, first: i32| -> F32x8<S> {
+                let distance: F32x8<S> = ((pixel << SUBPIXEL.trailing_zeros()) + first).to_float();
+                distance * (1.0 / SUBPIXEL as f32)
+            },
+        );
+        let z = away(x, self.right) * self.dz_dx + (away(y, self.down) * self.dz_dy + self.z);
+        lanes::Lanes::min(lanes::Lanes::max(z, self.low), self.high)
     }
 
     #[inline(always)]

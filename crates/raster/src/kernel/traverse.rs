@@ -144,10 +144,18 @@ const FAR_AWAY: i64 = 1 << 30;
 /// they touch: the products are below 2^29.
 pub(crate) const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
+/// What is at most so many 1/256 pixel thick is walked along its length.
+const SLENDER: i64 = 3 * SUBPIXEL as i64;
+
+/// Over how much the corners extend.
+#[inline(always)]
+fn spread(v: &[i32; 3]) -> i32 {
+    v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2])
+}
+
 #[inline(always)]
 fn is_small(x: &[i32; 3], y: &[i32; 3]) -> bool {
-    let largest = |v: &[i32; 3]| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]);
-    largest(x) < SMALL && largest(y) < SMALL
+    spread(x) < SMALL && spread(y) < SMALL
 }
 
 #[cfg(any(test, feature = "forward"))]
@@ -288,6 +296,21 @@ impl Placed {
     #[inline(always)]
     pub(crate) fn is_small(&self) -> bool {
         is_small(&self.x, &self.y)
+    }
+
+    /// Whether it is higher than wide.
+    #[inline(always)]
+    pub(crate) fn is_upright(&self) -> bool {
+        spread(&self.y) > spread(&self.x)
+    }
+
+    /// Whether it is at most [`SLENDER`] pixels thick, measured across its longer side, so that walking along that pays.
+    #[inline(always)]
+    pub(crate) fn is_slender(&self) -> bool {
+        let (x, y) = (&self.x, &self.y);
+        let doubled = |a: i32, b: i32| i64::from(a) * i64::from(b);
+        let area = doubled(x[1] - x[0], y[2] - y[0]) - doubled(x[2] - x[0], y[1] - y[0]);
+        area.abs() <= i64::from(spread(x).max(spread(y))) * SLENDER
     }
 
     /// Whether its pixels lie within a box of 8x8, and the edge functions fit into 32 bits.

@@ -4,6 +4,7 @@ pub mod brute_force;
 pub mod bsp;
 mod cut;
 mod facets;
+mod near_first;
 pub mod painter;
 mod peel;
 mod pieces;

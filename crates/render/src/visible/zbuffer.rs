@@ -4,7 +4,7 @@
 //! the nearer one stays. Here the picture is cut into tiles of 64x64 pixels whose samples fit in the second-level
 //! cache; triangles are sorted into the tiles they touch, a few hundred thousand at a time, and each tile is then
 //! walked by one thread. Blocks of 8x8 pixels remember how far their farthest sample is, so that hidden triangles are
-//! rejected without looking at samples. Transparent facets are not tested against each other but collected, after all
+//! rejected without looking at samples; what seems nearer is drawn first. Transparent facets are not tested against each other but collected, after all
 //! opaque ones.
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
@@ -14,6 +14,7 @@
 
 use super::brute_force::size_in_picture;
 use super::facets::BYTES_A_TRIANGLE;
+use super::near_first::near_first;
 use super::{Peel, Resolved, TileSink, VisibleSurface, charged};
 use crate::stats::GeometryStats;
 use crate::trace::Step;
@@ -39,16 +40,17 @@ const VERTICES_A_JOB: usize = 4096;
 pub struct ZBuffer;
 
 /// A run of triangles of one draw.
+#[derive(Clone)]
 pub(super) struct Piece<'v, 'a> {
-    draw: &'v Draw<'a>,
+    pub(super) draw: &'v Draw<'a>,
     /// Index into the view's instances.
-    item: usize,
-    range: Range<u32>,
+    pub(super) item: usize,
+    pub(super) range: Range<u32>,
 }
 
 /// Pieces that are set up together; a job's batch holds opaque triangles or layers, not both.
 pub(super) struct Job<'v, 'a> {
-    pieces: Vec<Piece<'v, 'a>>,
+    pub(super) pieces: Vec<Piece<'v, 'a>>,
     pub(super) layered: bool,
 }
 
@@ -78,7 +80,7 @@ impl VisibleSurface for ZBuffer {
             let jobs = &jobs[round.clone()];
             let start = execution.budget.elapsed();
             transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
-            let batches = set_up(view, jobs, &vertices, TileLists::Kept, execution);
+            let batches = set_up(view, &near_first(view, jobs), &vertices, TileLists::Kept, execution);
             for (_, batch) in &batches {
                 resolved.geometry.add(&batch.counters);
             }
@@ -183,7 +185,7 @@ pub(crate) fn each_tile(
     execution.budget.check("visibility")?;
     let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
-    let batches = set_up(view, &jobs, &vertices, TileLists::Kept, execution);
+    let batches = set_up(view, &near_first(view, &jobs), &vertices, TileLists::Kept, execution);
     let numbers = 0..view.viewport.tiles_x() * rows.min(view.viewport.tiles_y());
     execution.workers.for_each(numbers.collect(), |number: u32| {
         let index = number as usize;
@@ -268,32 +270,53 @@ fn tell_tile(view: &PreparedView<'_>, counts: &Mutex<Vec<u32>>, execution: &Exec
 
 /// Cuts the view's draws into jobs of about equal size, all opaque ones first.
 pub(super) fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
-    let mut jobs = Vec::new();
+    let mut jobs = Jobs::default();
     for layered in [false, true] {
-        let mut job = Job { pieces: Vec::new(), layered };
-        let mut size = 0;
         for (item, instance) in view.instances.iter().enumerate() {
             for draw in if layered { &instance.layered } else { &instance.opaque } {
                 for range in &draw.ranges {
-                    let mut start = range.start;
-                    while start < range.end {
-                        let end = range.end.min(start + (TRIANGLES_A_JOB - size));
-                        job.pieces.push(Piece { draw, item, range: start..end });
-                        size += end - start;
-                        start = end;
-                        if size == TRIANGLES_A_JOB {
-                            jobs.push(std::mem::replace(&mut job, Job { pieces: Vec::new(), layered }));
-                            size = 0;
-                        }
-                    }
+                    jobs.push(&Piece { draw, item, range: range.clone() }, layered);
                 }
             }
         }
-        if !job.pieces.is_empty() {
-            jobs.push(job);
+    }
+    jobs.finish()
+}
+
+/// Jobs that are being filled with pieces, one after the other.
+#[derive(Default)]
+pub(super) struct Jobs<'v, 'a> {
+    jobs: Vec<Job<'v, 'a>>,
+    /// Triangles in the last one.
+    size: u32,
+}
+
+impl<'v, 'a> Jobs<'v, 'a> {
+    /// Appends triangles.
+    pub(super) fn push(&mut self, piece: &Piece<'v, 'a>, layered: bool) {
+        let mut start = piece.range.start;
+        while start < piece.range.end {
+            let job = match self.jobs.last_mut() {
+                Some(job) if job.layered == layered && self.size < TRIANGLES_A_JOB => job,
+                _ => {
+                    self.size = 0;
+                    self.jobs.push(Job { pieces: Vec::new(), layered });
+                    self.jobs.last_mut().expect("just pushed")
+                }
+            };
+            let end = piece.range.end.min(start + (TRIANGLES_A_JOB - self.size));
+            self.size += end - start;
+            match job.pieces.last_mut() {
+                Some(last) if std::ptr::eq(last.draw, piece.draw) && last.range.end == start => last.range.end = end,
+                _ => job.pieces.push(Piece { range: start..end, ..piece.clone() }),
+            }
+            start = end;
         }
     }
-    jobs
+
+    pub(super) fn finish(self) -> Vec<Job<'v, 'a>> {
+        self.jobs
+    }
 }
 
 /// Groups jobs into rounds; there is always at least one, so that tiles are cleared and handed on.

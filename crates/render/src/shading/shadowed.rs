@@ -60,17 +60,19 @@ pub(crate) fn arriving<S: Simd>(
         return [Vec::new(), Vec::new()];
     }
     let placing = placing(constants, subject);
-    let corners: Vec<_> = facets.triangles().iter().map(|&triangle| placing.facet(triangle)).collect();
+    let corners = placing.facets(simd, facets.triangles());
     let mut all = Vec::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
         let slots = slots(points, eight, records, subject.first_facet);
         let weights = point_weights(simd, &facets.records, &slots);
         let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
-        let places = simd.vectorize(
+        simd.vectorize(
             #[inline(always)]
-            || placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]),
+            || {
+                let place = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
+                all.extend((0..eight.len()).map(place));
+            },
         );
-        all.extend_from_slice(&places[..eight.len()]);
     }
     arriving_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
 }
@@ -118,8 +120,8 @@ pub(super) fn world_places<S: Simd>(
     weights: [[f32; LANES]; 3],
 ) -> [Place; LANES] {
     let placing = placing(constants, subject);
-    let facets = slots.triangle.map(|triangle| placing.facet(triangle));
-    placing.places(simd, (&slots.triangle, facets.each_ref()), &weights, [&slots.x, &slots.y])
+    let facets = placing.eight_facets(simd, &slots.triangle);
+    std::array::from_fn(placing.places(simd, (&slots.triangle, facets.each_ref()), &weights, [&slots.x, &slots.y]))
 }
 
 fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing<'a> {

@@ -232,6 +232,9 @@ impl Shadows for Prepared {
     fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
+            LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
+                lookup::arriving(self.level, map, *towards, places, parts);
+            }
             LightMaps::Infinity { towards, map } => {
                 let faces = |place: &Place| place.normal.dot(*towards) > 0.0;
                 let questions: Vec<_> = places.iter().filter(|p| faces(p)).map(|p| (0, p)).collect();

@@ -8,7 +8,7 @@ use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F64x8, LANES, Simd};
+use vitral_math::lanes::{self, F64x8, LANES, Simd};
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
@@ -18,11 +18,7 @@ pub(crate) type Facet = ([DVec3; 3], DVec3);
 /// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
 /// on the side from which they run counter-clockwise in the model; zero without area.
 pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet {
-    oriented(instance, triangle, center, mirrors(&instance.world_from_model))
-}
-
-/// The same for an instance of which it is known whether it is `mirrored`.
-fn oriented(instance: &Instance, triangle: u32, center: DVec3, mirrored: bool) -> Facet {
+    let mirrored = mirrors(&instance.world_from_model);
     let mesh = &instance.mesh;
     let corner = |i: u32| {
         let [x, y, z] = mesh.positions[i as usize];
@@ -65,12 +61,74 @@ impl<'a> Placing<'a> {
         Self { view, instance, mirrored: mirrors(&instance.world_from_model), turns, center }
     }
 
-    /// A triangle of its mesh.
-    pub(crate) fn facet(&self, triangle: u32) -> Facet {
-        oriented(self.instance, triangle, self.center, self.mirrored)
+    /// Triangles of its mesh.
+    pub(crate) fn facets<S: Simd>(&self, simd: S, triangles: &[u32]) -> Vec<Facet> {
+        let mut facets = Vec::with_capacity(triangles.len());
+        for triangles in triangles.chunks(LANES) {
+            let last = triangles.len() - 1;
+            let eight = self.eight_facets(simd, &std::array::from_fn(|lane| triangles[lane.min(last)]));
+            facets.extend_from_slice(&eight[..triangles.len()]);
+        }
+        facets
     }
 
-    /// Eight points of such triangles: the corners' weights, and where they are on the screen.
+    /// [`facet`] of eight triangles, by the same operations.
+    pub(crate) fn eight_facets<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [Facet; LANES] {
+        simd.vectorize(
+            #[inline(always)]
+            || self.eight_facets_inlined(simd, triangles),
+        )
+    }
+
+    #[inline(always)]
+    fn eight_facets_inlined<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [Facet; LANES] {
+        let (mesh, m) = (&self.instance.mesh, &self.instance.world_from_model);
+        let axes = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
+        let center = self.center.to_array();
+        let mut corners = [[[0.0; LANES]; 3]; 3];
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            for (corner, &vertex) in corners.iter_mut().zip(&mesh.triangles[triangle as usize]) {
+                for (axis, value) in corner.iter_mut().zip(mesh.positions[vertex as usize]) {
+                    axis[lane] = f64::from(value);
+                }
+            }
+        }
+        let load = lanes::inlined(
+            #[inline(always)]
+            |values: &[f64; LANES]| F64x8::from_slice(simd, values),
+        );
+        for corner in &mut corners {
+            let [x, y, z] = [load(&corner[0]), load(&corner[1]), load(&corner[2])];
+            for (k, axis) in corner.iter_mut().enumerate() {
+                let world = (z * axes[2][k] + (y * axes[1][k] + x * axes[0][k])) + axes[3][k];
+                (world - center[k]).store_slice(axis);
+                for value in axis {
+                    *value = f64::from(*value as f32);
+                }
+            }
+        }
+        let side = lanes::inlined(
+            #[inline(always)]
+            |c: usize, k: usize| load(&corners[c][k]) - load(&corners[0][k]),
+        );
+        let (a, b) = ([side(1, 0), side(1, 1), side(1, 2)], [side(2, 0), side(2, 1), side(2, 2)]);
+        let across = [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
+        let length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
+        let inverse = F64x8::splat(simd, 1.0) / length;
+        let (zero, infinity) = (F64x8::splat(simd, 0.0), F64x8::splat(simd, f64::INFINITY));
+        let usable = inverse.simd_gt(zero) & inverse.simd_lt(infinity);
+        let mut normals = [[0.0; LANES]; 3];
+        for (stored, value) in normals.iter_mut().zip(across) {
+            let unit = usable.select(value * inverse, zero);
+            (if self.mirrored { -unit } else { unit }).store_slice(stored);
+        }
+        std::array::from_fn(|lane| {
+            let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
+            ([at(&corners[0]), at(&corners[1]), at(&corners[2])], at(&normals))
+        })
+    }
+
+    /// Eight points of such triangles, asked for by their number: the corners' weights, and where they are on the screen.
     #[inline(always)]
     pub(crate) fn places<S: Simd>(
         &self,
@@ -78,7 +136,7 @@ impl<'a> Placing<'a> {
         (triangles, facets): (&[u32; LANES], [&Facet; LANES]),
         weights: &[[f32; LANES]; 3],
         screen: [&[f32; LANES]; 2],
-    ) -> [Place; LANES] {
+    ) -> impl Fn(usize) -> Place {
         // Divisions are what takes long.
         let (mut sums, mut positions) = ([1.0; LANES], [[0.0; LANES]; 3]);
         for (lane, (corners, _)) in facets.iter().enumerate() {
@@ -91,12 +149,14 @@ impl<'a> Placing<'a> {
             (F64x8::from_slice(simd, axis) / sums).store_slice(axis);
         }
         let [x, y, z] = positions;
-        std::array::from_fn(|lane| {
+        #[inline(always)]
+        move |lane| {
             let position = dvec3(x[lane], y[lane], z[lane]);
             self.place(triangles[lane], facets[lane].1, position, [screen[0][lane], screen[1][lane]])
-        })
+        }
     }
 
+    #[inline(always)]
     fn place(&self, triangle: u32, outward: DVec3, position: DVec3, screen: [f32; 2]) -> Place {
         let behind = self.turns && {
             let (eye, perspective) = self.view.eye();
@@ -110,6 +170,46 @@ impl<'a> Placing<'a> {
             facet: self.instance.first_facet + triangle,
             seed: x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16),
             pixel: Some(screen),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Execution, Session, Settings};
+    use std::sync::Arc;
+    use vitral_math::lanes::{available_levels, dispatch};
+    use vitral_math::{DMat4, DQuat};
+    use vitral_raster::{SamplePattern, Viewport};
+    use vitral_scene::{Camera, NodeTransform, Projection, builtin};
+
+    #[test]
+    fn eight_facets_are_those_found_one_by_one() {
+        let mut scene = builtin::scene("teapot").expect("there is one");
+        let turned = DQuat::from_rotation_y(0.7);
+        let transform = DMat4::from_scale_rotation_translation(dvec3(-1.5, 0.3, 2.0), turned, DVec3::ONE);
+        scene.nodes[0].transform = NodeTransform::Matrix(transform);
+        let session = Session::new(Arc::new(scene)).expect("a sound scene");
+        let (viewport, pattern) = (Viewport { width: 8, height: 8 }, SamplePattern::new(1));
+        let camera = Camera {
+            position: dvec3(3.0, 4.0, 5.0),
+            focal_point: DVec3::ZERO,
+            view_up: DVec3::Y,
+            projection: Projection::Perspective { view_angle: 0.7 },
+            clip: None,
+        };
+        let (settings, execution) = (Settings::default(), Execution::default());
+        let counters = &mut crate::stats::CullCounters::default();
+        let view = PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, counters);
+        let instance = &session.world.instances[0];
+        let placing = Placing::new(&view, instance, false);
+        assert!(placing.mirrored);
+        let triangles: Vec<_> = (0..instance.mesh.triangles.len() as u32).collect();
+        let expected: Vec<_> = triangles.iter().map(|&t| facet(instance, t, placing.center)).collect();
+        for (name, level) in available_levels() {
+            let found = dispatch!(level, simd => placing.facets(simd, &triangles));
+            assert!(found == expected, "{name}");
         }
     }
 }

@@ -8,9 +8,11 @@
 
 use super::{DEPTH_BIAS, LIFT, Map, SLOPE_BIAS};
 use crate::shadow::Place;
-use vitral_math::DMat4;
+use std::ops::{Add, Mul, Sub};
+use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F64x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, F64x8, LANES, Level, Simd, dispatch};
+use vitral_math::{DMat4, DVec3};
 use vitral_raster::TILE;
 
 /// Where eight places are on a map, and how deep.
@@ -35,14 +37,33 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]
     parts
 }
 
+/// What the map of a parallel light tells about places: the part of the light that arrives, none at those that face away.
+pub(super) fn arriving(level: Level, map: &Map, towards: DVec3, places: &[Place], parts: &mut [Rgb]) {
+    parts.fill([0.0; 3]);
+    let faces = |number: &u32| places[*number as usize].normal.dot(towards) > 0.0;
+    let asking: Vec<_> = (0..places.len() as u32).filter(faces).collect();
+    dispatch!(level, simd => map.arriving(simd, &asking, places, parts));
+}
+
 impl Map {
+    /// The part of light that arrives at the places of these numbers, which face it.
+    #[inline(always)]
+    fn arriving<S: Simd>(&self, simd: S, asking: &[u32], places: &[Place], parts: &mut [Rgb]) {
+        for asked in asking.chunks(LANES) {
+            // The last are asked again to fill up.
+            let eight = std::array::from_fn(|lane| &places[asked[lane.min(asked.len() - 1)] as usize]);
+            for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
+                parts[question as usize] = [part; 3];
+            }
+        }
+    }
+
     /// Answers the questions of these numbers.
     #[inline(always)]
     fn answer<S: Simd>(&self, simd: S, own: &[u32], questions: &[(usize, &Place)], parts: &mut [f32]) {
         for asked in own.chunks(LANES) {
-            // The last are asked again to fill up.
-            let places = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)] as usize].1);
-            for (&question, part) in asked.iter().zip(self.passing(simd, &places)) {
+            let eight = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)] as usize].1);
+            for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
                 parts[question as usize] = part;
             }
         }
@@ -52,15 +73,49 @@ impl Map {
     #[inline(always)]
     fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [f32; LANES] {
         let eight = self.locate(simd, places);
-        let mut parts = [1.0; LANES];
+        let mut texels = [[f64::INFINITY; LANES]; 4];
+        let (mut told, mut apart) = ([false; LANES], [false; LANES]);
         for lane in 0..LANES {
-            let [u, v] = [eight.at[0][lane], eight.at[1][lane]];
-            let near = |x: f64, side: u32| x > -0.5 && x < f64::from(side) + 0.5;
-            if near(u, self.lens.width) && near(v, self.lens.height) {
-                let first = [eight.first[0][lane], eight.first[1][lane]];
-                let depths =
-                    [eight.depths[0][lane], eight.depths[1][lane], eight.depths[2][lane], eight.depths[3][lane]];
-                parts[lane] = self.filtered([u, v], first, depths);
+            let [left, top] = [eight.first[0][lane], eight.first[1][lane]];
+            // Outside of the map, and where it does not tell, all is lit.
+            let near = |first: f64, side: u32| first >= -1.0 && first < f64::from(side);
+            if !near(left, self.lens.width) || !near(top, self.lens.height) {
+                continue;
+            }
+            told[lane] = true;
+            // Most find their texels in one tile without transparent things.
+            match self.four_texels(left as i32, top as i32) {
+                Some(None) => {}
+                Some(Some(found)) => {
+                    for k in 0..4 {
+                        texels[k][lane] = f64::from(found[k]);
+                    }
+                }
+                None => apart[lane] = true,
+            }
+        }
+        let mut lit = [F32x8::splat(simd, 1.0); 4];
+        for k in 0..4 {
+            let mut each = [0.0f32; LANES];
+            for lane in 0..LANES {
+                each[lane] = if texels[k][lane] < eight.depths[k][lane] { 0.0 } else { 1.0 };
+            }
+            lit[k] = F32x8::from_slice(simd, &each);
+        }
+        let mut shares = [[0.0f32; LANES]; 2];
+        for k in 0..2 {
+            for lane in 0..LANES {
+                let share = (eight.at[k][lane] - 0.5 - eight.first[k][lane]) as f32;
+                shares[k][lane] = if told[lane] { share } else { 0.0 };
+            }
+        }
+        let [right, bottom] = [F32x8::from_slice(simd, &shares[0]), F32x8::from_slice(simd, &shares[1])];
+        let mut parts = blended(lit, right, bottom).to_array();
+        for lane in 0..LANES {
+            if apart[lane] {
+                let [left, top] = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
+                let depths = std::array::from_fn(|k| eight.depths[k][lane]);
+                parts[lane] = blended(self.four_apart(left, top, depths), shares[0][lane], shares[1][lane]);
             }
         }
         parts
@@ -148,33 +203,24 @@ impl Map {
         Eight { at: [store(u), store(v)], first: [store(left), store(top)], depths }
     }
 
-    /// The answers of four texels, blended.
+    /// The depths of four texels whose upper left one is given, `Some(None)` where nothing is; `None` if they are not in one
+    /// tile, or if something transparent is in it.
     #[inline(always)]
-    fn filtered(&self, [u, v]: [f64; 2], [left, top]: [f64; 2], depths: [f64; 4]) -> f32 {
-        let (right, bottom) = ((u - 0.5 - left) as f32, (v - 0.5 - top) as f32);
-        let (left, top) = (left as i32, top as i32);
-        let [a, b, c, d] = self.four(left, top, depths);
-        // Written so that four equal answers stay what they are.
-        let (above, below) = (a + (b - a) * right, c + (d - c) * right);
-        above + (below - above) * bottom
-    }
-
-    #[inline(always)]
-    fn four(&self, left: i32, top: i32, depths: [f64; 4]) -> [f32; 4] {
+    fn four_texels(&self, left: i32, top: i32) -> Option<Option<[f32; 4]>> {
         let (x, y) = (left as usize % TILE, top as usize % TILE);
         let inside = left >= 0 && top >= 0 && left + 1 < self.lens.width as i32 && top + 1 < self.lens.height as i32;
-        if inside && x + 1 < TILE && y + 1 < TILE {
-            let tile = &self.tiles[top as usize / TILE * self.columns + left as usize / TILE];
-            if tile.layers.is_empty() {
-                let Some(texels) = tile.depth.get(y * TILE + x..y * TILE + x + TILE + 2) else { return [1.0; 4] };
-                let lit = |texel: usize, k: usize| if f64::from(texels[texel]) < depths[k] { 0.0 } else { 1.0 };
-                return [lit(0, 0), lit(1, 1), lit(TILE, 2), lit(TILE + 1, 3)];
-            }
+        if !inside || x + 1 >= TILE || y + 1 >= TILE {
+            return None;
         }
-        self.four_apart(left, top, depths)
+        let tile = &self.tiles[top as usize / TILE * self.columns + left as usize / TILE];
+        if !tile.layers.is_empty() {
+            return None;
+        }
+        let texels = tile.depth.get(y * TILE + x..y * TILE + x + TILE + 2);
+        Some(texels.map(|texels| [texels[0], texels[1], texels[TILE], texels[TILE + 1]]))
     }
 
-    /// The same across tiles, at the map's border and behind transparent things.
+    /// What passes four texels, across tiles, at the map's border and behind transparent things.
     #[inline(never)]
     fn four_apart(&self, left: i32, top: i32, depths: [f64; 4]) -> [f32; 4] {
         let at = |dx: i32, dy: i32| self.passing_at([left + dx, top + dy], depths[(2 * dy + dx) as usize]);
@@ -199,6 +245,16 @@ impl Map {
             tile.filtered(texel, depth)
         }
     }
+}
+
+/// The answers of four texels, blended. Written so that four equal answers stay what they are.
+#[inline(always)]
+fn blended<T>([a, b, c, d]: [T; 4], right: T, bottom: T) -> T
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
+    let (above, below) = (a + (b - a) * right, c + (d - c) * right);
+    above + (below - above) * bottom
 }
 
 /// Eight directions in another space, by the operations of [`DMat4::transform_vector3`].

@@ -33,12 +33,14 @@ use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
 use crate::{ColorSpace, Execution, PreparedView, Session, Settings, Transparency};
 pub(crate) use cascade::Cascades;
+use draw::When;
 use lens::Lens;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use vitral_exec::Limit;
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4};
+use vitral_raster::Batch;
 use vitral_scene::ViewTransform;
 
 /// See the module.
@@ -94,7 +96,16 @@ struct Map {
     lens: Lens,
     /// Tiles in a row.
     columns: usize,
-    tiles: Vec<MapTile>,
+    tiles: Vec<OnceLock<MapTile>>,
+    /// What tiles that are not there yet are drawn from; without it, nothing is in them.
+    pending: Option<Pending>,
+}
+
+/// Opaque triangles of a map.
+#[derive(Debug)]
+struct Pending {
+    batches: Vec<Batch>,
+    level: Level,
 }
 
 /// What the light sees in a tile.
@@ -145,7 +156,7 @@ impl ShadowAlgorithm for MapShadows {
         let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
         let cascades = keep_for(&session.shadow_cascades, key, || {
             let occluders = Occluders::new(session, settings);
-            let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution);
+            let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution, When::Asked);
             Cascades::new(&session.world, &view.view, &maps, (count, size), draw)
         })?;
         Ok(Box::new(Prepared { maps, cascades: Some(cascades), level: execution.level }))
@@ -167,11 +178,32 @@ impl Key {
 impl Maps {
     /// Those that the session keeps, or new ones.
     fn of(session: &Session, lights: &[Light], settings: &Settings, execution: &Execution) -> Result<Arc<Self>, Limit> {
-        keep_for(&session.shadow_maps, Key::new(lights, settings), || {
+        let key = Key::new(lights, settings);
+        let mut kept = session.shadow_maps.lock().expect("no thread panics while it makes what is kept");
+        if let Some((_, old)) = kept.take_if(|(known, _)| *known != key) {
+            Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
+        }
+        drop(kept);
+        keep_for(&session.shadow_maps, key, || {
             let occluders = Occluders::new(session, settings);
             let maps = lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution));
             Ok(Self(maps.collect::<Result<_, Limit>>()?))
         })
+    }
+}
+
+impl Maps {
+    /// Hands memory back to the session.
+    fn recycle(self, session: &Session) {
+        let mut spare = session.spare_batches.lock().expect("spare batches");
+        for maps in self.0 {
+            let maps = match maps {
+                LightMaps::Unhindered => Vec::new(),
+                LightMaps::Infinity { map, .. } => vec![*map],
+                LightMaps::Places(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
+            };
+            spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
+        }
     }
 }
 
@@ -187,14 +219,15 @@ impl LightMaps {
         if world.bounds.is_empty() {
             return Ok(Self::Unhindered);
         }
-        let draw = |lens: Lens| Map::draw(lens, session, occluders, settings, execution);
+        let source = Source::new(light, settings.light_samples, Triangles::center_of(world));
+        let when = if matches!(source, Source::Area(_)) { When::Before } else { When::Asked };
+        let draw = |lens: Lens| Map::draw(lens, session, occluders, settings, execution, when);
         let size = settings.shadow_map_size;
         let around = |from: Emitter, size: u32| -> Result<(Emitter, Vec<Map>), Limit> {
             let lenses = Lens::around(from.at.truncate(), world, size);
             let maps: Result<_, Limit> = lenses.into_iter().map(draw).collect();
             Ok((from, maps?))
         };
-        let source = Source::new(light, settings.light_samples, Triangles::center_of(world));
         let emitters = source.places();
         Ok(match source {
             Source::Unhindered => Self::Unhindered,

@@ -172,33 +172,44 @@ pub(crate) fn resolve_in_passing(
 /// Calls `tile` with the number of each tile of the top `rows` that triangles touch, and the batches that hold them: whether
 /// they are layers, in order. From any thread. Gives `false` and does nothing where there are too many triangles to be set up
 /// at once.
-pub(crate) fn each_tile(
+fn each_tile(
     view: &PreparedView<'_>,
     rows: u32,
     execution: &Execution,
     tile: impl Fn(usize, &[(bool, &Batch)]) + Sync + Send,
 ) -> Result<bool, Limit> {
+    let Some(batches) = all_batches(view, execution)? else { return Ok(false) };
+    let numbers = 0..view.viewport.tiles_x() * rows.min(view.viewport.tiles_y());
+    execution.workers.for_each(numbers.collect(), |number: u32| {
+        let touching = touching(&batches, number as usize);
+        if !touching.is_empty() {
+            tile(number as usize, &touching);
+        }
+    });
+    view.session.spare_batches.lock().expect("spare batches").extend(batches.into_iter().map(|(_, batch)| batch));
+    Ok(true)
+}
+
+/// All triangles of a view, set up and sorted by tiles: whether they are layers, in order. `None` if there are too many to be
+/// set up at once.
+pub(crate) fn all_batches(view: &PreparedView<'_>, execution: &Execution) -> Result<Option<Vec<(bool, Batch)>>, Limit> {
     let jobs = jobs(view);
     if rounds(&jobs).len() > 1 {
-        return Ok(false);
+        return Ok(None);
     }
     execution.budget.check("visibility")?;
     let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
     let batches = set_up(view, &near_first(view, &jobs), &vertices, TileLists::Kept, execution);
-    let numbers = 0..view.viewport.tiles_x() * rows.min(view.viewport.tiles_y());
-    execution.workers.for_each(numbers.collect(), |number: u32| {
-        let index = number as usize;
-        let touching = batches.iter().filter(|(_, batch)| batch.tile(index).next().is_some());
-        let touching: Vec<_> = touching.map(|(layered, batch)| (*layered, batch)).collect();
-        if !touching.is_empty() {
-            tile(index, &touching);
-        }
-    });
-    view.session.spare_batches.lock().expect("spare batches").extend(batches.into_iter().map(|(_, batch)| batch));
     let vertices = vertices.into_iter().filter(|v| v.capacity() > 0);
     view.session.spare_vertices.lock().expect("spare vertices").extend(vertices);
-    Ok(true)
+    Ok(Some(batches))
+}
+
+/// The batches with triangles that touch a tile.
+pub(crate) fn touching(batches: &[(bool, Batch)], tile: usize) -> Vec<(bool, &Batch)> {
+    let touching = batches.iter().filter(|(_, batch)| batch.tile(tile).next().is_some());
+    touching.map(|(layered, batch)| (*layered, batch)).collect()
 }
 
 /// The first pixel of a tile.

@@ -2,15 +2,18 @@
 //!
 //! Depths are all that is asked of opaque things, and a kernel for depths alone finds them, unless there are so many
 //! triangles that the whole map must wait for them. Transparent things are found by their facets, as in a picture.
+//!
+//! Much of what the light sees is hidden from the viewer. A tile with opaque things alone is drawn when it is first asked
+//! about; until then the map keeps its triangles.
 
 use super::super::grey;
 use super::super::occluders::Occluders;
-use super::{Layer, Lens, Map, MapTile};
+use super::{Layer, Lens, Map, MapTile, Pending};
 use crate::stats::CullCounters;
 use crate::visible::TileSink;
-use crate::visible::zbuffer::{each_tile, resolve_in_passing, tile_place, walk, with_spare};
+use crate::visible::zbuffer::{all_batches, resolve_in_passing, tile_place, touching, walk, with_spare};
 use crate::{Background, Execution, Lines, PreparedView, Session, Settings};
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_math::{DVec3, dvec3};
@@ -23,7 +26,16 @@ struct DepthSink<'a> {
     occluders: &'a Occluders<'a>,
     center: DVec3,
     level: Level,
-    tiles: Vec<Mutex<MapTile>>,
+    tiles: Vec<OnceLock<MapTile>>,
+}
+
+/// When a map is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum When {
+    /// Before anyone asks: for maps so many that their triangles had better not be kept.
+    Before,
+    /// Tile by tile as they are asked about, if possible.
+    Asked,
 }
 
 impl Map {
@@ -33,6 +45,7 @@ impl Map {
         occluders: &Occluders<'_>,
         settings: &Settings,
         execution: &Execution,
+        when: When,
     ) -> Result<Self, Limit> {
         let viewport = Viewport { width: lens.width, height: lens.height };
         let bytes = u64::from(lens.width) * u64::from(lens.height) * 8;
@@ -50,17 +63,77 @@ impl Map {
         let view = PreparedView::new(session, &lens.camera, &settings, viewport, pattern, execution, counters);
         let center = crate::raytrace::triangles::Triangles::center_of(&session.world);
         let columns = viewport.tiles_x() as usize;
-        let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| Mutex::default()).collect();
+        let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| OnceLock::new()).collect();
         let sink = DepthSink { lens: &lens, session, occluders, center, level: execution.level, tiles };
-        let spare = Mutex::default();
-        let tile = |index: usize, batches: &[(bool, &Batch)]| {
-            sink.draw(&view, index, batches, &spare);
-        };
-        if !each_tile(&view, viewport.tiles_y(), execution, tile)? {
+        let Some(mut batches) = all_batches(&view, execution)? else {
             resolve_in_passing(&view, viewport.tiles_y(), execution, &sink)?;
+            let tiles = sink.tiles;
+            return Ok(Self { lens, columns, tiles, pending: None });
+        };
+        let spare = Mutex::default();
+        let numbers = (0..sink.tiles.len()).collect();
+        execution.workers.for_each(numbers, |index: usize| {
+            let here = touching(&batches, index);
+            if here.is_empty() {
+                // Nobody need draw it.
+                let _ = sink.tiles[index].set(MapTile::default());
+            } else if when == When::Before || here.iter().any(|(layered, _)| *layered) {
+                sink.draw(&view, index, &here, &spare);
+            }
+        });
+        let tiles = sink.tiles;
+        let mut pending = None;
+        if when == When::Asked {
+            let (layered, opaque): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
+            batches = layered;
+            let opaque = opaque.into_iter().map(|(_, batch)| batch).collect();
+            pending = Some(Pending { batches: opaque, level: execution.level });
         }
-        let tiles = sink.tiles.into_iter().map(|t| t.into_inner().expect("finished tile")).collect();
-        Ok(Self { lens, columns, tiles })
+        let mut spare = session.spare_batches.lock().expect("spare batches");
+        spare.extend(batches.into_iter().map(|(_, batch)| batch));
+        drop(spare);
+        Ok(Self { lens, columns, tiles, pending })
+    }
+
+    /// A tile, drawn if nobody asked about it before.
+    #[inline(always)]
+    pub(super) fn tile(&self, number: usize) -> &MapTile {
+        self.tiles[number].get().unwrap_or_else(|| self.drawn(number))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn drawn(&self, number: usize) -> &MapTile {
+        self.tiles[number].get_or_init(|| {
+            let Some(pending) = &self.pending else { return MapTile::default() };
+            let place = [number % self.columns, number / self.columns].map(|tile| (tile * TILE) as u32);
+            let nearest = nearest_depths(pending.level, place.into(), pending.batches.iter(), number);
+            MapTile::new(pending.level, &self.lens, nearest.into_depths(), Vec::new())
+        })
+    }
+}
+
+/// The nearest depths in a tile whose first texel is given.
+fn nearest_depths<'b>(
+    level: Level,
+    place: (u32, u32),
+    batches: impl Iterator<Item = &'b Batch>,
+    tile: usize,
+) -> NearestDepths {
+    let mut nearest = NearestDepths::new(place);
+    for batch in batches {
+        nearest.draw(level, batch.tile(tile));
+    }
+    nearest
+}
+
+impl MapTile {
+    /// Keeps a tile, given its depths, −∞ where nothing is.
+    fn new(level: Level, lens: &Lens, mut depth: Vec<f32>, layers: Vec<Layer>) -> Self {
+        if !dispatch!(level, simd => distances(simd, lens, &mut depth)) {
+            depth = Vec::new();
+        }
+        Self { depth, layers }
     }
 }
 
@@ -77,11 +150,8 @@ impl DepthSink<'_> {
     /// Draws a tile of the view.
     fn draw(&self, view: &PreparedView<'_>, index: usize, batches: &[(bool, &Batch)], spare: &Mutex<Vec<Tile>>) {
         let place = tile_place(view, index);
-        let mut nearest = NearestDepths::new(place);
-        let opaque = batches.iter().filter(|(layered, _)| !layered);
-        for (_, batch) in opaque {
-            nearest.draw(self.level, batch.tile(index));
-        }
+        let opaque = batches.iter().filter(|(layered, _)| !layered).map(|(_, batch)| *batch);
+        let nearest = nearest_depths(self.level, place, opaque, index);
         let far = nearest.far();
         let depths = nearest.into_depths();
         let mut layers = Vec::new();
@@ -102,11 +172,9 @@ impl DepthSink<'_> {
     }
 
     /// Keeps a tile, given its depths, −∞ where nothing is.
-    fn keep(&self, index: usize, mut depth: Vec<f32>, layers: Vec<Layer>) {
-        if !dispatch!(self.level, simd => distances(simd, self.lens, &mut depth)) {
-            depth = Vec::new();
-        }
-        *self.tiles[index].lock().expect("finished tile") = MapTile { depth, layers };
+    fn keep(&self, index: usize, depth: Vec<f32>, layers: Vec<Layer>) {
+        let new = self.tiles[index].set(MapTile::new(self.level, self.lens, depth, layers));
+        new.expect("each tile is drawn once");
     }
 
     /// The transparent things in a tile, sorted.

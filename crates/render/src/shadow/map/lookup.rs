@@ -212,7 +212,7 @@ impl Map {
         if !inside || x + 1 >= TILE || y + 1 >= TILE {
             return None;
         }
-        let tile = &self.tiles[top as usize / TILE * self.columns + left as usize / TILE];
+        let tile = self.tile(top as usize / TILE * self.columns + left as usize / TILE);
         if !tile.layers.is_empty() {
             return None;
         }
@@ -234,7 +234,7 @@ impl Map {
             return 1.0;
         }
         let (column, row) = (column as usize, row as usize);
-        let tile = &self.tiles[row / TILE * self.columns + column / TILE];
+        let tile = self.tile(row / TILE * self.columns + column / TILE);
         let texel = row % TILE * TILE + column % TILE;
         let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
         if f64::from(nearest) < depth {

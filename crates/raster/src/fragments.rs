@@ -4,8 +4,8 @@
 //! of a pixel are put together: of a mesh finer than a few pixels, that is a fourth of the entries.
 
 use crate::samples::MOST_SAMPLES;
-use crate::sink::{Met, Row, corner};
-use crate::{LayerList, RowSink, SamplePattern, Setup, TILE, Tile};
+use crate::sink::{Met, Row, first_sample};
+use crate::{LayerList, RowPlane, RowSink, SamplePattern, Setup, TILE, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
 
@@ -102,8 +102,20 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
     }
 
     #[inline(always)]
-    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
-        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+    fn first(&self, sample: usize, x: usize) -> [i32; 2] {
+        first_sample(self.tile, self.pattern, sample, x)
+    }
+
+    #[inline(always)]
+    fn cover_row(
+        &mut self,
+        simd: S,
+        (setup, plane): (&Setup, &RowPlane<S>),
+        sample: usize,
+        at: [usize; 2],
+        covered: Mask8<S>,
+    ) {
+        let row = Row::new(plane, sample, at, covered);
         let seen = Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins.to_bitmask() as u8;
         let [x, y] = at;
         self.seen[y][sample] = seen;

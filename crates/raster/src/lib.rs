@@ -31,6 +31,7 @@ mod tile;
 pub use fragments::{Fragment, FragmentSink};
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex, TileLists};
 pub use kernel::nearest::NearestDepths;
+pub use kernel::plane::RowPlane;
 pub use kernel::transform::transform;
 pub use kernel::traverse::{
     Block, BlockSink, InBlocks, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,

@@ -1,22 +1,10 @@
 //! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
+use crate::kernel::plane::RowPlane;
 use crate::kernel::traverse::{Block, RowSink};
 use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
-
-const LANE_OFFSETS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-
-/// Depths of eight pixels of a row, by the operations of [`Setup::depth`].
-#[inline(always)]
-pub(crate) fn row_depth<S: Simd>(simd: S, setup: &Setup, x: i32, y: i32) -> F32x8<S> {
-    let dy = (y - setup.origin[1]) as f32 / SUBPIXEL as f32;
-    let dx = (x - setup.origin[0]) as f32 / SUBPIXEL as f32;
-    // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.
-    let dx = F32x8::from_slice(simd, &LANE_OFFSETS) + dx;
-    let z = dx * setup.dz_dx + (setup.z + dy * setup.dz_dy);
-    lanes::Lanes::min(lanes::Lanes::max(z, F32x8::splat(simd, setup.z_min)), F32x8::splat(simd, setup.z_max))
-}
 
 /// Eight samples of a row that a facet covers, with the facet's depth there.
 pub(crate) struct Row<S: Simd> {
@@ -29,23 +17,16 @@ pub(crate) struct Row<S: Simd> {
 impl<S: Simd> Row<S> {
     /// Sample `sample` of the tile's pixels from `[x, y]`.
     #[inline(always)]
-    pub(crate) fn new(
-        simd: S,
-        setup: &Setup,
-        (pattern, corner): (&SamplePattern, [usize; 2]),
-        sample: usize,
-        [x, y]: [usize; 2],
-        covered: Mask8<S>,
-    ) -> Self {
-        let [sx, sy] = pattern.axes().map(|axis| axis[sample]);
-        let z = row_depth(simd, setup, (corner[0] + x) as i32 * SUBPIXEL + sx, (corner[1] + y) as i32 * SUBPIXEL + sy);
-        Self { at: sample * TILE_PIXELS + y * TILE + x, covered, z }
+    pub(crate) fn new(plane: &RowPlane<S>, sample: usize, [x, y]: [usize; 2], covered: Mask8<S>) -> Self {
+        Self { at: sample * TILE_PIXELS + y * TILE + x, covered, z: plane.row(y) }
     }
 }
 
-/// The tile's first pixel.
-pub(crate) fn corner(tile: &Tile) -> [usize; 2] {
-    [tile.x as usize, tile.y as usize]
+/// [`RowSink::first`] in a tile.
+#[inline(always)]
+pub(crate) fn first_sample(tile: &Tile, pattern: &SamplePattern, sample: usize, x: usize) -> [i32; 2] {
+    let [sx, sy] = pattern.axes().map(|axis| axis[sample]);
+    [(tile.x as usize + x) as i32 * SUBPIXEL + sx, tile.y as i32 * SUBPIXEL + sy]
 }
 
 /// What a facet met at eight samples.
@@ -135,8 +116,20 @@ impl<S: Simd> RowSink<S> for VisibilitySink<'_> {
     }
 
     #[inline(always)]
-    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
-        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+    fn first(&self, sample: usize, x: usize) -> [i32; 2] {
+        first_sample(self.tile, self.pattern, sample, x)
+    }
+
+    #[inline(always)]
+    fn cover_row(
+        &mut self,
+        simd: S,
+        (setup, plane): (&Setup, &RowPlane<S>),
+        sample: usize,
+        at: [usize; 2],
+        covered: Mask8<S>,
+    ) {
+        let row = Row::new(plane, sample, at, covered);
         let met = keep_nearer(simd, self.tile, U32x8::splat(simd, setup.facet), &row);
         self.written += met.wins.to_bitmask().count_ones();
     }
@@ -218,8 +211,20 @@ impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIR
     }
 
     #[inline(always)]
-    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
-        let row = Row::new(simd, setup, (self.pattern, corner(self.tile)), sample, at, covered);
+    fn first(&self, sample: usize, x: usize) -> [i32; 2] {
+        first_sample(self.tile, self.pattern, sample, x)
+    }
+
+    #[inline(always)]
+    fn cover_row(
+        &mut self,
+        simd: S,
+        (setup, plane): (&Setup, &RowPlane<S>),
+        sample: usize,
+        at: [usize; 2],
+        covered: Mask8<S>,
+    ) {
+        let row = Row::new(plane, sample, at, covered);
         self.written += self.draw(simd, U32x8::splat(simd, setup.facet), &row);
     }
 
@@ -278,9 +283,20 @@ impl<S: Simd> RowSink<S> for LayerSink<'_> {
     }
 
     #[inline(always)]
-    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>) {
-        let place = (self.pattern, corner(self.tile));
-        self.collect(setup.facet, &Row::new(simd, setup, place, sample, at, covered));
+    fn first(&self, sample: usize, x: usize) -> [i32; 2] {
+        first_sample(self.tile, self.pattern, sample, x)
+    }
+
+    #[inline(always)]
+    fn cover_row(
+        &mut self,
+        _: S,
+        (setup, plane): (&Setup, &RowPlane<S>),
+        sample: usize,
+        at: [usize; 2],
+        covered: Mask8<S>,
+    ) {
+        self.collect(setup.facet, &Row::new(plane, sample, at, covered));
     }
 }
 

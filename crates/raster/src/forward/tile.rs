@@ -12,8 +12,8 @@ use super::shade::{CENTERS, Shader};
 use super::state::{Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
+use crate::kernel::plane::RowPlane;
 use crate::kernel::traverse::{Block, BlockSink, Placed, traverse_window};
-use crate::sink::row_depth;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
@@ -425,7 +425,7 @@ impl ForwardSink<'_, '_, '_> {
             for s in 0..self.pattern.len() {
                 let [sx, sy] = self.pattern.position(s);
                 let (x, y) = (left as i32 * SUBPIXEL + sx, top as i32 * SUBPIXEL + sy);
-                depths[s] = stored_depth(simd, row_depth(simd, setup, x, y), scale);
+                depths[s] = stored_depth(simd, RowPlane::new(simd, setup, [x, y]).row(0), scale);
             }
         }
         if !self.draw.multisample && samples > 1 {

@@ -1,6 +1,7 @@
 //! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or tile.
 
 pub(crate) mod nearest;
+pub(crate) mod plane;
 pub(crate) mod sift;
 pub(crate) mod slender;
 #[cfg(any(test, feature = "forward"))]

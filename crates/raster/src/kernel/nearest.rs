@@ -8,6 +8,7 @@
 //! In:   facets set up, in any order. Out: depths.
 //! Cost: linear in the rows of eight pixels that facets touch.
 
+use super::plane::RowPlane;
 use super::slender;
 use super::traverse::{Edge, Extremes, Placed, Window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
@@ -92,6 +93,14 @@ impl NearestDepths {
         }
     }
 
+    /// Depths of a facet in the rows of the tile, from one of its columns on.
+    #[inline(always)]
+    fn plane<S: Simd>(&self, simd: S, setup: &Setup, left: usize) -> RowPlane<S> {
+        let middle = |pixel: u32| pixel as i32 * SUBPIXEL + SUBPIXEL / 2;
+        let first = [middle(self.tile.0 + left as u32), middle(self.tile.1)];
+        RowPlane::with_sign(simd, setup, self.sign, first)
+    }
+
     /// The depth that a facet cannot be nearer than.
     #[inline(always)]
     fn nearest_of(&self, setup: &Setup) -> f32 {
@@ -131,7 +140,7 @@ impl NearestDepths {
             let constant = edges[i].constant(corners[i], [SUBPIXEL / 2; 2]);
             e[i] = lane * a + (constant + a * left as i32 + b * y0 as i32);
         }
-        let plane = Plane::new(simd, setup, self, left);
+        let plane = self.plane(simd, setup, left);
         let beside = beside(simd, left, columns);
         for y in y0..=y1 {
             let mut outside = (e[0] | e[1] | e[2]).simd_lt(I32x8::splat(simd, 0));
@@ -184,7 +193,7 @@ impl NearestDepths {
                 let number = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
                 let (block, left) = (top / BLOCK * BLOCKS + number, number * BLOCK);
-                let plane = Plane::new(simd, setup, self, left);
+                let plane = self.plane(simd, setup, left);
                 let beside = beside(simd, left, window);
                 if full >> number & 1 == 1 {
                     for y in rows.clone() {
@@ -227,7 +236,7 @@ impl NearestDepths {
     /// A facet that is thin.
     #[inline(always)]
     fn slender<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed, edges: (&[Edge; 3], &[i32; 3])) {
-        let plane = Plane::new(simd, setup, self, 0);
+        let plane = self.plane(simd, setup, 0);
         let upright = place.is_upright();
         let nothing = F32x8::splat(simd, f32::NEG_INFINITY);
         let depths: &mut [f32; TILE_PIXELS] = self.depths.as_mut_slice().try_into().expect("a tile");
@@ -272,62 +281,6 @@ impl NearestDepths {
 fn beside<S: Simd>(simd: S, left: usize, range: &Range<usize>) -> Mask8<S> {
     let column = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) + left as i32;
     column.simd_lt(I32x8::splat(simd, range.start as i32)) | column.simd_ge(I32x8::splat(simd, range.end as i32))
-}
-
-/// Depths of a facet on the rows of eight pixels from one column of a tile on, times the sign, by the operations of
-/// [`Setup::depth`]: rounding does not depend on signs.
-struct Plane<S: Simd> {
-    across: F32x8<S>,
-    low: F32x8<S>,
-    high: F32x8<S>,
-    z: f32,
-    dz_dx: f32,
-    dz_dy: f32,
-    /// From the plane's origin to the middles of the first column and the tile's first row, in 1/256 pixel.
-    right: i32,
-    down: i32,
-}
-
-impl<S: Simd> Plane<S> {
-    #[inline(always)]
-    fn new(simd: S, setup: &Setup, depths: &NearestDepths, left: usize) -> Self {
-        let (tile, sign) = (depths.tile, depths.sign);
-        let centers = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        let first = (tile.0 as i32 + left as i32) * SUBPIXEL + SUBPIXEL / 2 - setup.origin[0];
-        let (low, high) = if sign > 0.0 { (setup.z_min, setup.z_max) } else { (-setup.z_max, -setup.z_min) };
-        Self {
-            // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.
-            across: (centers + first as f32 / SUBPIXEL as f32) * (setup.dz_dx * sign),
-            low: F32x8::splat(simd, low),
-            high: F32x8::splat(simd, high),
-            z: setup.z * sign,
-            dz_dx: setup.dz_dx * sign,
-            dz_dy: setup.dz_dy * sign,
-            right: first,
-            down: tile.1 as i32 * SUBPIXEL + SUBPIXEL / 2 - setup.origin[1],
-        }
-    }
-
-    /// At eight pixels, counted from the first column and the tile's first row.
-    #[inline(always)]
-    fn at(&self, x: I32x8<S>, y: I32x8<S>) -> F32x8<S> {
-        let away = lanes::inlined(
-            #[inline(always)]
-            |pixel: I32x8<S>, first: i32| -> F32x8<S> {
-                let distance: F32x8<S> = ((pixel << SUBPIXEL.trailing_zeros()) + first).to_float();
-                distance * (1.0 / SUBPIXEL as f32)
-            },
-        );
-        let z = away(x, self.right) * self.dz_dx + (away(y, self.down) * self.dz_dy + self.z);
-        lanes::Lanes::min(lanes::Lanes::max(z, self.low), self.high)
-    }
-
-    #[inline(always)]
-    fn row(&self, y: usize) -> F32x8<S> {
-        let below = self.down + y as i32 * SUBPIXEL;
-        let z = self.across + (self.z + below as f32 / SUBPIXEL as f32 * self.dz_dy);
-        lanes::Lanes::min(lanes::Lanes::max(z, self.low), self.high)
-    }
 }
 
 #[cfg(test)]

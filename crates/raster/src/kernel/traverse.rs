@@ -6,6 +6,7 @@
 //!
 //! Source: [Pineda 1988]; hierarchical traversal after [Greene 1996].
 
+use super::plane::RowPlane;
 use crate::setup::is_top_left;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, Tile};
 use std::ops::Range;
@@ -61,8 +62,12 @@ pub trait RowSink<S: Simd> {
     /// The tile whose far depths hide what cannot matter; none if everything does.
     fn hiding(&self) -> Option<&Tile>;
 
-    /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set.
-    fn cover_row(&mut self, simd: S, setup: &Setup, sample: usize, at: [usize; 2], covered: Mask8<S>);
+    /// Where sample `sample` of the pixel in column `x` of the tile's row 0 is, in 1/256 pixel.
+    fn first(&self, sample: usize, x: usize) -> [i32; 2];
+
+    /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set; with the facet
+    /// come its depths in rows from this column on.
+    fn cover_row(&mut self, simd: S, facet: (&Setup, &RowPlane<S>), sample: usize, at: [usize; 2], covered: Mask8<S>);
 
     /// The last row of a triangle, or of its part in a block, whose box begins at pixel `at` was given.
     #[inline(always)]
@@ -82,10 +87,12 @@ impl<S: Simd, K: RowSink<S>> BlockSink<S> for InBlocks<'_, K> {
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         for (s, &mask) in masks.iter().enumerate() {
+            let plane = RowPlane::new(simd, setup, self.0.first(s, block.x));
             for row in block.rows.clone() {
                 let covered = (mask >> (8 * row)) & 0xff;
                 if covered != 0 {
-                    self.0.cover_row(simd, setup, s, [block.x, block.y + row], Mask8::from_bitmask(simd, covered));
+                    let covered = Mask8::from_bitmask(simd, covered);
+                    self.0.cover_row(simd, (setup, &plane), s, [block.x, block.y + row], covered);
                 }
             }
         }
@@ -200,7 +207,11 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
             _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
-        blocks_apart(simd, setup, tile, pattern, &mut InBlocks(sink));
+        match pattern.len() {
+            1 => blocks_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => blocks_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
+            _ => blocks_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
+        }
     }
 }
 
@@ -219,18 +230,80 @@ fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
     );
 }
 
-/// [`traverse`] as a function of its own.
+/// [`walk_blocks`] as a function of its own.
 #[inline(never)]
-fn blocks_apart<S: Simd, K: BlockSink<S>>(
+fn blocks_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
     simd: S,
     setup: &Setup,
-    tile: (u32, u32),
+    place: &Placed,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
     simd.vectorize(
         #[inline(always)]
-        || traverse(simd, setup, tile, pattern, sink),
+        || walk_blocks::<S, K, MOST>(simd, setup, place, pattern, sink),
+    );
+}
+
+/// Walks the rows of a triangle of any size, block by block.
+#[inline(always)]
+fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
+    simd: S,
+    setup: &Setup,
+    place: &Placed,
+    pattern: &SamplePattern,
+    sink: &mut K,
+) {
+    let edges = SampleEdges::<S, MOST>::new(simd, place, pattern);
+    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let zero = I32x8::splat(simd, 0);
+    edges.each_block(
+        simd,
+        place,
+        #[inline(always)]
+        |block, full| {
+            let hidden = sink.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()]);
+            if hidden {
+                return;
+            }
+            for s in 0..edges.samples {
+                let plane = RowPlane::new(simd, setup, sink.first(s, block.x));
+                if full {
+                    let covered = zero.simd_eq(zero);
+                    for row in block.rows.clone() {
+                        sink.cover_row(simd, (setup, &plane), s, [block.x, block.y + row], covered);
+                    }
+                    continue;
+                }
+                // The rows in which no edge has all eight pixels on its outer side.
+                let (mut e, mut most) = (edges.across, zero);
+                let values = edges.at_block(s, block);
+                for i in 0..3 {
+                    let Edge { a, b } = edges.edges[i];
+                    e[i] += values[i];
+                    most |= lane * b + (values[i] + (a * (BLOCK as i32 - 1)).max(0));
+                }
+                let reached = most.simd_ge(zero).to_bitmask() as u32;
+                if reached == 0 {
+                    continue;
+                }
+                let first = block.rows.start.max(reached.trailing_zeros() as usize);
+                let end = block.rows.end.min(32 - reached.leading_zeros() as usize);
+                for i in 0..3 {
+                    e[i] += edges.edges[i].b * first as i32;
+                }
+                for row in first..end {
+                    let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
+                    if covered.any_true() {
+                        sink.cover_row(simd, (setup, &plane), s, [block.x, block.y + row], covered);
+                    }
+                    for i in 0..3 {
+                        e[i] += edges.edges[i].b;
+                    }
+                }
+            }
+            sink.end(simd, [block.x, block.y]);
+        },
     );
 }
 
@@ -248,13 +321,18 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
         return;
     }
     let left = place.left();
-    place.each_row::<S, usize, MOST>(
+    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+    let mut firsts = [[0; 2]; MOST];
+    for (s, first) in firsts[..samples].iter_mut().enumerate() {
+        *first = sink.first(s, left);
+    }
+    place.each_row::<S, (usize, RowPlane<S>), MOST>(
         simd,
         pattern,
         #[inline(always)]
-        |sample| sample,
+        |sample| (sample, RowPlane::new(simd, setup, firsts[sample])),
         #[inline(always)]
-        |sample, y, covered| sink.cover_row(simd, setup, *sample, [left, y], covered),
+        |(sample, plane), y, covered| sink.cover_row(simd, (setup, plane), *sample, [left, y], covered),
         #[inline(always)]
         |_, _| {},
     );
@@ -448,66 +526,98 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
-    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
     let Some(place) = Placed::new(setup, tile, window, pattern) else { return };
-    let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
-
-    // Edge functions at the tile's origin, one constant a sample.
-    let mut edges = [Edge { a: 0, b: 0 }; 3];
-    let mut constants = [[0i32; MOST]; 3];
-    let [xs, ys] = pattern.axes();
-    if place.is_small() {
-        let corners;
-        (edges, corners) = place.edges();
-        for i in 0..3 {
-            for s in 0..MOST {
-                constants[i][s] = edges[i].constant(corners[i], [xs[s], ys[s]]);
-            }
-        }
-    } else {
-        for i in 0..3 {
-            let constant;
-            (edges[i], constant) = far_edge(&place.x, &place.y, i);
-            for s in 0..samples {
-                constants[i][s] = constant([xs[s], ys[s]]);
-            }
-        }
-    }
-
-    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
-    let extremes = Extremes::new(simd, &edges, &constants, samples);
-    let columns = (0xff << (x0 / BLOCK)) & (0xff >> (TILE / BLOCK - 1 - x1 / BLOCK));
+    let edges = SampleEdges::<S, MOST>::new(simd, &place, pattern);
     let mut masks = [0u64; MOST];
-    for by in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
-        let rows = y0.max(by) - by..(y1 + 1).min(by + BLOCK) - by;
-        let [touched, full] = extremes.row(simd, &edges, by);
-        let mut rest = touched & columns;
-        while rest != 0 {
-            let bx = rest.trailing_zeros() as usize * BLOCK;
-            rest &= rest - 1;
-            let block = Block { x: bx, y: by, rows: rows.clone() };
-            if sink.rejects(setup, &block) {
-                continue;
+    edges.each_block(
+        simd,
+        &place,
+        #[inline(always)]
+        |block, full| {
+            if sink.rejects(setup, block) {
+                return;
             }
             let mut any = u64::MAX;
-            if full >> (bx / BLOCK) & 1 == 1 {
+            if full {
                 masks = [u64::MAX; MOST];
             } else {
-                let mut offsets = [0; 3];
-                for i in 0..3 {
-                    offsets[i] = edges[i].a * bx as i32 + edges[i].b * by as i32;
-                }
                 any = 0;
-                for s in 0..samples {
-                    let at_block =
-                        [constants[0][s] + offsets[0], constants[1][s] + offsets[1], constants[2][s] + offsets[2]];
-                    masks[s] = mask_rows(simd, &edges, &across, at_block, rows.clone());
-                    any |= masks[s];
+                for (s, mask) in masks[..edges.samples].iter_mut().enumerate() {
+                    *mask = mask_rows(simd, &edges.edges, &edges.across, edges.at_block(s, block), block.rows.clone());
+                    any |= *mask;
                 }
             }
             if any != 0 {
-                sink.cover(simd, setup, &block, &masks[..samples]);
+                sink.cover(simd, setup, block, &masks[..edges.samples]);
+            }
+        },
+    );
+}
+
+/// The edge functions of a triangle in a tile at all samples.
+struct SampleEdges<S: Simd, const MOST: usize> {
+    samples: usize,
+    edges: [Edge; 3],
+    /// At the tile's origin.
+    constants: [[i32; MOST]; 3],
+    /// What they change over the eight pixels of a row.
+    across: [I32x8<S>; 3],
+}
+
+impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
+    #[inline(always)]
+    fn new(simd: S, place: &Placed, pattern: &SamplePattern) -> Self {
+        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        let mut edges = [Edge { a: 0, b: 0 }; 3];
+        let mut constants = [[0i32; MOST]; 3];
+        let [xs, ys] = pattern.axes();
+        if place.is_small() {
+            let corners;
+            (edges, corners) = place.edges();
+            for i in 0..3 {
+                for s in 0..MOST {
+                    constants[i][s] = edges[i].constant(corners[i], [xs[s], ys[s]]);
+                }
+            }
+        } else {
+            for i in 0..3 {
+                let constant;
+                (edges[i], constant) = far_edge(&place.x, &place.y, i);
+                for s in 0..samples {
+                    constants[i][s] = constant([xs[s], ys[s]]);
+                }
+            }
+        }
+        let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        Self { samples, edges, constants, across: [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a] }
+    }
+
+    /// The values at a sample of a block's first pixel.
+    #[inline(always)]
+    fn at_block(&self, sample: usize, block: &Block) -> [i32; 3] {
+        let mut values = [0; 3];
+        for i in 0..3 {
+            let Edge { a, b } = self.edges[i];
+            values[i] = self.constants[i][sample] + (a * block.x as i32 + b * block.y as i32);
+        }
+        values
+    }
+
+    /// Visits the blocks that may hold covered samples, in rows, and tells of each whether all its samples are covered.
+    #[inline(always)]
+    fn each_block(&self, simd: S, place: &Placed, mut visit: impl FnMut(&Block, bool)) {
+        let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+        let extremes = Extremes::new(simd, &self.edges, &self.constants, self.samples);
+        let columns = (0xff << (x0 / BLOCK)) & (0xff >> (TILE / BLOCK - 1 - x1 / BLOCK));
+        for y in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
+            let rows = y0.max(y) - y..(y1 + 1).min(y + BLOCK) - y;
+            let [touched, full] = extremes.row(simd, &self.edges, y);
+            let mut rest = touched & columns;
+            while rest != 0 {
+                let number = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let block = Block { x: number * BLOCK, y, rows: rows.clone() };
+                visit(&block, full >> number & 1 == 1);
             }
         }
     }

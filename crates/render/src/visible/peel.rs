@@ -13,7 +13,7 @@ use super::facets::nearer;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Level, Mask8, Simd, dispatch};
 use vitral_raster::{
-    Batch, NO_FACET, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, traverse_by_rows,
+    Batch, NO_FACET, RowPlane, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, traverse_by_rows,
 };
 
 /// Depth and facet; [`NO_FACET`] for none.
@@ -102,11 +102,8 @@ struct PassSink<'a> {
 }
 
 impl PassSink<'_> {
-    fn take(&mut self, setup: &Setup, sample: usize, [x, y]: [usize; 2]) {
-        let [sx, sy] = self.pattern.position(sample);
-        let place = |tile: u32, pixel: usize, offset: i32| (tile as usize + pixel) as i32 * SUBPIXEL + offset;
-        let depth = setup.depth(place(self.tile.x, x, sx), place(self.tile.y, y, sy));
-        let (candidate, pixel) = ((depth, setup.facet), y * TILE + x);
+    fn take(&mut self, facet: u32, depth: f32, sample: usize, pixel: usize) {
+        let candidate = (depth, facet);
         let at = sample * TILE_PIXELS + pixel;
         if !nearer(candidate, (self.tile.depth[at], self.tile.facet[at])) {
             return;
@@ -115,7 +112,7 @@ impl PassSink<'_> {
         if self.second {
             for s in 0..self.pattern.len() {
                 let other = s * TILE_PIXELS + pixel;
-                covers[other] |= u32::from(farthest[other].1 == setup.facet) << sample;
+                covers[other] |= u32::from(farthest[other].1 == facet) << sample;
             }
         } else if nearer(candidate, laid[at]) && (farthest[at].1 == NO_FACET || nearer(farthest[at], candidate)) {
             farthest[at] = candidate;
@@ -129,12 +126,25 @@ impl<S: Simd> RowSink<S> for PassSink<'_> {
         Some(self.tile)
     }
 
-    fn cover_row(&mut self, _: S, setup: &Setup, sample: usize, [x, y]: [usize; 2], covered: Mask8<S>) {
-        let mut left = covered.to_bitmask();
+    #[inline(always)]
+    fn first(&self, sample: usize, x: usize) -> [i32; 2] {
+        let [sx, sy] = self.pattern.position(sample);
+        [(self.tile.x as usize + x) as i32 * SUBPIXEL + sx, self.tile.y as i32 * SUBPIXEL + sy]
+    }
+
+    fn cover_row(
+        &mut self,
+        _: S,
+        (setup, plane): (&Setup, &RowPlane<S>),
+        sample: usize,
+        [x, y]: [usize; 2],
+        covered: Mask8<S>,
+    ) {
+        let (depths, mut left) = (plane.row(y).to_array(), covered.to_bitmask());
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            self.take(setup, sample, [x + lane, y]);
+            self.take(setup.facet, depths[lane], sample, y * TILE + x + lane);
         }
     }
 }

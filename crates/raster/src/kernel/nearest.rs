@@ -286,12 +286,26 @@ fn beside<S: Simd>(simd: S, left: usize, range: &Range<usize>) -> Mask8<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setup::CornerPosition;
     use crate::testing::triangles;
     use vitral_math::lanes::available_levels;
 
     #[test]
     fn nearest_depths_are_those_of_single_samples() {
-        let setups = triangles(3000, 64);
+        let mut setups = triangles(3000, 64);
+        // With rows and columns exchanged slivers stand upright.
+        let exchanged = |s: &Setup| {
+            let corners = [0, 1, 2].map(|i| CornerPosition { x: s.y[i], y: s.x[i], z: s.depth(s.x[i], s.y[i]) });
+            Setup::new(corners, Setup::doubled_area(corners[0], corners[1], corners[2]), s.facet + 3000)
+        };
+        let upright: Vec<_> = setups.iter().map(exchanged).collect();
+        for (direction, setups) in [(false, &setups), (true, &upright)] {
+            let pattern = SamplePattern::new(1);
+            let places = setups.iter().filter_map(|s| Placed::new(s, (64, 64), &WHOLE, &pattern));
+            let slender = places.filter(|p| p.is_slender() && p.is_upright() == direction).count();
+            assert!(slender > 200, "{slender} slender ones, upright: {direction}");
+        }
+        setups.extend(upright);
         let ways = [(1.0, WHOLE), (-1.0, WHOLE), (1.0, [5..50, 17..61]), (-1.0, [0..64, 3..4])];
         for ((sign, window), count) in ways.iter().flat_map(|way| [(way, 40), (way, setups.len())]) {
             let setups = &setups[..count];

@@ -71,3 +71,54 @@ fn nearest(forward: DVec4, bounds: &Aabb) -> f64 {
     let (center, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
     forward.dot(center.extend(1.0)) - forward.truncate().abs().dot(half)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::zbuffer::jobs;
+    use super::*;
+    use crate::stats::CullCounters;
+    use crate::{Execution, Session, Settings};
+    use std::sync::Arc;
+    use vitral_math::DVec3;
+    use vitral_raster::{SamplePattern, Viewport};
+    use vitral_scene::{Camera, Projection, builtin};
+
+    #[test]
+    fn all_triangles_come_once_and_far_runs_last() {
+        let session = Session::new(Arc::new(builtin::scene("teapot").expect("there is one"))).expect("a sound scene");
+        for projection in [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 8.0 }] {
+            let (position, focal_point, view_up) = (DVec3::new(9.0, 4.0, 5.0), DVec3::ZERO, DVec3::Z);
+            let camera = Camera { position, focal_point, view_up, projection, clip: None };
+            let (viewport, pattern) = (Viewport { width: 64, height: 64 }, SamplePattern::new(1));
+            let (settings, execution) = (Settings::default(), Execution::default());
+            let counters = &mut CullCounters::default();
+            let view = PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, counters);
+            let before = jobs(&view);
+            let after = near_first(&view, &before);
+            let triangles = |jobs: &[Job<'_, '_>]| -> Vec<(usize, u32)> {
+                let pieces = jobs.iter().flat_map(|job| &job.pieces);
+                pieces.flat_map(|p| p.range.clone().map(|t| (p.item, t))).collect()
+            };
+            let [mut all, ordered] = [triangles(&before), triangles(&after)];
+            assert_ne!(all, ordered);
+            let along = (focal_point - position).normalize();
+            let runs: Vec<_> = ordered.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1).collect();
+            assert!(runs.len() > 5, "{} runs", runs.len());
+            let mean = |half: &[(usize, u32)]| -> f64 {
+                let sum = half.iter().map(|&(item, t)| {
+                    let instance = &session.world.instances[view.instances[item].instance];
+                    let corner = instance.mesh.positions[instance.mesh.triangles[t as usize][0] as usize];
+                    let [x, y, z] = corner.map(f64::from);
+                    instance.world_from_model.transform_point3(DVec3::new(x, y, z)).dot(along)
+                });
+                sum.sum::<f64>() / half.len() as f64
+            };
+            let (near, far) = ordered.split_at(ordered.len() / 2);
+            assert!(mean(near) + 0.5 < mean(far), "{} {}", mean(near), mean(far));
+            let mut sorted = ordered;
+            sorted.sort_unstable();
+            all.sort_unstable();
+            assert_eq!(all, sorted);
+        }
+    }
+}

@@ -116,7 +116,13 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
         covered: Mask8<S>,
     ) {
         let row = Row::new(plane, sample, at, covered);
-        let seen = Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins.to_bitmask() as u8;
+        // Where nothing opaque is, there is nothing to compare with.
+        let seen = if self.tile.touched {
+            Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins
+        } else {
+            covered
+        };
+        let seen = seen.to_bitmask() as u8;
         let [x, y] = at;
         self.seen[y][sample] = seen;
         row.z.store_slice(&mut self.depths[y][sample]);

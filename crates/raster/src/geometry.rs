@@ -158,6 +158,8 @@ pub enum TileLists {
     /// It does.
     #[default]
     Kept,
+    /// It does, and copies them so that those of a tile lie side by side in memory: for who walks all tiles.
+    Copied,
     /// Nobody is going to ask: all tiles are empty.
     Unwanted,
     /// It does, and keeps the box of the pixels that each triangle may cover in each tile.
@@ -183,9 +185,11 @@ pub struct Batch {
     entries: Vec<[u32; 2]>,
     /// The box of each entry, if they were wanted.
     entry_boxes: Vec<i32>,
-    /// `items[starts[t]..starts[t + 1]]` are the setups of tile `t`.
+    /// `starts[t]..starts[t + 1]` are the places of tile `t` in what follows.
     starts: Vec<u32>,
+    /// Which of the setups each entry is, or a copy of that.
     items: Vec<u32>,
+    sorted: Vec<Setup>,
     /// What happened.
     pub counters: GeometryCounters,
 }
@@ -454,12 +458,19 @@ impl Batch {
         for t in 2..self.starts.len() {
             self.starts[t] += self.starts[t - 1];
         }
-        self.items.clear();
-        self.items.resize(self.entries.len(), 0);
-        for (number, &[tile, setup]) in self.entries.iter().enumerate() {
+        let (entries, copies) = (self.entries.len(), self.copies());
+        // What was there is written over.
+        self.sorted.resize(if copies { entries } else { 0 }, Setup::zeroed());
+        self.items.resize(if copies { 0 } else { entries }, 0);
+        for (number, &[tile, item]) in self.entries.iter().enumerate() {
             let place = &mut self.starts[tile as usize + 1];
-            self.items[*place as usize] = setup;
-            placed(*place as usize, number, &self.setups[setup as usize]);
+            let setup = &self.setups[item as usize];
+            if copies {
+                self.sorted[*place as usize] = *setup;
+            } else {
+                self.items[*place as usize] = item;
+            }
+            placed(*place as usize, number, setup);
             *place += 1;
         }
         self.counters.set_up = self.setups.len() as u64;
@@ -518,17 +529,21 @@ impl Batch {
         (tile..tiles.end).filter(|&t| !self.tile_range(t).is_empty()).for_each(|t| touched(t as u32));
     }
 
+    /// Whether setups are copied into the order of tiles.
+    fn copies(&self) -> bool {
+        self.tile_lists == TileLists::Copied
+    }
+
     /// The setup of an entry.
-    #[cfg(feature = "forward")]
     #[inline(always)]
     pub(crate) fn item(&self, at: usize) -> &Setup {
-        &self.setups[self.items[at] as usize]
+        if self.copies() { &self.sorted[at] } else { &self.setups[self.items[at] as usize] }
     }
 
     /// The triangles that touch tile `tile`, in order of submission.
     pub fn tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
-        self.items[range].iter().map(|&i| &self.setups[i as usize])
+        range.map(|at| self.item(at))
     }
 }
 

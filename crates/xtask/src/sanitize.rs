@@ -93,16 +93,20 @@ fn miri() -> Outcome {
 
 fn sanitizer(name: &str) -> Outcome {
     let target = folder(name);
-    let mut words = nightly(&["rust-src"])?;
-    words.args(["rustc", "--package", "vitral-osmesa", "--example", "scene_runner", "-Zbuild-std"]);
-    words.args(["--target", TARGET, "--target-dir"]).arg(&target);
+    let cargo = |subcommand: &str, what: &[&str]| {
+        let mut words = nightly(&["rust-src"])?;
+        words.args([subcommand, "--package", "vitral-osmesa", "-Zbuild-std", "--target", TARGET, "--target-dir"]);
+        words.arg(&target).args(what);
+        words.env("RUSTFLAGS", format!("-Zsanitizer={name} -Zexport-executable-symbols"));
+        run(words.env("CARGO_PROFILE_DEV_DEBUG", "line-tables-only"))
+    };
+    // Asked for by itself, the library comes to the folder's top, where it has the same name with every cargo.
+    cargo("build", &["--lib"])?;
     // The program has the sanitizer's functions, and the library finds them there.
-    words.args(["--", "-Clink-arg=-Wl,--export-dynamic"]);
-    words.env("RUSTFLAGS", format!("-Zsanitizer={name} -Zexport-executable-symbols"));
-    run(words.env("CARGO_PROFILE_DEV_DEBUG", "line-tables-only"))?;
+    cargo("rustc", &["--example", "scene_runner", "--", "-Clink-arg=-Wl,--export-dynamic"])?;
 
     let debug = target.join(TARGET).join("debug");
-    let (runner, library) = (debug.join("examples/scene_runner"), debug.join("deps/libOSMesa.so"));
+    let (runner, library) = (debug.join("examples/scene_runner"), debug.join("libOSMesa.so"));
     let watched = || {
         let mut words = command(&runner);
         // Clients leave contexts behind; Valgrind tells what leaks.

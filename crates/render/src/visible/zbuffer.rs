@@ -80,7 +80,7 @@ impl VisibleSurface for ZBuffer {
             let jobs = &jobs[round.clone()];
             let start = execution.budget.elapsed();
             transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
-            let batches = set_up(view, &near_first(view, jobs), &vertices, TileLists::Kept, execution);
+            let batches = set_up(view, &near_first(view, jobs), &vertices, TileLists::Copied, execution);
             for (_, batch) in &batches {
                 resolved.geometry.add(&batch.counters);
             }
@@ -200,7 +200,7 @@ pub(crate) fn all_batches(view: &PreparedView<'_>, execution: &Execution) -> Res
     execution.budget.check("visibility")?;
     let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
     transform_vertices(view, &jobs, &mut vertices, execution, &mut GeometryStats::default());
-    let batches = set_up(view, &near_first(view, &jobs), &vertices, TileLists::Kept, execution);
+    let batches = set_up(view, &near_first(view, &jobs), &vertices, TileLists::Copied, execution);
     let vertices = vertices.into_iter().filter(|v| v.capacity() > 0);
     view.session.spare_vertices.lock().expect("spare vertices").extend(vertices);
     Ok(Some(batches))

@@ -245,6 +245,12 @@ impl Screen {
     }
 }
 
+/// Fewer triangles than lanes, and their first one again and again.
+#[cold]
+fn padded(triangles: &[[u32; 3]]) -> [[u32; 3]; LANES] {
+    std::array::from_fn(|lane| *triangles.get(lane).unwrap_or(&triangles[0]))
+}
+
 impl Batch {
     /// Empties the batch, keeping its memory.
     pub fn clear(&mut self, tile_lists: TileLists) {
@@ -283,8 +289,7 @@ impl Batch {
         let triangles = &draw.triangles[range.start as usize..range.end as usize];
         for (eight, first) in triangles.chunks(LANES).zip((range.start..).step_by(LANES)) {
             // A short last chunk repeats its first triangle.
-            let mut corners = [eight[0]; LANES];
-            corners[..eight.len()].copy_from_slice(eight);
+            let corners = eight.try_into().unwrap_or_else(|_| padded(eight));
             let sifted = sift(simd, screen, &sieve, vertices, &corners);
             let whole = 0xff >> (LANES - eight.len());
             let count = |set: u32| u64::from((set & whole).count_ones());

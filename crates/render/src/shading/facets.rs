@@ -168,20 +168,29 @@ pub(super) fn write_records<S: Simd>(
     let normals = corner_normals(simd, triangles, subject, geometric);
     let (facet_normal, normals) = facing(simd, subject, &positions, origin, geometric, normals);
 
-    let mut columns = [[0.0f32; LANES]; 32];
     let (e, n, p, m) = (weights, facet_normal, positions, normals);
-    let numbers: [F<S>; 32] = [
-        e[0][0], e[0][1], e[0][2], e[1][0], e[1][1], e[1][2], e[2][0], e[2][1], e[2][2], x0, y0, n.x, n.y, n.z, p[0].x,
-        p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z, m[0].x, m[0].y, m[0].z, m[1].x, m[1].y, m[1].z,
-        m[2].x, m[2].y, m[2].z,
+    let numbers: [[F<S>; 4]; 8] = [
+        [e[0][0], e[0][1], e[0][2], e[1][0]],
+        [e[1][1], e[1][2], e[2][0], e[2][1]],
+        [e[2][2], x0, y0, n.x],
+        [n.y, n.z, p[0].x, p[0].y],
+        [p[0].z, p[1].x, p[1].y, p[1].z],
+        [p[2].x, p[2].y, p[2].z, m[0].x],
+        [m[0].y, m[0].z, m[1].x, m[1].y],
+        [m[1].z, m[2].x, m[2].y, m[2].z],
     ];
-    for k in 0..32 {
-        columns[k] = numbers[k].to_array();
-    }
-    for (lane, record) in out.iter_mut().enumerate() {
-        for k in 0..32 {
-            record.0[k] = columns[k][lane];
-        }
+    for (k, four) in numbers.into_iter().enumerate() {
+        let columns = [four[0].bitcast(), four[1].bitcast(), four[2].bitcast(), four[3].bitcast()];
+        lanes::rows_of_columns(
+            simd,
+            columns,
+            #[inline(always)]
+            |lane, row| {
+                if let Some(record) = out.get_mut(lane) {
+                    record.0[4 * k..4 * k + 4].copy_from_slice(&bytemuck::cast::<_, [f32; 4]>(row));
+                }
+            },
+        );
     }
 }
 

@@ -92,9 +92,23 @@ impl<'a> TileRows<'a> {
 
     /// Writes the picture of a whole tile, once.
     fn write(&self, index: usize, tile: &[[u8; 4]]) {
+        self.take(index)
+            .into_iter()
+            .zip(tile.chunks(TILE))
+            .for_each(|(row, of_tile)| row.copy_from_slice(&of_tile[..row.len()]));
+    }
+
+    /// [`Self::write`] of a tile whose rows have one colour each.
+    fn fill(&self, index: usize, colors: &[[u8; 4]]) {
+        for (row, color) in self.take(index).into_iter().zip(colors) {
+            row.fill(*color);
+        }
+    }
+
+    fn take(&self, index: usize) -> Vec<&'a mut [[u8; 4]]> {
         let rows = std::mem::take(&mut *self.tiles[index].lock().expect("rows of a tile"));
         assert!(!rows.is_empty(), "tile {index} is finished only once");
-        rows.into_iter().zip(tile.chunks(TILE)).for_each(|(row, of_tile)| row.copy_from_slice(&of_tile[..row.len()]));
+        rows
     }
 
     /// Nothing may be left from what the memory was used for before.
@@ -207,6 +221,9 @@ impl TileSink for ColorSink<'_> {
     }
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
+        if !tile.touched && layers.sample_count() == 0 && layers.lost() == 0 && self.deep.is_none() {
+            return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
+        }
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
         let Scratch { points, facets, lit, forest, composer, picture } = &mut scratch;
         let constants = self.constants;

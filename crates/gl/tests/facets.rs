@@ -31,6 +31,7 @@ enum Way {
 #[derive(Clone, Copy, Debug)]
 enum With {
     Nothing,
+    OneColor,
     Fog,
     Texture,
     Blending,
@@ -68,6 +69,7 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
     }
     match with {
         With::Nothing => {}
+        With::OneColor => c.color_4f(0.9, 0.3, 0.1, 0.7),
         With::Fog => {
             c.enable(gl::FOG);
             c.fogf(gl::FOG_DENSITY, 0.3);
@@ -135,7 +137,10 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
         let size = if k % 50 == 0 { 60.0 } else { 9.0 };
         let middle = [random(150.0), random(90.0), random(2.0) - 1.0];
         for _ in 0..3 {
-            c.color_4f(random(1.0), random(1.0), random(1.0), random(1.0));
+            let color = [random(1.0), random(1.0), random(1.0), random(1.0)];
+            if !matches!(with, With::OneColor) {
+                c.color_4f(color[0], color[1], color[2], color[3]);
+            }
             c.tex_coord_2f(random(2.0), random(2.0));
             // The eye is near to some.
             let w = 1.0 + random(if k % 7 == 0 { 30.0 } else { 2.0 });
@@ -167,6 +172,7 @@ fn facets_look_the_same_whichever_way_they_go() {
     for samples in [(0, true), (4, true), (4, false)] {
         for with in [
             With::Nothing,
+            With::OneColor,
             With::Fog,
             With::Texture,
             With::Blending,
@@ -186,4 +192,103 @@ fn facets_look_the_same_whichever_way_they_go() {
             }
         }
     }
+}
+
+/// Random small triangles, some across the near plane, and lines and points between them, of one colour: given once, or with
+/// every vertex.
+fn one_color(again: bool, prepare: fn(&mut Stage)) -> Vec<[u8; 4]> {
+    let mut c = Stage::new(150, 90);
+    prepare(&mut c);
+    c.enable(gl::BLEND);
+    c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
+    let mut state = 9u32;
+    let mut random = move |below: f32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32 * below
+    };
+    for (mode, count) in [(gl::TRIANGLES, 300), (gl::LINES, 60), (gl::POINTS, 60)] {
+        for color in [[1.5, 0.3, -0.2, 0.4], [0.1, 0.6, 0.9, 0.8]] {
+            c.color_4f(color[0], color[1], color[2], color[3]);
+            c.begin(mode);
+            for _ in 0..count / 3 {
+                let middle = [random(2.0) - 1.0, random(2.0) - 1.0, random(2.2) - 1.1];
+                for _ in 0..6 {
+                    if again {
+                        c.color_4f(color[0], color[1], color[2], color[3]);
+                    }
+                    let w = 1.0 + random(2.0);
+                    let at = |k: usize, away: f32| (middle[k] + away) * w;
+                    c.vertex_4f(at(0, random(0.4)), at(1, random(0.4)), at(2, random(0.3)), w);
+                }
+            }
+            c.end();
+        }
+    }
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    c.bytes()
+}
+
+#[test]
+fn one_color_for_all_vertices_looks_like_the_same_color_at_each() {
+    let prepare: [fn(&mut Stage); 4] = [
+        |_| {},
+        |c| c.enable(gl::LINE_SMOOTH),
+        |c| {
+            c.enable(gl::POINT_SMOOTH);
+            c.enable(gl::POLYGON_SMOOTH);
+            c.point_size(3.0);
+        },
+        |c| {
+            c.enable(gl::LINE_STIPPLE);
+            c.line_stipple(2, 0x5a5a);
+            c.polygon_mode(gl::FRONT, gl::LINE);
+        },
+    ];
+    for (number, prepare) in prepare.into_iter().enumerate() {
+        let (once, again) = (one_color(false, prepare), one_color(true, prepare));
+        assert!(once.iter().filter(|pixel| **pixel != [0; 4]).count() > 2000);
+        let away = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|k| a[k].abs_diff(b[k])).max().unwrap();
+        // Where a triangle is clipped, interpolation of equal colours may round.
+        let differ = |by: u8| once.iter().zip(&again).filter(|pair| away(*pair) > by).count();
+        assert!(differ(0) <= 10 && differ(1) == 0, "case {number}: {} and {}", differ(0), differ(1));
+    }
+}
+
+/// So many triangles that a pass draws them in several rounds; each shows, as later ones mix with what is there.
+fn many(flush: bool) -> Vec<[u8; 4]> {
+    let mut c = Stage::new(150, 90);
+    c.enable(gl::BLEND);
+    c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
+    c.enable(gl::DEPTH_TEST);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    for part in 0..14u32 {
+        c.begin(gl::TRIANGLES);
+        for k in 0..10_000u32 {
+            let number = (part * 10_000 + k).wrapping_mul(2_654_435_761);
+            let (x, y, z) = (number >> 22, number >> 12 & 0x3ff, number & 0xfff);
+            let at = |v: u32| v as f32 / 512.0 - 1.0;
+            c.color_4f((k % 7) as f32 / 6.0, (k % 5) as f32 / 4.0, part as f32 / 13.0, 0.5);
+            c.vertex_3f(at(x), at(y), z as f32 / 4096.0);
+            c.vertex_3f(at(x) + 0.03, at(y), z as f32 / 4096.0);
+            c.vertex_3f(at(x), at(y) + 0.03, 0.0);
+        }
+        c.end();
+        if part == 6 {
+            c.enable(gl::SCISSOR_TEST);
+            c.scissor(20, 20, 40, 40);
+            c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+            c.disable(gl::SCISSOR_TEST);
+        }
+        if flush {
+            c.finish();
+        }
+    }
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    c.bytes()
+}
+
+#[test]
+fn a_pass_in_rounds_draws_what_passes_one_after_the_other_draw() {
+    let differ = many(false).iter().zip(&many(true)).filter(|(a, b)| a != b).count();
+    assert_eq!(differ, 0);
 }

@@ -3,6 +3,7 @@
 use super::grid::{self, Grid};
 use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use crate::vertex::{Primitive, VertexBatch};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use vitral_math::lanes::prelude::*;
@@ -15,7 +16,7 @@ const PIECE: usize = 1024;
 #[derive(Debug)]
 pub(crate) struct Piece {
     /// Corners as numbers into `vertices`; the last one provokes.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Cow<'static, [[u32; 3]]>,
     /// Vertices of the batch.
     pub vertices: PieceVertices,
     /// Smallest and largest coordinates, if all positions have `w = 1`.
@@ -126,7 +127,21 @@ impl Assembled {
 
     /// Piece number `piece` of the batch that this was made of.
     pub(crate) fn piece(&self, level: Level, batch: &VertexBatch, piece: usize) -> &Piece {
-        self.pieces[piece].get_or_init(|| make_piece(level, self.triangles(batch, self.range(piece)), &batch.positions))
+        self.pieces[piece].get_or_init(|| match self.apart(batch, self.range(piece)) {
+            Some(vertices) => piece_apart(level, vertices, &batch.positions),
+            None => make_piece(level, self.triangles(batch, self.range(piece)), &batch.positions),
+        })
+    }
+
+    /// The vertices of some triangles, if each has three of its own, one triangle's after the other's.
+    fn apart(&self, batch: &VertexBatch, range: Range<u32>) -> Option<Range<u32>> {
+        if batch.indices.is_some() {
+            return None;
+        }
+        let at = self.starts.partition_point(|start| *start <= range.start).checked_sub(1)?;
+        let (primitive, start) = (batch.primitives.get(at)?, self.starts[at]);
+        let alone = primitive.mode == TRIANGLES && range.end <= start + triangle_count(primitive);
+        alone.then(|| primitive.first + 3 * (range.start - start)..primitive.first + 3 * (range.end - start))
     }
 
     /// The triangles of a piece with its quads cut along the other diagonal, from the first corner to the third; `None` if
@@ -230,6 +245,24 @@ fn add_triangles(p: &Primitive, range: Range<u32>, out: &mut Vec<[u32; 3]>) {
     }
 }
 
+/// The corners of triangles that have three vertices each.
+static APART: [[u32; 3]; PIECE] = {
+    let (mut apart, mut i) = ([[0; 3]; PIECE], 0);
+    while i < PIECE {
+        let first = 3 * i as u32;
+        apart[i] = [first, first + 1, first + 2];
+        i += 1;
+    }
+    apart
+};
+
+/// A piece of triangles that have three vertices each.
+fn piece_apart(level: Level, vertices: Range<u32>, positions: &[[f32; 4]]) -> Piece {
+    let bounds = bounds(level, &positions[vertices.start as usize..vertices.end as usize]);
+    let triangles = Cow::Borrowed(&APART[..vertices.len() / 3]);
+    Piece { triangles, vertices: PieceVertices::Range(vertices.start, vertices.end), bounds }
+}
+
 /// A piece of triangles given as numbers of vertices of the batch.
 fn make_piece(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
     let (mut low, mut high) = (u32::MAX, 0);
@@ -244,7 +277,7 @@ fn make_piece(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]
         for corner in triangles.iter_mut().flatten() {
             *corner -= low;
         }
-        return Piece { triangles, vertices: PieceVertices::Range(low, high), bounds };
+        return Piece { triangles: triangles.into(), vertices: PieceVertices::Range(low, high), bounds };
     }
     let mut list: Vec<u32> = triangles.iter().flatten().copied().collect();
     list.sort_unstable();
@@ -254,7 +287,7 @@ fn make_piece(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]
     }
     let used: Vec<[f32; 4]> = list.iter().map(|&v| positions[v as usize]).collect();
     let bounds = bounds(level, &used);
-    Piece { triangles, vertices: PieceVertices::List(list), bounds }
+    Piece { triangles: triangles.into(), vertices: PieceVertices::List(list), bounds }
 }
 
 /// The least and the largest coordinates, if all are finite and all `w` 1.
@@ -329,7 +362,7 @@ mod tests {
     fn pieces_keep_their_vertices_together() {
         let p = make_piece(Level::new(), vec![[7, 8, 9], [9, 8, 10]], &[[0.0; 4]; 11]);
         assert!(matches!(p.vertices, PieceVertices::Range(7, 11)));
-        assert_eq!(p.triangles, [[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(p.triangles[..], [[0, 1, 2], [2, 1, 3]]);
         let p = make_piece(Level::new(), vec![[7, 80_000, 9]], &vec![[0.0; 4]; 80_001]);
         assert_eq!((p.vertices.len(), p.vertices.get(2)), (3, 80_000));
     }
@@ -337,6 +370,7 @@ mod tests {
     #[test]
     fn pieces_are_cut_from_any_primitives() {
         let modes = [(TRIANGLES, 9), (QUADS, 8), (TRIANGLE_STRIP, 3000), (POINTS, 5), (POLYGON, 5), (QUAD_STRIP, 8)];
+        let modes = modes.into_iter().chain([(TRIANGLES, 9_000), (QUADS, 4)]);
         let mut primitives = Vec::new();
         let (mut first, mut all) = (0, Vec::new());
         for (mode, count) in modes {
@@ -355,6 +389,9 @@ mod tests {
             found.extend(piece.triangles.iter().map(|t| t.map(|v| piece.vertices.get(v))));
         }
         assert_eq!(found, all);
+        // Of 6,012 triangles the third and fourth thousand, and half of the fifth, have vertices of their own.
+        let shared = |i: usize| matches!(assembled.piece(Level::new(), &batch, i).triangles, Cow::Borrowed(_));
+        assert_eq!((0..assembled.len()).filter(|&i| shared(i)).collect::<Vec<_>>(), [3, 4]);
     }
 
     #[test]

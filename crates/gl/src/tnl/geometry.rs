@@ -100,7 +100,7 @@ impl Geometry for DrawGeometry {
                 self.assembled.turned(&self.batch, piece, triangles, all)
             });
             let turned = turned.flatten();
-            let triangles = turned.as_ref().unwrap_or(triangles);
+            let triangles = turned.as_deref().unwrap_or(triangles);
             self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
         } else {
             let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
@@ -168,7 +168,7 @@ impl DrawGeometry {
         flag_user_planes(&user, window);
         let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
         let in_piece = Vertices { clip, screen: window, user: &user, sizes: &sizes };
-        let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, self.layout.stride, &in_piece);
+        let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, &self.layout, &in_piece);
         assemble(&mut assembler);
         assembler.shade(|eight, records| {
             self.shade_eight(level, vertices, clip, eight, records);
@@ -193,6 +193,14 @@ impl DrawGeometry {
         eight: &[u32],
         records: &mut [f32],
     ) {
+        let stride = self.layout.stride;
+        if self.layout.uniform {
+            let color = self.snapshot.current.color.map(|c| c.clamp(0.0, 1.0));
+            return records.chunks_exact_mut(stride).for_each(|record| {
+                record[0] = 1.0;
+                record[self.layout.color..].copy_from_slice(&color);
+            });
+        }
         let Some(some) = eight.iter().copied().find(|&v| Assembler::is_own(v)) else { return };
         let mut numbers = [0; LANES];
         let mut inverse_w = [1.0; LANES];
@@ -201,7 +209,6 @@ impl DrawGeometry {
             numbers[lane] = vertices.get(own);
             inverse_w[lane] = 1.0 / clip[own as usize][3];
         }
-        let stride = self.layout.stride;
         if self.batch.materials.is_empty() {
             let lanes = Eight { vertices: numbers, count: eight.len(), batch: &self.batch };
             dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &lanes, &inverse_w, records));

@@ -87,7 +87,7 @@ pub(crate) fn find(batch: &VertexBatch, count: usize, triangles: impl FnOnce() -
     let triangles: Vec<[u32; 3]> = shape?.into_iter().flatten().map(|turn| turn.corners).collect();
     let places: Vec<[f32; 4]> = corners.iter().map(|&v| batch.positions[v as usize]).collect();
     let bounds = bounds(Level::new(), &places);
-    let rectangle = Piece { triangles, vertices: PieceVertices::List(corners), bounds };
+    let rectangle = Piece { triangles: triangles.into(), vertices: PieceVertices::List(corners), bounds };
     // A triangle without corner (1, 0) or (0, 1) has the rising diagonal.
     Some(Grid { rectangle, cells: [columns as u32, rows as u32], vertices, rising: pair == 0b1010 })
 }
@@ -249,7 +249,7 @@ mod tests {
         let batch = plane(5, 4);
         let grid = found(&batch).unwrap();
         assert_eq!((grid.cells, grid.vertices.len(), grid.rising), ([5, 4], 30, false));
-        let mut triangles = grid.rectangle.triangles.clone();
+        let mut triangles = grid.rectangle.triangles.to_vec();
         triangles.sort_unstable();
         assert_eq!(triangles, [[0, 1, 3], [1, 2, 3]]);
         let positions = [0, 1, 2, 3].map(|k| batch.positions[grid.rectangle.vertices.get(k) as usize]);

@@ -137,6 +137,8 @@ impl Context {
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
         }
+        let colors_alone = shaded && layout.stride == layout.color + 4;
+        layout.uniform = colors_alone && snapshot.lighting.is_none() && batch.colors.is_none();
         if grid && shaded && snapshot.lighting.is_some() {
             layout.grid = Some(layout.stride);
             layout.stride += 2;

@@ -39,10 +39,20 @@ impl Context {
     #[inline(always)]
     fn vertex<const N: usize>(&mut self, given: [f32; N]) {
         let position = filled(given);
-        if self.lists.recording && !self.compile_vertex(position) {
-            return;
+        if self.lists.recording {
+            let [x, y, z, w] = position;
+            return self.recorded_vertex(x, y, z, w);
         }
         self.exec_vertex(position);
+    }
+
+    /// Takes numbers, not an array: that would lie in memory, and be waited for by who gives a vertex without a list.
+    #[inline(never)]
+    fn recorded_vertex(&mut self, x: f32, y: f32, z: f32, w: f32) {
+        let position = [x, y, z, w];
+        if self.compile_vertex(position) {
+            self.exec_vertex(position);
+        }
     }
 
     /// Sets an attribute as an attribute call would.

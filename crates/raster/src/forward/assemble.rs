@@ -15,6 +15,7 @@ use self::clipped::Derived;
 use super::boxes::Boxes;
 use super::color_grid::{ColorGrid, GridColors};
 use super::project::WindowTransform;
+use super::shade::Layout;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{Batch, GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
@@ -198,6 +199,8 @@ pub struct Assembler<'a> {
     /// Vertices that clipping made.
     derived: Vec<Derived>,
     first_slot: u32,
+    /// All vertices have the first slot.
+    one_slot: bool,
 }
 
 /// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a vertex.
@@ -221,27 +224,29 @@ impl Drop for Assembler<'_> {
 }
 
 impl<'a> Assembler<'a> {
-    /// Collects into `out`; records have `stride` numbers and begin where `out.records` ends.
+    /// Collects into `out`; records are as `layout` says and begin where `out.records` ends.
     pub fn new(
         state: &'a PrimitiveState,
         screen: &'a Screen,
         out: &'a mut Primitives,
-        stride: usize,
+        layout: &Layout,
         vertices: &'a Vertices<'a>,
     ) -> Self {
         let first_slot = out.records.len() as u32;
         let (mut slots, mut used) = (take(&mut out.scratch.slots), take(&mut out.scratch.used));
+        let one_slot = out.pending || layout.uniform;
         slots.clear();
-        slots.resize(if out.pending { 0 } else { vertices.clip.len() }, NONE);
+        slots.resize(if one_slot { 0 } else { vertices.clip.len() }, NONE);
         used.clear();
-        let stride = stride as u32;
-        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot }
+        used.extend((layout.uniform && !out.pending && !vertices.clip.is_empty()).then_some(0));
+        let stride = layout.stride as u32;
+        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot, one_slot }
     }
 
     /// The slot of a vertex: where its record begins.
     #[inline(always)]
     fn slot(&mut self, vertex: u32) -> u32 {
-        if self.out.pending {
+        if self.one_slot {
             return self.first_slot;
         }
         let slot = &mut self.slots[vertex as usize];

@@ -182,6 +182,9 @@ pub struct Runner {
 /// Triangles of a job.
 const JOB: usize = 4096;
 
+/// Jobs whose primitives wait in memory at a time: so many that caches hold them until tiles have walked them.
+const JOBS_A_ROUND: usize = 16;
+
 /// What a tile walks, in order.
 pub(crate) enum Item<'a> {
     Clear(&'a Clear),
@@ -240,24 +243,45 @@ impl Runner {
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
-        let kind = self.pendable(pass);
-        let spare = if kind.is_some() { &self.spare_pending } else { &self.spare };
-        let places = spare.take(plans.len());
-        let jobs: Vec<Primitives> = self.workers.map(plans.len(), |j| {
-            let mut job = std::mem::take(&mut *lock(&places[j]));
-            self.emit(&plans[j], &pass.commands, &forward, &mut job, kind);
-            job
-        });
-        if let Some(kind) = kind {
+        if let Some(kind) = self.pendable(pass) {
+            let jobs = self.emit_all(&plans, 0..plans.len(), pass, &forward, Some(kind));
             return self.leave_pending(kind, pass, &plans, jobs);
         }
         let sampled = sampled_planes(&pass.commands);
         let sampled: Vec<(*const Mutex<DepthPlane>, MutexGuard<'_, DepthPlane>)> =
             sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
-        let items: Vec<Item<'_>> = order.iter().map(|item| self.item(item, pass, &plans, &jobs, &sampled)).collect();
-        self.tiles(&pass.target, &items);
-        drop(items);
-        spare.give(jobs);
+        for round in rounds(&order) {
+            let numbers = round.iter().filter_map(|item| match item {
+                PlanItem::Job(number) => Some(*number),
+                PlanItem::Command(_) => None,
+            });
+            let first = numbers.clone().next().unwrap_or(0);
+            let numbers = first..first + numbers.count();
+            let jobs = self.emit_all(&plans, numbers, pass, &forward, None);
+            let items: Vec<Item<'_>> =
+                round.iter().map(|item| self.item(item, pass, &plans, (first, &jobs), &sampled)).collect();
+            self.tiles(&pass.target, &items);
+            drop(items);
+            self.spare.give(jobs);
+        }
+    }
+
+    /// The primitives of some jobs.
+    fn emit_all(
+        &self,
+        plans: &[Plan],
+        numbers: Range<usize>,
+        pass: &Pass,
+        forward: &ForwardScreen,
+        pending: Option<PendingKind>,
+    ) -> Vec<Primitives> {
+        let spare = if pending.is_some() { &self.spare_pending } else { &self.spare };
+        let places = spare.take(numbers.len());
+        self.workers.map(numbers.len(), |j| {
+            let mut job = std::mem::take(&mut *lock(&places[j]));
+            self.emit(&plans[numbers.start + j], &pass.commands, forward, &mut job, pending);
+            job
+        })
     }
 
     fn emit(
@@ -327,7 +351,7 @@ impl Runner {
         item: &PlanItem,
         pass: &'a Pass,
         plans: &[Plan],
-        jobs: &'a [Primitives],
+        (first, jobs): (usize, &'a [Primitives]),
         sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
     ) -> Item<'a> {
         let samples = pass.target.samples;
@@ -343,7 +367,7 @@ impl Runner {
                     _ => None,
                 });
                 let draws = draws.collect();
-                Item::Job { primitives: &jobs[*j], draws }
+                Item::Job { primitives: &jobs[*j - first], draws }
             }
         }
     }
@@ -447,7 +471,8 @@ fn draw_context<'a>(
         clip,
         multisample: samples > 1 && state.multisample,
         shaded,
-        constant: state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum,
+        constant: geometry.layout().uniform
+            || (state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum),
         plain,
         planes,
     }
@@ -499,6 +524,22 @@ fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
         }
     }
     (plans, order)
+}
+
+/// Cuts a pass where it has many jobs; there is at least one round.
+fn rounds(order: &[PlanItem]) -> Vec<&[PlanItem]> {
+    let (mut rounds, mut start, mut jobs) = (Vec::new(), 0, 0);
+    for (at, item) in order.iter().enumerate() {
+        if let PlanItem::Job(_) = item {
+            if jobs == JOBS_A_ROUND {
+                rounds.push(&order[start..at]);
+                (start, jobs) = (at, 0);
+            }
+            jobs += 1;
+        }
+    }
+    rounds.push(&order[start..]);
+    rounds
 }
 
 /// The facet of a setup.

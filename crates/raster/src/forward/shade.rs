@@ -44,6 +44,8 @@ pub struct Layout {
     pub line_stipple: Option<(i32, u16)>,
     /// Coverage of lines, points, polygons is computed and multiplies alpha.
     pub smooth: [bool; 3],
+    /// Records hold nothing but colours, the same in all: one serves a whole piece, with 1 in place of `1 / w`.
+    pub uniform: bool,
 }
 
 /// Most numbers in a record: `1 / w`, four colours, fog, eight units' coordinates.

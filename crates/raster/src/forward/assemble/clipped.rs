@@ -119,7 +119,7 @@ impl Assembler<'_> {
     }
 
     pub(super) fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {
-        if self.out.pending {
+        if self.one_slot {
             return self.first_slot;
         }
         // A corner that is a parent unchanged needs no vertex of its own.

@@ -5,6 +5,8 @@
 #![forbid(unsafe_code)]
 
 mod budget;
+#[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+mod placement;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};

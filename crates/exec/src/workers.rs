@@ -1,5 +1,7 @@
 //! Loops over a pool of our own. With one thread there is no pool and nothing is locked.
 
+#[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+use crate::placement::Placement;
 #[cfg(feature = "threads")]
 use std::sync::Arc;
 use std::sync::{Mutex, PoisonError};
@@ -10,6 +12,8 @@ pub struct Workers {
     threads: usize,
     #[cfg(feature = "threads")]
     pool: Option<Arc<rayon::ThreadPool>>,
+    #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+    placement: Arc<Placement>,
 }
 
 impl std::fmt::Debug for Workers {
@@ -25,6 +29,8 @@ impl Workers {
             threads: 1,
             #[cfg(feature = "threads")]
             pool: None,
+            #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+            placement: Arc::default(),
         }
     }
 
@@ -35,9 +41,15 @@ impl Workers {
         let threads = if threads == 0 { available() } else { threads };
         #[cfg(feature = "threads")]
         if threads > 1 {
-            let built = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("vitral-{i}"));
-            if let Ok(pool) = built.build() {
-                return Self { threads, pool: Some(Arc::new(pool)) };
+            let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("vitral-{i}"));
+            let workers = Self::single();
+            #[cfg(all(target_os = "linux", not(miri)))]
+            let builder = {
+                let placement = Arc::clone(&workers.placement);
+                builder.start_handler(move |_| placement.register())
+            };
+            if let Ok(pool) = builder.build() {
+                return Self { threads, pool: Some(Arc::new(pool)), ..workers };
             }
         }
         #[cfg(not(feature = "threads"))]
@@ -89,6 +101,8 @@ impl Workers {
         if let Some(pool) = &self.pool
             && items.len() > 1
         {
+            #[cfg(all(target_os = "linux", not(miri)))]
+            self.placement.make_way();
             let others = self.threads.min(items.len()) - 1;
             let items = Mutex::new(items);
             let first = || items.lock().unwrap_or_else(PoisonError::into_inner).next();

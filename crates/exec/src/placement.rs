@@ -1,0 +1,110 @@
+//! Keeps workers off the processor of the thread that shares its work with them.
+//!
+//! Linux wakes a thread where it last ran, and looks for an idle processor only as long as few are busy: of two that are busy two
+//! thirds of the time it looks at none. A worker then waits behind the very thread that woke it, until the next tick of the
+//! scheduler: longer than many pictures take. So workers are kept off that thread's processor; asking where it runs costs
+//! some ten nanoseconds, and system calls are made only when it has moved.
+//!
+//! Workers stay within the processors that they were given, by `taskset` for example.
+
+use rustix::thread::{CpuSet, Pid, gettid, sched_getaffinity, sched_getcpu, sched_setaffinity};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// See the module.
+#[derive(Debug, Default)]
+pub(crate) struct Placement {
+    workers: Mutex<Vec<Worker>>,
+    /// The processor that workers are kept off, plus 1; 0 if there are some that were not told.
+    avoided: AtomicUsize,
+}
+
+#[derive(Debug)]
+struct Worker {
+    thread: Pid,
+    /// Where others let it run.
+    allowed: CpuSet,
+    /// Where it may run.
+    given: CpuSet,
+}
+
+impl Placement {
+    /// The calling thread is one of the workers.
+    pub(crate) fn register(&self) {
+        if let Ok(allowed) = sched_getaffinity(None) {
+            let worker = Worker { thread: gettid(), allowed, given: allowed };
+            self.workers.lock().unwrap_or_else(PoisonError::into_inner).push(worker);
+            self.avoided.store(0, Ordering::Relaxed);
+        }
+    }
+
+    /// Keeps workers off the calling thread's processor.
+    #[inline]
+    pub(crate) fn make_way(&self) {
+        let here = sched_getcpu();
+        if self.avoided.swap(here + 1, Ordering::Relaxed) != here + 1 {
+            self.keep_off(here);
+        }
+    }
+
+    #[cold]
+    fn keep_off(&self, here: usize) {
+        for worker in self.workers.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+            // Somebody else may have changed it meanwhile.
+            let Ok(now) = sched_getaffinity(Some(worker.thread)) else { continue };
+            if now != worker.given {
+                worker.allowed = now;
+            }
+            let mut others = worker.allowed;
+            if here < CpuSet::MAX_CPU {
+                others.unset(here);
+            }
+            worker.given = if others.count() > 0 { others } else { worker.allowed };
+            if worker.given != now && sched_setaffinity(Some(worker.thread), &worker.given).is_err() {
+                worker.given = now;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Barrier;
+
+    #[test]
+    fn workers_leave_the_processor_of_the_thread_that_shares_work() {
+        let all = sched_getaffinity(None).unwrap();
+        let placement = Placement::default();
+        let (registered, done) = (Barrier::new(2), Barrier::new(2));
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                placement.register();
+                registered.wait();
+                done.wait();
+            });
+            registered.wait();
+            let thread = placement.workers.lock().unwrap()[0].thread;
+            let mask = || sched_getaffinity(Some(thread)).unwrap();
+            let but = |here: usize| {
+                let mut others = all;
+                others.unset(here);
+                if others.count() > 0 { others } else { all }
+            };
+            for here in (0..CpuSet::MAX_CPU).filter(|&cpu| all.is_set(cpu)) {
+                placement.keep_off(here);
+                assert_eq!(mask(), but(here));
+            }
+            // What others set holds.
+            let last = (0..CpuSet::MAX_CPU).rfind(|&cpu| all.is_set(cpu)).unwrap();
+            let mut alone = CpuSet::new();
+            alone.set(last);
+            sched_setaffinity(Some(thread), &alone).unwrap();
+            (0..=last).for_each(|here| placement.keep_off(here));
+            assert_eq!(mask(), alone);
+            placement.make_way();
+            assert_eq!(mask(), alone);
+            done.wait();
+        });
+    }
+}

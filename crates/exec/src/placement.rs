@@ -3,7 +3,8 @@
 //! Linux wakes a thread where it last ran, and looks for an idle processor only as long as few are busy: of two that are busy two
 //! thirds of the time it looks at none. A worker then waits behind the very thread that woke it, until the next tick of the
 //! scheduler: longer than many pictures take. So workers are kept off that thread's processor; asking where it runs costs
-//! some ten nanoseconds, and system calls are made only when it has moved.
+//! some ten nanoseconds, and system calls are made only when it has moved. Where several threads share their work with
+//! the same workers by turns, these are left where they are.
 //!
 //! Workers stay within the processors that they were given, by `taskset` for example.
 
@@ -17,6 +18,12 @@ pub(crate) struct Placement {
     workers: Mutex<Vec<Worker>>,
     /// The processor that workers are kept off, plus 1; 0 if there are some that were not told.
     avoided: AtomicUsize,
+    /// The thread that shared work last: the address of its [`MARK`].
+    last: AtomicUsize,
+}
+
+thread_local! {
+    static MARK: u8 = const { 0 };
 }
 
 #[derive(Debug)]
@@ -41,6 +48,10 @@ impl Placement {
     /// Keeps workers off the calling thread's processor.
     #[inline]
     pub(crate) fn make_way(&self) {
+        let this = MARK.with(|mark| std::ptr::from_ref(mark).addr());
+        if self.last.swap(this, Ordering::Relaxed) != this {
+            return;
+        }
         let here = sched_getcpu();
         if self.avoided.swap(here + 1, Ordering::Relaxed) != here + 1 {
             self.keep_off(here);
@@ -106,5 +117,18 @@ mod tests {
             assert_eq!(mask(), alone);
             done.wait();
         });
+    }
+
+    #[test]
+    fn threads_that_share_work_by_turns_move_nobody() {
+        let placement = Placement::default();
+        let call = || (placement.make_way(), placement.avoided.load(Ordering::Relaxed)).1;
+        assert_eq!(call(), 0);
+        for _ in 0..3 {
+            assert_eq!(std::thread::scope(|scope| scope.spawn(call).join().unwrap()), 0);
+            assert_eq!(call(), 0);
+        }
+        // The second time in a row.
+        assert!(call() > 0);
     }
 }

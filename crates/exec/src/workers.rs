@@ -102,7 +102,9 @@ impl Workers {
             && items.len() > 1
         {
             #[cfg(all(target_os = "linux", not(miri)))]
-            self.placement.make_way();
+            if pool.current_thread_index().is_none() {
+                self.placement.make_way();
+            }
             let others = self.threads.min(items.len()) - 1;
             let items = Mutex::new(items);
             let first = || items.lock().unwrap_or_else(PoisonError::into_inner).next();

@@ -42,14 +42,20 @@ impl Workers {
         #[cfg(feature = "threads")]
         if threads > 1 {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("vitral-{i}"));
-            let workers = Self::single();
+            #[cfg(all(target_os = "linux", not(miri)))]
+            let placement = Arc::<Placement>::default();
             #[cfg(all(target_os = "linux", not(miri)))]
             let builder = {
-                let placement = Arc::clone(&workers.placement);
+                let placement = Arc::clone(&placement);
                 builder.start_handler(move |_| placement.register())
             };
             if let Ok(pool) = builder.build() {
-                return Self { threads, pool: Some(Arc::new(pool)), ..workers };
+                return Self {
+                    threads,
+                    pool: Some(Arc::new(pool)),
+                    #[cfg(all(target_os = "linux", not(miri)))]
+                    placement,
+                };
             }
         }
         #[cfg(not(feature = "threads"))]

@@ -1,15 +1,16 @@
-//! Eight numbers at a time, or one: the only place that names SIMD types.
+//! Eight numbers at a time, sixteen, or one: the only place that names SIMD types.
 //!
 //! A formula written over [`Lanes`] serves one vertex (`f32`) and eight pixels (`F32x8`) with the same operations in
-//! the same order, so both give the same bits. There is no fused multiply-add and no approximate reciprocal;
+//! the same order, so both give the same bits. One written over [`Floats`] serves eight pixels or sixteen, and may use whole numbers. There is no fused multiply-add and no approximate reciprocal;
 //! `exp2`/`log2` are polynomials of ours, made of exact operations only.
 //!
 //! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the instruction set.
 
 use fearless_simd::prelude::*;
 pub use fearless_simd::{
-    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f64x8 as F64x8, i32x4 as I32x4, i32x8 as I32x8,
-    mask32x8 as Mask8, u8x16 as U8x16, u16x16 as U16x16, u32x8 as U32x8,
+    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8, i32x4 as I32x4,
+    i32x8 as I32x8, i32x16 as I32x16, mask32x8 as Mask8, mask32x16 as Mask16, u8x16 as U8x16, u16x16 as U16x16,
+    u16x32 as U16x32, u32x8 as U32x8, u32x16 as U32x16,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -20,6 +21,9 @@ pub mod prelude {
 
 /// How many lanes the wide types have.
 pub const LANES: usize = 8;
+
+/// How many lanes the widest [`Floats`] have.
+pub const MOST_LANES: usize = 16;
 
 /// One `f32` or eight of them.
 pub trait Lanes:
@@ -200,71 +204,143 @@ impl Lanes for f32 {
     }
 }
 
-impl<S: Simd> Lanes for F32x8<S> {
-    type Mask = Mask8<S>;
+/// [`Lanes`] of a vector type.
+macro_rules! lanes {
+    ($floats:ident, $mask:ident, $ints:ident, $abs:ident, $max:ident, $min:ident) => {
+        impl<S: Simd> Lanes for $floats<S> {
+            type Mask = $mask<S>;
+
+            #[inline(always)]
+            fn splat(self, value: f32) -> Self {
+                <Self as SimdBase<S>>::splat(self.token(), value)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.token().$abs(self)
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                SimdFloat::floor(self)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self::Mask {
+                self.simd_le(other)
+            }
+            #[inline(always)]
+            fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
+                Select::select(mask, if_true, if_false)
+            }
+            #[inline(always)]
+            fn any(mask: Self::Mask) -> bool {
+                mask.any_true()
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if takes_second(self.token().level()) {
+                    self.token().$max(self, other)
+                } else {
+                    Self::select(Lanes::lt(other, self), self, other)
+                }
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if takes_second(self.token().level()) {
+                    self.token().$min(self, other)
+                } else {
+                    Self::select(Lanes::lt(self, other), self, other)
+                }
+            }
+            #[inline(always)]
+            fn exp2_whole(self) -> Self {
+                let whole: $ints<S> = self.to_int();
+                ((whole + 127) << 23).bitcast()
+            }
+            #[inline(always)]
+            fn split_exponent(self) -> (Self, Self) {
+                let bits: $ints<S> = self.bitcast();
+                let exponent: Self = ((bits >> 23) - 127).to_float();
+                (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
+            }
+            #[inline(always)]
+            fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+                outlined(self.token(), f)
+            }
+        }
+    };
+}
+
+lanes!(F32x8, Mask8, I32x8, abs_f32x8, max_f32x8, min_f32x8);
+lanes!(F32x16, Mask16, I32x16, abs_f32x16, max_f32x16, min_f32x16);
+
+/// A truth value for each lane of `V`.
+pub type MaskOf<S, V> = <V as SimdBase<S>>::Mask;
+
+/// Eight floats or sixteen, and the whole numbers of as many lanes: [`F32x8`], [`F32x16`]. Where the two traits share a name, say which
+/// is meant.
+pub trait Floats<S: Simd>:
+    SimdFloat<S, Element = f32> + SimdCvtFloat<Self::Ints> + Lanes<Mask = <Self as SimdBase<S>>::Mask>
+{
+    /// Signed integers.
+    type Ints: SimdInt<S, Element = i32, Mask = <Self as SimdBase<S>>::Mask, ByteVector = Self::ByteVector>
+        + SimdCvtTruncate<Self>;
+    /// Unsigned integers.
+    type Words: SimdInt<S, Element = u32, Mask = <Self as SimdBase<S>>::Mask, ByteVector = Self::ByteVector>;
+    /// Two unsigned integers of 16 bits for each lane.
+    type Halves: SimdInt<S, Element = u16, ByteVector = Self::ByteVector>;
+
+    /// What `f` makes of eight lanes at a time, for what is written for eight; it is also told the first lane.
+    fn by_eights<const IN: usize, const OUT: usize>(
+        simd: S,
+        numbers: [Self; IN],
+        f: impl FnMut(usize, [F32x8<S>; IN]) -> [F32x8<S>; OUT],
+    ) -> [Self; OUT];
+}
+
+impl<S: Simd> Floats<S> for F32x8<S> {
+    type Ints = I32x8<S>;
+    type Words = U32x8<S>;
+    type Halves = U16x16<S>;
 
     #[inline(always)]
-    fn splat(self, value: f32) -> Self {
-        <Self as SimdBase<S>>::splat(self.token(), value)
+    fn by_eights<const IN: usize, const OUT: usize>(
+        _: S,
+        numbers: [Self; IN],
+        mut f: impl FnMut(usize, [F32x8<S>; IN]) -> [F32x8<S>; OUT],
+    ) -> [Self; OUT] {
+        f(0, numbers)
     }
+}
+
+impl<S: Simd> Floats<S> for F32x16<S> {
+    type Ints = I32x16<S>;
+    type Words = U32x16<S>;
+    type Halves = U16x32<S>;
+
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        SimdFloat::sqrt(self)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.token().abs_f32x8(self)
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        SimdFloat::floor(self)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Self::Mask {
-        self.simd_lt(other)
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Self::Mask {
-        self.simd_le(other)
-    }
-    #[inline(always)]
-    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
-        Select::select(mask, if_true, if_false)
-    }
-    #[inline(always)]
-    fn any(mask: Self::Mask) -> bool {
-        mask.any_true()
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        if takes_second(self.token().level()) {
-            self.token().max_f32x8(self, other)
-        } else {
-            Self::select(Lanes::lt(other, self), self, other)
+    fn by_eights<const IN: usize, const OUT: usize>(
+        simd: S,
+        numbers: [Self; IN],
+        mut f: impl FnMut(usize, [F32x8<S>; IN]) -> [F32x8<S>; OUT],
+    ) -> [Self; OUT] {
+        let zero = <F32x8<S> as SimdBase<S>>::splat(simd, 0.0);
+        let (mut low, mut high) = ([zero; IN], [zero; IN]);
+        for k in 0..IN {
+            (low[k], high[k]) = simd.split_f32x16(numbers[k]);
         }
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        if takes_second(self.token().level()) {
-            self.token().min_f32x8(self, other)
-        } else {
-            Self::select(Lanes::lt(self, other), self, other)
+        let (low, high) = (f(0, low), f(LANES, high));
+        let mut both = [<Self as SimdBase<S>>::splat(simd, 0.0); OUT];
+        for k in 0..OUT {
+            both[k] = simd.combine_f32x8(low[k], high[k]);
         }
-    }
-    #[inline(always)]
-    fn exp2_whole(self) -> Self {
-        let whole: I32x8<S> = self.to_int();
-        ((whole + 127) << 23).bitcast()
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        let bits: I32x8<S> = self.bitcast();
-        let exponent: Self = ((bits >> 23) - 127).to_float();
-        (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
-    }
-    #[inline(always)]
-    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
-        outlined(self.token(), f)
+        both
     }
 }
 
@@ -499,17 +575,42 @@ mod tests {
         dispatch!(level, simd => formula(F32x8::from_slice(simd, &x)).map(|v| v.to_array()))
     }
 
+    fn wider(level: Level, x: [f32; 16]) -> [[f32; 16]; 4] {
+        dispatch!(level, simd => formula(F32x16::from_slice(simd, &x)).map(|v| v.to_array()))
+    }
+
     #[test]
-    fn one_lane_and_eight_give_the_same_bits_at_every_level() {
+    fn one_lane_eight_and_sixteen_give_the_same_bits_at_every_level() {
         let x: [f32; 8] = [0.0, 1.0, -3.7, 0.25, 88.2, -140.0, 1e-20, 0.5];
+        let more: [f32; 16] = std::array::from_fn(|lane| if lane < 8 { x[7 - lane] } else { x[lane - 8] });
         for (name, level) in available_levels() {
-            let w = wide(level, x);
+            let (w, ww) = (wide(level, x), wider(level, more));
             for lane in 0..8 {
                 let one = formula(x[lane]);
                 for k in 0..4 {
                     assert_eq!(one[k].to_bits(), w[k][lane].to_bits(), "{name}: function {k} of {}", x[lane]);
+                    assert_eq!(one[k].to_bits(), ww[k][7 - lane].to_bits(), "{name}: function {k} of {}", x[lane]);
+                    assert_eq!(one[k].to_bits(), ww[k][8 + lane].to_bits(), "{name}: function {k} of {}", x[lane]);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn sixteen_go_by_eights_in_order() {
+        let x: [f32; 16] = std::array::from_fn(|lane| lane as f32);
+        for (name, level) in available_levels() {
+            let (sum, eights) = dispatch!(level, simd => {
+                let mut eights = Vec::new();
+                let x = F32x16::from_slice(simd, &x);
+                let [sum] = Floats::by_eights(simd, [x, x * 10.0], |first, [a, b]| {
+                    eights.push(first);
+                    [a + b]
+                });
+                (sum.to_array(), eights)
+            });
+            assert_eq!(sum, x.map(|x| x * 11.0), "{name}");
+            assert_eq!(eights, [0, 8], "{name}");
         }
     }
 

@@ -102,12 +102,12 @@ impl TextureImage {
 
     /// Whether a framebuffer draws, or drew, to planes of this image.
     pub(crate) fn has_planes(&self) -> bool {
-        let depth = self.level.as_ref().is_some_and(|level| matches!(level.texels, Texels::DepthPlane(_)));
+        let depth = self.level.as_ref().is_some_and(|level| matches!(level.texels(), Texels::DepthPlane(_)));
         depth || self.stencil.is_some() || !self.colors.is_empty()
     }
 
     fn new_level(&self, texels: Texels) -> Arc<Level> {
-        Arc::new(Level { size: self.size, border: self.border, texels })
+        Arc::new(Level::new(self.size, self.border, texels))
     }
 
     /// The texels. Everything recorded must have run if the image is stale.
@@ -126,7 +126,7 @@ impl TextureImage {
     /// As [`Self::level`], with depths of its own instead of a depth plane's.
     pub(crate) fn copied_level(&mut self) -> Arc<Level> {
         let level = self.level();
-        if !matches!(level.texels, Texels::DepthPlane(_)) {
+        if !matches!(level.texels(), Texels::DepthPlane(_)) {
             return level;
         }
         let depths = self.depths();
@@ -153,7 +153,7 @@ impl TextureImage {
             return;
         }
         let [width, height] = [self.size[0] as usize, self.size[1] as usize];
-        let level = Arc::make_mut(level);
+        let texels = Arc::make_mut(level).texels_mut();
         for (layer, plane) in self.colors.iter().enumerate() {
             let Some(plane) = plane else { continue };
             let plane = lock(plane);
@@ -161,7 +161,7 @@ impl TextureImage {
             let mut floats = vec![[0.0; 4]; width];
             for y in 0..height {
                 let first = (layer * height + y) * width;
-                match (&*plane, &mut level.texels) {
+                match (&*plane, &mut *texels) {
                     (ColorPlane::Rgba8(plane), Texels::Rgba8(texels) | Texels::Srgb8(texels)) => {
                         plane.read_row(0, y as u32, 0, &mut words);
                         let row = &mut texels[first..first + width];
@@ -214,13 +214,13 @@ impl TextureImage {
             return None;
         }
         let level = self.level();
-        if let Texels::DepthPlane(plane) = &level.texels {
+        if let Texels::DepthPlane(plane) = level.texels() {
             return Some(plane.clone());
         }
         let scale = self.format.depth_scale();
         let mut plane = DepthPlane::new(Plane::new(viewport, 1, 0.0), scale);
         plane.sampled = true;
-        if let Texels::Depth(depths) = &level.texels {
+        if let Texels::Depth(depths) = level.texels() {
             let rows = depths.chunks_exact(viewport.width as usize);
             for (y, row) in rows.enumerate() {
                 let row: Vec<f32> = row.iter().map(|&d| stored_depth(d, scale)).collect();
@@ -251,10 +251,10 @@ impl TextureImage {
         }
         let mut level = self.level();
         self.level = None;
-        if let (Texels::DepthPlane(plane), TexelData::Depths(depths, _)) = (&level.texels, data) {
+        if let (Texels::DepthPlane(plane), TexelData::Depths(depths, _)) = (level.texels(), data) {
             write_depths(&mut lock(plane), origin, size, depths);
         } else {
-            texels::put(&mut Arc::make_mut(&mut level).texels, full, origin, size, data);
+            texels::put(Arc::make_mut(&mut level).texels_mut(), full, origin, size, data);
         }
         self.level = Some(level);
         self.write_stencils(origin, size, data);
@@ -265,7 +265,7 @@ impl TextureImage {
     pub(crate) fn replace(&mut self, data: TexelData) {
         self.write_stencils([0; 3], self.full(), &data);
         if let (Some(level), TexelData::Depths(depths, _)) = (&self.level, &data)
-            && let Texels::DepthPlane(plane) = &level.texels
+            && let Texels::DepthPlane(plane) = level.texels()
         {
             write_depths(&mut lock(plane), [0; 3], self.full(), depths);
             return;
@@ -291,7 +291,7 @@ impl TextureImage {
     /// Colours as `GetTexImage` returns them: luminance and intensity in red alone. Everything recorded must have run.
     pub(crate) fn colors(&mut self) -> Vec<[f32; 4]> {
         let level = self.level();
-        let mut colors: Vec<[f32; 4]> = match &level.texels {
+        let mut colors: Vec<[f32; 4]> = match level.texels() {
             Texels::Rgba8(words) | Texels::Srgb8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
             Texels::RgbaF32(colors) => colors.clone(),
             Texels::Depth(_) | Texels::DepthPlane(_) => Vec::new(),
@@ -311,7 +311,7 @@ impl TextureImage {
 
     /// Depths in 0..=1. Everything recorded must have run.
     pub(crate) fn depths(&mut self) -> Vec<f32> {
-        match &self.level().texels {
+        match self.level().texels() {
             Texels::Depth(depths) => depths.clone(),
             Texels::DepthPlane(plane) => {
                 let mut plane = lock(plane);
@@ -345,7 +345,7 @@ fn fill_color_plane(plane: &mut ColorPlane, level: &Level, layer: usize) {
     let [width, height] = [level.size[0] as usize, level.size[1] as usize];
     for y in 0..height {
         let first = (layer * height + y) * width;
-        match (&mut *plane, &level.texels) {
+        match (&mut *plane, level.texels()) {
             (ColorPlane::Rgba8(plane), Texels::Rgba8(texels) | Texels::Srgb8(texels)) => {
                 plane.write_row(0, y as u32, &texels[first..first + width]);
             }
@@ -386,7 +386,7 @@ mod tests {
         samples.set(1, 0, 0, 0x0012_3456);
         image.writes.fetch_add(1, Ordering::Relaxed);
         assert!(image.is_stale());
-        let Texels::Rgba8(_) = &before.texels else { panic!() };
+        let Texels::Rgba8(_) = before.texels() else { panic!() };
     }
 
     #[test]
@@ -399,7 +399,7 @@ mod tests {
             samples.set(1, 0, 0, 0x0012_3456);
         }
         image.writes.fetch_add(1, Ordering::Relaxed);
-        let words = |level: &Level| match &level.texels {
+        let words = |level: &Level| match level.texels() {
             Texels::Rgba8(words) => words.clone(),
             _ => panic!(),
         };

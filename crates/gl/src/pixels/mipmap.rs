@@ -140,7 +140,7 @@ fn word_from_light([r, g, b, a]: [f32; 4]) -> u32 {
 fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u32; 3]) -> TexelData {
     let border = level.border as usize;
     let halved = inner[2] == next[2] && inner[0] == 2 * next[0] && inner[1] == 2 * next[1];
-    match &level.texels {
+    match level.texels() {
         Texels::Rgba8(words) if halved && border == 0 => {
             return TexelData::Words(halve_words(words, inner[0] as usize));
         }
@@ -149,7 +149,7 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         }
         _ => {}
     }
-    let colors: Vec<[f32; 4]> = match &level.texels {
+    let colors: Vec<[f32; 4]> = match level.texels() {
         Texels::Rgba8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
         Texels::Srgb8(words) => words.iter().map(|&w| light_from_word(w)).collect(),
         Texels::RgbaF32(colors) => colors.clone(),
@@ -304,7 +304,7 @@ mod tests {
         let snapshot = texture.sampled(false, None).unwrap();
         let sizes: Vec<_> = snapshot.faces[0].iter().map(|l| [l.size[0], l.size[1]]).collect();
         assert_eq!(sizes, [[6, 3], [3, 1], [1, 1]]);
-        let Texels::Rgba8(last) = &snapshot.faces[0][2].texels else { panic!() };
+        let Texels::Rgba8(last) = snapshot.faces[0][2].texels() else { panic!() };
         assert_eq!(last[..], [0xff10_2030]);
     }
 }

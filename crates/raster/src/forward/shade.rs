@@ -14,10 +14,10 @@ use super::fragment_ops::compare::{alpha_test, holds};
 use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::soft::{disc_coverage, overlap, polygon_coverage};
-use super::wide::{Rgba, bits_of, clamp, saturate_rgba, splat, splat_rgba};
+use super::wide::{Rgba, bits_of, clamp, every, every_rgba, saturate_rgba, splat};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{self, F32x8, F32x16, Floats, I32x8, LANES, Simd, U32x8};
 
 /// Where a draw's vertex records hold what. The first number of a record is `1 / w`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -186,13 +186,14 @@ impl Interpolation {
 
     /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
     #[inline(always)]
-    fn weight_steps<S: Simd>(&self, simd: S, weights: &Weights<S>, axis: usize) -> [F32x8<S>; 2] {
-        let (q1, q2, sum) = (self.first[axis + 1], self.second[axis + 1], self.sum[axis + 1]);
+    fn weight_steps<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, axis: usize) -> [V; 2] {
+        let (q1, q2): (V, V) = (every(simd, self.first[axis + 1]), every(simd, self.second[axis + 1]));
         if self.flat_w.is_some() {
-            return [splat(simd, q1), splat(simd, q2)];
+            return [q1, q2];
         }
         // b = (l / w) / Σ, so db = (d(l / w) - b dΣ) / Σ.
-        [(splat(simd, q1) - weights.b1 * sum) * weights.w, (splat(simd, q2) - weights.b2 * sum) * weights.w]
+        let sum = self.sum[axis + 1];
+        [(q1 - weights.b1 * sum) * weights.w, (q2 - weights.b2 * sum) * weights.w]
     }
 
     fn prepare_edges(&mut self, setup: &Setup) {
@@ -213,20 +214,26 @@ const MANY: u32 = 36;
 
 pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
-/// Perspective-correct barycentric coordinates at eight points.
+/// Columns and rows of the centres of two rows' pixels.
+const TWO_ROWS: [[f32; 16]; 2] = [
+    [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5],
+    [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5],
+];
+
+/// Perspective-correct barycentric coordinates at a group of points.
 #[derive(Clone, Copy)]
-struct Weights<S: Simd> {
-    b1: F32x8<S>,
-    b2: F32x8<S>,
+struct Weights<V> {
+    b1: V,
+    b2: V,
     /// `1 / Σ l / w`.
-    w: F32x8<S>,
+    w: V,
 }
 
-/// Groups of eight pixels: where, and which of them matter.
-struct Groups<'a, S: Simd, const N: usize> {
-    weights: [Weights<S>; N],
-    x: &'a [F32x8<S>; N],
-    y: &'a [F32x8<S>; N],
+/// Groups of eight or sixteen pixels: where, and which of a group matter.
+struct Groups<'a, V, const N: usize> {
+    weights: [Weights<V>; N],
+    x: &'a [V; N],
+    y: &'a [V; N],
     active: u32,
 }
 
@@ -282,7 +289,7 @@ impl<'a> Shader<'a> {
     }
 
     #[inline(always)]
-    fn weights<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> Weights<S> {
+    fn weights<S: Simd, V: Floats<S>>(&self, simd: S, x: V, y: V) -> Weights<V> {
         let i = &self.scratch.interpolation;
         let (dx, dy) = (x - i.origin[0], y - i.origin[1]);
         let plane = lanes::inlined(
@@ -291,25 +298,25 @@ impl<'a> Shader<'a> {
         );
         let (q1, q2) = (plane(&i.first), plane(&i.second));
         if let Some(w) = i.flat_w {
-            return Weights { b1: q1, b2: q2, w: splat(simd, w) };
+            return Weights { b1: q1, b2: q2, w: every(simd, w) };
         }
-        let w = splat(simd, 1.0) / plane(&i.sum);
+        let w = every::<S, V>(simd, 1.0) / plane(&i.sum);
         Weights { b1: q1 * w, b2: q2 * w, w }
     }
 
     /// Number `k` of the records, interpolated.
     #[inline(always)]
-    fn value<S: Simd>(&self, simd: S, weights: &Weights<S>, k: usize) -> F32x8<S> {
+    fn value<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, k: usize) -> V {
         let (d, k) = (&self.scratch.differences, k % MOST);
         if d.varies >> k & 1 == 0 {
-            return splat(simd, d.base[k]);
+            return every(simd, d.base[k]);
         }
         weights.b1 * d.d1[k] + weights.b2 * d.d2[k] + d.base[k]
     }
 
     /// Numbers `at..at + 4`, interpolated.
     #[inline(always)]
-    fn four<S: Simd>(&self, simd: S, weights: &Weights<S>, at: usize) -> Rgba<S> {
+    fn four<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, at: usize) -> [V; 4] {
         [
             self.value(simd, weights, at),
             self.value(simd, weights, at + 1),
@@ -320,19 +327,25 @@ impl<'a> Shader<'a> {
 
     /// Primary colour, before textures.
     #[inline(always)]
-    fn primary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Rgba<S> {
+    fn primary<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>) -> [V; 4] {
         if self.draw.state.flat {
-            return splat_rgba(simd, self.provoking_color());
+            return every_rgba(simd, self.provoking_color());
         }
         if let (Some(at), Some(grid)) = (self.draw.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
-            return self.grid_color(simd, weights, grid, at);
+            let Weights { b1, b2, w } = *weights;
+            return V::by_eights(
+                simd,
+                [b1, b2, w],
+                #[inline(always)]
+                |_, [b1, b2, w]| self.grid_color(simd, &Weights { b1, b2, w }, grid, at),
+            );
         }
         // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
         saturate_rgba(self.four(simd, weights, self.color_at()))
     }
 
     #[inline(never)]
-    fn grid_color<S: Simd>(&self, simd: S, weights: &Weights<S>, grid: &ColorGrid, at: usize) -> Rgba<S> {
+    fn grid_color<S: Simd>(&self, simd: S, weights: &Weights<F32x8<S>>, grid: &ColorGrid, at: usize) -> Rgba<S> {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -344,12 +357,12 @@ impl<'a> Shader<'a> {
     }
 
     #[inline(always)]
-    fn secondary<S: Simd>(&self, simd: S, weights: &Weights<S>) -> Option<[F32x8<S>; 3]> {
+    fn secondary<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>) -> Option<[V; 3]> {
         let front = self.draw.layout.secondary?;
         let at = if self.facet.back { self.draw.layout.back_secondary.unwrap_or(front) } else { front };
         if self.draw.state.flat {
             let r = &self.primitives.records[self.facet.provoking as usize + at..][..3];
-            return Some([splat(simd, r[0]), splat(simd, r[1]), splat(simd, r[2])]);
+            return Some([every(simd, r[0]), every(simd, r[1]), every(simd, r[2])]);
         }
         Some([
             clamp(self.value(simd, weights, at), 0.0, 1.0),
@@ -366,16 +379,16 @@ impl<'a> Shader<'a> {
         self.covered(simd, x, y, color)
     }
 
-    /// The colours of groups of eight pixels, before soft borders. Groups go through each step together, since what a step
+    /// The colours of groups of pixels, before soft borders. Groups go through each step together, since what a step
     /// needs of the facet is the same for all.
     #[inline(always)]
-    fn colors<S: Simd, const N: usize>(
+    fn colors<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
-        x: &[F32x8<S>; N],
-        y: &[F32x8<S>; N],
+        x: &[V; N],
+        y: &[V; N],
         active: u32,
-    ) -> [Rgba<S>; N] {
+    ) -> [[V; 4]; N] {
         let mut groups = Groups { weights: [self.weights(simd, x[0], y[0]); N], x, y, active };
         for i in 1..N {
             groups.weights[i] = self.weights(simd, x[i], y[i]);
@@ -397,14 +410,14 @@ impl<'a> Shader<'a> {
 
     /// Adds the secondary colour, and mixes with fog.
     #[inline(always)]
-    fn summed<S: Simd>(&self, simd: S, weights: &Weights<S>, mut color: Rgba<S>) -> Rgba<S> {
+    fn summed<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, mut color: [V; 4]) -> [V; 4] {
         if self.draw.state.color_sum
             && let Some(secondary) = self.secondary(simd, weights)
         {
             color = color_sum(color, &secondary);
         }
         if let (Some(f), Some(at)) = (&self.draw.state.fog, self.draw.layout.fog) {
-            color = fog(simd, f, color, self.value(simd, weights, at));
+            color = fog(f, color, self.value(simd, weights, at));
         }
         color
     }
@@ -488,7 +501,7 @@ impl<'a> Shader<'a> {
     /// The packed colours of the eight pixels with centres `x`, `y` of a facet that [`Self::is_plain`] and prepared.
     #[inline(always)]
     pub(crate) fn plain_row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
-        pack(&self.four(simd, &self.weights(simd, x, y), self.color_at()))
+        pack::<S, F32x8<S>>(&self.four(simd, &self.weights(simd, x, y), self.color_at()))
     }
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
@@ -497,12 +510,14 @@ impl<'a> Shader<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
-                let mut y = [splat(simd, bottom as f32 + 0.5); BLOCK];
-                for row in 1..BLOCK {
-                    y[row] = splat(simd, (bottom + row) as f32 + 0.5);
+                // Two rows go together.
+                let x = F32x16::from_slice(simd, &TWO_ROWS[0]) + left as f32;
+                let y = F32x16::from_slice(simd, &TWO_ROWS[1]) + bottom as f32;
+                let mut rows = [y; BLOCK / 2];
+                for pair in 1..BLOCK / 2 {
+                    rows[pair] = y + (2 * pair) as f32;
                 }
-                self.packed(simd, &[x; BLOCK], &y, 0xff, words)
+                self.packed(simd, &[x; BLOCK / 2], &rows, 0xffff, words)
             },
         )
     }
@@ -529,25 +544,25 @@ impl<'a> Shader<'a> {
         )
     }
 
-    /// The packed colours of groups of pixels, eight words each, and which pass the alpha test.
+    /// The packed colours of groups of pixels, a word for each, and which pass the alpha test.
     #[inline(always)]
-    fn packed<S: Simd, const N: usize>(
+    fn packed<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
-        x: &[F32x8<S>; N],
-        y: &[F32x8<S>; N],
+        x: &[V; N],
+        y: &[V; N],
         active: u32,
         words: &mut [u32],
     ) -> u64 {
         let colors = self.colors(simd, x, y, active);
-        for (color, words) in colors.iter().zip(words.chunks_exact_mut(LANES)) {
-            pack(color).store_slice(words);
+        for (color, words) in colors.iter().zip(words.chunks_exact_mut(V::LEN)) {
+            pack::<S, V>(color).store_slice(words);
         }
         let mut passed = u64::MAX;
         if let Some(test) = self.draw.state.alpha_test {
             passed = 0;
             for i in 0..N {
-                passed |= u64::from(bits_of(alpha_test(simd, test, colors[i][3])) & 0xff) << (8 * i);
+                passed |= u64::from(bits_of(alpha_test(simd, test, colors[i][3]))) << (V::LEN * i);
             }
         }
         passed

@@ -2,7 +2,7 @@
 
 use super::plane::DepthPlane;
 use super::state::Compare;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// Kind of texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,8 +52,57 @@ pub struct Level {
     pub size: [u32; 3],
     /// 0 or 1.
     pub border: u32,
-    /// `size[0] * size[1] * size[2]` texels.
-    pub texels: Texels,
+    texels: Texels,
+    columns: Columns,
+}
+
+/// What linear filtering reads of a level in two dimensions with 8 bits a component, once it was asked for: see
+/// [`Level::columns`]. A copy makes its own.
+#[derive(Debug, Default)]
+struct Columns(OnceLock<Box<[[u32; 2]]>>);
+
+impl Clone for Columns {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Level {
+    /// A level of `size[0] * size[1] * size[2]` texels.
+    pub fn new(size: [u32; 3], border: u32, texels: Texels) -> Self {
+        Self { size, border, texels, columns: Columns::default() }
+    }
+
+    /// Its texels.
+    pub fn texels(&self) -> &Texels {
+        &self.texels
+    }
+
+    /// Its texels, to be changed.
+    pub fn texels_mut(&mut self) -> &mut Texels {
+        self.columns = Columns::default();
+        &mut self.texels
+    }
+
+    /// Texels of 8 bits in two dimensions, each with the one above, so that the four round a place lie side by side: texel
+    /// `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the right and the upper edge the image begins anew.
+    pub(crate) fn columns(&self) -> &[[u32; 2]] {
+        self.columns.0.get_or_init(|| match &self.texels {
+            Texels::Rgba8(words) | Texels::Srgb8(words) => columns_of(words, self.size[0] as usize),
+            _ => Box::default(),
+        })
+    }
+}
+
+fn columns_of(words: &[u32], width: usize) -> Box<[[u32; 2]]> {
+    let rows = words.chunks_exact(width.max(1));
+    let above = rows.clone().cycle().skip(1);
+    let mut columns = Vec::with_capacity(rows.len() * (width + 1));
+    for (row, above) in rows.zip(above) {
+        columns.extend(row.iter().zip(above).map(|(&low, &high)| [low, high]));
+        columns.extend(row.first().zip(above.first()).map(|(&low, &high)| [low, high]));
+    }
+    columns.into()
 }
 
 /// How a coordinate beyond the image is treated.
@@ -130,10 +179,18 @@ pub struct Texture {
     pub swizzle: Option<[Swizzle; 4]>,
 }
 
+impl Sampler {
+    /// Whether neighbours are mixed within a level.
+    pub(crate) fn mixes(&self) -> bool {
+        use Filter::{Linear, LinearMipmapLinear, LinearMipmapNearest};
+        [self.min, self.mag].iter().any(|f| matches!(f, Linear | LinearMipmapNearest | LinearMipmapLinear))
+    }
+}
+
 impl Texture {
     /// The depth planes among its levels.
     pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthPlane>>> {
-        self.faces.iter().flatten().filter_map(|level| match &level.texels {
+        self.faces.iter().flatten().filter_map(|level| match level.texels() {
             Texels::DepthPlane(plane) => Some(plane),
             _ => None,
         })

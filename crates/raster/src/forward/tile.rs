@@ -267,7 +267,7 @@ fn image_color<S: Simd>(
         color = color_sum(color, &[splat(simd, s[0]), splat(simd, s[1]), splat(simd, s[2])]);
     }
     if let Some(f) = &state.fog {
-        color = fog(simd, f, color, splat(simd, image.fog));
+        color = fog(f, color, splat(simd, image.fog));
     }
     color
 }

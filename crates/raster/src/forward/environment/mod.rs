@@ -8,7 +8,7 @@ pub(crate) mod fog;
 use super::state::{EnvironmentMode, Unit};
 use super::texture::{BaseFormat, Texture};
 use super::wide::{Rgba, mix, saturate_rgba, splat, splat_rgba};
-use vitral_math::lanes::Simd;
+use vitral_math::lanes::{Lanes, Simd};
 
 /// How many texture units there are.
 pub(crate) const UNITS: usize = 8;
@@ -47,7 +47,7 @@ fn parts(format: BaseFormat) -> (bool, bool) {
 
 /// `color` of the format's parts, `previous` of the others.
 #[inline(always)]
-fn keep_other_parts<S: Simd>(format: BaseFormat, color: Rgba<S>, previous: Rgba<S>) -> Rgba<S> {
+fn keep_other_parts<V: Lanes>(format: BaseFormat, color: [V; 4], previous: [V; 4]) -> [V; 4] {
     let (has_color, has_alpha) = parts(format);
     let [r, g, b, _] = if has_color { color } else { previous };
     [r, g, b, if has_alpha { color[3] } else { previous[3] }]
@@ -55,7 +55,7 @@ fn keep_other_parts<S: Simd>(format: BaseFormat, color: Rgba<S>, previous: Rgba<
 
 /// `MODULATE`, the mode that nearly all programs use.
 #[inline(always)]
-pub(crate) fn modulate<S: Simd>(format: BaseFormat, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
+pub(crate) fn modulate<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
     let product = [p[0] * t[0], p[1] * t[1], p[2] * t[2], p[3] * t[3]];
     saturate_rgba(keep_other_parts(format, product, p))
 }

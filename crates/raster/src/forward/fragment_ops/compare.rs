@@ -1,29 +1,29 @@
 //! Comparisons: alpha test, depth test, shadow look-ups.
 
 use crate::forward::state::{Compare, DepthTest};
-use crate::forward::wide::splat;
+use crate::forward::wide::every;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Mask8, Simd};
+use vitral_math::lanes::{F32x8, Floats, Mask8, MaskOf, Simd};
 
 /// `incoming func stored`. NaN compares as IEEE 754 says: only `NotEqual` and `Always` pass.
 #[inline(always)]
-pub(crate) fn compare<S: Simd>(simd: S, func: Compare, incoming: F32x8<S>, stored: F32x8<S>) -> Mask8<S> {
+pub(crate) fn compare<S: Simd, V: Floats<S>>(simd: S, func: Compare, incoming: V, stored: V) -> MaskOf<S, V> {
     match func {
-        Compare::Never => Mask8::splat(simd, false),
+        Compare::Never => SimdMask::splat(simd, false),
         Compare::Less => incoming.simd_lt(stored),
         Compare::Equal => incoming.simd_eq(stored),
         Compare::LessOrEqual => incoming.simd_le(stored),
         Compare::Greater => incoming.simd_gt(stored),
         Compare::NotEqual => !incoming.simd_eq(stored),
         Compare::GreaterOrEqual => incoming.simd_ge(stored),
-        Compare::Always => Mask8::splat(simd, true),
+        Compare::Always => SimdMask::splat(simd, true),
     }
 }
 
 /// Which fragments pass the alpha test.
 #[inline(always)]
-pub(crate) fn alpha_test<S: Simd>(simd: S, (func, reference): (Compare, f32), alpha: F32x8<S>) -> Mask8<S> {
-    compare(simd, func, alpha, splat(simd, reference))
+pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(simd: S, (func, reference): (Compare, f32), alpha: V) -> MaskOf<S, V> {
+    compare(simd, func, alpha, every(simd, reference))
 }
 
 /// Which samples pass the depth test; both depths in the plane's units.
@@ -49,7 +49,7 @@ pub(crate) fn holds(func: Compare, incoming: f32, stored: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::forward::wide::bits_of;
+    use crate::forward::wide::{bits_of, splat};
     use vitral_math::lanes::{available_levels, dispatch};
 
     #[test]

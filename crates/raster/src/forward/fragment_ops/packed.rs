@@ -6,36 +6,36 @@
 
 use crate::forward::wide::{Rgba, saturate};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{I32x8, Simd, U32x8};
+use vitral_math::lanes::{Floats, Simd, U32x8};
 
 /// Red and blue of a word, or green and alpha of a word shifted by 8.
 const HALVES: u32 = 0x00ff_00ff;
 
 /// The byte of each value, `0.0 -> 0`, `1.0 -> 255`, rounded to nearest and clamped; red in the lowest byte.
 #[inline(always)]
-pub(crate) fn pack<S: Simd>(color: &Rgba<S>) -> U32x8<S> {
-    let r: I32x8<S> = (saturate(color[0]) * 255.0 + 0.5).to_int();
-    let g: I32x8<S> = (saturate(color[1]) * 255.0 + 0.5).to_int();
-    let b: I32x8<S> = (saturate(color[2]) * 255.0 + 0.5).to_int();
-    let a: I32x8<S> = (saturate(color[3]) * 255.0 + 0.5).to_int();
+pub(crate) fn pack<S: Simd, V: Floats<S>>(color: &[V; 4]) -> V::Words {
+    let r: V::Ints = (saturate(color[0]) * 255.0 + 0.5).to_int();
+    let g: V::Ints = (saturate(color[1]) * 255.0 + 0.5).to_int();
+    let b: V::Ints = (saturate(color[2]) * 255.0 + 0.5).to_int();
+    let a: V::Ints = (saturate(color[3]) * 255.0 + 0.5).to_int();
     (r | (g << 8) | (b << 16) | (a << 24)).bitcast()
 }
 
 /// `byte / 255` of each component.
 #[inline(always)]
 pub(crate) fn unpack<S: Simd>(words: U32x8<S>) -> Rgba<S> {
-    let [r, g, b, a] = unpack_bytes(words);
+    let [r, g, b, a]: Rgba<S> = unpack_bytes(words);
     [r / 255.0, g / 255.0, b / 255.0, a / 255.0]
 }
 
 /// The bytes as numbers of 0..=255.
 #[inline(always)]
-pub(crate) fn unpack_bytes<S: Simd>(words: U32x8<S>) -> Rgba<S> {
+pub(crate) fn unpack_bytes<S: Simd, V: Floats<S>>(words: V::Words) -> [V; 4] {
     // Signed integers, because they are turned into floats in one instruction.
-    let r: I32x8<S> = (words & 0xff).bitcast();
-    let g: I32x8<S> = ((words >> 8) & 0xff).bitcast();
-    let b: I32x8<S> = ((words >> 16) & 0xff).bitcast();
-    let a: I32x8<S> = (words >> 24).bitcast();
+    let r: V::Ints = (words & 0xff).bitcast();
+    let g: V::Ints = ((words >> 8) & 0xff).bitcast();
+    let b: V::Ints = ((words >> 16) & 0xff).bitcast();
+    let a: V::Ints = (words >> 24).bitcast();
     [r.to_float(), g.to_float(), b.to_float(), a.to_float()]
 }
 

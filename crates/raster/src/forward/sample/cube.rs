@@ -30,7 +30,7 @@ pub(super) fn sample<S: Simd>(
             let chart = Chart::new(simd, [coords[0], coords[1], coords[2]]);
             let face = chart.face(simd).bitcast::<U32x8<S>>().to_array();
             let point = [chart.coordinate(chart.sc), chart.coordinate(chart.tc)];
-            let is_depth = matches!(level_of(texture, 0).map(|l| &l.texels), Some(Texels::Depth(_)));
+            let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let color = mipped(
                 simd,
                 texture,

@@ -11,7 +11,7 @@ use crate::{TILE, TILE_PIXELS};
 use std::sync::{LazyLock, MutexGuard, PoisonError};
 use vitral_math::color::linear_from_srgb_table;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{self, F32x8, Floats, I32x8, LANES, Lanes, MOST_LANES, Simd, U32x8};
 
 /// Linear light of each sRGB byte.
 static LINEAR_FROM_SRGB: LazyLock<[f32; 256]> = LazyLock::new(linear_from_srgb_table);
@@ -55,6 +55,32 @@ pub(super) fn singles<S: Simd>(simd: S, texels: &[u32], at: I32x8<S>) -> U32x8<S
     U32x8::from_slice(simd, &gather(texels, at))
 }
 
+/// The four texels round places, lower left and right, upper left and right; 0 where there are none. A lane's begin with number
+/// `at` of `columns(lane)`: see [`Level::columns`].
+#[inline(always)]
+pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
+    simd: S,
+    columns: impl Fn(usize) -> &'a [[u32; 2]],
+    at: V::Ints,
+) -> [V::Words; 4] {
+    let at = at.as_slice();
+    let mut quads = [[0u32; 4]; MOST_LANES];
+    for lane in 0..V::LEN {
+        let at = at[lane] as u32 as usize;
+        if let Some([[a, c], [b, d]]) = columns(lane).get(at..at + 2) {
+            quads[lane] = [*a, *c, *b, *d];
+        }
+    }
+    let words: &[u32] = bytemuck::cast_slice(&quads);
+    let part = lanes::inlined(
+        #[inline(always)]
+        |k: usize| V::Words::from_slice(simd, &words[k * V::LEN..(k + 1) * V::LEN]),
+    );
+    let ((left, right), (more_left, more_right)) = ((part(0).deinterleave(part(1))), part(2).deinterleave(part(3)));
+    let ((a, b), (c, d)) = (left.deinterleave(more_left), right.deinterleave(more_right));
+    [a, b, c, d]
+}
+
 /// Eight pairs of texels that are neighbours in memory, from `at` on: the first ones and the second ones; 0 where there are
 /// none.
 #[inline(always)]
@@ -90,7 +116,7 @@ impl<'a> Words<'a> {
     /// Those of a level, if it has such.
     #[inline(always)]
     pub(super) fn new(level: &'a Level) -> Option<Self> {
-        match &level.texels {
+        match level.texels() {
             Texels::Rgba8(texels) => Some(Self { texels, decode: None }),
             Texels::Srgb8(texels) => Some(Self { texels, decode: Some(&LINEAR_FROM_SRGB) }),
             _ => None,
@@ -117,7 +143,7 @@ impl<'a> Words<'a> {
 
     /// Raw colours of texels.
     #[inline(always)]
-    pub(super) fn meaning<S: Simd>(&self, simd: S, words: U32x8<S>) -> Rgba<S> {
+    pub(super) fn meaning<S: Simd, V: Floats<S>>(&self, simd: S, words: V::Words) -> [V; 4] {
         match self.decode {
             None => unpack_bytes(words),
             Some(table) => decode(simd, words, table),
@@ -132,7 +158,7 @@ impl<'a> Words<'a> {
 
     /// From raw colours to colours.
     #[inline(always)]
-    pub(super) fn finish<S: Simd>(&self, color: Rgba<S>) -> Rgba<S> {
+    pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
         // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte again.
         const EACH: f32 = 1.0 / 255.0;
         let [r, g, b, a] = color;
@@ -145,18 +171,23 @@ impl<'a> Words<'a> {
 
 /// Colours in linear light, alpha as 0..=255.
 #[inline(always)]
-fn decode<S: Simd>(simd: S, words: U32x8<S>, table: &[f32; 256]) -> Rgba<S> {
-    let bytes = words.to_array();
-    let mut colors = [[0.0f32; LANES]; 3];
-    for lane in 0..LANES {
+fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -> [V; 4] {
+    let bytes = words.as_slice();
+    let mut colors = [[0.0f32; MOST_LANES]; 3];
+    for lane in 0..V::LEN {
         let bytes = bytes[lane].to_le_bytes();
         for k in 0..3 {
             colors[k][lane] = table[usize::from(bytes[k])];
         }
     }
-    let alpha: I32x8<S> = (words >> 24).bitcast();
+    let alpha: V::Ints = (words >> 24).bitcast();
     let [r, g, b] = &colors;
-    [F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b), alpha.to_float()]
+    [
+        V::from_slice(simd, &r[..V::LEN]),
+        V::from_slice(simd, &g[..V::LEN]),
+        V::from_slice(simd, &b[..V::LEN]),
+        alpha.to_float(),
+    ]
 }
 
 /// Texels of any kind, as colours.
@@ -172,7 +203,7 @@ impl<'a> Image<'a> {
     /// Those of a level; a depth plane has no colours.
     #[inline(always)]
     pub(super) fn new(level: &'a Level) -> Self {
-        match &level.texels {
+        match level.texels() {
             Texels::RgbaF32(texels) => Self::Floats(texels),
             Texels::Depth(texels) => Self::Depths(texels),
             _ => Words::new(level).map_or(Self::Floats(&[]), Self::Words),
@@ -218,7 +249,7 @@ impl<'a> Image<'a> {
 
     /// From raw colours to colours.
     #[inline(always)]
-    pub(super) fn finish<S: Simd>(&self, color: Rgba<S>) -> Rgba<S> {
+    pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
         match self {
             Self::Words(words) => words.finish(color),
             _ => color,
@@ -252,7 +283,7 @@ impl<'a> Depths<'a> {
     /// Those of a level; what is no depth image has none.
     #[inline(always)]
     pub(super) fn new(level: &'a Level, plane: Option<&'a DepthPlane>) -> Self {
-        match (&level.texels, plane) {
+        match (level.texels(), plane) {
             (Texels::DepthPlane(_), Some(plane)) => Self::Plane(plane),
             (Texels::Depth(texels), _) => Self::Stored(texels),
             (Texels::DepthPlane(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),

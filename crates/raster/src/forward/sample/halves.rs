@@ -3,27 +3,26 @@
 //! Two components lie in the 16-bit halves of each word. Weights have 8 bits, so that products stay below 2^16; each mix is
 //! rounded to nearest, which puts a colour filtered from eight texels within 2/255 of the exact one.
 
-use crate::forward::wide::Rgba;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, Simd, U16x16, U32x8};
+use vitral_math::lanes::{Floats, Simd};
 
 /// Colours of bytes, two in the 16-bit halves of each word: they are filtered together, with weights of 8 bits.
-pub(super) struct Halves<S: Simd> {
+pub(super) struct Halves<S: Simd, V: Floats<S>> {
     /// Red, and blue in the higher half.
-    rb: U16x16<S>,
+    rb: V::Halves,
     /// Green, and alpha in the higher half.
-    ga: U16x16<S>,
+    ga: V::Halves,
 }
 
-impl<S: Simd> Halves<S> {
+impl<S: Simd, V: Floats<S>> Halves<S, V> {
     #[inline(always)]
-    fn new(words: U32x8<S>) -> Self {
+    fn new(words: V::Words) -> Self {
         Self { rb: (words & 0x00ff_00ff).bitcast(), ga: ((words >> 8) & 0x00ff_00ff).bitcast() }
     }
 
     /// Of four texels round a place, with its distances from the first.
     #[inline(always)]
-    pub(super) fn filter(simd: S, [a, b, c, d]: [U32x8<S>; 4], [x, y]: [F32x8<S>; 2]) -> Self {
+    pub(super) fn filter(simd: S, [a, b, c, d]: [V::Words; 4], [x, y]: [V; 2]) -> Self {
         let (x, y) = (weight(simd, x), weight(simd, y));
         let lower = Self::new(a).mix(&Self::new(b), x);
         lower.mix(&Self::new(c).mix(&Self::new(d), x), y)
@@ -31,8 +30,8 @@ impl<S: Simd> Halves<S> {
 
     /// Rounded to nearest; exact where both are equal.
     #[inline(always)]
-    pub(super) fn mix(&self, other: &Self, [rest, weight]: [U16x16<S>; 2]) -> Self {
-        let half = U16x16::splat(weight.token(), 128);
+    pub(super) fn mix(&self, other: &Self, [rest, weight]: [V::Halves; 2]) -> Self {
+        let half = V::Halves::splat(weight.token(), 128);
         Self {
             rb: (self.rb * rest + other.rb * weight + half) >> 8,
             ga: (self.ga * rest + other.ga * weight + half) >> 8,
@@ -41,10 +40,10 @@ impl<S: Simd> Halves<S> {
 
     /// The bytes as numbers of 0..=255.
     #[inline(always)]
-    pub(super) fn unpack(&self) -> Rgba<S> {
-        let (rb, ga): (U32x8<S>, U32x8<S>) = (self.rb.bitcast(), self.ga.bitcast());
+    pub(super) fn unpack(&self) -> [V; 4] {
+        let (rb, ga): (V::Words, V::Words) = (self.rb.bitcast(), self.ga.bitcast());
         // Signed integers, because they are turned into floats in one instruction.
-        let [r, g, b, a]: [I32x8<S>; 4] =
+        let [r, g, b, a]: [V::Ints; 4] =
             [(rb & 0xffff).bitcast(), (ga & 0xffff).bitcast(), (rb >> 16).bitcast(), (ga >> 16).bitcast()];
         [r.to_float(), g.to_float(), b.to_float(), a.to_float()]
     }
@@ -52,16 +51,16 @@ impl<S: Simd> Halves<S> {
 
 /// The 256ths of the first and of the second of two colours, for a weight in 0..=1 of the second.
 #[inline(always)]
-pub(super) fn weight<S: Simd>(simd: S, weight: F32x8<S>) -> [U16x16<S>; 2] {
-    let whole: I32x8<S> = (weight * 256.0 + 0.5).to_int();
-    let both: U16x16<S> = (whole | (whole << 16)).bitcast();
-    [U16x16::splat(simd, 256) - both, both]
+pub(super) fn weight<S: Simd, V: Floats<S>>(simd: S, weight: V) -> [V::Halves; 2] {
+    let whole: V::Ints = (weight * 256.0 + 0.5).to_int();
+    let both: V::Halves = (whole | (whole << 16)).bitcast();
+    [V::Halves::splat(simd, 256) - both, both]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::lanes::{LANES, available_levels, dispatch};
+    use vitral_math::lanes::{F32x8, LANES, U32x8, available_levels, dispatch};
 
     /// The mix of bytes, rounded to nearest after each axis, with weights of 8 bits.
     fn by_hand(texels: [u32; 4], [x, y]: [u32; 2], shift: u32) -> u32 {

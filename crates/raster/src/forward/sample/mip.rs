@@ -3,9 +3,9 @@
 use super::cube;
 use super::fetch::interior;
 use crate::forward::texture::{Filter, Sampler, Texture, TextureKind};
-use crate::forward::wide::{Rgba, bits_of, clamp, floor, mask_of, max, mix, select, splat};
+use crate::forward::wide::{bits_of, clamp, every, floor, mask_of, max, mix, select, splat};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Lanes as _, Simd};
+use vitral_math::lanes::{F32x8, Floats, Lanes, Simd};
 
 /// Whether the level of detail can matter: otherwise any number will do.
 pub(crate) fn needs_lod(texture: &Texture) -> bool {
@@ -31,7 +31,7 @@ pub(crate) fn lod<S: Simd>(
 
 /// The logarithm to base 2 of a step, given its squared length.
 #[inline(always)]
-pub(crate) fn half_log2<S: Simd>(square: F32x8<S>) -> F32x8<S> {
+pub(crate) fn half_log2<V: Lanes>(square: V) -> V {
     square.log2() * 0.5
 }
 
@@ -76,11 +76,11 @@ pub(super) fn dimensions(kind: TextureKind) -> usize {
 }
 
 /// What each lane reads.
-pub(super) struct Choice<S: Simd> {
+pub(super) struct Choice<V> {
     /// Level, or the finer of two.
-    pub(super) level: F32x8<S>,
+    pub(super) level: V,
     /// How much of the next coarser level is mixed in.
-    pub(super) fraction: F32x8<S>,
+    pub(super) fraction: V,
     /// Which lanes filter linearly within a level.
     pub(super) linear: u32,
 }
@@ -107,8 +107,8 @@ fn split(filter: Filter) -> (bool, Mip) {
 
 /// Levels and filters for levels `0..=last`.
 #[inline(always)]
-pub(super) fn choose<S: Simd>(simd: S, sampler: &Sampler, last: usize, lod: F32x8<S>) -> Choice<S> {
-    let zero = splat(simd, 0.0);
+pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: usize, lod: V) -> Choice<V> {
+    let zero = every(simd, 0.0);
     let (magnify_linear, _) = split(sampler.mag);
     let (minify_linear, mip) = split(sampler.min);
     let lod = clamp(lod, sampler.lod[0], sampler.lod[1]);
@@ -116,7 +116,7 @@ pub(super) fn choose<S: Simd>(simd: S, sampler: &Sampler, last: usize, lod: F32x
     // Where texels are larger than pixels, only level 0 is read.
     let from_nearest = matches!(sampler.min, Filter::NearestMipmapNearest | Filter::NearestMipmapLinear);
     let switch_over = if magnify_linear && from_nearest { 0.5 } else { 0.0 };
-    let magnified = lod.simd_le(splat(simd, switch_over));
+    let magnified = lod.simd_le(every::<S, V>(simd, switch_over));
     let linear = match (magnify_linear, minify_linear) {
         (true, true) => u32::MAX,
         (true, false) => bits_of(magnified),
@@ -187,6 +187,6 @@ pub(super) fn mipped<S: Simd, const N: usize>(
 
 /// All components mixed alike.
 #[inline(always)]
-pub(super) fn mix_rgba<S: Simd>(a: Rgba<S>, b: Rgba<S>, t: F32x8<S>) -> Rgba<S> {
+pub(super) fn mix_rgba<V: Lanes>(a: [V; 4], b: [V; 4], t: V) -> [V; 4] {
     [mix(a[0], b[0], t), mix(a[1], b[1], t), mix(a[2], b[2], t), mix(a[3], b[3], t)]
 }

@@ -50,7 +50,7 @@ pub(crate) fn sample<S: Simd>(
     let Some(first) = texture.faces.first().and_then(|face| face.first()) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
-    let is_depth = matches!(first.texels, Texels::Depth(_) | Texels::DepthPlane(_));
+    let is_depth = matches!(first.texels(), Texels::Depth(_) | Texels::DepthPlane(_));
     if let Some(packed) = Packed::new(texture) {
         return packed::sample(simd, &packed, coords, lod, active);
     }

@@ -4,16 +4,16 @@
 //! the border.
 
 use crate::forward::texture::Wrap;
-use crate::forward::wide::{floor, max, min, select, splat};
+use crate::forward::wide::{every, floor, max, min, select, splat};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, Simd};
+use vitral_math::lanes::{F32x8, Floats, I32x8, Lanes, Simd};
 
 /// The two texels whose centres surround a position, and how far it is from the first to the second, 0..1.
 #[derive(Clone, Copy)]
-pub(super) struct Axis<S: Simd> {
-    pub(super) near: I32x8<S>,
-    pub(super) far: I32x8<S>,
-    pub(super) weight: F32x8<S>,
+pub(super) struct Axis<S: Simd, V: Floats<S> = F32x8<S>> {
+    pub(super) near: V::Ints,
+    pub(super) far: V::Ints,
+    pub(super) weight: V,
 }
 
 impl<S: Simd> Axis<S> {
@@ -36,13 +36,13 @@ pub(super) fn position<S: Simd>(simd: S, coordinate: F32x8<S>, size: u32, wrap: 
 
 /// As [`position`] where each lane has an image of its own size.
 #[inline(always)]
-pub(super) fn position_in<S: Simd>(simd: S, coordinate: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> F32x8<S> {
+pub(super) fn position_in<S: Simd, V: Floats<S>>(simd: S, coordinate: V, texels: V, wrap: Wrap) -> V {
     match wrap {
-        Wrap::Repeat => between((coordinate - floor(coordinate)) * texels, splat(simd, 0.0), texels),
+        Wrap::Repeat => between((coordinate - floor(coordinate)) * texels, every(simd, 0.0), texels),
         Wrap::MirroredRepeat => {
             let there_and_back = coordinate - floor(coordinate * 0.5) * 2.0;
-            let mirrored = min(there_and_back, splat(simd, 2.0) - there_and_back);
-            between(mirrored * texels, splat(simd, 0.5), texels - 0.5)
+            let mirrored = min(there_and_back, -there_and_back + 2.0);
+            between(mirrored * texels, every(simd, 0.5), texels - 0.5)
         }
         _ => limited_in(simd, coordinate * texels, texels, wrap),
     }
@@ -56,17 +56,17 @@ pub(super) fn limited<S: Simd>(texels: F32x8<S>, size: u32, wrap: Wrap) -> F32x8
 }
 
 #[inline(always)]
-fn limited_in<S: Simd>(simd: S, texels: F32x8<S>, size: F32x8<S>, wrap: Wrap) -> F32x8<S> {
+fn limited_in<S: Simd, V: Floats<S>>(simd: S, texels: V, size: V, wrap: Wrap) -> V {
     match wrap {
-        Wrap::Clamp => between(texels, splat(simd, 0.0), size),
-        Wrap::ClampToBorder => between(texels, splat(simd, -0.5), size + 0.5),
-        _ => between(texels, splat(simd, 0.5), size - 0.5),
+        Wrap::Clamp => between(texels, every(simd, 0.0), size),
+        Wrap::ClampToBorder => between(texels, every(simd, -0.5), size + 0.5),
+        _ => between(texels, every(simd, 0.5), size - 0.5),
     }
 }
 
 /// Brought into `low..=high`; NaN gives `low`.
 #[inline(always)]
-fn between<S: Simd>(value: F32x8<S>, low: F32x8<S>, high: F32x8<S>) -> F32x8<S> {
+fn between<V: Lanes>(value: V, low: V, high: V) -> V {
     min(max(value, low), high)
 }
 
@@ -78,7 +78,7 @@ pub(super) fn nearest<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wra
 
 /// As [`nearest`] where each lane has an image of its own size.
 #[inline(always)]
-pub(super) fn nearest_in<S: Simd>(position: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> I32x8<S> {
+pub(super) fn nearest_in<S: Simd, V: Floats<S>>(position: V, texels: V, wrap: Wrap) -> V::Ints {
     let last = if wrap == Wrap::ClampToBorder { texels } else { texels - 1.0 };
     min(floor(position), last).to_int()
 }
@@ -91,8 +91,8 @@ pub(super) fn linear<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wrap
 
 /// As [`linear`] where each lane has an image of its own size.
 #[inline(always)]
-pub(super) fn linear_in<S: Simd>(simd: S, position: F32x8<S>, texels: F32x8<S>, wrap: Wrap) -> Axis<S> {
-    let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
+pub(super) fn linear_in<S: Simd, V: Floats<S>>(simd: S, position: V, texels: V, wrap: Wrap) -> Axis<S, V> {
+    let (zero, one): (V, V) = (every(simd, 0.0), every(simd, 1.0));
     let from_centre = position - 0.5;
     let near = floor(from_centre);
     let weight = from_centre - near;

@@ -10,22 +10,62 @@ use crate::forward::sample::packed::Packed;
 use crate::forward::sample::sample;
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::Swizzle;
-use crate::forward::wide::{Rgba, max, splat, splat_rgba};
-use vitral_math::lanes::{self, F32x8, Simd};
+use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
+use vitral_math::lanes::{self, F32x8, Floats, Simd};
+
+/// Eight pixels: where, and which of them matter.
+struct Eight<S: Simd> {
+    weights: Weights<F32x8<S>>,
+    x: F32x8<S>,
+    y: F32x8<S>,
+    active: u32,
+}
+
+impl<V, const N: usize> Groups<'_, V, N> {
+    /// The colours of group `i`, made for eight pixels at a time of what they have in `numbers`.
+    #[inline(always)]
+    fn by_eights<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        [a, b, c, d]: [V; 4],
+        f: impl Fn(&Eight<S>, Rgba<S>) -> Rgba<S>,
+    ) -> [V; 4]
+    where
+        V: Floats<S>,
+    {
+        let Weights { b1, b2, w } = self.weights[i];
+        V::by_eights(
+            simd,
+            [b1, b2, w, self.x[i], self.y[i], a, b, c, d],
+            #[inline(always)]
+            |first, [b1, b2, w, x, y, a, b, c, d]| {
+                let eight = Eight { weights: Weights { b1, b2, w }, x, y, active: self.active >> first & 0xff };
+                f(&eight, [a, b, c, d])
+            },
+        )
+    }
+}
 
 impl Shader<'_> {
     /// All units' textures and environments: `colors` are the primary colours before.
     #[inline(always)]
-    pub(super) fn textured<S: Simd, const N: usize>(
+    pub(super) fn textured<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
-        groups: &Groups<'_, S, N>,
-        colors: &mut [Rgba<S>; N],
+        groups: &Groups<'_, V, N>,
+        colors: &mut [[V; 4]; N],
     ) {
         // The mode that nearly all programs use needs no other unit's texture.
         if !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
             for i in 0..N {
-                colors[i] = self.combined(simd, groups, i, &colors[i]);
+                colors[i] = groups.by_eights(
+                    simd,
+                    i,
+                    colors[i],
+                    #[inline(always)]
+                    |eight, primary| self.combined(simd, eight, &primary),
+                );
             }
             return;
         }
@@ -35,7 +75,14 @@ impl Shader<'_> {
                 None => {
                     let format = format_of(&unit.texture);
                     for i in 0..N {
-                        colors[i] = modulate(format, &self.texture(simd, groups, i, unit), colors[i]);
+                        let texture = groups.by_eights(
+                            simd,
+                            i,
+                            colors[i],
+                            #[inline(always)]
+                            |eight, _| self.texture(simd, eight, unit),
+                        );
+                        colors[i] = modulate(format, &texture, colors[i]);
                     }
                 }
             }
@@ -44,19 +91,13 @@ impl Shader<'_> {
 
     /// All units' textures and environments, where one may use another's texture.
     #[inline(never)]
-    fn combined<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        groups: &Groups<'_, S, N>,
-        i: usize,
-        primary: &Rgba<S>,
-    ) -> Rgba<S> {
+    fn combined<S: Simd>(&self, simd: S, eight: &Eight<S>, primary: &Rgba<S>) -> Rgba<S> {
         simd.vectorize(
             #[inline(always)]
             || {
                 let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
                 for unit in &self.draw.state.units {
-                    textures[unit.index % UNITS] = self.texture(simd, groups, i, unit);
+                    textures[unit.index % UNITS] = self.texture(simd, eight, unit);
                 }
                 let mut color = *primary;
                 for unit in &self.draw.state.units {
@@ -75,23 +116,23 @@ impl Shader<'_> {
         Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
     }
 
-    /// A unit's texture at a group of pixels.
+    /// A unit's texture at eight pixels.
     #[inline(never)]
-    fn texture<S: Simd, const N: usize>(&self, simd: S, groups: &Groups<'_, S, N>, i: usize, unit: &Unit) -> Rgba<S> {
-        let (weights, active) = (&groups.weights[i], groups.active);
+    fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
+        let Eight { weights, active, .. } = eight;
         if let Some((packed, at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
                 || {
                     let slopes = Slopes::new(self, packed, at);
                     let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
-                    packed.at(simd, place, level, active)
+                    packed.at(simd, place, level, *active)
                 },
             );
         }
         let color = simd.vectorize(
             #[inline(always)]
-            || self.any(simd, weights, (groups.x[i], groups.y[i]), active, unit),
+            || self.any(simd, eight, unit),
         );
         let Some(swizzle) = unit.texture.swizzle else { return color };
         simd.vectorize(
@@ -115,14 +156,9 @@ impl Shader<'_> {
 
     /// Any texture: sprites, borders, volumes, cubes, depth, anisotropy.
     #[inline(always)]
-    fn any<S: Simd>(
-        &self,
-        simd: S,
-        weights: &Weights<S>,
-        (x, y): (F32x8<S>, F32x8<S>),
-        active: u32,
-        unit: &Unit,
-    ) -> Rgba<S> {
+    fn any<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
+        let Eight { weights, x, y, active } = *eight;
+        let weights = &weights;
         let texture = &*unit.texture;
         let mut coords = match self.draw.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
@@ -161,7 +197,7 @@ impl Shader<'_> {
 
     /// How s, t, r, q change with one pixel to the right, and one up.
     #[inline(always)]
-    fn steps<S: Simd>(&self, simd: S, weights: &Weights<S>, at: Option<usize>) -> [Rgba<S>; 2] {
+    fn steps<S: Simd>(&self, simd: S, weights: &Weights<F32x8<S>>, at: Option<usize>) -> [Rgba<S>; 2] {
         let zero = splat_rgba(simd, [0.0; 4]);
         let Some(at) = at else { return [zero; 2] };
         let i = &self.scratch.interpolation;
@@ -178,12 +214,12 @@ impl Shader<'_> {
 
     /// Modulates colours with a texture of the common kind.
     #[inline(never)]
-    fn plain<S: Simd, const N: usize>(
+    fn plain<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
-        groups: &Groups<'_, S, N>,
+        groups: &Groups<'_, V, N>,
         (unit, packed, at): (&Unit, &Packed<'_>, usize),
-        colors: &mut [Rgba<S>; N],
+        colors: &mut [[V; 4]; N],
     ) {
         simd.vectorize(
             #[inline(always)]
@@ -203,17 +239,17 @@ impl Shader<'_> {
         );
     }
 
-    /// Coordinates of a texture of the common kind at eight pixels, and the level of detail.
+    /// Coordinates of a texture of the common kind at a group of pixels, and the level of detail.
     #[inline(always)]
-    fn place<S: Simd>(
+    fn place<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        weights: &Weights<S>,
+        weights: &Weights<V>,
         (unit, packed, at): (&Unit, &Packed<'_>, usize),
         slopes: &Slopes,
-    ) -> ([F32x8<S>; 2], F32x8<S>) {
+    ) -> ([V; 2], V) {
         let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
-        let bias = splat(simd, unit.lod_bias);
+        let bias = every(simd, unit.lod_bias);
         if slopes.divided {
             let (place, level) = self.divided(simd, weights, packed.size(), at, place);
             return (place, level + bias);
@@ -224,22 +260,22 @@ impl Shader<'_> {
 
     /// Coordinates divided by q, and the level of detail.
     #[inline(never)]
-    fn divided<S: Simd>(
+    fn divided<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        weights: &Weights<S>,
+        weights: &Weights<V>,
         size: [f32; 2],
         at: usize,
-        place: [F32x8<S>; 2],
-    ) -> ([F32x8<S>; 2], F32x8<S>) {
+        place: [V; 2],
+    ) -> ([V; 2], V) {
         simd.vectorize(
             #[inline(always)]
             || {
                 let d = &self.scratch.differences;
                 let q_at = (at + 3) % MOST;
-                let inverse_q = splat(simd, 1.0) / self.value(simd, weights, q_at);
+                let inverse_q = every::<S, V>(simd, 1.0) / self.value(simd, weights, q_at);
                 let place = [place[0] * inverse_q, place[1] * inverse_q];
-                let mut squares = [splat(simd, 0.0); 2];
+                let mut squares: [V; 2] = [every(simd, 0.0); 2];
                 for axis in 0..2 {
                     let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
                     let dq = db1 * d.d1[q_at] + db2 * d.d2[q_at];
@@ -293,11 +329,11 @@ impl Slopes {
 
     /// The level of detail.
     #[inline(always)]
-    fn level<S: Simd>(&self, simd: S, weights: &Weights<S>, place: &[F32x8<S>; 2]) -> F32x8<S> {
-        let mut squares = [splat(simd, 0.0); 2];
+    fn level<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, place: &[V; 2]) -> V {
+        let mut squares: [V; 2] = [every(simd, 0.0); 2];
         for axis in 0..2 {
             for k in 0..2 {
-                let mut step = splat(simd, self.numerator[axis][k]);
+                let mut step: V = every(simd, self.numerator[axis][k]);
                 if !self.flat {
                     step -= (place[k] - self.base[k]) * self.sum[axis][k];
                 }

@@ -29,7 +29,7 @@ fn linear(wrap: Wrap) -> Sampler {
 }
 
 fn level(size: [u32; 3], border: u32, texels: Texels) -> Arc<Level> {
-    Arc::new(Level { size, border, texels })
+    Arc::new(Level::new(size, border, texels))
 }
 
 fn texture(kind: TextureKind, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Texture {

@@ -39,7 +39,7 @@ fn texel(texture: &Texture, level: usize, at: [i32; 3]) -> [f32; 4] {
         return texture.sampler.border;
     }
     let [w, h, _] = level.size.map(|s| s as i32);
-    match &level.texels {
+    match level.texels() {
         Texels::Rgba8(words) => {
             words[((at[2] * h + at[1]) * w + at[0]) as usize].to_le_bytes().map(|b| f32::from(b) / 255.0)
         }
@@ -219,7 +219,7 @@ fn the_packed_path_agrees_with_the_general_one() {
             for srgb in [false, true] {
                 if srgb {
                     for level in &mut texture.faces[0] {
-                        let Texels::Rgba8(words) = level.texels.clone() else { unreachable!("made of bytes") };
+                        let Texels::Rgba8(words) = level.texels().clone() else { unreachable!("made of bytes") };
                         *level = super::level(level.size, 0, Texels::Srgb8(words));
                     }
                 }

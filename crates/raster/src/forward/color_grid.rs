@@ -4,12 +4,12 @@
 //! that triangle's three vertices, as if it had been drawn alone (Gouraud). Vertices are shaded where pixels ask for them, eight
 //! of a row at a time: of the far part of a plane, and of what lies beside the picture, most are never asked for.
 //!
-//! In:   a place in cells, for eight points; who shades vertices. Out: eight colours.
+//! In:   places in cells, for groups of eight points or sixteen; who shades vertices. Out: their colours.
 
-use super::wide::{Rgba, clamp, floor, max, min, select_rgba, splat, splat_rgba};
+use super::wide::{bits_of, clamp, every, every_rgba, floor, max, min, select_rgba};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
+use vitral_math::lanes::{self, Floats, LANES, MaskOf, Simd};
 
 /// A grid of vertices.
 #[derive(Clone, Copy, Debug)]
@@ -80,71 +80,157 @@ impl ColorGrid {
         self.size[0].div_ceil(LANES as u32) as usize
     }
 
-    /// The colours at places given in cells.
+    /// The colours at groups of places, given in cells.
     #[inline(always)]
-    pub(crate) fn at<S: Simd>(
+    pub(crate) fn at<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
         colors: &GridColors,
-        place: [F32x8<S>; 2],
+        places: &[[V; 2]; N],
         shade: &ShadeEight<'_>,
-    ) -> Rgba<S> {
-        let [columns, rows] = self.size.map(|n| (n - 1) as f32);
-        let x = clamp(place[0], 0.0, columns);
-        let y = clamp(place[1], 0.0, rows);
-        let (i, j) = (min(floor(x), splat(simd, columns - 1.0)), min(floor(y), splat(simd, rows - 1.0)));
-        let (mut fx, fy) = (x - i, y - j);
-        let (i, j): (I32x8<S>, I32x8<S>) = (i.to_int(), j.to_int());
-        // From the corner where the diagonal begins, along the longer way to a middle corner, then to the diagonal's end.
-        let (mut left, mut right) = (0, 1);
-        if !self.rising {
-            fx = -fx + 1.0;
-            (left, right) = (right, left);
+    ) -> [[V; 4]; N] {
+        let mut cells = [self.cell(simd, places[0]); N];
+        for i in 1..N {
+            cells[i] = self.cell(simd, places[i]);
         }
-        let across = fx.simd_ge(fy);
-        let (a, b) = (max(fx, fy), min(fx, fy));
         let words = lanes::inlined(
             #[inline(always)]
-            |i: i32, j: i32| {
+            |[i, j]: [i32; 2]| {
                 let (column, row) = (i as u32, j as u32);
                 let eight = (row as usize).wrapping_mul(self.across()) + column as usize / LANES;
                 let vertex = column as usize % LANES;
-                colors.words(self.first + eight, vertex, || shade(row, column / LANES as u32))
+                let words = colors.words(self.first + eight, vertex, || shade(row, column / LANES as u32));
+                bytemuck::cast::<[u64; 2], [f32; 4]>(words)
             },
         );
-        let (i0, j0) = (i.to_array()[0], j.to_array()[0]);
-        let one_cell = (i.simd_eq(i0) & j.simd_eq(j0)).all_true();
-        let (start, middle, end) = if one_cell {
-            // Nearly always eight pixels lie in one cell: then its four corners are all that there is.
-            let each = lanes::inlined(
-                #[inline(always)]
-                |di: i32, dj: i32| {
-                    let [rg, ba] = words(i0 + di, j0 + dj);
-                    let component = |bits: u64| f32::from_bits(bits as u32);
-                    splat_rgba(simd, [component(rg), component(rg >> 32), component(ba), component(ba >> 32)])
-                },
-            );
-            (each(left, 0), select_rgba(across, each(right, 0), each(left, 1)), each(right, 1))
-        } else {
-            let middle_i = across.select(i + right, i + left);
-            let middle_j = across.select(j, j + 1);
-            let fetch = lanes::inlined(
-                #[inline(always)]
-                |i: I32x8<S>, j: I32x8<S>| -> Rgba<S> {
-                    let (i, j) = (i.to_array(), j.to_array());
-                    let columns = lanes::columns_of_rows(
-                        simd,
-                        #[inline(always)]
-                        |lane| bytemuck::cast(words(i[lane], j[lane])),
-                    );
-                    [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast(), columns[3].bitcast()]
-                },
-            );
-            (fetch(i + left, j), fetch(middle_i, middle_j), fetch(i + right, j + 1))
+        let corners = lanes::inlined(
+            #[inline(always)]
+            |[i, j]: [i32; 2]| {
+                let corner = lanes::inlined(
+                    #[inline(always)]
+                    |[di, dj]: [i32; 2]| every_rgba(simd, words([i + di, j + dj])),
+                );
+                let (start, end) = self.ends();
+                [corner([start, 0]), corner([end, 0]), corner([start, 1]), corner([end, 1])]
+            },
+        );
+        let mut out = [every_rgba(simd, [0.0; 4]); N];
+        // Often all places lie in one cell: then its four corners are all that there is.
+        let first = cells[0].first();
+        let mut together = true;
+        for cell in &cells {
+            together &= cell.is_all(first);
+        }
+        if together {
+            let corners = corners(first);
+            for i in 0..N {
+                out[i] = cells[i].between(&corners);
+            }
+            return out;
+        }
+        for i in 0..N {
+            let first = cells[i].first();
+            out[i] = if cells[i].is_all(first) {
+                cells[i].between(&corners(first))
+            } else {
+                self.apart(simd, &cells[i], &words)
+            };
+        }
+        out
+    }
+
+    /// Columns where a cell's diagonal begins, and where it ends.
+    #[inline(always)]
+    fn ends(&self) -> (i32, i32) {
+        if self.rising { (0, 1) } else { (1, 0) }
+    }
+
+    /// Where places lie.
+    #[inline(always)]
+    fn cell<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2]) -> Cell<S, V> {
+        let [columns, rows] = self.size.map(|n| (n - 1) as f32);
+        let x = clamp(place[0], 0.0, columns);
+        let y = clamp(place[1], 0.0, rows);
+        let (i, j) = (min(floor(x), every(simd, columns - 1.0)), min(floor(y), every(simd, rows - 1.0)));
+        let (mut fx, fy) = (x - i, y - j);
+        if !self.rising {
+            fx = -fx + 1.0;
+        }
+        Cell { i: i.to_int(), j: j.to_int(), across: fx.simd_ge(fy), a: max(fx, fy), b: min(fx, fy) }
+    }
+
+    /// The colours of places in different cells.
+    #[inline(always)]
+    fn apart<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        cell: &Cell<S, V>,
+        words: &impl Fn([i32; 2]) -> [f32; 4],
+    ) -> [V; 4] {
+        let (start, end) = self.ends();
+        let (i, j, across) = (cell.i.as_slice(), cell.j.as_slice(), bits_of(cell.across));
+        let fetch = lanes::inlined(
+            #[inline(always)]
+            |vertex: &dyn Fn(usize) -> [i32; 2]| -> [V; 4] {
+                V::by_eights(
+                    simd,
+                    [],
+                    #[inline(always)]
+                    |first, []| {
+                        let columns = lanes::columns_of_rows(
+                            simd,
+                            #[inline(always)]
+                            |lane| bytemuck::cast(words(vertex(first + lane))),
+                        );
+                        [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast(), columns[3].bitcast()]
+                    },
+                )
+            },
+        );
+        let middle = |lane: usize| {
+            if across >> lane & 1 == 1 { [i[lane] + end, j[lane]] } else { [i[lane] + start, j[lane] + 1] }
         };
-        let mut color = start;
+        let begin = fetch(&|lane| [i[lane] + start, j[lane]]);
+        cell.along(&begin, &fetch(&middle), &fetch(&|lane| [i[lane] + end, j[lane] + 1]))
+    }
+}
+
+/// Cells that places lie in, and where in them: from the corner where the diagonal begins, `a` along the longer way to a middle
+/// corner, then `b` to the diagonal's end.
+#[derive(Clone, Copy)]
+struct Cell<S: Simd, V: Floats<S>> {
+    i: V::Ints,
+    j: V::Ints,
+    /// The longer way is along a row.
+    across: MaskOf<S, V>,
+    a: V,
+    b: V,
+}
+
+impl<S: Simd, V: Floats<S>> Cell<S, V> {
+    /// That of the first lane.
+    #[inline(always)]
+    fn first(&self) -> [i32; 2] {
+        [self.i.as_slice()[0], self.j.as_slice()[0]]
+    }
+
+    /// Whether all lanes lie in this one.
+    #[inline(always)]
+    fn is_all(&self, [i, j]: [i32; 2]) -> bool {
+        (self.i.simd_eq(i) & self.j.simd_eq(j)).all_true()
+    }
+
+    /// The colours in a cell of which these are the corners: where the diagonal begins, those beside and above it, where it ends.
+    #[inline(always)]
+    fn between(&self, [start, beside, above, end]: &[[V; 4]; 4]) -> [V; 4] {
+        self.along(start, &select_rgba(self.across, *beside, *above), end)
+    }
+
+    #[inline(always)]
+    fn along(&self, start: &[V; 4], middle: &[V; 4], end: &[V; 4]) -> [V; 4] {
+        let mut color = *start;
         for k in 0..4 {
-            color[k] = start[k] + (middle[k] - start[k]) * a + (end[k] - middle[k]) * b;
+            color[k] = start[k] + (middle[k] - start[k]) * self.a + (end[k] - middle[k]) * self.b;
         }
         color
     }
@@ -154,7 +240,7 @@ impl ColorGrid {
 mod tests {
     use super::*;
     use std::sync::Mutex;
-    use vitral_math::lanes::{available_levels, dispatch};
+    use vitral_math::lanes::{F32x8, F32x16, available_levels, dispatch};
 
     const SIZE: [u32; 2] = [20, 3];
 
@@ -194,8 +280,16 @@ mod tests {
                 for _ in 0..2 {
                     let out = dispatch!(level, simd => {
                         let axis = |k: usize| F32x8::from_slice(simd, &places.map(|p| p[k]));
-                        let [r, g, b, a] = grid.at(simd, &colors, [axis(0), axis(1)], &shade);
-                        [r.to_array(), g.to_array(), b.to_array(), a.to_array()]
+                        let place = [axis(0), axis(1)];
+                        let groups = grid.at(simd, &colors, &[place, place], &shade);
+                        let [[r, g, b, a], again] = groups.map(|color| color.map(|c| c.to_array()));
+                        assert_eq!([r, g, b, a], again, "{name}");
+                        let both = |k: usize| F32x16::from_slice(simd, &[place[k].to_array(), place[k].to_array()].concat());
+                        let [wide] = grid.at(simd, &colors, &[[both(0), both(1)]], &shade);
+                        for (component, eight) in wide.iter().zip([r, g, b, a]) {
+                            assert_eq!(component.to_array()[..], [eight, eight].concat(), "{name}");
+                        }
+                        [r, g, b, a]
                     });
                     for (lane, place) in places.into_iter().enumerate() {
                         let expected = by_hand(rising, place);

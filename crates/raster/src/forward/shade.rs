@@ -325,33 +325,40 @@ impl<'a> Shader<'a> {
         ]
     }
 
-    /// Primary colour, before textures.
+    /// Primary colours, before textures.
     #[inline(always)]
-    fn primary<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>) -> [V; 4] {
+    fn primary<S: Simd, V: Floats<S>, const N: usize>(&self, simd: S, weights: &[Weights<V>; N]) -> [[V; 4]; N] {
         if self.draw.state.flat {
-            return every_rgba(simd, self.provoking_color());
+            return [every_rgba(simd, self.provoking_color()); N];
         }
         if let (Some(at), Some(grid)) = (self.draw.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
-            let Weights { b1, b2, w } = *weights;
-            return V::by_eights(
-                simd,
-                [b1, b2, w],
-                #[inline(always)]
-                |_, [b1, b2, w]| self.grid_color(simd, &Weights { b1, b2, w }, grid, at),
-            );
+            return self.grid_colors(simd, weights, grid, at);
         }
-        // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
-        saturate_rgba(self.four(simd, weights, self.color_at()))
+        let mut colors = [every_rgba(simd, [0.0; 4]); N];
+        for i in 0..N {
+            // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
+            colors[i] = saturate_rgba(self.four(simd, &weights[i], self.color_at()));
+        }
+        colors
     }
 
     #[inline(never)]
-    fn grid_color<S: Simd>(&self, simd: S, weights: &Weights<F32x8<S>>, grid: &ColorGrid, at: usize) -> Rgba<S> {
+    fn grid_colors<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        weights: &[Weights<V>; N],
+        grid: &ColorGrid,
+        at: usize,
+    ) -> [[V; 4]; N] {
         simd.vectorize(
             #[inline(always)]
             || {
-                let place = [self.value(simd, weights, at), self.value(simd, weights, at + 1)];
+                let mut places = [[every(simd, 0.0); 2]; N];
+                for i in 0..N {
+                    places[i] = [self.value(simd, &weights[i], at), self.value(simd, &weights[i], at + 1)];
+                }
                 let shade = |row: u32, eight: u32| self.draw.geometry.grid_colors(simd.level(), row, eight);
-                grid.at(simd, &self.primitives.grid_colors, place, &shade)
+                grid.at(simd, &self.primitives.grid_colors, &places, &shade)
             },
         )
     }
@@ -393,10 +400,7 @@ impl<'a> Shader<'a> {
         for i in 1..N {
             groups.weights[i] = self.weights(simd, x[i], y[i]);
         }
-        let mut colors = [self.primary(simd, &groups.weights[0]); N];
-        for i in 1..N {
-            colors[i] = self.primary(simd, &groups.weights[i]);
-        }
+        let mut colors = self.primary(simd, &groups.weights);
         if !self.draw.state.units.is_empty() {
             self.textured(simd, &groups, &mut colors);
         }

@@ -315,7 +315,9 @@ impl TextureObject {
         }
         sampler.border = if depth { [sampler.border[0]; 4] } else { format.expand(sampler.border) };
         let swizzle = Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
-        Some(Arc::new(Texture { kind, format: format.base_format(), depth_mode, faces, sampler, swizzle }))
+        let mut texture = Texture::new(kind, format.base_format(), faces, sampler);
+        (texture.depth_mode, texture.swizzle) = (depth_mode, swizzle);
+        Some(Arc::new(texture))
     }
 }
 

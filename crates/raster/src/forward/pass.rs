@@ -8,7 +8,7 @@ use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
-use super::sample::packed::Packed;
+use super::sample::Common;
 use super::shade::Layout;
 use super::spare::{Assembly, Places};
 use super::state::FragmentState;
@@ -205,8 +205,8 @@ pub(crate) struct DrawContext<'a> {
     pub shaded: bool,
     /// A facet has one colour.
     pub constant: bool,
-    /// Units with the common kind of texture and no sprites.
-    pub plain: Vec<(usize, Packed<'a>)>,
+    /// Units with a common kind of texture and no sprites.
+    pub plain: Vec<(usize, Common<'a>)>,
     /// Depth planes that units sample.
     pub planes: [Option<&'a DepthPlane>; UNITS],
 }
@@ -457,7 +457,7 @@ fn draw_context<'a>(
         .units
         .iter()
         .filter(|unit| unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0);
-    let plain = plain.filter_map(|unit| Some((unit.index, Packed::new(&unit.texture)?))).collect();
+    let plain = plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture)?))).collect();
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);

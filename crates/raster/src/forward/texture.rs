@@ -1,6 +1,7 @@
 //! Textures as the rasteriser sees them: immutable images and a sampler.
 
 use super::plane::DepthPlane;
+use super::sample::packed_cube::CubeFaces;
 use super::state::Compare;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -94,7 +95,7 @@ impl Level {
     }
 }
 
-fn columns_of(words: &[u32], width: usize) -> Box<[[u32; 2]]> {
+pub(super) fn columns_of(words: &[u32], width: usize) -> Box<[[u32; 2]]> {
     let rows = words.chunks_exact(width.max(1));
     let above = rows.clone().cycle().skip(1);
     let mut columns = Vec::with_capacity(rows.len() * (width + 1));
@@ -177,6 +178,8 @@ pub struct Texture {
     pub sampler: Sampler,
     /// Where red, green, blue and alpha come from, if not from themselves.
     pub swizzle: Option<[Swizzle; 4]>,
+    /// What lookups have made of a cube's faces.
+    pub(crate) cube: CubeFaces,
 }
 
 impl Sampler {
@@ -188,6 +191,12 @@ impl Sampler {
 }
 
 impl Texture {
+    /// A texture of one face or six of levels, looked up as `sampler` says. Depth textures yield depths as luminance.
+    pub fn new(kind: TextureKind, format: BaseFormat, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Self {
+        let depth_mode = BaseFormat::Luminance;
+        Self { kind, format, depth_mode, faces, sampler, swizzle: None, cube: CubeFaces::default() }
+    }
+
     /// The depth planes among its levels.
     pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthPlane>>> {
         self.faces.iter().flatten().filter_map(|level| match level.texels() {

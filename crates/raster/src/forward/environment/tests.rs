@@ -19,7 +19,7 @@ fn unit(format: BaseFormat, mode: EnvironmentMode) -> Unit {
         seamless: false,
     };
     let depth_mode = BaseFormat::Luminance;
-    let texture = Texture { kind: TextureKind::Two, format, depth_mode, faces: Vec::new(), sampler, swizzle: None };
+    let texture = Texture { depth_mode, ..Texture::new(TextureKind::Two, format, Vec::new(), sampler) };
     Unit { index: 1, texture: Arc::new(texture), mode, color: [0.2, 0.4, 0.6, 0.8], lod_bias: 0.0 }
 }
 

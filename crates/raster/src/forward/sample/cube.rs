@@ -7,13 +7,13 @@
 
 use super::depth::{by_mode, compared};
 use super::fetch::{Image, Words, columns, interior, level_of, level_of_face};
-use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
+use super::packed_cube::PackedCube;
 use super::wrap::{Axis, position};
 use crate::forward::texture::{Level, Texels, Texture, Wrap};
-use crate::forward::wide::{Rgba, abs, bits_of, mask_of, select, select_rgba, splat, splat_rgba};
+use crate::forward::wide::{Rgba, abs, every, mask_of, select, select_rgba, splat_rgba};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, Simd, U32x8};
+use vitral_math::lanes::{self, F32x8, Floats, I32x8, LANES, Lanes, Mask8, MaskOf, Simd, U32x8};
 
 /// As [`super::sample`].
 #[inline(never)]
@@ -28,8 +28,11 @@ pub(super) fn sample<S: Simd>(
         #[inline(always)]
         || {
             let chart = Chart::new(simd, [coords[0], coords[1], coords[2]]);
-            let face = chart.face(simd).bitcast::<U32x8<S>>().to_array();
-            let point = [chart.coordinate(chart.sc), chart.coordinate(chart.tc)];
+            let (face, point) = (chart.face(simd), chart.point());
+            if let Some(packed) = PackedCube::new(texture) {
+                return packed.at(simd, (face, point), lod, active);
+            }
+            let face = face.bitcast::<U32x8<S>>().to_array();
             let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let color = mipped(
                 simd,
@@ -47,47 +50,56 @@ pub(super) fn sample<S: Simd>(
 }
 
 /// Where directions pierce the cube: the face's two coordinates, and the one that is largest.
-struct Chart<S: Simd> {
-    sc: F32x8<S>,
-    tc: F32x8<S>,
+pub(crate) struct Chart<S: Simd, V: Floats<S> = F32x8<S>> {
+    sc: V,
+    tc: V,
     /// Magnitude of the major coordinate.
-    major: F32x8<S>,
-    x_major: Mask8<S>,
-    y_major: Mask8<S>,
-    negative: Mask8<S>,
+    major: V,
+    x_major: MaskOf<S, V>,
+    y_major: MaskOf<S, V>,
+    negative: MaskOf<S, V>,
 }
 
-impl<S: Simd> Chart<S> {
+impl<S: Simd, V: Floats<S>> Chart<S, V> {
     #[inline(always)]
-    fn new(simd: S, direction: [F32x8<S>; 3]) -> Self {
+    pub(crate) fn new(simd: S, direction: [V; 3]) -> Self {
         let [x, y, z] = direction;
         let (ax, ay, az) = (abs(x), abs(y), abs(z));
         let x_major = ax.simd_ge(ay) & ax.simd_ge(az);
         let y_major = !x_major & ay.simd_ge(az);
         let along = select(x_major, x, select(y_major, y, z));
-        let negative = along.simd_lt(splat(simd, 0.0));
+        let negative = along.simd_lt(every::<S, V>(simd, 0.0));
         let [sc, tc] = on_face(x_major, y_major, negative, direction);
         Self { sc, tc, major: abs(along), x_major, y_major, negative }
     }
 
     /// The face's number: +x -x +y -y +z -z.
     #[inline(always)]
-    fn face(&self, simd: S) -> I32x8<S> {
-        let number = |n| I32x8::splat(simd, n);
-        let axis = self.x_major.select(number(0), self.y_major.select(number(2), number(4)));
-        axis + self.negative.select(number(1), number(0))
+    pub(crate) fn face(&self, simd: S) -> V::Ints {
+        let number = lanes::inlined(
+            #[inline(always)]
+            |n: f32| every::<S, V>(simd, n),
+        );
+        let axis = select(self.x_major, number(0.0), select(self.y_major, number(2.0), number(4.0)));
+        (axis + select(self.negative, number(1.0), number(0.0))).to_int()
+    }
+
+    /// The point on the face, 0..=1 along s and t.
+    #[inline(always)]
+    pub(crate) fn point(&self) -> [V; 2] {
+        [self.coordinate(self.sc), self.coordinate(self.tc)]
     }
 
     /// From -major..=major to 0..=1.
     #[inline(always)]
-    fn coordinate(&self, c: F32x8<S>) -> F32x8<S> {
+    fn coordinate(&self, c: V) -> V {
         (c / self.major + 1.0) * 0.5
     }
 }
 
 /// The coordinates of a vector along the face's s and t.
 #[inline(always)]
-fn on_face<S: Simd>(x_major: Mask8<S>, y_major: Mask8<S>, negative: Mask8<S>, v: [F32x8<S>; 3]) -> [F32x8<S>; 2] {
+fn on_face<V: Lanes>(x_major: V::Mask, y_major: V::Mask, negative: V::Mask, v: [V; 3]) -> [V; 2] {
     let [x, y, z] = v;
     let sc_x = select(negative, z, -z);
     let sc_z = select(negative, -x, x);
@@ -97,19 +109,17 @@ fn on_face<S: Simd>(x_major: Mask8<S>, y_major: Mask8<S>, negative: Mask8<S>, v:
 
 /// How many texels of a face of `size` texels a step to the right and a step up cross.
 #[inline(always)]
-pub(super) fn derivatives<S: Simd>(
+pub(crate) fn derivatives<S: Simd, V: Floats<S>>(
     simd: S,
-    size: u32,
-    coords: [F32x8<S>; 4],
-    dx: [F32x8<S>; 4],
-    dy: [F32x8<S>; 4],
-) -> [[F32x8<S>; 3]; 2] {
-    let chart = Chart::new(simd, [coords[0], coords[1], coords[2]]);
-    let scale = splat(simd, size as f32 * 0.5) / chart.major;
-    let mut steps = [[splat(simd, 0.0); 3]; 2];
-    for (step, d) in steps.iter_mut().zip([dx, dy]) {
+    size: f32,
+    chart: &Chart<S, V>,
+    along: [[V; 3]; 2],
+) -> [[V; 2]; 2] {
+    let scale = every::<S, V>(simd, size * 0.5) / chart.major;
+    let mut steps = [[every(simd, 0.0); 2]; 2];
+    for (step, d) in steps.iter_mut().zip(along) {
         // d(sc / ma) = (dsc - sc / ma * dma) / ma.
-        let [dsc, dtc] = on_face(chart.x_major, chart.y_major, chart.negative, [d[0], d[1], d[2]]);
+        let [dsc, dtc] = on_face(chart.x_major, chart.y_major, chart.negative, d);
         let along = select(chart.x_major, d[0], select(chart.y_major, d[1], d[2]));
         let dma = select(chart.negative, -along, along);
         step[0] = (dsc - chart.sc / chart.major * dma) * scale;
@@ -130,7 +140,6 @@ fn lookup<S: Simd>(
     lanes: u32,
     reference: Option<F32x8<S>>,
 ) -> Rgba<S> {
-    // Most rows of pixels see one face: then all is as on a flat image.
     let first = lanes.trailing_zeros() as usize % LANES;
     let Some(shape) = level_of_face(texture, (face[first] % 6) as usize, level) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
@@ -144,54 +153,8 @@ fn lookup<S: Simd>(
     };
     let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
     let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
-    let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
-    let inside = bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0;
-    if one_face
-        && inside
-        && shape.border == 0
-        && let Some(words) = Words::new(shape)
-    {
-        let color = if filtered {
-            bilinear(simd, words, &x, &y, size[0])
-        } else {
-            words.colors(simd, y.near * size[0] as i32 + x.near)
-        };
-        return words.finish(color);
-    }
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
-}
-
-/// Raw colours of an image `width` wide, mixed along the two rows, then between them.
-#[inline(always)]
-fn bilinear<S: Simd>(simd: S, words: Words<'_>, x: &Axis<S>, y: &Axis<S>, width: u32) -> Rgba<S> {
-    let (lower, upper) = (y.near * width as i32, y.far * width as i32);
-    // But where the image wraps round or ends, the two texels of a row are neighbours in memory.
-    let adjacent = (x.near + 1).simd_eq(x.far).all_true();
-    let (a, b, c, d) = if adjacent {
-        let (a, b) = words.pairs(simd, lower + x.near);
-        let (c, d) = words.pairs(simd, upper + x.near);
-        (a, b, c, d)
-    } else {
-        (
-            words.words(simd, lower + x.near),
-            words.words(simd, lower + x.far),
-            words.words(simd, upper + x.near),
-            words.words(simd, upper + x.far),
-        )
-    };
-    if !words.is_encoded() {
-        return Halves::filter(simd, [a, b, c, d], [x.weight, y.weight]).unpack();
-    }
-    let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
-    let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
-    mix_rgba(lower, upper, y.weight)
-}
-
-/// Where an axis reaches beyond the image.
-#[inline(always)]
-fn crosses<S: Simd>(simd: S, axis: &Axis<S>, size: u32) -> Mask8<S> {
-    axis.near.simd_lt(I32x8::splat(simd, 0)) | axis.far.simd_ge(I32x8::splat(simd, size as i32))
 }
 
 /// A lookup in one level, ready but for the texels.
@@ -312,7 +275,7 @@ fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Plac
 ///
 /// Texel centres are odd multiples of half a texel on a cube of `2 * size` halves. Folding a texel over the edge swaps
 /// its place along the axis that it leaves with the face's own axis.
-fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i32, i32)> {
+pub(super) fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i32, i32)> {
     let (sc, tc) = (2 * x + 1 - size, 2 * y + 1 - size);
     if sc.abs() > size && tc.abs() > size {
         return None;

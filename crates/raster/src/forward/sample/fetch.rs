@@ -81,29 +81,6 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
     [a, b, c, d]
 }
 
-/// Eight pairs of texels that are neighbours in memory, from `at` on: the first ones and the second ones; 0 where there are
-/// none.
-#[inline(always)]
-pub(super) fn pairs<S: Simd>(simd: S, texels: &[u32], at: I32x8<S>) -> (U32x8<S>, U32x8<S>) {
-    let at = at.to_array();
-    let mut pairs = [[0u32; 2]; LANES];
-    for lane in 0..LANES {
-        let at = at[lane] as u32 as usize;
-        if let Some(pair) = texels.get(at..at + 2) {
-            pairs[lane] = [pair[0], pair[1]];
-        }
-    }
-    split(simd, &pairs)
-}
-
-/// The first texels of eight pairs, and the second ones.
-#[inline(always)]
-pub(super) fn split<S: Simd>(simd: S, pairs: &[[u32; 2]; LANES]) -> (U32x8<S>, U32x8<S>) {
-    let flat: &[u32] = bytemuck::cast_slice(pairs);
-    let (low, high) = flat.split_at(LANES);
-    U32x8::from_slice(simd, low).deinterleave(U32x8::from_slice(simd, high))
-}
-
 /// Texels of 8 bits a component.
 #[derive(Clone, Copy)]
 pub(super) struct Words<'a> {
@@ -133,12 +110,6 @@ impl<'a> Words<'a> {
     #[inline(always)]
     pub(super) fn words<S: Simd>(&self, simd: S, index: I32x8<S>) -> U32x8<S> {
         singles(simd, self.texels, index)
-    }
-
-    /// The texels numbered `index`, and their right neighbours: two texels a load.
-    #[inline(always)]
-    pub(super) fn pairs<S: Simd>(&self, simd: S, index: I32x8<S>) -> (U32x8<S>, U32x8<S>) {
-        pairs(simd, self.texels, index)
     }
 
     /// Raw colours of texels.

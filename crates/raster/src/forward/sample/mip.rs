@@ -52,7 +52,9 @@ pub(crate) fn derivatives<S: Simd>(
         None => [1; 3],
     };
     if texture.kind == TextureKind::Cube {
-        return cube::derivatives(simd, size[0], coords, dx, dy);
+        let chart = cube::Chart::new(simd, [coords[0], coords[1], coords[2]]);
+        let along = [[dx[0], dx[1], dx[2]], [dy[0], dy[1], dy[2]]];
+        return cube::derivatives(simd, size[0] as f32, &chart, along).map(|[s, t]| [s, t, zero]);
     }
     let size = if texture.kind == TextureKind::Rectangle { [1; 3] } else { size };
     let mut steps = [[zero; 3]; 2];

@@ -12,13 +12,14 @@
 //! EXT_texture_filter_anisotropic. Departs from it: texels are fetched once a lane, also where a lane is not active.
 
 pub(crate) mod anisotropic;
-mod cube;
+pub(crate) mod cube;
 mod depth;
 mod fetch;
 mod flat;
 mod halves;
 pub(crate) mod mip;
 pub(crate) mod packed;
+pub(crate) mod packed_cube;
 mod wrap;
 
 #[cfg(test)]
@@ -28,7 +29,25 @@ use super::plane::DepthPlane;
 use super::texture::{Texels, Texture, TextureKind};
 use super::wide::{Rgba, splat_rgba};
 use packed::Packed;
+use packed_cube::PackedCube;
 use vitral_math::lanes::{F32x8, Simd};
+
+/// A texture of a common kind, made ready for lookups.
+#[derive(Clone, Copy)]
+pub(crate) enum Common<'a> {
+    Flat(Packed<'a>),
+    Cube(PackedCube<'a>),
+}
+
+impl<'a> Common<'a> {
+    /// `None` for textures of another kind.
+    pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
+        match texture.kind {
+            TextureKind::Cube => PackedCube::new(texture).map(Self::Cube),
+            _ => Packed::new(texture).map(Self::Flat),
+        }
+    }
+}
 
 /// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here, but for
 /// cube maps, where s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus

@@ -5,9 +5,11 @@ use super::{Groups, MOST, Shader, Weights};
 use crate::forward::assemble::Shape;
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
+use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
 use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
-use crate::forward::sample::sample;
+use crate::forward::sample::packed_cube::PackedCube;
+use crate::forward::sample::{Common, sample};
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::Swizzle;
 use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
@@ -71,7 +73,8 @@ impl Shader<'_> {
         }
         for unit in &self.draw.state.units {
             match self.common(unit) {
-                Some((packed, at)) => self.plain(simd, groups, (unit, packed, at), colors),
+                Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
+                Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
                 None => {
                     let format = format_of(&unit.texture);
                     for i in 0..N {
@@ -108,10 +111,10 @@ impl Shader<'_> {
         )
     }
 
-    /// The texture of a unit and where its coordinates are in records, if it is of the common kind: two dimensions, 8 bits
-    /// a component, no border in reach, no anisotropy, no sprites.
+    /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
+    /// bits a component, no border in reach, no anisotropy, no sprites.
     #[inline(always)]
-    fn common(&self, unit: &Unit) -> Option<(&Packed<'_>, usize)> {
+    fn common(&self, unit: &Unit) -> Option<(&Common<'_>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
         Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
     }
@@ -120,7 +123,7 @@ impl Shader<'_> {
     #[inline(never)]
     fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
         let Eight { weights, active, .. } = eight;
-        if let Some((packed, at)) = self.common(unit) {
+        if let Some((Common::Flat(packed), at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
                 || {
@@ -237,6 +240,54 @@ impl Shader<'_> {
                 }
             },
         );
+    }
+
+    /// Modulates colours with a cube map of the common kind.
+    #[inline(never)]
+    fn cube<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+        (unit, packed, at): (&Unit, &PackedCube<'_>, usize),
+        colors: &mut [[V; 4]; N],
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (format, bias) = (format_of(&unit.texture), every(simd, unit.lod_bias));
+                for i in 0..N {
+                    let weights = &groups.weights[i];
+                    let direction = lanes::three(
+                        #[inline(always)]
+                        |k| self.value(simd, weights, at + k),
+                    );
+                    let chart = Chart::new(simd, direction);
+                    let mut level = bias;
+                    if packed.needs_lod() {
+                        let steps = [self.step(simd, weights, at, 0), self.step(simd, weights, at, 1)];
+                        let [across, up] = derivatives_on_faces(simd, packed.size(), &chart, steps);
+                        let square = lanes::inlined(
+                            #[inline(always)]
+                            |[s, t]: [V; 2]| s * s + t * t,
+                        );
+                        level += half_log2(max(square(across), square(up)));
+                    }
+                    let texture = packed.at(simd, (chart.face(simd), chart.point()), level, groups.active);
+                    colors[i] = modulate(format, &texture, colors[i]);
+                }
+            },
+        );
+    }
+
+    /// How s, t, r change with one pixel to the right (axis 0), or one up.
+    #[inline(always)]
+    fn step<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, at: usize, axis: usize) -> [V; 3] {
+        let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
+        let d = &self.scratch.differences;
+        lanes::three(
+            #[inline(always)]
+            |k| db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST],
+        )
     }
 
     /// Coordinates of a texture of the common kind at a group of pixels, and the level of detail.

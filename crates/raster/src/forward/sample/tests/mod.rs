@@ -33,7 +33,7 @@ fn level(size: [u32; 3], border: u32, texels: Texels) -> Arc<Level> {
 }
 
 fn texture(kind: TextureKind, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Texture {
-    Texture { kind, format: BaseFormat::Rgba, depth_mode: BaseFormat::Luminance, faces, sampler, swizzle: None }
+    Texture::new(kind, BaseFormat::Rgba, faces, sampler)
 }
 
 /// Red bytes, opaque.

@@ -6,12 +6,13 @@
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
 use super::depth::{by_mode, compared};
-use super::fetch::{Image, Words, columns, interior, level_of, level_of_face};
+use super::fetch::{Image, Words, columns, interior, level_of, level_of_face, quads};
+use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
 use super::packed_cube::PackedCube;
 use super::wrap::{Axis, position};
 use crate::forward::texture::{Level, Texels, Texture, Wrap};
-use crate::forward::wide::{Rgba, abs, every, mask_of, select, select_rgba, splat_rgba};
+use crate::forward::wide::{Rgba, abs, bits_of, every, mask_of, select, select_rgba, splat_rgba};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, I32x8, LANES, Lanes, Mask8, MaskOf, Simd, U32x8};
 
@@ -30,7 +31,7 @@ pub(super) fn sample<S: Simd>(
             let chart = Chart::new(simd, [coords[0], coords[1], coords[2]]);
             let (face, point) = (chart.face(simd), chart.point());
             if let Some(packed) = PackedCube::new(texture) {
-                return packed.at(simd, (face, point), lod, active);
+                return packed.at(simd, (face, point), lod);
             }
             let face = face.bitcast::<U32x8<S>>().to_array();
             let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
@@ -140,6 +141,7 @@ fn lookup<S: Simd>(
     lanes: u32,
     reference: Option<F32x8<S>>,
 ) -> Rgba<S> {
+    // Most rows of pixels see one face: then all is as on a flat image.
     let first = lanes.trailing_zeros() as usize % LANES;
     let Some(shape) = level_of_face(texture, (face[first] % 6) as usize, level) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
@@ -153,8 +155,47 @@ fn lookup<S: Simd>(
     };
     let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
     let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
+    let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
+    let inside = bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0;
+    if one_face
+        && inside
+        && shape.border == 0
+        && let Some(words) = Words::new(shape)
+    {
+        let color = if filtered {
+            bilinear(simd, shape, words, &x, &y)
+        } else {
+            words.colors(simd, y.near * size[0] as i32 + x.near)
+        };
+        return words.finish(color);
+    }
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
+}
+
+/// Raw colours inside an image.
+#[inline(always)]
+fn bilinear<S: Simd>(simd: S, shape: &Level, words: Words<'_>, x: &Axis<S>, y: &Axis<S>) -> Rgba<S> {
+    let columns = shape.columns();
+    let quads = quads::<S, F32x8<S>>(
+        simd,
+        #[inline(always)]
+        |_| columns,
+        y.near * (shape.size[0] as i32 + 1) + x.near,
+    );
+    if !words.is_encoded() {
+        return Halves::filter(simd, quads, [x.weight, y.weight]).unpack();
+    }
+    let [a, b, c, d] = quads;
+    let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x.weight);
+    let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x.weight);
+    mix_rgba(lower, upper, y.weight)
+}
+
+/// Where an axis reaches beyond the image.
+#[inline(always)]
+pub(super) fn crosses<S: Simd, V: Floats<S>>(simd: S, axis: &Axis<S, V>, size: u32) -> MaskOf<S, V> {
+    axis.near.simd_lt(V::Ints::splat(simd, 0)) | axis.far.simd_ge(V::Ints::splat(simd, size as i32))
 }
 
 /// A lookup in one level, ready but for the texels.
@@ -194,7 +235,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
                 missing[corner] = place.missing;
             }
             if spot.filtered {
-                fill_missing(simd, &mut colors, &missing);
+                fill_missing(&mut colors, missing.map(|bits| mask_of(simd, bits)));
                 let lower = mix_rgba(colors[0], colors[1], spot.x.weight);
                 let upper = mix_rgba(colors[2], colors[3], spot.x.weight);
                 colors[0] = mix_rgba(lower, upper, spot.y.weight);
@@ -305,13 +346,13 @@ pub(super) fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i3
 
 /// Puts the mean of the three others where a corner has no texel.
 #[inline(always)]
-fn fill_missing<S: Simd>(simd: S, colors: &mut [Rgba<S>; 4], missing: &[u32; 4]) {
+pub(super) fn fill_missing<V: Lanes>(colors: &mut [[V; 4]; 4], missing: [V::Mask; 4]) {
     let [a, b, c, d] = *colors;
     for k in 0..4 {
         let sum = a[k] + b[k] + c[k] + d[k];
         for corner in 0..4 {
             let mean = (sum - colors[corner][k]) / 3.0;
-            colors[corner][k] = select(mask_of(simd, missing[corner]), mean, colors[corner][k]);
+            colors[corner][k] = select(missing[corner], mean, colors[corner][k]);
         }
     }
 }

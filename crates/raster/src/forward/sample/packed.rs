@@ -82,16 +82,40 @@ impl<'a> Packed<'a> {
     /// The colours at (s, t), as [`super::sample`] tells.
     #[inline(always)]
     pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], lod: V, active: u32) -> [V; 4] {
-        filter_levels(
-            simd,
-            (self.sampler, self.first, self.last),
-            lod,
-            active,
-            #[inline(always)]
-            |level| self.halves(simd, place, level),
-            #[inline(always)]
-            |level, linear| self.level(simd, place, level, linear),
-        )
+        let zero = every(simd, 0.0);
+        let choice = if self.needs_lod() {
+            choose(simd, self.sampler, self.last, lod)
+        } else {
+            let linear = if self.sampler.mag == Filter::Linear { u32::MAX } else { 0 };
+            Choice { level: zero, fraction: zero, linear }
+        };
+        let active = active & ((1 << V::LEN) - 1);
+        let linear = choice.linear & active;
+        let mut color = self.filtered(simd, place, &choice, linear == active);
+        if linear != 0 && linear != active {
+            let mask = SimdMask::from_bitmask(simd, u64::from(linear));
+            color = select_rgba(mask, self.filtered(simd, place, &choice, true), color);
+        }
+        self.first.finish(color)
+    }
+
+    /// Raw colours, all lanes with one filter within a level.
+    #[inline(always)]
+    fn filtered<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], choice: &Choice<V>, linear: bool) -> [V; 4] {
+        let several = bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
+        let next = min(choice.level + 1.0, every(simd, self.last as f32));
+        if linear && !self.first.is_encoded() {
+            let color = self.halves(simd, place, choice.level);
+            if !several {
+                return color.unpack();
+            }
+            return color.mix(&self.halves(simd, place, next), weight(simd, choice.fraction)).unpack();
+        }
+        let color = self.level(simd, place, choice.level, linear);
+        if !several {
+            return color;
+        }
+        mix_rgba(color, self.level(simd, place, next, linear), choice.fraction)
     }
 
     /// Filtered bytes of one level a lane.
@@ -199,52 +223,6 @@ impl<'a> Packed<'a> {
         }
         V::Words::from_slice(simd, &words[..V::LEN])
     }
-}
-
-/// The colours of a texture of bytes with levels `0..=last`. `halves` filters linearly on one level a lane, `level` gives raw colours there, from
-/// one texel or as a linear filter in linear light does.
-#[inline(always)]
-pub(super) fn filter_levels<S: Simd, V: Floats<S>>(
-    simd: S,
-    (sampler, words, last): (&Sampler, Words<'_>, usize),
-    lod: V,
-    active: u32,
-    halves: impl Fn(V) -> Halves<S, V>,
-    level: impl Fn(V, bool) -> [V; 4],
-) -> [V; 4] {
-    let choice = if sampler.min != sampler.mag {
-        choose(simd, sampler, last, lod)
-    } else {
-        let (zero, linear) = (every(simd, 0.0), if sampler.mag == Filter::Linear { u32::MAX } else { 0 });
-        Choice { level: zero, fraction: zero, linear }
-    };
-    let several = bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
-    let next = min(choice.level + 1.0, every(simd, last as f32));
-    let filtered = lanes::inlined(
-        #[inline(always)]
-        |linear: bool| {
-            if linear && !words.is_encoded() {
-                let color = halves(choice.level);
-                if !several {
-                    return color.unpack();
-                }
-                return color.mix(&halves(next), weight(simd, choice.fraction)).unpack();
-            }
-            let color = level(choice.level, linear);
-            if !several {
-                return color;
-            }
-            mix_rgba(color, level(next, linear), choice.fraction)
-        },
-    );
-    let active = active & ((1 << V::LEN) - 1);
-    let linear = choice.linear & active;
-    let mut color = filtered(linear == active);
-    if linear != 0 && linear != active {
-        let mask = SimdMask::from_bitmask(simd, u64::from(linear));
-        color = select_rgba(mask, filtered(true), color);
-    }
-    words.finish(color)
 }
 
 /// As [`super::sample`].

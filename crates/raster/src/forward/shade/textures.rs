@@ -78,13 +78,7 @@ impl Shader<'_> {
                 None => {
                     let format = format_of(&unit.texture);
                     for i in 0..N {
-                        let texture = groups.by_eights(
-                            simd,
-                            i,
-                            colors[i],
-                            #[inline(always)]
-                            |eight, _| self.texture(simd, eight, unit),
-                        );
+                        let texture = self.texture_by_eights(simd, groups, i, unit);
                         colors[i] = modulate(format, &texture, colors[i]);
                     }
                 }
@@ -119,17 +113,38 @@ impl Shader<'_> {
         Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
     }
 
+    /// A unit's texture at group `i`.
+    #[inline(always)]
+    fn texture_by_eights<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+        i: usize,
+        unit: &Unit,
+    ) -> [V; 4] {
+        groups.by_eights(
+            simd,
+            i,
+            [every(simd, 0.0); 4],
+            #[inline(always)]
+            |eight, _| self.texture(simd, eight, unit),
+        )
+    }
+
     /// A unit's texture at eight pixels.
     #[inline(never)]
     fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
         let Eight { weights, active, .. } = eight;
-        if let Some((Common::Flat(packed), at)) = self.common(unit) {
+        if let Some((common, at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
-                || {
-                    let slopes = Slopes::new(self, packed, at);
-                    let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
-                    packed.at(simd, place, level, *active)
+                || match common {
+                    Common::Flat(packed) => {
+                        let slopes = Slopes::new(self, packed, at);
+                        let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
+                        packed.at(simd, place, level, *active)
+                    }
+                    Common::Cube(packed) => self.on_cube(simd, weights, (unit, packed, at)),
                 },
             );
         }
@@ -254,29 +269,39 @@ impl Shader<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let (format, bias) = (format_of(&unit.texture), every(simd, unit.lod_bias));
+                let format = format_of(&unit.texture);
                 for i in 0..N {
-                    let weights = &groups.weights[i];
-                    let direction = lanes::three(
-                        #[inline(always)]
-                        |k| self.value(simd, weights, at + k),
-                    );
-                    let chart = Chart::new(simd, direction);
-                    let mut level = bias;
-                    if packed.needs_lod() {
-                        let steps = [self.step(simd, weights, at, 0), self.step(simd, weights, at, 1)];
-                        let [across, up] = derivatives_on_faces(simd, packed.size(), &chart, steps);
-                        let square = lanes::inlined(
-                            #[inline(always)]
-                            |[s, t]: [V; 2]| s * s + t * t,
-                        );
-                        level += half_log2(max(square(across), square(up)));
-                    }
-                    let texture = packed.at(simd, (chart.face(simd), chart.point()), level, groups.active);
+                    let texture = self.on_cube(simd, &groups.weights[i], (unit, packed, at));
                     colors[i] = modulate(format, &texture, colors[i]);
                 }
             },
         );
+    }
+
+    /// A cube map of the common kind at a group of pixels.
+    #[inline(always)]
+    fn on_cube<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        weights: &Weights<V>,
+        (unit, packed, at): (&Unit, &PackedCube<'_>, usize),
+    ) -> [V; 4] {
+        let direction = lanes::three(
+            #[inline(always)]
+            |k| self.value(simd, weights, at + k),
+        );
+        let chart = Chart::new(simd, direction);
+        let mut level = every(simd, unit.lod_bias);
+        if packed.needs_lod() {
+            let steps = [self.step(simd, weights, at, 0), self.step(simd, weights, at, 1)];
+            let [across, up] = derivatives_on_faces(simd, packed.size(), &chart, steps);
+            let square = lanes::inlined(
+                #[inline(always)]
+                |[s, t]: [V; 2]| s * s + t * t,
+            );
+            level += half_log2(max(square(across), square(up)));
+        }
+        packed.at(simd, (chart.face(simd), chart.point()), level)
     }
 
     /// How s, t, r change with one pixel to the right (axis 0), or one up.

@@ -6,9 +6,10 @@
 
 use super::depth_ranges::{Verdict, verdict};
 use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
-use super::fragment_ops::compare::compare;
+use super::fragment_ops::compare::{compare, holds};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
+use super::plane::Surface;
 use super::state::{Compare, StencilFace, StencilOp};
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;
@@ -110,8 +111,16 @@ pub(crate) fn depths<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let together = pattern.len() != samples && all_alike(masks, samples);
             let count = pattern.len().min(samples).min(SAMPLES);
+            let (index, surface) = (block.index(), Surface::new(setup, count));
+            if block.is_aligned() && tile.is_surface(index, &surface) {
+                // Equal to what is stored, at every sample.
+                if !passes_equal(rule.func) {
+                    *masks = [0; SAMPLES];
+                }
+                return;
+            }
+            let together = pattern.len() != samples && all_alike(masks, samples);
             let mut slopes = [Slope::new(simd, setup, place, pattern.position(0)); SAMPLES];
             for s in 1..count {
                 slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
@@ -137,12 +146,14 @@ pub(crate) fn depths<S: Simd>(
             if verdict == Verdict::AllPass && full {
                 ranges.set(block.index(), new);
                 let count = if together { 1 } else { samples };
-                return fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                return tile.set_surface(index, surface);
             }
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
-            let (count, values) = tile.open(touched, together, samples);
+            let (count, values) =
+                if rule.write { tile.open(touched, together, samples) } else { tile.look(touched, together, samples) };
             let func = if verdict == Verdict::AllPass { Compare::Always } else { rule.func };
             compare_rows(simd, block, values, count, &test, func, masks);
             agree(masks, count, samples);
@@ -154,6 +165,11 @@ pub(crate) fn depths<S: Simd>(
 #[inline(always)]
 pub(super) fn all_alike(masks: &[u64; SAMPLES], samples: usize) -> bool {
     (1..samples.min(SAMPLES)).all(|s| masks[s] == masks[0])
+}
+
+/// Whether equal depths pass.
+fn passes_equal(func: Compare) -> bool {
+    holds(func, 0.0, 0.0)
 }
 
 /// After one sample stood for all, gives them its mask.

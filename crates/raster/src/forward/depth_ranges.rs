@@ -67,7 +67,7 @@ impl DepthRanges {
 #[inline(always)]
 fn bounds<S: Simd>(simd: S, tile: &mut PlaneTile<f32>, block: usize, samples: usize) -> [f32; 2] {
     let first = block * BLOCK % TILE + block * BLOCK / TILE * BLOCK * TILE;
-    let (samples, values) = tile.open(1 << block, true, samples);
+    let (samples, values) = tile.look(1 << block, true, samples);
     let start = F32x8::from_slice(simd, &values[first..first + LANES]);
     let (mut least, mut largest) = (start, start);
     for plane in values.chunks_exact(TILE_PIXELS).take(samples) {

@@ -3,7 +3,7 @@
 //! Source: the idea of block flags from graphics hardware, [Morein 2000].
 
 use super::pending::PendingDepth;
-use crate::{BLOCK, TILE, TILE_PIXELS, Viewport};
+use crate::{BLOCK, Setup, TILE, TILE_PIXELS, Viewport};
 
 /// A tile's samples, 64x64 pixels. Its blocks of 8x8 pixels can be cleared without being written, and can hold one value for
 /// all samples of a pixel: most blocks lie inside one surface, where a colour is written, blended and read once.
@@ -17,6 +17,32 @@ pub struct PlaneTile<T> {
     cleared: u64,
     /// Bits of blocks whose pixels have one value, stored as sample 0, for all samples.
     single: u64,
+    /// Bits of blocks all of whose samples are a triangle's depths, and nothing was written since.
+    surfaced: u64,
+    /// The triangles' depths, by block. Empty until there is one.
+    surfaces: Vec<Surface>,
+}
+
+/// What decides the depths of a triangle: two that agree have the same at every sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Surface {
+    z: [f32; 3],
+    limits: [f32; 2],
+    origin: [i32; 2],
+    places: usize,
+}
+
+impl Surface {
+    /// Of a triangle whose depths are taken at the places of a pattern of so many.
+    #[inline(always)]
+    pub(crate) fn new(setup: &Setup, places: usize) -> Self {
+        Self {
+            z: [setup.z, setup.dz_dx, setup.dz_dy],
+            limits: [setup.z_min, setup.z_max],
+            origin: setup.origin,
+            places,
+        }
+    }
 }
 
 /// A plane of `width x height` pixels with `samples` values each.
@@ -110,7 +136,7 @@ pub type Resolve<T> = fn([&[T]; 4], &mut [T]);
 impl<T: Copy> PlaneTile<T> {
     /// A tile full of `value`.
     pub fn new(value: T) -> Self {
-        Self { values: Vec::new(), clear: value, cleared: u64::MAX, single: 0 }
+        Self { values: Vec::new(), clear: value, cleared: u64::MAX, single: 0, surfaced: 0, surfaces: Vec::new() }
     }
 
     /// The value of all samples, where nothing was written since they were cleared.
@@ -120,7 +146,7 @@ impl<T: Copy> PlaneTile<T> {
 
     /// Sets every sample. A tile that is drawn to in every frame keeps its memory.
     pub fn clear(&mut self, value: T) {
-        (self.clear, self.cleared, self.single) = (value, u64::MAX, 0);
+        (self.clear, self.cleared, self.single, self.surfaced) = (value, u64::MAX, 0, 0);
     }
 
     /// The value of a pixel's sample; `at` is the pixel's place `y * TILE + x` in the tile.
@@ -168,6 +194,13 @@ impl<T: Copy> PlaneTile<T> {
     /// these blocks hold one value a pixel.
     #[inline(always)]
     pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
+        self.surfaced &= !bits;
+        self.look(bits, together, samples)
+    }
+
+    /// As [`Self::open`] for who only reads.
+    #[inline(always)]
+    pub(crate) fn look(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
         if self.values.is_empty() {
             self.values = vec![self.clear; samples * TILE_PIXELS];
         }
@@ -190,8 +223,27 @@ impl<T: Copy> PlaneTile<T> {
             self.values = vec![self.clear; samples * TILE_PIXELS];
         }
         self.cleared &= !bit;
+        self.surfaced &= !bit;
         self.single = if together { self.single | bit } else { self.single & !bit };
         &mut self.values
+    }
+
+    /// Tells that all samples of a block were made the depths of a triangle.
+    #[inline(always)]
+    pub(crate) fn set_surface(&mut self, block: usize, surface: Surface) {
+        if self.surfaces.is_empty() {
+            self.surfaces = vec![Surface::default(); BLOCKS * BLOCKS];
+        }
+        if let Some(place) = self.surfaces.get_mut(block) {
+            *place = surface;
+            self.surfaced |= 1 << block;
+        }
+    }
+
+    /// Whether all samples of a block are the depths of a triangle.
+    #[inline(always)]
+    pub(crate) fn is_surface(&self, block: usize, surface: &Surface) -> bool {
+        self.surfaced >> block & 1 == 1 && self.surfaces.get(block) == Some(surface)
     }
 
     /// The value of a cleared block.
@@ -226,7 +278,7 @@ impl<T: Copy> PlaneTile<T> {
     /// The same without what was written before it was cleared.
     pub(crate) fn copy(&self) -> Self {
         let values = if self.cleared == u64::MAX { Vec::new() } else { self.values.clone() };
-        Self { values, ..*self }
+        Self { values, surfaced: 0, surfaces: Vec::new(), ..*self }
     }
 
     /// Takes blocks over from a tile of as many samples.
@@ -250,6 +302,7 @@ impl<T: Copy> PlaneTile<T> {
                 });
             }
         }
+        self.surfaced &= !blocks;
         self.cleared = self.cleared & !blocks | from.cleared & blocks;
         self.single = self.single & !blocks | from.single & blocks;
     }
@@ -259,6 +312,7 @@ impl<T: Copy> PlaneTile<T> {
         if samples == target_samples {
             target.values.clone_from(&self.values);
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
+            target.surfaced = 0;
             return;
         }
         target.clear(self.clear);
@@ -282,7 +336,7 @@ impl<T: Copy> PlaneTile<T> {
     /// A tile with `f` of every value.
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> PlaneTile<U> {
         let values = self.values.iter().map(|&v| f(v)).collect();
-        PlaneTile { values, clear: f(self.clear), cleared: self.cleared, single: self.single }
+        PlaneTile { values, cleared: self.cleared, single: self.single, ..PlaneTile::new(f(self.clear)) }
     }
 }
 

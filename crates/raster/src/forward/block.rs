@@ -132,8 +132,9 @@ pub(crate) fn depths<S: Simd>(
                 write: rule.write,
             };
             let touched = block.touched();
-            let old = ranges.of(simd, tile, block.index(), samples);
-            let new = bounds(setup, &slopes[..count], scale);
+            let old = ranges.of(simd, tile, index, samples);
+            let plane = bounds(&slopes[..count]);
+            let new = plane.map(|depth| stored(depth.max(setup.z_min).min(setup.z_max), scale));
             let full = (0..samples).all(|s| masks[s] == u64::MAX);
             let verdict = verdict(rule.func, new, old);
             if verdict == Verdict::AllFail {
@@ -144,9 +145,15 @@ pub(crate) fn depths<S: Simd>(
                 return;
             }
             if verdict == Verdict::AllPass && full {
-                ranges.set(block.index(), new);
+                ranges.set(index, new);
                 let count = if together { 1 } else { samples };
-                fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                let values = tile.replace(touched, together, samples);
+                let within = plane[0] >= setup.z_min && plane[1] <= setup.z_max;
+                if scale == 1.0 && within {
+                    fill_plain(block, values, count, &slopes);
+                } else {
+                    fill(simd, block, values, count, &test);
+                }
                 return tile.set_surface(index, surface);
             }
             if rule.write {
@@ -180,15 +187,26 @@ fn agree(masks: &mut [u64; SAMPLES], count: usize, samples: usize) {
     }
 }
 
-/// The least and the largest depth in a block, as stored.
+/// The least and the largest depth in a block, before they are limited and stored.
 #[inline(always)]
-fn bounds<S: Simd>(setup: &Setup, slopes: &[Slope<S>], scale: f32) -> [f32; 2] {
+fn bounds<S: Simd>(slopes: &[Slope<S>]) -> [f32; 2] {
     let mut all = slopes[0].bounds();
     for slope in &slopes[1..] {
         let [low, high] = slope.bounds();
         all = [all[0].min(low), all[1].max(high)];
     }
-    all.map(|depth| stored(depth.max(setup.z_min).min(setup.z_max), scale))
+    all
+}
+
+/// Writes all depths of a block that are stored as they are.
+#[inline(always)]
+fn fill_plain<S: Simd>(block: &Block, values: &mut [f32], count: usize, slopes: &[Slope<S>; SAMPLES]) {
+    for (plane, slope) in values.chunks_exact_mut(TILE_PIXELS).zip(slopes).take(count) {
+        let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
+        for row in 0..BLOCK {
+            (slope.across + slope.rows[row]).store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+        }
+    }
 }
 
 /// Writes all depths of a block.

@@ -457,7 +457,8 @@ fn draw_context<'a>(
         .units
         .iter()
         .filter(|unit| unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0);
-    let plain = plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture)?))).collect();
+    let plain =
+        plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);

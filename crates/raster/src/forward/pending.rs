@@ -18,7 +18,7 @@ use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::tile_index::{self, Candidate, Texels, TileIndex};
-use super::wide::{mask_of, max, min, select, splat};
+use super::wide::{bits_of, every, mask_of, max, min, select, splat};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::Window;
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use vitral_exec::Workers;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, Floats, I32x8, LANES, Level, MOST_LANES, Simd, dispatch};
 
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
@@ -42,8 +42,6 @@ struct PendingJob {
 /// What may decide a tile's texels.
 #[derive(Debug)]
 struct PendingTile {
-    /// The largest bound of its triangles' depths as read, times the sign.
-    bound: f32,
     /// The jobs that have triangles there, in [`PendingDepth::touching`].
     jobs: Range<usize>,
     /// How many triangles that is.
@@ -83,6 +81,8 @@ pub(crate) struct PendingDepth {
     margin: f32,
     jobs: Vec<PendingJob>,
     tiles: Vec<PendingTile>,
+    /// The largest bound of each tile's triangles' depths as read, times the sign.
+    bounds: Vec<f32>,
     /// Numbers of jobs, tile by tile.
     touching: Vec<u32>,
     viewport: Viewport,
@@ -173,9 +173,10 @@ impl PendingDepth {
             let range = piece * PIECE..((piece + 1) * PIECE).min(count);
             dispatch!(level, simd => tiles(simd, &jobs, range))
         });
-        let (mut tiles, mut touching) = (Vec::with_capacity(count), Vec::new());
-        for (piece_tiles, piece_touching) in pieces {
+        let (mut tiles, mut bounds, mut touching) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        for (piece_tiles, piece_bounds, piece_touching) in pieces {
             let first = touching.len();
+            bounds.extend(piece_bounds);
             tiles.extend(piece_tiles.into_iter().map(|mut tile: PendingTile| {
                 tile.jobs = tile.jobs.start + first..tile.jobs.end + first;
                 tile
@@ -183,12 +184,41 @@ impl PendingDepth {
             touching.extend(piece_touching);
         }
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, touching, viewport }
+        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, bounds, touching, viewport }
     }
 
     /// The primitives, to use their memory again.
     pub(crate) fn into_primitives(self) -> impl Iterator<Item = Primitives> {
         self.jobs.into_iter().map(|job| job.primitives)
+    }
+
+    /// Whether no triangle can be above `floors`, depths in `0..=1` times the sign, or above the clear value at texels `(x, y)`, as far as bounds of tiles
+    /// tell; lanes without their bit in `active` do not count.
+    #[inline(always)]
+    pub(crate) fn is_clear<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        [x, y]: [V::Ints; 2],
+        floors: V,
+        active: u32,
+    ) -> bool {
+        const SHIFT: u32 = TILE.trailing_zeros();
+        let tiles = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
+        let (tiles, mut bounds) = (tiles.as_slice(), [f32::NEG_INFINITY; MOST_LANES]);
+        for lane in 0..V::LEN {
+            if let Some(bound) = self.bounds.get(tiles[lane] as u32 as usize) {
+                bounds[lane] = *bound;
+            }
+        }
+        let bounds = V::from_slice(simd, &bounds[..V::LEN]);
+        let open = bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, self.best()));
+        bits_of(open) & active == 0
+    }
+
+    /// The clear value in `0..=1`, times the sign.
+    #[inline(always)]
+    pub(crate) fn best(&self) -> f32 {
+        self.clear / self.scale * self.sign
     }
 
     /// The depths of eight texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
@@ -207,11 +237,11 @@ impl PendingDepth {
         let tile = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
         let (tiles, mut bounds) = (tile.to_array(), [f32::NEG_INFINITY; LANES]);
         for lane in 0..LANES {
-            if let Some(tile) = self.tiles.get(tiles[lane] as u32 as usize) {
-                bounds[lane] = tile.bound;
+            if let Some(bound) = self.bounds.get(tiles[lane] as u32 as usize) {
+                bounds[lane] = *bound;
             }
         }
-        let best = self.clear / self.scale * self.sign;
+        let best = self.best();
         let floors = match known {
             Some(known) => known * self.sign,
             None => splat(simd, f32::NEG_INFINITY),
@@ -427,7 +457,7 @@ impl PendingDepth {
 
 /// What may decide the texels of some tiles: their jobs lie in the vector that comes with them.
 #[inline(always)]
-fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<PendingTile>, Vec<u32>) {
+fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<PendingTile>, Vec<f32>, Vec<u32>) {
     // Most jobs touch few tiles: those without triangles are passed over eight at a time.
     let mut touched = Vec::new();
     for (number, job) in (0..).zip(jobs) {
@@ -437,6 +467,7 @@ fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<Pen
     touched.sort_by_key(|t| t[0]);
 
     let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
+    let mut bounds = Vec::with_capacity(range.len());
     let mut rest = touched.as_slice();
     for tile in range {
         let here = rest.iter().take_while(|t| t[0] as usize == tile).count();
@@ -451,9 +482,10 @@ fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<Pen
             bound = bound.max(boxes.largest(simd, entries));
         }
         let jobs = first..touching.len();
-        tiles.push(PendingTile { bound, jobs, count, asked: AtomicU32::new(0), known: OnceLock::new() });
+        bounds.push(bound);
+        tiles.push(PendingTile { jobs, count, asked: AtomicU32::new(0), known: OnceLock::new() });
     }
-    (tiles, touching)
+    (tiles, bounds, touching)
 }
 
 impl PendingJob {

@@ -182,14 +182,6 @@ pub struct Texture {
     pub(crate) cube: CubeFaces,
 }
 
-impl Sampler {
-    /// Whether neighbours are mixed within a level.
-    pub(crate) fn mixes(&self) -> bool {
-        use Filter::{Linear, LinearMipmapLinear, LinearMipmapNearest};
-        [self.min, self.mag].iter().any(|f| matches!(f, Linear | LinearMipmapNearest | LinearMipmapLinear))
-    }
-}
-
 impl Texture {
     /// A texture of one face or six of levels, looked up as `sampler` says. Depth textures yield depths as luminance.
     pub fn new(kind: TextureKind, format: BaseFormat, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Self {

@@ -6,12 +6,60 @@
 use super::fetch::{Depths, level_of};
 use super::flat::{axes, corner_texels};
 use super::mip::mipped;
+use super::wrap::{nearest_in, position_in};
 use crate::forward::fragment_ops::compare::compare;
+use crate::forward::pending::PendingDepth;
 use crate::forward::plane::DepthPlane;
 use crate::forward::state::Compare;
-use crate::forward::texture::{BaseFormat, Texture, TextureKind};
-use crate::forward::wide::{Rgba, mix, saturate, select, splat, splat_rgba};
-use vitral_math::lanes::{F32x8, Simd};
+use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
+use crate::forward::wide::{Rgba, every, mix, saturate, select, splat, splat_rgba};
+use vitral_math::lanes::{self, F32x8, Floats, Simd};
+
+/// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one texel a lookup, and a comparison
+/// that bounds of depths can settle.
+#[derive(Clone, Copy)]
+pub(crate) struct PackedShadow<'a> {
+    texture: &'a Texture,
+    pending: &'a PendingDepth,
+    size: [f32; 2],
+}
+
+impl<'a> PackedShadow<'a> {
+    /// `None` for textures of another kind; `plane` is that of the only level.
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+        let (sampler, pending) = (&texture.sampler, plane?.pending.as_ref()?);
+        let level = level_of(texture, 0)?;
+        let nearest = [sampler.min, sampler.mag] == [Filter::Nearest; 2];
+        let inside = sampler.wrap[..2] == [Wrap::ClampToEdge; 2] && level.border == 0;
+        if texture.kind != TextureKind::Two || texture.swizzle.is_some() || !nearest || !inside {
+            return None;
+        }
+        settles(sampler.compare, pending.sign()).then_some(())?;
+        Some(Self { texture, pending, size: [level.size[0] as f32, level.size[1] as f32] })
+    }
+
+    /// The colours at coordinates s, t, r, q, if no pending triangle can decide them.
+    #[inline(always)]
+    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [s, t, r, q]: [V; 4], active: u32) -> Option<[V; 4]> {
+        let texel = lanes::inlined(
+            #[inline(always)]
+            |coordinate: V, size: f32| {
+                let size = every(simd, size);
+                let position = position_in(simd, coordinate / q, size, Wrap::ClampToEdge);
+                nearest_in(position, size, Wrap::ClampToEdge)
+            },
+        );
+        let texels = [texel(s, self.size[0]), texel(t, self.size[1])];
+        let (reference, sign) = (saturate(r / q), self.pending.sign());
+        if !self.pending.is_clear(simd, texels, reference * sign, active) {
+            return None;
+        }
+        let depth = every(simd, self.pending.best() * sign);
+        let passes = compare(simd, self.texture.sampler.compare?, reference, depth);
+        let value = select(passes, every(simd, 1.0), every(simd, 0.0));
+        Some(by_mode(simd, self.texture.depth_mode, value))
+    }
+}
 
 /// As [`super::sample`].
 #[inline(never)]
@@ -49,8 +97,8 @@ pub(super) fn sample<S: Simd>(
 
 /// What `DEPTH_TEXTURE_MODE` makes of a value.
 #[inline(always)]
-pub(super) fn by_mode<S: Simd>(simd: S, mode: BaseFormat, value: F32x8<S>) -> Rgba<S> {
-    let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
+pub(super) fn by_mode<S: Simd, V: Floats<S>>(simd: S, mode: BaseFormat, value: V) -> [V; 4] {
+    let (zero, one) = (every(simd, 0.0), every(simd, 1.0));
     match mode {
         BaseFormat::Alpha => [zero, zero, zero, value],
         BaseFormat::Intensity => [value; 4],
@@ -71,17 +119,21 @@ pub(super) fn compared<S: Simd>(simd: S, texture: &Texture, reference: F32x8<S>,
     }
 }
 
-/// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
+/// Whether a comparison only fails more with a depth that is nearer in the plane, so that what is no nearer than the reference is
+/// settled.
 #[inline(always)]
-fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
-    let sign = depths.pending()?;
-    // With a larger depth in the plane the comparison only fails more, so what is not above the reference is settled.
-    let settles = match texture.sampler.compare {
+fn settles(func: Option<Compare>, sign: f32) -> bool {
+    match func {
         Some(Compare::GreaterOrEqual) => sign > 0.0,
         Some(Compare::LessOrEqual) => sign < 0.0,
         _ => false,
-    };
-    settles.then(
+    }
+}
+
+/// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
+#[inline(always)]
+fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
+    settles(texture.sampler.compare, depths.pending()?).then(
         #[inline(always)]
         || saturate(reference),
     )

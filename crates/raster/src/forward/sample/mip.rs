@@ -29,10 +29,18 @@ pub(crate) fn lod<S: Simd>(
     half_log2(max(across, up))
 }
 
-/// The logarithm to base 2 of a step, given its squared length.
+/// The logarithm to base 2 of a step, given its squared length, to within 3e-7; exact for powers of two.
 #[inline(always)]
 pub(crate) fn half_log2<V: Lanes>(square: V) -> V {
-    square.log2() * 0.5
+    let (exponent, mantissa) = max(square, square.splat(f32::MIN_POSITIVE)).split_exponent();
+    // The polynomial of degree 7 without a constant that is nearest to log2(1 + t) in 0..=1. It takes no division, unlike
+    // `Lanes::log2`, whose error is smaller.
+    let t = mantissa - 1.0;
+    let mut p = t.splat(0.015_529_888);
+    for c in [-0.079_557_63, 0.194_294_19, -0.325_901_9, 0.473_553_37, -0.720_585_46, 1.442_667_8] {
+        p = p * t + c;
+    }
+    (exponent + p * t) * 0.5
 }
 
 /// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of

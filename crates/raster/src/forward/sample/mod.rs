@@ -13,7 +13,7 @@
 
 pub(crate) mod anisotropic;
 pub(crate) mod cube;
-mod depth;
+pub(crate) mod depth;
 mod fetch;
 mod flat;
 mod halves;
@@ -28,6 +28,7 @@ mod tests;
 use super::plane::DepthPlane;
 use super::texture::{Texels, Texture, TextureKind};
 use super::wide::{Rgba, splat_rgba};
+use depth::PackedShadow;
 use packed::Packed;
 use packed_cube::PackedCube;
 use vitral_math::lanes::{F32x8, Simd};
@@ -37,13 +38,15 @@ use vitral_math::lanes::{F32x8, Simd};
 pub(crate) enum Common<'a> {
     Flat(Packed<'a>),
     Cube(PackedCube<'a>),
+    Shadow(PackedShadow<'a>),
 }
 
 impl<'a> Common<'a> {
-    /// `None` for textures of another kind.
-    pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
-        match texture.kind {
-            TextureKind::Cube => PackedCube::new(texture).map(Self::Cube),
+    /// `None` for textures of another kind; `plane` is that of a depth texture's only level.
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+        match (texture.kind, plane) {
+            (_, Some(_)) => PackedShadow::new(texture, plane).map(Self::Shadow),
+            (TextureKind::Cube, _) => PackedCube::new(texture).map(Self::Cube),
             _ => Packed::new(texture).map(Self::Flat),
         }
     }

@@ -6,33 +6,21 @@ use super::fetch::{Words, interior, quads};
 use super::halves::{Halves, weight};
 use super::mip::{Choice, choose, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
-use crate::forward::texture::{Filter, Sampler, Texture, TextureKind, Wrap};
+use crate::forward::texture::{Filter, Level, Sampler, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, bits_of, every, floor, max, min, select_rgba};
+use std::sync::Arc;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, MOST_LANES, Simd};
-
-/// Most levels: the largest texture has 2^14 texels a side.
-const LEVELS: usize = 16;
 
 /// A texture's levels, made ready for lookups.
 #[derive(Clone, Copy)]
 pub(crate) struct Packed<'a> {
-    levels: [View<'a>; LEVELS],
-    last: usize,
+    levels: &'a [Arc<Level>],
     /// Level 0, for what bytes mean.
     first: Words<'a>,
-    sampler: &'a Sampler,
-}
-
-/// A level.
-#[derive(Clone, Copy)]
-struct View<'a> {
-    /// Row by row.
-    texels: &'a [u32],
-    /// [`Level::columns`](crate::forward::texture::Level::columns), if the sampler mixes neighbours.
-    columns: &'a [[u32; 2]],
-    /// In texels.
+    /// Of level 0, in texels.
     size: [f32; 2],
+    sampler: &'a Sampler,
 }
 
 /// Whether no lookup can reach a border along s and t.
@@ -45,26 +33,30 @@ impl<'a> Packed<'a> {
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
-        if texture.kind != TextureKind::Two
-            || levels.len() > LEVELS
-            || texture.swizzle.is_some()
-            || !stays_inside(&texture.sampler.wrap)
-        {
+        if texture.kind != TextureKind::Two || texture.swizzle.is_some() || !stays_inside(&texture.sampler.wrap) {
             return None;
         }
         let [width, height, _] = interior(first, 2);
-        let mixes = texture.sampler.mixes();
-        let mut views = [View { texels: &[], columns: &[], size: [1.0; 2] }; LEVELS];
-        for (k, (view, level)) in views.iter_mut().zip(levels).enumerate() {
+        for (k, level) in levels.iter().enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
-            if level.border != 0 || level.size[..2] != size {
+            if level.border != 0 || level.size[..2] != size || Words::new(level).is_none() {
                 return None;
             }
-            let columns = if mixes { level.columns() } else { &[] };
-            *view = View { texels: Words::new(level)?.texels, columns, size: size.map(|side| side as f32) };
         }
-        let last = levels.len() - 1;
-        Some(Self { levels: views, last, first: Words::new(first)?, sampler: &texture.sampler })
+        let size = [width as f32, height as f32];
+        Some(Self { levels, first: Words::new(first)?, size, sampler: &texture.sampler })
+    }
+
+    /// A level, or the last one.
+    #[inline(always)]
+    fn get(&self, level: i32) -> &'a Level {
+        &self.levels[(level as u32 as usize).min(self.levels.len() - 1)]
+    }
+
+    /// The number of the last level.
+    #[inline(always)]
+    fn last(&self) -> usize {
+        self.levels.len() - 1
     }
 
     /// Whether the level of detail can matter.
@@ -76,7 +68,7 @@ impl<'a> Packed<'a> {
     /// Width and height of level 0.
     #[inline(always)]
     pub(crate) fn size(&self) -> [f32; 2] {
-        self.levels[0].size
+        self.size
     }
 
     /// The colours at (s, t), as [`super::sample`] tells.
@@ -84,7 +76,7 @@ impl<'a> Packed<'a> {
     pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], lod: V, active: u32) -> [V; 4] {
         let zero = every(simd, 0.0);
         let choice = if self.needs_lod() {
-            choose(simd, self.sampler, self.last, lod)
+            choose(simd, self.sampler, self.last(), lod)
         } else {
             let linear = if self.sampler.mag == Filter::Linear { u32::MAX } else { 0 };
             Choice { level: zero, fraction: zero, linear }
@@ -103,7 +95,7 @@ impl<'a> Packed<'a> {
     #[inline(always)]
     fn filtered<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], choice: &Choice<V>, linear: bool) -> [V; 4] {
         let several = bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
-        let next = min(choice.level + 1.0, every(simd, self.last as f32));
+        let next = min(choice.level + 1.0, every(simd, self.last() as f32));
         if linear && !self.first.is_encoded() {
             let color = self.halves(simd, place, choice.level);
             if !several {
@@ -127,15 +119,15 @@ impl<'a> Packed<'a> {
             return self.mixed_halves(simd, place, level);
         }
         // Nearly always all lanes need the same level.
-        let view = &self.levels[first as usize % LEVELS];
-        let (width, height) = (every(simd, view.size[0]), every(simd, view.size[1]));
-        let [x, y] = self.linear(simd, place, [width, height]);
-        let stride: V::Ints = width.to_int();
+        let level = self.get(first);
+        let (width, height) = (level.size[0], level.size[1]);
+        let columns = level.columns();
+        let [x, y] = self.linear(simd, place, [every(simd, width as f32), every(simd, height as f32)]);
         let quads = quads::<S, V>(
             simd,
             #[inline(always)]
-            |_| view.columns,
-            y.near * (stride + 1) + x.near,
+            |_| columns,
+            y.near * (width as i32 + 1) + x.near,
         );
         Halves::filter(simd, quads, [x.weight, y.weight])
     }
@@ -162,7 +154,7 @@ impl<'a> Packed<'a> {
         let quads = quads::<S, V>(
             simd,
             #[inline(always)]
-            |lane| self.levels[level[lane] as usize % LEVELS].columns,
+            |lane| self.get(level[lane]).columns(),
             y.near * (stride + 1) + x.near,
         );
         (quads, [x.weight, y.weight])
@@ -218,8 +210,9 @@ impl<'a> Packed<'a> {
         let (level, at) = (level.as_slice(), at.as_slice());
         let mut words = [0u32; MOST_LANES];
         for lane in 0..V::LEN {
-            let texels = self.levels[level[lane] as usize % LEVELS].texels;
-            words[lane] = texels.get(at[lane] as u32 as usize).copied().unwrap_or_default();
+            if let Some(words_there) = Words::new(self.get(level[lane])) {
+                words[lane] = words_there.texels.get(at[lane] as u32 as usize).copied().unwrap_or_default();
+            }
         }
         V::Words::from_slice(simd, &words[..V::LEN])
     }

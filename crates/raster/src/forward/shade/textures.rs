@@ -6,6 +6,7 @@ use crate::forward::assemble::Shape;
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
+use crate::forward::sample::depth::PackedShadow;
 use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
@@ -75,6 +76,7 @@ impl Shader<'_> {
             match self.common(unit) {
                 Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
                 Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
+                Some((Common::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
                 None => {
                     let format = format_of(&unit.texture);
                     for i in 0..N {
@@ -135,7 +137,7 @@ impl Shader<'_> {
     #[inline(never)]
     fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
         let Eight { weights, active, .. } = eight;
-        if let Some((common, at)) = self.common(unit) {
+        if let Some((common @ (Common::Flat(_) | Common::Cube(_)), at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
                 || match common {
@@ -145,6 +147,7 @@ impl Shader<'_> {
                         packed.at(simd, place, level, *active)
                     }
                     Common::Cube(packed) => self.on_cube(simd, weights, (unit, packed, at)),
+                    Common::Shadow(_) => self.any(simd, eight, unit),
                 },
             );
         }
@@ -272,6 +275,32 @@ impl Shader<'_> {
                 let format = format_of(&unit.texture);
                 for i in 0..N {
                     let texture = self.on_cube(simd, &groups.weights[i], (unit, packed, at));
+                    colors[i] = modulate(format, &texture, colors[i]);
+                }
+            },
+        );
+    }
+
+    /// Modulates colours with a shadow map of the common kind.
+    #[inline(never)]
+    fn shadow<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+        (unit, packed, at): (&Unit, &PackedShadow<'_>, usize),
+        colors: &mut [[V; 4]; N],
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let format = format_of(&unit.texture);
+                for i in 0..N {
+                    let coords = self.four(simd, &groups.weights[i], at);
+                    let texture = packed.at(simd, coords, groups.active);
+                    let texture = match texture {
+                        Some(texture) => texture,
+                        None => self.texture_by_eights(simd, groups, i, unit),
+                    };
                     colors[i] = modulate(format, &texture, colors[i]);
                 }
             },

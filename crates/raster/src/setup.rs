@@ -50,7 +50,7 @@ pub struct Setup {
 }
 
 /// A depth plane through three corners.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthPlane {
     pub z: f32,
     pub dz_dx: f32,
@@ -81,6 +81,14 @@ impl DepthPlane {
 }
 
 impl Setup {
+    /// Its depths.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn plane(&self) -> DepthPlane {
+        let Self { z, dz_dx, dz_dy, origin, z_min, z_max, .. } = *self;
+        DepthPlane { z, dz_dx, dz_dy, origin, z_min, z_max }
+    }
+
     /// Twice the signed area, in 1/65536 square pixels: negative for corners that run counter-clockwise as the viewer
     /// sees them (y points down).
     #[inline(always)]

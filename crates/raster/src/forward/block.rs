@@ -9,10 +9,12 @@ use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored, stored_dep
 use super::fragment_ops::compare::{compare, holds};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
-use super::plane::Surface;
+use super::pass::places;
 use super::state::{Compare, StencilFace, StencilOp};
+use super::surface::Surface;
 use super::wide::{bits_of, mask_of, max, min, select, splat};
 use crate::kernel::traverse::Block;
+use crate::setup::DepthPlane;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd, U32x8};
@@ -63,10 +65,10 @@ pub(super) struct Slope<S: Simd> {
 impl<S: Simd> Slope<S> {
     /// For the block at pixel `(left, bottom)` of the target, and the sample at `[x, y]` of its pixels, in 1/256 pixel.
     #[inline(always)]
-    pub(super) fn new(simd: S, setup: &Setup, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
+    pub(super) fn new(simd: S, plane: &DepthPlane, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
         let mut rows = [0.0; BLOCK];
-        upwards(simd, setup, bottom as i32 * SUBPIXEL + y).store_slice(&mut rows);
-        Self { across: across(simd, setup, left as i32 * SUBPIXEL + x), rows }
+        upwards(simd, plane, bottom as i32 * SUBPIXEL + y).store_slice(&mut rows);
+        Self { across: across(simd, plane, left as i32 * SUBPIXEL + x), rows }
     }
 
     /// The depths of a row as stored.
@@ -87,10 +89,18 @@ impl<S: Simd> Slope<S> {
 
 /// What a block's depth test works with.
 struct Test<'a, S: Simd> {
-    slopes: &'a [Slope<S>],
+    slopes: &'a [Slope<S>; SAMPLES],
     limits: [F32x8<S>; 2],
     scale: f32,
     write: bool,
+}
+
+impl<'a, S: Simd> Test<'a, S> {
+    #[inline(always)]
+    fn new(simd: S, surface: &Surface, slopes: &'a [Slope<S>; SAMPLES], write: bool) -> Self {
+        let limits = [splat(simd, surface.plane.z_min), splat(simd, surface.plane.z_max)];
+        Self { slopes, limits, scale: surface.scale, write }
+    }
 }
 
 /// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
@@ -112,29 +122,21 @@ pub(crate) fn depths<S: Simd>(
         #[inline(always)]
         || {
             let count = pattern.len().min(samples).min(SAMPLES);
-            let (index, surface) = (block.index(), Surface::new(setup, count));
-            if block.is_aligned() && tile.is_surface(index, &surface) {
+            let (index, surface) = (block.index(), Surface::new(setup, place, count, scale));
+            let before = if block.is_aligned() { tile.surface(index).copied() } else { None };
+            if before == Some(surface) {
                 // Equal to what is stored, at every sample.
-                if !passes_equal(rule.func) {
+                if !holds(rule.func, 0.0, 0.0) {
                     *masks = [0; SAMPLES];
                 }
                 return;
             }
             let together = pattern.len() != samples && all_alike(masks, samples);
-            let mut slopes = [Slope::new(simd, setup, place, pattern.position(0)); SAMPLES];
-            for s in 1..count {
-                slopes[s] = Slope::new(simd, setup, place, pattern.position(s));
-            }
-            let test = Test {
-                slopes: &slopes[..count],
-                limits: [splat(simd, setup.z_min), splat(simd, setup.z_max)],
-                scale,
-                write: rule.write,
-            };
+            let slopes = surface.slopes(simd);
+            let test = Test::new(simd, &surface, &slopes, rule.write);
             let touched = block.touched();
             let old = ranges.of(simd, tile, index, samples);
-            let plane = bounds(&slopes[..count]);
-            let new = plane.map(|depth| stored(depth.max(setup.z_min).min(setup.z_max), scale));
+            let new = surface.bounds(&slopes);
             let full = (0..samples).all(|s| masks[s] == u64::MAX);
             let verdict = verdict(rule.func, new, old);
             if verdict == Verdict::AllFail {
@@ -146,21 +148,22 @@ pub(crate) fn depths<S: Simd>(
             }
             if verdict == Verdict::AllPass && full {
                 ranges.set(index, new);
-                let count = if together { 1 } else { samples };
-                let values = tile.replace(touched, together, samples);
-                let within = plane[0] >= setup.z_min && plane[1] <= setup.z_max;
-                if scale == 1.0 && within {
-                    fill_plain(block, values, count, &slopes);
-                } else {
-                    fill(simd, block, values, count, &test);
+                if block.is_aligned() {
+                    return tile.set_surface(index, surface);
                 }
-                return tile.set_surface(index, surface);
+                let count = if together { 1 } else { samples };
+                return fill(simd, block, tile.replace(touched, together, samples), count, &test);
+            }
+            if let Some(before) = before {
+                let alike = before.places == 1;
+                let values = tile.replace(touched, alike, samples);
+                let slopes = before.slopes(simd);
+                fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(simd, &before, &slopes, true));
             }
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
-            let (count, values) =
-                if rule.write { tile.open(touched, together, samples) } else { tile.look(touched, together, samples) };
+            let (count, values) = tile.open(touched, together, samples);
             let func = if verdict == Verdict::AllPass { Compare::Always } else { rule.func };
             compare_rows(simd, block, values, count, &test, func, masks);
             agree(masks, count, samples);
@@ -174,11 +177,6 @@ pub(super) fn all_alike(masks: &[u64; SAMPLES], samples: usize) -> bool {
     (1..samples.min(SAMPLES)).all(|s| masks[s] == masks[0])
 }
 
-/// Whether equal depths pass.
-fn passes_equal(func: Compare) -> bool {
-    holds(func, 0.0, 0.0)
-}
-
 /// After one sample stood for all, gives them its mask.
 #[inline(always)]
 fn agree(masks: &mut [u64; SAMPLES], count: usize, samples: usize) {
@@ -187,25 +185,33 @@ fn agree(masks: &mut [u64; SAMPLES], count: usize, samples: usize) {
     }
 }
 
-/// The least and the largest depth in a block, before they are limited and stored.
-#[inline(always)]
-fn bounds<S: Simd>(slopes: &[Slope<S>]) -> [f32; 2] {
-    let mut all = slopes[0].bounds();
-    for slope in &slopes[1..] {
-        let [low, high] = slope.bounds();
-        all = [all[0].min(low), all[1].max(high)];
-    }
-    all
-}
-
-/// Writes all depths of a block that are stored as they are.
-#[inline(always)]
-fn fill_plain<S: Simd>(block: &Block, values: &mut [f32], count: usize, slopes: &[Slope<S>; SAMPLES]) {
-    for (plane, slope) in values.chunks_exact_mut(TILE_PIXELS).zip(slopes).take(count) {
-        let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-        for row in 0..BLOCK {
-            (slope.across + slope.rows[row]).store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+impl Surface {
+    /// The triangle's depths in the block, for each place.
+    #[inline(always)]
+    fn slopes<S: Simd>(&self, simd: S) -> [Slope<S>; SAMPLES] {
+        let (place, places) = ((self.place[0] as usize, self.place[1] as usize), places(self.places));
+        let mut slopes = [Slope::new(simd, &self.plane, place, places[0]); SAMPLES];
+        for s in 1..places.len().min(SAMPLES) {
+            slopes[s] = Slope::new(simd, &self.plane, place, places[s]);
         }
+        slopes
+    }
+
+    /// The least and the largest depth in the block, as stored.
+    #[inline(always)]
+    fn bounds<S: Simd>(&self, slopes: &[Slope<S>; SAMPLES]) -> [f32; 2] {
+        let mut all = slopes[0].bounds();
+        for slope in &slopes[1..self.places.clamp(1, SAMPLES)] {
+            let [low, high] = slope.bounds();
+            all = [all[0].min(low), all[1].max(high)];
+        }
+        all.map(|depth| stored(depth.max(self.plane.z_min).min(self.plane.z_max), self.scale))
+    }
+
+    /// [`Self::bounds`], for who has nothing but the surface.
+    #[inline(always)]
+    pub(super) fn range<S: Simd>(&self, simd: S) -> [f32; 2] {
+        self.bounds(&self.slopes(simd))
     }
 }
 
@@ -213,7 +219,7 @@ fn fill_plain<S: Simd>(block: &Block, values: &mut [f32], count: usize, slopes: 
 #[inline(always)]
 fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test: &Test<'_, S>) {
     for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-        let slope = &test.slopes[s % test.slopes.len()];
+        let slope = &test.slopes[s % SAMPLES];
         let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
         for row in 0..BLOCK {
             let at = row * TILE;
@@ -237,7 +243,7 @@ fn compare_rows<S: Simd>(
         if masks[s] == 0 {
             continue;
         }
-        let slope = &test.slopes[s % test.slopes.len()];
+        let slope = &test.slopes[s % SAMPLES];
         let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
         masks[s] = match func {
             Compare::GreaterOrEqual => pass_rows(
@@ -336,18 +342,18 @@ pub(crate) fn stencil<S: Simd>(
 
 /// The part of a row's depths that changes with x.
 #[inline(always)]
-fn across<S: Simd>(simd: S, setup: &Setup, x: i32) -> F32x8<S> {
-    let dx = (x - setup.origin[0]) as f32 / SUBPIXEL as f32;
+fn across<S: Simd>(simd: S, plane: &DepthPlane, x: i32) -> F32x8<S> {
+    let dx = (x - plane.origin[0]) as f32 / SUBPIXEL as f32;
     let lanes = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-    (lanes + dx) * setup.dz_dx
+    (lanes + dx) * plane.dz_dx
 }
 
 /// The part of a block's depths that changes with y, for its eight rows.
 #[inline(always)]
-fn upwards<S: Simd>(simd: S, setup: &Setup, y: i32) -> F32x8<S> {
+fn upwards<S: Simd>(simd: S, plane: &DepthPlane, y: i32) -> F32x8<S> {
     let rows = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) * SUBPIXEL;
-    let dy: F32x8<S> = (rows + (y - setup.origin[1])).to_float();
-    dy * (1.0 / SUBPIXEL as f32) * setup.dz_dy + setup.z
+    let dy: F32x8<S> = (rows + (y - plane.origin[1])).to_float();
+    dy * (1.0 / SUBPIXEL as f32) * plane.dz_dy + plane.z
 }
 
 /// What a stencil test leaves behind: `covered` samples, those of them that passed it, and those that passed the depth test too.

@@ -45,9 +45,10 @@ impl DepthRanges {
     pub(crate) fn of<S: Simd>(&mut self, simd: S, tile: &mut PlaneTile<f32>, block: usize, samples: usize) -> [f32; 2] {
         let (bit, block) = (1 << (block % COUNT), block % COUNT);
         if self.known & bit == 0 {
-            let [least, largest] = match tile.cleared(bit) {
-                Some(value) => [value; 2],
-                None => bounds(simd, tile, block, samples),
+            let [least, largest] = match (tile.cleared(bit), tile.surface(block)) {
+                (Some(value), _) => [value; 2],
+                (None, Some(surface)) => surface.range(simd),
+                (None, None) => bounds(simd, tile, block, samples),
             };
             self.set(block, [least, largest]);
         }
@@ -67,7 +68,7 @@ impl DepthRanges {
 #[inline(always)]
 fn bounds<S: Simd>(simd: S, tile: &mut PlaneTile<f32>, block: usize, samples: usize) -> [f32; 2] {
     let first = block * BLOCK % TILE + block * BLOCK / TILE * BLOCK * TILE;
-    let (samples, values) = tile.look(1 << block, true, samples);
+    let (samples, values) = tile.open(1 << block, true, samples);
     let start = F32x8::from_slice(simd, &values[first..first + LANES]);
     let (mut least, mut largest) = (start, start);
     for plane in values.chunks_exact(TILE_PIXELS).take(samples) {

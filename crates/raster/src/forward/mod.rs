@@ -22,6 +22,7 @@ mod soft;
 mod spare;
 mod state;
 mod strips;
+mod surface;
 mod texture;
 mod tile;
 mod tile_index;

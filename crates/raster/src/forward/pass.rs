@@ -15,7 +15,7 @@ use super::state::FragmentState;
 use super::strips::{TileCopy, cut, rows};
 use super::tile::TileRun;
 use crate::geometry::{Screen, TileLists};
-use crate::{SamplePattern, Viewport};
+use crate::{SUBPIXEL, SamplePattern, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
@@ -61,10 +61,12 @@ impl Target {
 
 /// One sample in the centre, or four.
 pub(crate) fn pattern(samples: usize) -> SamplePattern {
-    match samples {
-        4 => SamplePattern::at(vec![[96, 32], [224, 96], [32, 160], [160, 224]]),
-        _ => SamplePattern::new(1),
-    }
+    SamplePattern::at(places(samples).to_vec())
+}
+
+/// The places of a [`pattern`]'s samples, in 1/256 pixel.
+pub(super) fn places(samples: usize) -> &'static [[i32; 2]] {
+    if samples == 4 { &[[96, 32], [224, 96], [32, 160], [160, 224]] } else { &[[SUBPIXEL / 2; 2]] }
 }
 
 /// A clear.

@@ -3,7 +3,8 @@
 //! Source: the idea of block flags from graphics hardware, [Morein 2000].
 
 use super::pending::PendingDepth;
-use crate::{BLOCK, Setup, TILE, TILE_PIXELS, Viewport};
+use super::surface::Surface;
+use crate::{BLOCK, TILE, TILE_PIXELS, Viewport};
 
 /// A tile's samples, 64x64 pixels. Its blocks of 8x8 pixels can be cleared without being written, and can hold one value for
 /// all samples of a pixel: most blocks lie inside one surface, where a colour is written, blended and read once.
@@ -17,32 +18,19 @@ pub struct PlaneTile<T> {
     cleared: u64,
     /// Bits of blocks whose pixels have one value, stored as sample 0, for all samples.
     single: u64,
-    /// Bits of blocks all of whose samples are a triangle's depths, and nothing was written since.
+    /// Bits of blocks that are not stored: all of their samples are a surface's. They are not cleared.
     surfaced: u64,
-    /// The triangles' depths, by block. Empty until there is one.
-    surfaces: Vec<Surface>,
+    /// The surfaces, by block. Empty until there is one.
+    surfaces: Vec<Option<Surface>>,
+    /// How surfaces are read, once there is one.
+    reading: Option<Reading<T>>,
 }
 
-/// What decides the depths of a triangle: two that agree have the same at every sample.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Surface {
-    z: [f32; 3],
-    limits: [f32; 2],
-    origin: [i32; 2],
-    places: usize,
-}
-
-impl Surface {
-    /// Of a triangle whose depths are taken at the places of a pattern of so many.
-    #[inline(always)]
-    pub(crate) fn new(setup: &Setup, places: usize) -> Self {
-        Self {
-            z: [setup.z, setup.dz_dx, setup.dz_dy],
-            limits: [setup.z_min, setup.z_max],
-            origin: setup.origin,
-            places,
-        }
-    }
+/// What surfaces store for a sample: in a row of their block, and in all rows.
+#[derive(Clone, Copy, Debug)]
+struct Reading<T> {
+    row: fn(&Surface, usize, usize) -> [T; BLOCK],
+    rows: fn(&Surface, usize) -> [[T; BLOCK]; BLOCK],
 }
 
 /// A plane of `width x height` pixels with `samples` values each.
@@ -136,7 +124,15 @@ pub type Resolve<T> = fn([&[T]; 4], &mut [T]);
 impl<T: Copy> PlaneTile<T> {
     /// A tile full of `value`.
     pub fn new(value: T) -> Self {
-        Self { values: Vec::new(), clear: value, cleared: u64::MAX, single: 0, surfaced: 0, surfaces: Vec::new() }
+        Self {
+            values: Vec::new(),
+            clear: value,
+            cleared: u64::MAX,
+            single: 0,
+            surfaced: 0,
+            surfaces: Vec::new(),
+            reading: None,
+        }
     }
 
     /// The value of all samples, where nothing was written since they were cleared.
@@ -156,15 +152,39 @@ impl<T: Copy> PlaneTile<T> {
         if self.cleared >> block & 1 == 1 {
             return self.clear;
         }
+        if self.surfaced >> block & 1 == 1 {
+            return self.row(block, sample, at / TILE % BLOCK)[at % BLOCK];
+        }
         let sample = if self.single >> block & 1 == 1 { 0 } else { sample };
         self.values[sample * TILE_PIXELS + at]
+    }
+
+    /// A row of a block that is a surface.
+    fn row(&self, block: usize, sample: usize, row: usize) -> [T; BLOCK] {
+        match (self.reading, self.surfaces.get(block)) {
+            (Some(reading), Some(Some(surface))) => (reading.row)(surface, sample, row),
+            _ => [self.clear; BLOCK],
+        }
+    }
+
+    /// All rows of a block that is a surface.
+    fn rows(&self, block: usize, sample: usize) -> [[T; BLOCK]; BLOCK] {
+        match (self.reading, self.surfaces.get(block)) {
+            (Some(reading), Some(Some(surface))) => (reading.rows)(surface, sample),
+            _ => [[self.clear; BLOCK]; BLOCK],
+        }
+    }
+
+    /// Whether the samples of a pixel have one value in a block that is a surface.
+    fn is_alike(&self, block: usize) -> bool {
+        self.surface(block).is_some_and(|surface| surface.places == 1)
     }
 
     /// Copies a sample of the pixels of a row from place `at` on.
     pub fn read(&self, sample: usize, at: usize, out: &mut [T]) {
         let Some(last) = out.len().checked_sub(1) else { return };
         let blocks = u64::MAX << block_of(at) & u64::MAX >> (u64::BITS as usize - 1 - block_of(at + last));
-        if self.cleared & blocks == 0 && (sample == 0 || self.single & blocks == 0) {
+        if (self.cleared | self.surfaced) & blocks == 0 && (sample == 0 || self.single & blocks == 0) {
             // The row as it lies in memory.
             let first = sample * TILE_PIXELS + at;
             return out.copy_from_slice(&self.values[first..=first + last]);
@@ -176,6 +196,8 @@ impl<T: Copy> PlaneTile<T> {
             let (block, out) = (block_of(here), &mut out[done..done + run]);
             if self.cleared >> block & 1 == 1 {
                 out.fill(self.clear);
+            } else if self.surfaced >> block & 1 == 1 {
+                out.copy_from_slice(&self.row(block, sample, here / TILE % BLOCK)[here % BLOCK..][..run]);
             } else {
                 let first = if self.single >> block & 1 == 1 { 0 } else { sample * TILE_PIXELS } + here;
                 out.copy_from_slice(&self.values[first..first + run]);
@@ -194,15 +216,11 @@ impl<T: Copy> PlaneTile<T> {
     /// these blocks hold one value a pixel.
     #[inline(always)]
     pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
-        self.surfaced &= !bits;
-        self.look(bits, together, samples)
-    }
-
-    /// As [`Self::open`] for who only reads.
-    #[inline(always)]
-    pub(crate) fn look(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
         if self.values.is_empty() {
             self.values = vec![self.clear; samples * TILE_PIXELS];
+        }
+        if bits & self.surfaced != 0 {
+            self.write_surfaces(bits & self.surfaced, samples);
         }
         if bits & self.cleared != 0 {
             self.fill(bits & self.cleared);
@@ -228,22 +246,13 @@ impl<T: Copy> PlaneTile<T> {
         &mut self.values
     }
 
-    /// Tells that all samples of a block were made the depths of a triangle.
+    /// The surface that all samples of a block are, if they are one.
     #[inline(always)]
-    pub(crate) fn set_surface(&mut self, block: usize, surface: Surface) {
-        if self.surfaces.is_empty() {
-            self.surfaces = vec![Surface::default(); BLOCKS * BLOCKS];
+    pub(crate) fn surface(&self, block: usize) -> Option<&Surface> {
+        if self.surfaced >> (block % (BLOCKS * BLOCKS)) & 1 == 0 {
+            return None;
         }
-        if let Some(place) = self.surfaces.get_mut(block) {
-            *place = surface;
-            self.surfaced |= 1 << block;
-        }
-    }
-
-    /// Whether all samples of a block are the depths of a triangle.
-    #[inline(always)]
-    pub(crate) fn is_surface(&self, block: usize, surface: &Surface) -> bool {
-        self.surfaced >> block & 1 == 1 && self.surfaces.get(block) == Some(surface)
+        self.surfaces.get(block).and_then(Option::as_ref)
     }
 
     /// The value of a cleared block.
@@ -263,6 +272,28 @@ impl<T: Copy> PlaneTile<T> {
         self.single |= bits;
     }
 
+    /// Stores blocks that were surfaces.
+    #[inline(never)]
+    fn write_surfaces(&mut self, bits: u64, samples: usize) {
+        let mut rest = bits;
+        while rest != 0 {
+            let block = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let stored = if self.is_alike(block) { 1 } else { samples };
+            for sample in 0..stored {
+                let mut rows = self.rows(block, sample).into_iter();
+                each_row(1 << block, |at| {
+                    if let Some(row) = rows.next() {
+                        self.values[sample * TILE_PIXELS + at..][..BLOCK].copy_from_slice(&row);
+                    }
+                });
+            }
+            self.single =
+                if stored < samples || samples == 1 { self.single | 1 << block } else { self.single & !(1 << block) };
+        }
+        self.surfaced &= !bits;
+    }
+
     #[inline(never)]
     fn spread(&mut self, bits: u64, samples: usize) {
         let (first, others) = self.values.split_at_mut(TILE_PIXELS);
@@ -278,7 +309,8 @@ impl<T: Copy> PlaneTile<T> {
     /// The same without what was written before it was cleared.
     pub(crate) fn copy(&self) -> Self {
         let values = if self.cleared == u64::MAX { Vec::new() } else { self.values.clone() };
-        Self { values, surfaced: 0, surfaces: Vec::new(), ..*self }
+        let surfaces = if self.surfaced == 0 { Vec::new() } else { self.surfaces.clone() };
+        Self { values, surfaces, ..*self }
     }
 
     /// Takes blocks over from a tile of as many samples.
@@ -290,7 +322,17 @@ impl<T: Copy> PlaneTile<T> {
         if from.clear != self.clear && blocks & from.cleared != 0 {
             from.open(blocks & from.cleared, true, samples);
         }
-        let written = blocks & !from.cleared;
+        let surfaces = blocks & from.surfaced;
+        if surfaces != 0 {
+            self.reading = from.reading;
+            self.surfaces.resize(BLOCKS * BLOCKS, None);
+            for (block, (into, surface)) in self.surfaces.iter_mut().zip(&from.surfaces).enumerate() {
+                if surfaces >> block & 1 == 1 {
+                    *into = *surface;
+                }
+            }
+        }
+        let written = blocks & !from.cleared & !surfaces;
         if written != 0 {
             if self.values.is_empty() {
                 self.values = vec![self.clear; samples * TILE_PIXELS];
@@ -302,7 +344,7 @@ impl<T: Copy> PlaneTile<T> {
                 });
             }
         }
-        self.surfaced &= !blocks;
+        self.surfaced = self.surfaced & !blocks | surfaces;
         self.cleared = self.cleared & !blocks | from.cleared & blocks;
         self.single = self.single & !blocks | from.single & blocks;
     }
@@ -312,7 +354,8 @@ impl<T: Copy> PlaneTile<T> {
         if samples == target_samples {
             target.values.clone_from(&self.values);
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
-            target.surfaced = 0;
+            (target.surfaced, target.reading) = (self.surfaced, self.reading);
+            target.surfaces.clone_from(&self.surfaces);
             return;
         }
         target.clear(self.clear);
@@ -320,23 +363,63 @@ impl<T: Copy> PlaneTile<T> {
         if written == 0 {
             return;
         }
-        let plain = if samples == 1 { written } else { written & self.single };
+        let stored = written & !self.surfaced;
+        let plain = if samples == 1 { stored } else { stored & self.single };
         let values = target.replace(written, true, target_samples);
         if plain == u64::MAX {
             values[..TILE_PIXELS].copy_from_slice(&self.values[..TILE_PIXELS]);
             return;
         }
         each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
-        each_row(written & !plain, |row| {
+        for block in (0..BLOCKS * BLOCKS).filter(|block| self.surfaced >> block & 1 == 1) {
+            let alike = samples == 1 || self.is_alike(block);
+            self.copy_surface(block, if alike { 1 } else { samples }, values, resolve);
+        }
+        each_row(stored & !plain, |row| {
             let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
             resolve(sources, &mut values[row..row + BLOCK]);
         });
     }
 
-    /// A tile with `f` of every value.
+    /// Writes a block that is a surface to a tile of one sample.
+    fn copy_surface(&self, block: usize, samples: usize, target: &mut [T], resolve: Resolve<T>) {
+        let mut row = 0;
+        let first = self.rows(block, 0);
+        if samples == 1 {
+            return each_row(1 << block, |at| {
+                target[at..at + BLOCK].copy_from_slice(&first[row]);
+                row += 1;
+            });
+        }
+        let [second, third, fourth] = [1, 2, 3].map(|s| self.rows(block, s % samples));
+        each_row(1 << block, |at| {
+            resolve([&first[row], &second[row], &third[row], &fourth[row]], &mut target[at..at + BLOCK]);
+            row += 1;
+        });
+    }
+
+    /// A tile with `f` of every value; not for depths, which may not be stored.
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> PlaneTile<U> {
+        debug_assert!(self.reading.is_none(), "the values of a surface are not stored");
         let values = self.values.iter().map(|&v| f(v)).collect();
         PlaneTile { values, cleared: self.cleared, single: self.single, ..PlaneTile::new(f(self.clear)) }
+    }
+}
+
+impl PlaneTile<f32> {
+    /// Makes all samples of a block a triangle's depths, without storing them.
+    #[inline(always)]
+    pub(crate) fn set_surface(&mut self, block: usize, surface: Surface) {
+        if self.surfaces.is_empty() {
+            self.surfaces = vec![None; BLOCKS * BLOCKS];
+            self.reading = Some(Reading { row: Surface::row, rows: Surface::rows });
+        }
+        if let Some(place) = self.surfaces.get_mut(block) {
+            *place = Some(surface);
+            let bit = 1 << block;
+            self.surfaced |= bit;
+            self.cleared &= !bit;
+        }
     }
 }
 

@@ -228,7 +228,7 @@ impl Depths<'_> {
             simd,
             pattern,
             #[inline(always)]
-            |s| (Slope::new(simd, setup, corner, [xs[s], ys[s]]), s, [0; A]),
+            |s| (Slope::new(simd, &setup.plane(), corner, [xs[s], ys[s]]), s, [0; A]),
             #[inline(always)]
             |(slope, s, bits), y, covered: Mask8<S>| {
                 let shift = 8 * (y - top);

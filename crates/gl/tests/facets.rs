@@ -194,6 +194,106 @@ fn facets_look_the_same_whichever_way_they_go() {
     }
 }
 
+/// Colours and depths after large triangles, of which many cover whole blocks, were drawn, small ones and a clear among them, and then the
+/// large ones again, in a pass of their own, where `func` lets them.
+fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> (Vec<[u8; 4]>, Vec<f32>) {
+    let mut c = Stage::new(150, 90);
+    if strips {
+        c.set_runner_source(|| Arc::clone(&THREADS));
+    }
+    let names = c.put(&[0u32; 16]);
+    c.gen_framebuffers(2, names);
+    c.gen_renderbuffers(4, names + 8);
+    let [framebuffer, resolved] = c.take::<u32>(names, 2).try_into().unwrap();
+    let buffers = c.take::<u32>(names + 8, 4);
+    for (framebuffer, buffers, samples) in [(resolved, &buffers[2..], 0), (framebuffer, &buffers[..2], samples)] {
+        c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
+        for (buffer, format, at) in
+            [(buffers[0], gl::RGBA8, gl::COLOR_ATTACHMENT0), (buffers[1], depth_format, gl::DEPTH_ATTACHMENT)]
+        {
+            c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
+            c.renderbuffer_storage_multisample(gl::RENDERBUFFER, samples, format, 150, 90);
+            c.framebuffer_renderbuffer(gl::FRAMEBUFFER, at, gl::RENDERBUFFER, buffer);
+        }
+        assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_COMPLETE);
+    }
+    c.clear_depth(0.0);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    c.enable(gl::DEPTH_TEST);
+    match way {
+        Way::LateDepth => c.enable(gl::ALPHA_TEST),
+        Way::Everything => {
+            c.gen_queries(1, names + 24);
+            let query = c.take::<u32>(names + 24, 1)[0];
+            c.begin_query(gl::SAMPLES_PASSED, query);
+        }
+        Way::Tiny | Way::Blocks => {}
+    }
+    let triangles = |c: &mut Stage, seed: u32, count: u32, size: f32| {
+        let mut state = seed;
+        let mut random = move |below: f32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32 * below
+        };
+        c.begin(gl::TRIANGLES);
+        for _ in 0..count {
+            let middle = [random(150.0), random(90.0), random(1.6) - 0.8];
+            for _ in 0..3 {
+                c.color_4f(random(0.4), random(0.4), random(0.4), 1.0);
+                let (x, y) = (middle[0] + random(size) - size / 2.0, middle[1] + random(size) - size / 2.0);
+                c.vertex_3f(x / 75.0 - 1.0, y / 45.0 - 1.0, middle[2] + random(0.4) - 0.2);
+            }
+        }
+        c.end();
+    };
+    c.depth_func(gl::GEQUAL);
+    triangles(&mut c, 3, 12, 220.0);
+    c.finish();
+    triangles(&mut c, 4, 20, 12.0);
+    c.enable(gl::SCISSOR_TEST);
+    c.scissor(90, 20, 17, 30);
+    c.clear(gl::DEPTH_BUFFER_BIT);
+    c.disable(gl::SCISSOR_TEST);
+    c.finish();
+    c.depth_func(func);
+    c.enable(gl::BLEND);
+    c.blend_func(gl::ONE, gl::ONE);
+    triangles(&mut c, 3, 12, 220.0);
+    if matches!(way, Way::Everything) {
+        c.end_query(gl::SAMPLES_PASSED);
+    }
+    c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, resolved);
+    c.blit_framebuffer(0, 0, 150, 90, 0, 0, 150, 90, gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT, gl::NEAREST);
+    c.bind_framebuffer(gl::READ_FRAMEBUFFER, resolved);
+    let found = (c.bytes(), c.depths());
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    found
+}
+
+#[test]
+fn what_is_drawn_again_meets_its_own_depths() {
+    for (samples, format) in [
+        (0, gl::DEPTH_COMPONENT24),
+        (0, gl::DEPTH_COMPONENT32F),
+        (4, gl::DEPTH_COMPONENT24),
+        (4, gl::DEPTH_COMPONENT32F),
+    ] {
+        for func in [gl::GEQUAL, gl::LEQUAL, gl::EQUAL, gl::GREATER, gl::NOTEQUAL, gl::ALWAYS] {
+            let (colors, depths) = again(samples, format, func, Way::Everything, false);
+            assert!(colors.iter().filter(|pixel| **pixel != [0; 4]).count() > 9000);
+            for (way, strips) in
+                [(Way::Tiny, false), (Way::LateDepth, false), (Way::Tiny, true), (Way::Everything, true)]
+            {
+                let (other_colors, other_depths) = again(samples, format, func, way, strips);
+                let case = format!("{samples} samples of {format:#x}, {func:#x}: {way:?}, strips: {strips}");
+                assert_eq!(colors.iter().zip(&other_colors).filter(|(a, b)| a != b).count(), 0, "{case}");
+                let differ = depths.iter().zip(&other_depths).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+                assert_eq!(differ, 0, "depths, {case}");
+            }
+        }
+    }
+}
+
 /// Random small triangles, some across the near plane, and lines and points between them, of one colour: given once, or with
 /// every vertex.
 fn one_color(again: bool, prepare: fn(&mut Stage)) -> Vec<[u8; 4]> {

@@ -34,6 +34,8 @@ enum With {
     OneColor,
     Fog,
     Texture,
+    Mipmaps,
+    Cube,
     Blending,
     FlatShade,
     Scissor,
@@ -79,6 +81,25 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
             c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR as i32);
             c.enable(gl::TEXTURE_2D);
+        }
+        With::Mipmaps => {
+            let texels: Vec<u32> = (1..=20 * 12u32).map(|k| k.wrapping_mul(2_654_435_761)).collect();
+            let texels = c.put(&texels);
+            c.tex_parameteri(gl::TEXTURE_2D, gl::GENERATE_MIPMAP, 1);
+            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 20, 12, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR_MIPMAP_LINEAR as i32);
+            c.enable(gl::TEXTURE_2D);
+        }
+        With::Cube => {
+            c.tex_parameteri(gl::TEXTURE_CUBE_MAP, gl::GENERATE_MIPMAP, 1);
+            for face in 0..6 {
+                let texels: Vec<u32> = (1..=8 * 8u32).map(|k| (k + 64 * face).wrapping_mul(2_654_435_761)).collect();
+                let (texels, face) = (c.put(&texels), gl::TEXTURE_CUBE_MAP_POSITIVE_X + face);
+                c.tex_image_2d(face, 0, gl::RGBA as i32, 8, 8, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            }
+            c.tex_parameteri(gl::TEXTURE_CUBE_MAP, gl::TEXTURE_MIN_FILTER, gl::LINEAR_MIPMAP_LINEAR as i32);
+            c.enable(gl::TEXTURE_CUBE_MAP_SEAMLESS);
+            c.enable(gl::TEXTURE_CUBE_MAP);
         }
         With::Blending => {
             c.enable(gl::BLEND);
@@ -141,7 +162,7 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             if !matches!(with, With::OneColor) {
                 c.color_4f(color[0], color[1], color[2], color[3]);
             }
-            c.tex_coord_2f(random(2.0), random(2.0));
+            c.tex_coord_3f(random(2.0), random(2.0), if matches!(with, With::Cube) { random(2.0) - 1.0 } else { 0.0 });
             // The eye is near to some.
             let w = 1.0 + random(if k % 7 == 0 { 30.0 } else { 2.0 });
             let (x, y) = ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
@@ -175,6 +196,8 @@ fn facets_look_the_same_whichever_way_they_go() {
             With::OneColor,
             With::Fog,
             With::Texture,
+            With::Mipmaps,
+            With::Cube,
             With::Blending,
             With::FlatShade,
             With::Scissor,

@@ -12,7 +12,7 @@ use super::halves::Halves;
 use super::mip::{choose, mix_rgba};
 use super::wrap::{linear_in, position_in};
 use crate::forward::texture::{Filter, Level, Texels, Texture, TextureKind, Wrap, columns_of};
-use crate::forward::wide::{bits_of, every, floor, max, min};
+use crate::forward::wide::{bits_of, every, floor, max, min, select_rgba};
 use std::sync::OnceLock;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, Lanes, MaskOf, Simd};
@@ -124,11 +124,12 @@ impl<'a> PackedCube<'a> {
             self.mixed::<S, V>(simd, face, level, at)
         };
         let beyond = [x.near.simd_lt(0), x.far.simd_ge(width), y.near.simd_lt(0), y.far.simd_ge(width)];
-        let color = if bits_of(beyond[0] | beyond[1] | beyond[2] | beyond[3]) == 0 {
-            Halves::filter(simd, quads, [x.weight, y.weight]).unpack()
-        } else {
-            self.across_edges(simd, &quads, [x.weight, y.weight], beyond)
-        };
+        let weights = [x.weight, y.weight];
+        let mut color = Halves::filter(simd, quads, weights).unpack();
+        let edges = beyond[0] | beyond[1] | beyond[2] | beyond[3];
+        if bits_of(edges) != 0 {
+            color = select_rgba(edges, self.across_edges(simd, &quads, weights, beyond), color);
+        }
         self.first.finish(color)
     }
 

@@ -210,7 +210,7 @@ impl Interpolation {
 }
 
 /// From so many pixels of a block on all are coloured, which costs less for each.
-const MANY: u32 = 36;
+const MANY: u32 = 24;
 
 pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 

@@ -6,13 +6,14 @@
 use super::fetch::{Depths, level_of};
 use super::flat::{axes, corner_texels};
 use super::mip::mipped;
-use super::wrap::{nearest_in, position_in};
+use super::wrap::position_in;
 use crate::forward::fragment_ops::compare::compare;
 use crate::forward::pending::PendingDepth;
 use crate::forward::plane::DepthPlane;
 use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
-use crate::forward::wide::{Rgba, every, mix, saturate, select, splat, splat_rgba};
+use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat, splat_rgba};
+use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Simd};
 
 /// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one texel a lookup, and a comparison
@@ -38,26 +39,45 @@ impl<'a> PackedShadow<'a> {
         Some(Self { texture, pending, size: [level.size[0] as f32, level.size[1] as f32] })
     }
 
-    /// The colours at coordinates s, t, r, q, if no pending triangle can decide them.
+    /// The colours at coordinates s, t, r, q.
     #[inline(always)]
-    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [s, t, r, q]: [V; 4], active: u32) -> Option<[V; 4]> {
+    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [s, t, r, q]: [V; 4], active: u32) -> [V; 4] {
         let texel = lanes::inlined(
             #[inline(always)]
             |coordinate: V, size: f32| {
-                let size = every(simd, size);
-                let position = position_in(simd, coordinate / q, size, Wrap::ClampToEdge);
-                nearest_in(position, size, Wrap::ClampToEdge)
+                let size: V = every(simd, size);
+                min(floor(position_in(simd, coordinate / q, size, Wrap::ClampToEdge)), size - 1.0)
             },
         );
-        let texels = [texel(s, self.size[0]), texel(t, self.size[1])];
+        let [x, y] = [texel(s, self.size[0]), texel(t, self.size[1])];
         let (reference, sign) = (saturate(r / q), self.pending.sign());
-        if !self.pending.is_clear(simd, texels, reference * sign, active) {
-            return None;
-        }
-        let depth = every(simd, self.pending.best() * sign);
-        let passes = compare(simd, self.texture.sampler.compare?, reference, depth);
-        let value = select(passes, every(simd, 1.0), every(simd, 0.0));
-        Some(by_mode(simd, self.texture.depth_mode, value))
+        let depth = if self.pending.is_clear::<S, V>(simd, [x.to_int(), y.to_int()], reference * sign, active) {
+            every(simd, self.pending.best() * sign)
+        } else {
+            self.depth(simd, [x, y], reference, active)
+        };
+        let value = compared(simd, self.texture, reference, depth);
+        by_mode(simd, self.texture.depth_mode, value)
+    }
+
+    /// The depths of texels, as far as they decide.
+    #[inline(never)]
+    fn depth<S: Simd, V: Floats<S>>(&self, simd: S, [x, y]: [V; 2], reference: V, active: u32) -> V {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let [depth] = V::by_eights(
+                    simd,
+                    [x, y, reference],
+                    #[inline(always)]
+                    |first, [x, y, reference]| {
+                        let active = active >> first & 0xff;
+                        [self.pending.texels(simd, x.to_int(), y.to_int(), active, Some(reference))]
+                    },
+                );
+                depth
+            },
+        )
     }
 }
 
@@ -109,12 +129,12 @@ pub(super) fn by_mode<S: Simd, V: Floats<S>>(simd: S, mode: BaseFormat, value: V
 
 /// A texel as it is filtered: its depth, or 1 where the comparison of the reference with it holds.
 #[inline(always)]
-pub(super) fn compared<S: Simd>(simd: S, texture: &Texture, reference: F32x8<S>, depth: F32x8<S>) -> F32x8<S> {
+pub(super) fn compared<S: Simd, V: Floats<S>>(simd: S, texture: &Texture, reference: V, depth: V) -> V {
     match texture.sampler.compare {
         None => depth,
         Some(func) => {
             let passes = compare(simd, func, saturate(reference), depth);
-            select(passes, splat(simd, 1.0), splat(simd, 0.0))
+            select(passes, every(simd, 1.0), every(simd, 0.0))
         }
     }
 }

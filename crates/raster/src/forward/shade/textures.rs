@@ -137,7 +137,7 @@ impl Shader<'_> {
     #[inline(never)]
     fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
         let Eight { weights, active, .. } = eight;
-        if let Some((common @ (Common::Flat(_) | Common::Cube(_)), at)) = self.common(unit) {
+        if let Some((common, at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
                 || match common {
@@ -147,7 +147,7 @@ impl Shader<'_> {
                         packed.at(simd, place, level, *active)
                     }
                     Common::Cube(packed) => self.on_cube(simd, weights, (unit, packed, at)),
-                    Common::Shadow(_) => self.any(simd, eight, unit),
+                    Common::Shadow(packed) => packed.at(simd, self.four(simd, weights, at), *active),
                 },
             );
         }
@@ -297,10 +297,6 @@ impl Shader<'_> {
                 for i in 0..N {
                     let coords = self.four(simd, &groups.weights[i], at);
                     let texture = packed.at(simd, coords, groups.active);
-                    let texture = match texture {
-                        Some(texture) => texture,
-                        None => self.texture_by_eights(simd, groups, i, unit),
-                    };
                     colors[i] = modulate(format, &texture, colors[i]);
                 }
             },

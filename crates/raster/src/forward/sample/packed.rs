@@ -91,6 +91,68 @@ impl<'a> Packed<'a> {
         self.first.finish(color)
     }
 
+    /// What [`Self::at`] gives for groups of places with levels of detail, if all filter linearly and those of a group need the same
+    /// levels, as nearly always. Groups go through each step together: texels take long to come, and none needs wait for another's.
+    #[inline(always)]
+    pub(crate) fn together<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        places: &[([V; 2], V); N],
+        active: u32,
+    ) -> Option<[[V; 4]; N]> {
+        if self.first.is_encoded() {
+            return None;
+        }
+        let (mut levels, mut fractions, mut several) = ([[0; 2]; N], [every(simd, 0.0); N], false);
+        for i in 0..N {
+            if !self.needs_lod() {
+                if self.sampler.mag != Filter::Linear {
+                    return None;
+                }
+                continue;
+            }
+            let choice = choose(simd, self.sampler, self.last(), places[i].1);
+            let level: V::Ints = choice.level.to_int();
+            let first = level.as_slice()[0];
+            if choice.linear & active != active || !level.simd_eq(first).all_true() {
+                return None;
+            }
+            (levels[i], fractions[i]) = ([first, first + 1], choice.fraction);
+            several |= bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
+        }
+        let count = if several { 2 } else { 1 };
+        let (mut at, mut weights) = ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
+        for i in 0..N {
+            for k in 0..count {
+                let [width, height, _] = self.get(levels[i][k]).size;
+                let [x, y] = self.linear(simd, places[i].0, [every(simd, width as f32), every(simd, height as f32)]);
+                at[i][k] = y.near * (width as i32 + 1) + x.near;
+                weights[i][k] = [x.weight, y.weight];
+            }
+        }
+        let mut texels = [[[V::Words::splat(simd, 0); 4]; 2]; N];
+        for i in 0..N {
+            for k in 0..count {
+                let columns = self.get(levels[i][k]).columns();
+                texels[i][k] = quads::<S, V>(
+                    simd,
+                    #[inline(always)]
+                    |_| columns,
+                    at[i][k],
+                );
+            }
+        }
+        let mut colors = [[every(simd, 0.0); 4]; N];
+        for i in 0..N {
+            let mut color = Halves::filter(simd, texels[i][0], weights[i][0]);
+            if several {
+                color = color.mix(&Halves::filter(simd, texels[i][1], weights[i][1]), weight(simd, fractions[i]));
+            }
+            colors[i] = self.first.finish(color.unpack());
+        }
+        Some(colors)
+    }
+
     /// Raw colours, all lanes with one filter within a level.
     #[inline(always)]
     fn filtered<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], choice: &Choice<V>, linear: bool) -> [V; 4] {

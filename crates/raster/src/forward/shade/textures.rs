@@ -251,6 +251,12 @@ impl Shader<'_> {
                 for i in 1..N {
                     places[i] = self.place(simd, &groups.weights[i], (unit, packed, at), &slopes);
                 }
+                if let Some(textures) = packed.together(simd, &places, groups.active) {
+                    for i in 0..N {
+                        colors[i] = modulate(format, &textures[i], colors[i]);
+                    }
+                    return;
+                }
                 for i in 0..N {
                     let (place, level) = places[i];
                     let texture = packed.at(simd, place, level, groups.active);

@@ -22,6 +22,9 @@ pub struct ColorGrid {
     rising: bool,
 }
 
+/// Places in more cells are looked up one by one.
+const FEW: usize = 3;
+
 /// Colours of eight vertices of a row: two words each, red and green, blue and alpha.
 type EightColors = [AtomicU64; 2 * LANES];
 
@@ -119,7 +122,7 @@ impl ColorGrid {
         let first = cells[0].first();
         let mut together = true;
         for cell in &cells {
-            together &= cell.is_all(first);
+            together &= cell.there(first).all_true();
         }
         if together {
             let corners = corners(first);
@@ -129,12 +132,21 @@ impl ColorGrid {
             return out;
         }
         for i in 0..N {
-            let first = cells[i].first();
-            out[i] = if cells[i].is_all(first) {
-                cells[i].between(&corners(first))
-            } else {
-                self.apart(simd, &cells[i], &words)
-            };
+            let cell = &cells[i];
+            let mut rest = u32::MAX >> (u32::BITS as usize - V::LEN);
+            for _ in 0..FEW {
+                let lane = rest.trailing_zeros() as usize;
+                let one = [cell.i.as_slice()[lane], cell.j.as_slice()[lane]];
+                let there = cell.there(one);
+                out[i] = select_rgba(there, cell.between(&corners(one)), out[i]);
+                rest &= !bits_of(there);
+                if rest == 0 {
+                    break;
+                }
+            }
+            if rest != 0 {
+                out[i] = self.apart(simd, cell, &words);
+            }
         }
         out
     }
@@ -214,10 +226,10 @@ impl<S: Simd, V: Floats<S>> Cell<S, V> {
         [self.i.as_slice()[0], self.j.as_slice()[0]]
     }
 
-    /// Whether all lanes lie in this one.
+    /// Which lanes lie in a cell.
     #[inline(always)]
-    fn is_all(&self, [i, j]: [i32; 2]) -> bool {
-        (self.i.simd_eq(i) & self.j.simd_eq(j)).all_true()
+    fn there(&self, [i, j]: [i32; 2]) -> MaskOf<S, V> {
+        self.i.simd_eq(i) & self.j.simd_eq(j)
     }
 
     /// The colours in a cell of which these are the corners: where the diagonal begins, those beside and above it, where it ends.

@@ -39,9 +39,9 @@ impl<'a> PackedShadow<'a> {
         Some(Self { texture, pending, size: [level.size[0] as f32, level.size[1] as f32] })
     }
 
-    /// The colours at coordinates s, t, r, q.
+    /// The texel at coordinates s, t, r, q, and the depth that it is compared with.
     #[inline(always)]
-    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [s, t, r, q]: [V; 4], active: u32) -> [V; 4] {
+    pub(crate) fn place<S: Simd, V: Floats<S>>(&self, simd: S, [s, t, r, q]: [V; 4]) -> [V; 3] {
         let texel = lanes::inlined(
             #[inline(always)]
             |coordinate: V, size: f32| {
@@ -49,8 +49,13 @@ impl<'a> PackedShadow<'a> {
                 min(floor(position_in(simd, coordinate / q, size, Wrap::ClampToEdge)), size - 1.0)
             },
         );
-        let [x, y] = [texel(s, self.size[0]), texel(t, self.size[1])];
-        let (reference, sign) = (saturate(r / q), self.pending.sign());
+        [texel(s, self.size[0]), texel(t, self.size[1]), saturate(r / q)]
+    }
+
+    /// The colours at such places.
+    #[inline(always)]
+    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [x, y, reference]: [V; 3], active: u32) -> [V; 4] {
+        let sign = self.pending.sign();
         let depth = if self.pending.is_clear::<S, V>(simd, [x.to_int(), y.to_int()], reference * sign, active) {
             every(simd, self.pending.best() * sign)
         } else {

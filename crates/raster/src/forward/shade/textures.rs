@@ -146,8 +146,13 @@ impl Shader<'_> {
                         let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
                         packed.at(simd, place, level, *active)
                     }
-                    Common::Cube(packed) => self.on_cube(simd, weights, (unit, packed, at)),
-                    Common::Shadow(packed) => packed.at(simd, self.four(simd, weights, at), *active),
+                    Common::Cube(packed) => {
+                        let (place, level) = self.place_on_cube(simd, weights, (unit, packed, at));
+                        packed.at(simd, place, level)
+                    }
+                    Common::Shadow(packed) => {
+                        packed.at(simd, packed.place(simd, self.four(simd, weights, at)), *active)
+                    }
                 },
             );
         }
@@ -279,9 +284,14 @@ impl Shader<'_> {
             #[inline(always)]
             || {
                 let format = format_of(&unit.texture);
+                // As for flat textures, places of all groups come first.
+                let mut places = [self.place_on_cube(simd, &groups.weights[0], (unit, packed, at)); N];
+                for i in 1..N {
+                    places[i] = self.place_on_cube(simd, &groups.weights[i], (unit, packed, at));
+                }
                 for i in 0..N {
-                    let texture = self.on_cube(simd, &groups.weights[i], (unit, packed, at));
-                    colors[i] = modulate(format, &texture, colors[i]);
+                    let (place, level) = places[i];
+                    colors[i] = modulate(format, &packed.at(simd, place, level), colors[i]);
                 }
             },
         );
@@ -300,23 +310,26 @@ impl Shader<'_> {
             #[inline(always)]
             || {
                 let format = format_of(&unit.texture);
+                let mut places = [packed.place(simd, self.four(simd, &groups.weights[0], at)); N];
+                for i in 1..N {
+                    places[i] = packed.place(simd, self.four(simd, &groups.weights[i], at));
+                }
                 for i in 0..N {
-                    let coords = self.four(simd, &groups.weights[i], at);
-                    let texture = packed.at(simd, coords, groups.active);
+                    let texture = packed.at(simd, places[i], groups.active);
                     colors[i] = modulate(format, &texture, colors[i]);
                 }
             },
         );
     }
 
-    /// A cube map of the common kind at a group of pixels.
+    /// Faces of a cube map of the common kind and points on them at a group of pixels, and the level of detail.
     #[inline(always)]
-    fn on_cube<S: Simd, V: Floats<S>>(
+    fn place_on_cube<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
         weights: &Weights<V>,
         (unit, packed, at): (&Unit, &PackedCube<'_>, usize),
-    ) -> [V; 4] {
+    ) -> ((V::Ints, [V; 2]), V) {
         let direction = lanes::three(
             #[inline(always)]
             |k| self.value(simd, weights, at + k),
@@ -332,7 +345,7 @@ impl Shader<'_> {
             );
             level += half_log2(max(square(across), square(up)));
         }
-        packed.at(simd, (chart.face(simd), chart.point()), level)
+        ((chart.face(simd), chart.point()), level)
     }
 
     /// How s, t, r change with one pixel to the right (axis 0), or one up.

@@ -57,10 +57,10 @@ pub struct Level {
     columns: Columns,
 }
 
-/// What linear filtering reads of a level in two dimensions with 8 bits a component, once it was asked for: see
-/// [`Level::columns`]. A copy makes its own.
+/// What linear filtering reads of an image with 8 bits a component, once it was asked for: see [`Level::columns`]. A copy makes
+/// its own.
 #[derive(Debug, Default)]
-struct Columns(OnceLock<Box<[[u32; 2]]>>);
+pub(super) struct Columns(pub(super) OnceLock<Box<[[u32; 2]]>>);
 
 impl Clone for Columns {
     fn clone(&self) -> Self {

@@ -11,9 +11,8 @@ use super::fetch::{Words, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{choose, mix_rgba};
 use super::wrap::{linear_in, position_in};
-use crate::forward::texture::{Filter, Level, Texels, Texture, TextureKind, Wrap, columns_of};
+use crate::forward::texture::{Columns, Filter, Level, Texels, Texture, TextureKind, Wrap, columns_of};
 use crate::forward::wide::{bits_of, every, floor, max, min, select_rgba};
-use std::sync::OnceLock;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, Lanes, MaskOf, Simd};
 
@@ -22,14 +21,8 @@ const LEVELS: usize = 16;
 
 /// Faces of levels with their rims, as far as lookups asked for them. Texel `(x, y)` of a face `size` wide, both from -1 on, is the first of
 /// number `(y + 1) * (size + 3) + x + 1`, the one above it is the second. A copy makes its own.
-#[derive(Debug, Default)]
-pub(crate) struct CubeFaces([[OnceLock<Box<[[u32; 2]]>>; 6]; LEVELS]);
-
-impl Clone for CubeFaces {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CubeFaces([[Columns; 6]; LEVELS]);
 
 /// A cube map, made ready for lookups.
 #[derive(Clone, Copy)]
@@ -178,7 +171,7 @@ impl<'a> PackedCube<'a> {
     #[inline(always)]
     fn face(&self, face: i32, level: i32) -> &'a [[u32; 2]] {
         let (face, level) = (face as usize % 6, level as usize % LEVELS);
-        self.texture.cube.0[level][face].get_or_init(|| with_rim(self.texture, face, level))
+        self.texture.cube.0[level][face].0.get_or_init(|| with_rim(self.texture, face, level))
     }
 }
 

@@ -217,8 +217,8 @@ fn facets_look_the_same_whichever_way_they_go() {
     }
 }
 
-/// Colours and depths after large triangles, of which many cover whole blocks, were drawn, small ones and a clear among them, and then the
-/// large ones again, in a pass of their own, where `func` lets them.
+/// Colours and depths after large triangles, of which many cover whole blocks, were drawn, small ones and a clear among them, and
+/// then the large ones again, in a pass of their own, where `func` lets them.
 fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> (Vec<[u8; 4]>, Vec<f32>) {
     let mut c = Stage::new(150, 90);
     if strips {

@@ -1,8 +1,9 @@
 //! Eight numbers at a time, sixteen, or one: the only place that names SIMD types.
 //!
 //! A formula written over [`Lanes`] serves one vertex (`f32`) and eight pixels (`F32x8`) with the same operations in
-//! the same order, so both give the same bits. One written over [`Floats`] serves eight pixels or sixteen, and may use whole numbers. There is no fused multiply-add and no approximate reciprocal;
-//! `exp2`/`log2` are polynomials of ours, made of exact operations only.
+//! the same order, so both give the same bits. One written over [`Floats`] serves eight pixels or sixteen, and may use whole
+//! numbers. There is no fused multiply-add and no approximate reciprocal; `exp2`/`log2` are polynomials of ours, made of exact
+//! operations only.
 //!
 //! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the instruction set.
 
@@ -283,8 +284,8 @@ lanes!(F32x16, Mask16, I32x16, abs_f32x16, max_f32x16, min_f32x16);
 /// A truth value for each lane of `V`.
 pub type MaskOf<S, V> = <V as SimdBase<S>>::Mask;
 
-/// Eight floats or sixteen, and the whole numbers of as many lanes: [`F32x8`], [`F32x16`]. Where the two traits share a name, say which
-/// is meant.
+/// Eight floats or sixteen, and the whole numbers of as many lanes: [`F32x8`], [`F32x16`]. Where the two traits share a name,
+/// say which is meant.
 pub trait Floats<S: Simd>:
     SimdFloat<S, Element = f32> + SimdCvtFloat<Self::Ints> + Lanes<Mask = <Self as SimdBase<S>>::Mask>
 {

@@ -192,8 +192,8 @@ impl PendingDepth {
         self.jobs.into_iter().map(|job| job.primitives)
     }
 
-    /// Whether no triangle can be above `floors`, depths in `0..=1` times the sign, or above the clear value at texels `(x, y)`, as far as bounds of tiles
-    /// tell; lanes without their bit in `active` do not count.
+    /// Whether no triangle can be above `floors`, depths in `0..=1` times the sign, or above the clear value at texels `(x, y)`, as
+    /// far as bounds of tiles tell; lanes without their bit in `active` do not count.
     #[inline(always)]
     pub(crate) fn is_clear<S: Simd, V: Floats<S>>(
         &self,

@@ -3,8 +3,8 @@
 //! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`] is the logarithm of the larger
 //! step, and [`sample`] reads the levels it calls for. Lanes that choose the same level are looked up together, so that
 //! a row of pixels on one surface takes one or two passes. Texels are fetched lane by lane, everything else is done in
-//! lanes. The [`Common`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is missing reads as opaque black, and a coordinate that is not finite reads the
-//! texel at the low edge.
+//! lanes. The [`Common`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
+//! missing reads as opaque black, and a coordinate that is not finite reads the texel at the low edge.
 //!
 //! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear light.
 //! Cost: one texel (nearest), two, four or eight (linear in one to three dimensions); twice that between two levels.

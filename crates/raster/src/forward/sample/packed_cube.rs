@@ -19,8 +19,8 @@ use vitral_math::lanes::{self, Floats, Lanes, MaskOf, Simd};
 /// Most levels: the largest texture has 2^14 texels a side.
 const LEVELS: usize = 16;
 
-/// Faces of levels with their rims, as far as lookups asked for them. Texel `(x, y)` of a face `size` wide, both from -1 on, is the first of
-/// number `(y + 1) * (size + 3) + x + 1`, the one above it is the second. A copy makes its own.
+/// Faces of levels with their rims, as far as lookups asked for them. Texel `(x, y)` of a face `size` wide, both from -1 on, is the
+/// first of number `(y + 1) * (size + 3) + x + 1`, the one above it is the second. A copy makes its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CubeFaces([[Columns; 6]; LEVELS]);
 

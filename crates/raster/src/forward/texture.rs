@@ -57,6 +57,9 @@ pub struct Level {
     columns: Columns,
 }
 
+/// Texels of the largest images with [`Level::columns`]: 2048x2048.
+const MOST_COLUMNS: u64 = 1 << 22;
+
 /// What linear filtering reads of an image with 8 bits a component, once it was asked for: see [`Level::columns`]. A copy makes
 /// its own.
 #[derive(Debug, Default)]
@@ -86,12 +89,28 @@ impl Level {
     }
 
     /// Texels of 8 bits in two dimensions, each with the one above, so that the four round a place lie side by side: texel
-    /// `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the right and the upper edge the image begins anew.
-    pub(crate) fn columns(&self) -> &[[u32; 2]] {
-        self.columns.0.get_or_init(|| match &self.texels {
+    /// `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the right and the upper edge the image begins anew. They
+    /// take twice the memory of the texels: large images do without.
+    #[inline(always)]
+    pub(crate) fn columns(&self) -> Option<&[[u32; 2]]> {
+        self.has_columns().then(
+            #[inline(always)]
+            || &**self.columns.0.get_or_init(|| self.make_columns()),
+        )
+    }
+
+    /// Whether it is small enough for [`Self::columns`].
+    #[inline(always)]
+    pub(crate) fn has_columns(&self) -> bool {
+        u64::from(self.size[0]) * u64::from(self.size[1]) <= MOST_COLUMNS
+    }
+
+    #[cold]
+    fn make_columns(&self) -> Box<[[u32; 2]]> {
+        match &self.texels {
             Texels::Rgba8(words) | Texels::Srgb8(words) => columns_of(words, self.size[0] as usize),
             _ => Box::default(),
-        })
+        }
     }
 }
 

@@ -161,9 +161,10 @@ fn lookup<S: Simd>(
         && inside
         && shape.border == 0
         && let Some(words) = Words::new(shape)
+        && let Some(columns) = if filtered { shape.columns() } else { Some(&[][..]) }
     {
         let color = if filtered {
-            bilinear(simd, shape, words, &x, &y)
+            bilinear(simd, (columns, size[0]), words, &x, &y)
         } else {
             words.colors(simd, y.near * size[0] as i32 + x.near)
         };
@@ -175,13 +176,18 @@ fn lookup<S: Simd>(
 
 /// Raw colours inside an image.
 #[inline(always)]
-fn bilinear<S: Simd>(simd: S, shape: &Level, words: Words<'_>, x: &Axis<S>, y: &Axis<S>) -> Rgba<S> {
-    let columns = shape.columns();
+fn bilinear<S: Simd>(
+    simd: S,
+    (columns, width): (&[[u32; 2]], u32),
+    words: Words<'_>,
+    x: &Axis<S>,
+    y: &Axis<S>,
+) -> Rgba<S> {
     let quads = quads::<S, F32x8<S>>(
         simd,
         #[inline(always)]
         |_| columns,
-        y.near * (shape.size[0] as i32 + 1) + x.near,
+        y.near * (width as i32 + 1) + x.near,
     );
     if !words.is_encoded() {
         return Halves::filter(simd, quads, [x.weight, y.weight]).unpack();

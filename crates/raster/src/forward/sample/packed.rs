@@ -100,7 +100,7 @@ impl<'a> Packed<'a> {
         places: &[([V; 2], V); N],
         active: u32,
     ) -> Option<[[V; 4]; N]> {
-        if self.first.is_encoded() {
+        if self.first.is_encoded() || !self.levels[0].has_columns() {
             return None;
         }
         let (mut levels, mut fractions, mut several) = ([[0; 2]; N], [every(simd, 0.0); N], false);
@@ -133,7 +133,7 @@ impl<'a> Packed<'a> {
         let mut texels = [[[V::Words::splat(simd, 0); 4]; 2]; N];
         for i in 0..N {
             for k in 0..count {
-                let columns = self.get(levels[i][k]).columns();
+                let columns = self.get(levels[i][k]).columns()?;
                 texels[i][k] = quads::<S, V>(
                     simd,
                     #[inline(always)]
@@ -177,13 +177,11 @@ impl<'a> Packed<'a> {
     fn halves<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V) -> Halves<S, V> {
         let each: V::Ints = level.to_int();
         let first = each.as_slice()[0];
-        if !each.simd_eq(first).all_true() {
-            return self.mixed_halves(simd, place, level);
-        }
         // Nearly always all lanes need the same level.
-        let level = self.get(first);
-        let (width, height) = (level.size[0], level.size[1]);
-        let columns = level.columns();
+        let same = each.simd_eq(first).all_true().then(|| self.get(first));
+        let Some((columns, [width, height, _])) = same.and_then(|level| Some((level.columns()?, level.size))) else {
+            return self.mixed_halves(simd, place, level);
+        };
         let [x, y] = self.linear(simd, place, [every(simd, width as f32), every(simd, height as f32)]);
         let quads = quads::<S, V>(
             simd,
@@ -212,11 +210,19 @@ impl<'a> Packed<'a> {
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
         let (level, stride): (V::Ints, V::Ints) = (level.to_int(), size[0].to_int());
+        if !self.levels[0].has_columns() {
+            let words = lanes::inlined(
+                #[inline(always)]
+                |x: V::Ints, y: V::Ints| self.words::<S, V>(simd, level, y * stride + x),
+            );
+            let quads = [words(x.near, y.near), words(x.far, y.near), words(x.near, y.far), words(x.far, y.far)];
+            return (quads, [x.weight, y.weight]);
+        }
         let level = level.as_slice();
         let quads = quads::<S, V>(
             simd,
             #[inline(always)]
-            |lane| self.get(level[lane]).columns(),
+            |lane| self.get(level[lane]).columns().unwrap_or_default(),
             y.near * (stride + 1) + x.near,
         );
         (quads, [x.weight, y.weight])

@@ -52,7 +52,7 @@ impl<'a> PackedCube<'a> {
             levels.len() == last + 1 && levels.iter().map(|l| &**l).enumerate().all(side)
         });
         let sampler = &texture.sampler;
-        let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none();
+        let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
         if !usual || !regular || sampler.mag != Filter::Linear || !linear.contains(&sampler.min) {
             return None;
         }

@@ -194,6 +194,14 @@ pub struct Batch {
     pub counters: GeometryCounters,
 }
 
+/// Memory that a batch needs up to [`Batch::finish`] only: those who make batches one after the other need one of it.
+#[derive(Clone, Debug, Default)]
+pub struct Unsorted {
+    setups: Vec<Setup>,
+    entries: Vec<[u32; 2]>,
+    boxes: Vec<i32>,
+}
+
 /// Where triangles go on the screen: shared by all batches of a picture.
 #[derive(Clone, Debug)]
 pub struct Screen {
@@ -491,11 +499,17 @@ impl Batch {
         self.entry_boxes = boxes;
     }
 
-    /// Exchanges the memory of what is needed up to [`Batch::finish`].
-    #[cfg(feature = "forward")]
-    pub(crate) fn exchange_entries(&mut self, entries: &mut Vec<[u32; 2]>, boxes: &mut Vec<i32>) {
-        std::mem::swap(&mut self.entries, entries);
-        std::mem::swap(&mut self.entry_boxes, boxes);
+    /// Exchanges the memory of what is needed up to [`Batch::finish`]: once after [`Batch::clear`], once after `finish`. What
+    /// was in `unsorted` is forgotten. Of [`TileLists::Copied`] that is [`Batch::setups`], too: what is left is the copies.
+    pub fn exchange(&mut self, unsorted: &mut Unsorted) {
+        unsorted.setups.clear();
+        unsorted.entries.clear();
+        unsorted.boxes.clear();
+        std::mem::swap(&mut self.entries, &mut unsorted.entries);
+        std::mem::swap(&mut self.entry_boxes, &mut unsorted.boxes);
+        if self.copies() {
+            std::mem::swap(&mut self.setups, &mut unsorted.setups);
+        }
     }
 
     /// How many entries all tiles have, before they are sorted.
@@ -504,7 +518,7 @@ impl Batch {
         self.entries.len()
     }
 
-    /// All triangles, in order of submission.
+    /// All triangles, in order of submission; see [`Self::exchange`].
     pub fn setups(&self) -> &[Setup] {
         &self.setups
     }

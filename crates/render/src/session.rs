@@ -18,7 +18,7 @@ use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Frame;
 use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
-use vitral_raster::{Batch, ScreenVertex, TileGrid};
+use vitral_raster::{Batch, ScreenVertex, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
 use vitral_scene::{Scene, Solidity, World};
@@ -62,6 +62,7 @@ pub struct Session {
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
+    pub(crate) spare_unsorted: Mutex<Vec<Unsorted>>,
     pub(crate) spare_picture: Mutex<Vec<[u8; 4]>>,
     pub(crate) spare_scratch: Mutex<Vec<Scratch>>,
     pub(crate) background: KeptFor<BackgroundKey, BackgroundRows>,
@@ -171,6 +172,7 @@ impl Session {
             grid: None,
             spare_vertices: Mutex::default(),
             spare_batches: Mutex::default(),
+            spare_unsorted: Mutex::default(),
             spare_picture: Mutex::default(),
             spare_scratch: Mutex::default(),
             background: Mutex::default(),

@@ -5,6 +5,7 @@
 //! they stay while others run, and need long tile lists but no vertices.
 
 use super::assemble::{PieceScratch, Primitives};
+use crate::Unsorted;
 use std::sync::{Mutex, PoisonError};
 
 /// Memory of jobs, place by place.
@@ -31,15 +32,14 @@ impl Places {
 #[derive(Debug, Default)]
 pub(crate) struct Assembly {
     scratch: PieceScratch,
-    entries: Vec<[u32; 2]>,
-    boxes: Vec<i32>,
+    unsorted: Unsorted,
 }
 
 impl Assembly {
     /// Exchanges its memory with that of a job: once before the job's primitives are assembled, once afterwards.
     pub(crate) fn exchange(&mut self, job: &mut Primitives) {
         std::mem::swap(&mut self.scratch, &mut job.scratch);
-        job.batch.exchange_entries(&mut self.entries, &mut self.boxes);
+        job.batch.exchange(&mut self.unsorted);
     }
 }
 

@@ -242,7 +242,7 @@ impl Kept<'_> {
     fn keep(&mut self, batches: Vec<(bool, Batch)>) -> Result<Vec<(bool, Batch)>, Limit> {
         let (layered, rest): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
         for (_, batch) in layered {
-            let bytes = batch.setups().len() as u64 * BYTES_A_TRIANGLE;
+            let bytes = batch.counters.tile_entries * BYTES_A_TRIANGLE;
             self.execution.budget.charge(bytes, "layers to go through")?;
             self.charged += bytes;
             self.batches.push(batch);
@@ -393,11 +393,15 @@ pub(super) fn set_up(
 ) -> Vec<(bool, Batch)> {
     execution.workers.map(jobs.len(), |i| {
         let mut batch = view.session.spare_batches.lock().expect("spare batches").pop().unwrap_or_default();
+        let mut unsorted = view.session.spare_unsorted.lock().expect("spare memory").pop().unwrap_or_default();
         batch.clear(tile_lists);
+        batch.exchange(&mut unsorted);
         for piece in &jobs[i].pieces {
             batch.add(execution.level, piece.draw, &vertices[piece.item], piece.range.clone(), &view.screen);
         }
         batch.finish(&view.screen);
+        batch.exchange(&mut unsorted);
+        view.session.spare_unsorted.lock().expect("spare memory").push(unsorted);
         (jobs[i].layered, batch)
     })
 }

@@ -58,6 +58,20 @@ impl Placement {
         }
     }
 
+    /// Where workers are kept off a processor, puts one of them on it: the calling thread waits for them as long as what is
+    /// returned lives. Then all may go everywhere again.
+    pub(crate) fn lend(&self) -> Option<Lent<'_>> {
+        let avoided = self.avoided.swap(0, Ordering::Relaxed).checked_sub(1)?;
+        let mut workers = self.workers.lock().unwrap_or_else(PoisonError::into_inner);
+        let worker = workers.iter_mut().find(|w| avoided < CpuSet::MAX_CPU && w.allowed.is_set(avoided))?;
+        let mut there = CpuSet::new();
+        there.set(avoided);
+        if sched_setaffinity(Some(worker.thread), &there).is_ok() {
+            worker.given = there;
+        }
+        Some(Lent(self))
+    }
+
     #[cold]
     fn keep_off(&self, here: usize) {
         for worker in self.workers.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
@@ -75,6 +89,15 @@ impl Placement {
                 worker.given = now;
             }
         }
+    }
+}
+
+/// See [`Placement::lend`].
+pub(crate) struct Lent<'p>(&'p Placement);
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        self.0.keep_off(CpuSet::MAX_CPU);
     }
 }
 
@@ -106,6 +129,15 @@ mod tests {
                 placement.keep_off(here);
                 assert_eq!(mask(), but(here));
             }
+            placement.make_way();
+            placement.make_way();
+            assert_ne!(placement.avoided.load(Ordering::Relaxed), 0);
+            let here = placement.avoided.load(Ordering::Relaxed) - 1;
+            let lent = placement.lend();
+            assert!(mask() != all && mask().is_set(here) && mask().count() == 1 || all.count() == 1);
+            drop(lent);
+            assert_eq!((mask(), placement.avoided.load(Ordering::Relaxed)), (all, 0));
+            assert!(placement.lend().is_none());
             // What others set holds.
             let last = (0..CpuSet::MAX_CPU).rfind(|&cpu| all.is_set(cpu)).unwrap();
             let mut alone = CpuSet::new();

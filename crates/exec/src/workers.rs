@@ -136,6 +136,8 @@ impl Workers {
     pub fn join<A: Send, B: Send>(&self, a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
+            #[cfg(all(target_os = "linux", not(miri)))]
+            let _lent = pool.current_thread_index().is_none().then(|| self.placement.lend());
             return pool.install(|| rayon::join(a, b));
         }
         (a(), b())

@@ -33,8 +33,8 @@ use chunk::{Chunk, Statement};
 use vitral_exec::Workers;
 use vitral_scene::Scene;
 
-/// Bytes of a piece. Small files are one piece.
-const PIECE: usize = 1 << 20;
+/// Bytes of a piece: so few that threads end at about the same time, since faces take longer to read than vertices.
+const PIECE: usize = 1 << 18;
 
 /// Reads an OBJ file. `resolver` gives its material libraries and textures; missing ones are warnings.
 ///
@@ -80,7 +80,7 @@ fn load_in_pieces(
     // Put the geometry together while the materials are read.
     let events = materials::Events::new(&chunks, &pieces, &first_lines);
     let totals = stitch::Totals::new(&chunks, file)?;
-    if let Some(wrong) = stitch::first_bad_index(&chunks, &totals, &pieces, &first_lines, file) {
+    if let Some(wrong) = stitch::first_bad_index(&chunks, &totals, (&pieces, &first_lines), file, workers) {
         return Err(earlier(error, wrong));
     }
     if let Some(error) = error {

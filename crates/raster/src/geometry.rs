@@ -473,6 +473,9 @@ impl Batch {
         }
         let (entries, copies) = (self.entries.len(), self.copies());
         // What was there is written over.
+        if copies && self.sorted.capacity() < entries {
+            self.sorted = bytemuck::zeroed_vec(entries);
+        }
         self.sorted.resize(if copies { entries } else { 0 }, Setup::zeroed());
         self.items.resize(if copies { 0 } else { entries }, 0);
         for (number, &[tile, item]) in self.entries.iter().enumerate() {

@@ -312,7 +312,11 @@ mod tests {
         let setups = triangles(4000, 0);
         for samples in [1, 4, 3] {
             let pattern = SamplePattern::new(samples);
-            let empty = || TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
+            let empty = || {
+                let mut tile = TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
+                tile.clear();
+                tile
+            };
             let [mut rows, mut blocks, mut one_by_one] = [empty(), empty(), empty()];
             dispatch!(Level::new(), simd => {
                 let mut by_rows = VisibilitySink::new(&mut rows, &pattern);
@@ -344,7 +348,8 @@ mod tests {
     #[test]
     fn rows_and_blocks_give_each_layer_once() {
         let pattern = SamplePattern::new(4);
-        let tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
+        let mut tile = TileGrid::new(Viewport::new(64, 64).unwrap(), 4).tiles.remove(0);
+        tile.clear();
         for setup in triangles(4000, 0) {
             let mut found = [LayerList::default(), LayerList::default()];
             let [rows, blocks] = &mut found;

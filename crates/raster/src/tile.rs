@@ -29,7 +29,8 @@ impl Viewport {
     }
 }
 
-/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`.
+/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`. A new tile is not to be
+/// used until it is [`clear`](Self::clear)ed, so that its memory is first touched by whoever works on it.
 #[derive(Clone, Debug)]
 pub struct Tile {
     /// Left pixel column of the tile in the picture.
@@ -54,7 +55,7 @@ impl Tile {
             x,
             y,
             depth: vec![0.0; samples * TILE_PIXELS],
-            facet: vec![NO_FACET; samples * TILE_PIXELS],
+            facet: Vec::with_capacity(samples * TILE_PIXELS),
             block_far: [0.0; TILE_PIXELS / (BLOCK * BLOCK)],
             touched: false,
             block_writes: [0; TILE_PIXELS / (BLOCK * BLOCK)],
@@ -63,6 +64,9 @@ impl Tile {
 
     /// Empties the tile; free if nothing was written.
     pub fn clear(&mut self) {
+        if self.facet.is_empty() {
+            self.facet.resize(self.depth.len(), NO_FACET);
+        }
         if !self.touched {
             return;
         }

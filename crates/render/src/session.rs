@@ -148,7 +148,7 @@ impl Session {
     /// [`Self::new`] with all of `workers`.
     pub fn with_workers(scene: Arc<Scene>, workers: &Workers) -> Result<Self, Error> {
         for mesh in &scene.meshes {
-            mesh.check().map_err(Error::Scene)?;
+            mesh.check_with(workers).map_err(Error::Scene)?;
             let materials = scene.materials.len();
             let used = mesh.parts.iter().filter_map(|p| p.material).chain(mesh.line_material);
             if let Some(bad) = used.into_iter().find(|&m| m as usize >= materials) {

@@ -11,6 +11,7 @@
 //! Source: elementary geometry. The names of the views are those of technical drawing.
 
 use crate::{Camera, Instance, Projection, TRIANGLES_A_RUN, World};
+use vitral_exec::Workers;
 use vitral_math::{Aabb, DMat4, DVec3, func};
 
 /// The part of the picture's width or height that a framed box fills.
@@ -173,27 +174,28 @@ pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect:
 ///
 /// What a point needs is convex, so no point of a box needs more than its neediest corner: runs of triangles are looked
 /// at neediest box first, until no box can need more than a point that was seen.
-pub fn frame_world(world: &World, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Camera {
+pub fn frame_world(
+    world: &World,
+    eye: DVec3,
+    view_up: DVec3,
+    lens: Lens,
+    aspect: f64,
+    fill: f64,
+    workers: &Workers,
+) -> Camera {
     if presentable(&world.bounds) != world.bounds {
         return frame_from(&world.bounds, eye, view_up, lens, aspect, fill);
     }
     let fit = Fit::new(&world.bounds, eye, view_up, lens, aspect, fill);
-    let mut most = 0.0f64;
-    let mut include = |instance: &Instance, vertices: &[u32]| {
-        for &v in vertices {
-            let p = instance.world_from_model.transform_point3(instance.mesh.position(v));
-            if p.is_finite() {
-                most = most.max(fit.need(p));
-            }
-        }
-        most
+    let need = |instance: &Instance, vertices: &[u32]| {
+        let points = vertices.iter().map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
+        points.filter(|p| p.is_finite()).fold(0.0, |most, p| fit.need(p).max(most))
     };
 
     let mut runs = Vec::new();
-    let mut seen = 0.0;
+    let mut seen = 0.0f64;
     for instance in &world.instances {
-        include(instance, instance.mesh.lines.as_flattened());
-        seen = include(instance, &instance.mesh.points);
+        seen = seen.max(need(instance, instance.mesh.lines.as_flattened())).max(need(instance, &instance.mesh.points));
         for (run, bounds) in world.run_bounds[instance.mesh_index as usize].iter().enumerate() {
             if !bounds.is_empty() {
                 let corners = bounds.corners().map(|c| fit.need(instance.world_from_model.transform_point3(c)));
@@ -202,15 +204,21 @@ pub fn frame_world(world: &World, eye: DVec3, view_up: DVec3, lens: Lens, aspect
         }
     }
     runs.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (need, instance, run) in runs {
+    let (mut rest, mut batch) = (runs.as_slice(), 16);
+    loop {
         // A hair more, for what rounding may do to corners.
-        if need * (1.0 + 1e-9) < seen {
-            break;
+        let open = rest[..rest.len().min(batch)].partition_point(|(most, ..)| most * (1.0 + 1e-9) >= seen);
+        if open == 0 {
+            return fit.camera(seen);
         }
-        let triangles = instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
-        seen = include(instance, triangles.as_flattened());
+        let found = workers.map(open, |i| {
+            let (_, instance, run) = rest[i];
+            let triangles = instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
+            need(instance, triangles.as_flattened())
+        });
+        seen = found.into_iter().fold(seen, f64::max);
+        (rest, batch) = (&rest[open..], 2 * batch);
     }
-    fit.camera(seen)
 }
 
 /// A camera that looks at the middle of a box, at a distance that is still to be found.
@@ -362,9 +370,10 @@ mod tests {
         let points: Vec<_> = ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let bounds = ball.bounds();
         let world = World::new(&crate::Scene::from_mesh(ball)).unwrap();
-        for lens in [Lens::default(), Lens::Parallel] {
+        let lenses = [Lens::default(), Lens::Parallel].into_iter();
+        for (lens, workers) in lenses.flat_map(|lens| [(lens, Workers::single()), (lens, Workers::new(3))]) {
             let (eye, up) = View::Iso.eye_and_up(Axis::PlusY);
-            let camera = frame_world(&world, eye, up, lens, 1.0, FILL);
+            let camera = frame_world(&world, eye, up, lens, 1.0, FILL, &workers);
             let clip = camera.transform(1.0, depth_range(&camera, &bounds)).clip_from_world();
             let seen = points.iter().map(|p| clip * p.extend(1.0));
             let reach = seen.fold(0.0f64, |r, p| r.max(p.x.abs() / p.w).max(p.y.abs() / p.w));

@@ -193,10 +193,20 @@ impl Mesh {
 
     /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
     pub fn check(&self) -> Result<(), String> {
+        self.check_with(&Workers::single())
+    }
+
+    /// [`Self::check`] with all of `workers`.
+    pub fn check_with(&self, workers: &Workers) -> Result<(), String> {
+        const PIECE: usize = 1 << 17;
         let vertices = self.positions.len();
         let in_range = |what: &str, indices: &[u32], count: usize| {
             // The greatest is found many at a time; which one is bad only matters where one is.
-            if indices.iter().max().is_none_or(|&greatest| (greatest as usize) < count) {
+            let greatest = workers.map(indices.len().div_ceil(PIECE), |piece| {
+                let piece = &indices[piece * PIECE..indices.len().min((piece + 1) * PIECE)];
+                piece.iter().fold(0, |greatest, &index| index.max(greatest))
+            });
+            if greatest.into_iter().max().is_none_or(|greatest| (greatest as usize) < count) {
                 return Ok(());
             }
             let k = indices.iter().position(|&i| i as usize >= count).unwrap_or_default();

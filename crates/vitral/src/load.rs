@@ -67,7 +67,7 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) ->
         finish(&mut scene, options, workers);
         return Ok(scene);
     }
-    let bytes = files::read(path, options.max_file_bytes)?;
+    let bytes = files::read_with(path, options.max_file_bytes, workers)?;
     let mut scene = if name == "-" {
         vitral_io::load(&bytes, "standard input", &NoFiles, workers)?
     } else {

@@ -121,7 +121,7 @@ impl Renderer {
         let boxed = framing::frame(&world.bounds, self.view, self.up, self.lens, self.aspect());
         let eye = boxed.position - boxed.focal_point;
         let (lens, aspect) = (self.lens, self.aspect());
-        framing::frame_world(world, eye, boxed.view_up, lens, aspect, framing::FILL)
+        framing::frame_world(world, eye, boxed.view_up, lens, aspect, framing::FILL, &self.execution.workers)
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with

@@ -30,13 +30,29 @@ impl Default for PngOptions {
 /// # Errors
 /// [`Error::Encode`] if the picture has no pixels or more than 2³¹ - 1 a side.
 pub fn png(picture: &Plane<[u8; 4]>, options: PngOptions) -> Result<Vec<u8>, Error> {
-    let opaque = picture.data().iter().all(|p| p[3] == 255);
-    if opaque {
-        let rgb: Vec<[u8; 3]> = picture.data().iter().map(|&[r, g, b, _]| [r, g, b]).collect();
-        return write(picture.width(), picture.height(), ColorType::Rgb, BitDepth::Eight, rgb.as_flattened(), options);
+    if let Some(rgb) = without_alpha(picture.data()) {
+        return write(picture.width(), picture.height(), ColorType::Rgb, BitDepth::Eight, &rgb, options);
     }
     let data = picture.data().as_flattened();
     write(picture.width(), picture.height(), ColorType::Rgba, BitDepth::Eight, data, options)
+}
+
+/// Red, green and blue of pixels that are all opaque; four a step.
+fn without_alpha(pixels: &[[u8; 4]]) -> Option<Vec<u8>> {
+    let mut rgb = vec![0; 3 * pixels.len()];
+    let mut alpha = u32::MAX;
+    let (fours, rest) = pixels.as_chunks::<4>();
+    for (four, out) in fours.iter().zip(rgb.as_chunks_mut::<12>().0) {
+        let [a, b, c, d] = four.map(u32::from_le_bytes);
+        alpha &= a & b & c & d;
+        let words = [a & 0xff_ffff | b << 24, b >> 8 & 0xffff | c << 16, c >> 16 & 0xff | d << 8];
+        out.copy_from_slice(words.map(u32::to_le_bytes).as_flattened());
+    }
+    for (pixel, out) in rest.iter().zip(rgb[12 * fours.len()..].as_chunks_mut::<3>().0) {
+        alpha &= u32::from_le_bytes(*pixel);
+        out.copy_from_slice(&pixel[..3]);
+    }
+    (alpha >> 24 == 0xff).then_some(rgb)
 }
 
 /// Writes 16-bit grey values, 0 black and 65535 white, without a colour space.
@@ -93,6 +109,18 @@ mod tests {
             assert!(!raw.windows(4).any(|w| w == b"sRGB"));
         }
         assert!(png(&Plane::default(), PngOptions::default()).unwrap_err().to_string().contains("0 x 0"));
+    }
+
+    #[test]
+    fn opaque_pixels_lose_their_alpha() {
+        let pixels: Vec<[u8; 4]> = (0..11u8).map(|i| [i, 100 + i, 200 + i, 255]).collect();
+        for count in 0..pixels.len() {
+            let expected: Vec<u8> = pixels[..count].iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+            assert_eq!(without_alpha(&pixels[..count]), Some(expected));
+            let mut clear = pixels.clone();
+            clear[count][3] = 254;
+            assert_eq!(without_alpha(&clear), None);
+        }
     }
 
     #[test]

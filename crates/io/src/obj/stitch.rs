@@ -78,13 +78,13 @@ impl Totals {
 pub(super) fn first_bad_index(
     chunks: &[Chunk],
     totals: &Totals,
-    pieces: &[&[u8]],
-    first_lines: &[u64],
+    (pieces, first_lines): (&[&[u8]], &[u64]),
     file: &str,
+    workers: &Workers,
 ) -> Option<Error> {
     let sum = totals.sum();
-    for (i, chunk) in chunks.iter().enumerate() {
-        let base = totals.bases[i];
+    let of_chunks = workers.map(chunks.len(), |i| {
+        let (chunk, base) = (&chunks[i], totals.bases[i]);
         let bad = |packed: &u32, base: usize, total: usize| !(0..total as i64).contains(&unpack(*packed, base as u32));
         let kinds: [(&str, &[u32], usize, usize); 3] = [
             ("vertices", &chunk.faces.v, base.v, sum.v),
@@ -100,16 +100,15 @@ pub(super) fn first_bad_index(
         let in_free = ends
             .filter(|(packed, _)| bad(packed, base.v, sum.v))
             .map(|(packed, line)| (line, "vertices", unpack(packed, base.v as u32), sum.v));
-        if let Some((line, what, index, total)) = in_faces.chain(in_free).min_by_key(|found| found.0) {
-            let what = if index < 0 {
-                format!("the index counts back {} {what} beyond the first", -index)
-            } else {
-                format!("index {}, the file has {total} {what}", index + 1)
-            };
-            return Some(Error::malformed(file, Place::Line(line + first_lines[i]), what));
-        }
-    }
-    None
+        let (line, what, index, total) = in_faces.chain(in_free).min_by_key(|found| found.0)?;
+        let what = if index < 0 {
+            format!("the index counts back {} {what} beyond the first", -index)
+        } else {
+            format!("index {}, the file has {total} {what}", index + 1)
+        };
+        Some(Error::malformed(file, Place::Line(line + first_lines[i]), what))
+    });
+    of_chunks.into_iter().flatten().next()
 }
 
 /// The parts of the mesh's arrays that one piece fills.

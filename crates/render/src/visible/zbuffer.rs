@@ -224,7 +224,9 @@ pub(crate) fn with_spare(spare: &Mutex<Vec<Tile>>, samples: usize, f: impl FnOnc
     let mut tile = used.unwrap_or_else(|| {
         let side = TILE as u32;
         let one = TileGrid::new(Viewport { width: side, height: side }, samples);
-        one.tiles.into_iter().next().expect("one tile")
+        let mut tile = one.tiles.into_iter().next().expect("one tile");
+        tile.clear();
+        tile
     });
     f(&mut tile);
     spare.lock().expect("spare tiles").push(tile);
@@ -355,9 +357,8 @@ pub(super) fn transform_vertices(
     let mut work = Vec::new();
     for (draw, out) in needed.iter().zip(vertices.iter_mut()) {
         let Some(draw) = draw else { continue };
-        if out.capacity() == 0 {
-            *out = spare.pop().unwrap_or_default();
-        }
+        // Pages of new memory are first touched by the threads that fill them.
+        *out = spare.pop().unwrap_or_else(|| bytemuck::zeroed_vec(draw.positions.len()));
         out.resize(draw.positions.len(), ScreenVertex::default());
         stats.vertices += draw.positions.len() as u64;
         let chunks = draw.positions.chunks(VERTICES_A_JOB).zip(out.chunks_mut(VERTICES_A_JOB));

@@ -26,6 +26,7 @@ pub(crate) fn run_all() -> Outcome {
     // The viewer starts OpenMPI, which needs its programs.
     debian_packages(&["gfsview-batch", "openmpi-bin"])?;
     crate::osmesa::run_all()?;
+    crate::osmesa::check_size()?;
     let folder = target_folder().join("clients");
     let python = environment(&folder.join("venv"))?;
     let sources = repository().join("crates/osmesa/tests/clients");

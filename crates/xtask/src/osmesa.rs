@@ -6,6 +6,9 @@ use std::path::Path;
 /// What programs are linked with; the name that is looked for at run time.
 const SONAME: &str = "libOSMesa.so.8";
 
+/// What the stripped library's file stays under, in bytes: it is copied into images of containers and packages.
+const BELOW: u64 = 5_000_000;
+
 /// pkg-config's file; `pcfiledir` is the folder that it lies in, so that the whole folder can be moved.
 const PKG_CONFIG: &str = "\
 prefix=${pcfiledir}/..
@@ -40,6 +43,13 @@ pub(crate) fn run_all() -> Outcome {
     println!("  cc PROGRAM.c $(PKG_CONFIG_PATH={shown}/pkgconfig pkg-config --cflags --libs osmesa)");
     println!("docs/osmesa.md tells more.");
     Ok(())
+}
+
+/// Whether the library in `target/osmesa` is as small as it is to stay; an error tells its size.
+pub(crate) fn check_size() -> Outcome {
+    let library = target_folder().join("osmesa").join(SONAME);
+    let size = std::fs::metadata(&library).map_err(|e| format!("{}: {e}", library.display()))?.len();
+    if size < BELOW { Ok(()) } else { Err(format!("{SONAME} has {size} bytes; it is to stay below {BELOW}")) }
 }
 
 fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {

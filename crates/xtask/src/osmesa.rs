@@ -31,9 +31,8 @@ pub(crate) fn run_all() -> Outcome {
     let (built, folder) = (target.join("release/libOSMesa.so"), target.join("osmesa"));
     lay_out(&built, &folder).map_err(|e| format!("{}: {e}", folder.display()))?;
 
-    let size = std::fs::metadata(folder.join(SONAME)).map_or(0, |m| m.len());
     let shown = relative(&folder);
-    println!("{shown}/{SONAME}: {:.1} MB", size as f64 / 1e6);
+    println!("{shown}/{SONAME}: {:.2} MB", size()? as f64 / 1e6);
     println!("{shown}/libOSMesa.so, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc");
     println!();
     println!("Run a program with it:");
@@ -47,9 +46,16 @@ pub(crate) fn run_all() -> Outcome {
 
 /// Whether the library in `target/osmesa` is as small as it is to stay; an error tells its size.
 pub(crate) fn check_size() -> Outcome {
+    match size()? {
+        bytes if bytes < BELOW => Ok(()),
+        bytes => Err(format!("{SONAME} has {bytes} bytes; it is to stay below {BELOW}")),
+    }
+}
+
+/// Size of the library in `target/osmesa`, bytes.
+fn size() -> Result<u64, String> {
     let library = target_folder().join("osmesa").join(SONAME);
-    let size = std::fs::metadata(&library).map_err(|e| format!("{}: {e}", library.display()))?.len();
-    if size < BELOW { Ok(()) } else { Err(format!("{SONAME} has {size} bytes; it is to stay below {BELOW}")) }
+    Ok(std::fs::metadata(&library).map_err(|e| format!("{}: {e}", library.display()))?.len())
 }
 
 fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {

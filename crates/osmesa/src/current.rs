@@ -64,6 +64,24 @@ pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Contex
     result
 }
 
+/// Calls `quick` with the calling thread's context, and [`call`]s `body` if that says that it did nothing. `quick` must neither
+/// panic nor leave a message: an entry point that does no more than this keeps no register.
+#[inline(always)]
+pub(crate) fn call_unless<R: Default>(
+    name: &'static str,
+    quick: impl FnOnce(&mut Context) -> bool,
+    body: impl FnOnce(&mut Context) -> R,
+) -> R {
+    // SAFETY: as in `call`.
+    let context = unsafe { CURRENT.get().as_ref().map(|handle| &mut (*handle.machine()).context) };
+    if context.is_some_and(quick) { R::default() } else { call_apart(name, body) }
+}
+
+#[inline(never)]
+fn call_apart<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) -> R) -> R {
+    call(name, body)
+}
+
 /// Turns a panic into INVALID_OPERATION.
 #[cold]
 fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Send)) -> R {

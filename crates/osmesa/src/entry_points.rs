@@ -2,13 +2,14 @@
 //! with all names it has. Pointers are addresses, but for those at a few numbers that are taken at the call.
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use crate::current::call;
+use crate::current::{call, call_unless};
 use crate::memory::Argument;
 use crate::procedures::{Procedure, procedures};
 
-/// Exports each name as a C function that calls the method of the current context, and makes the table of them.
+/// Exports each name as a C function that calls the method of the current context, unless another one has done it already, and
+/// makes the table of them.
 macro_rules! entry_points {
-    ($($($name:ident)+ => $method:ident $arguments:tt -> $result:ty;)+) => {
+    ($($($name:ident)+ => $method:tt $arguments:tt -> $result:ty;)+) => {
         $($(entry_points! { @ $name $method $arguments $result })+)+
         pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($($name)+)+ };
     };
@@ -16,6 +17,18 @@ macro_rules! entry_points {
         #[unsafe(no_mangle)]
         pub(crate) extern "C" fn $name($($argument: $kind),*) -> $result {
             call(stringify!($name), |context| context.$method($($argument.given()),*))
+        }
+    };
+    (@ $name:ident [$method:ident unless $quick:ident] ($v:ident: *const [f32; $n:literal]) $result:ty) => {
+        #[unsafe(no_mangle)]
+        pub(crate) extern "C" fn $name($v: *const [f32; $n]) -> $result {
+            call_unless(stringify!($name), move |context| context.$quick($v.given()), move |context| context.$method($v.given()))
+        }
+    };
+    (@ $name:ident [$method:ident unless $quick:ident] ($($x:ident: f32),+) $result:ty) => {
+        #[unsafe(no_mangle)]
+        pub(crate) extern "C" fn $name($($x: f32),+) -> $result {
+            call_unless(stringify!($name), move |context| context.$quick(Some([$($x),+])), move |context| context.$method($($x),+))
         }
     };
 }
@@ -64,8 +77,8 @@ entry_points! {
     glColor3bv => color_3bv(v: *const [i8; 3]) -> ();
     glColor3d => color_3d(red: f64, green: f64, blue: f64) -> ();
     glColor3dv => color_3dv(v: *const [f64; 3]) -> ();
-    glColor3f => color_3f(red: f32, green: f32, blue: f32) -> ();
-    glColor3fv => color_3fv(v: *const [f32; 3]) -> ();
+    glColor3f => [color_3f unless quick_color](red: f32, green: f32, blue: f32) -> ();
+    glColor3fv => [color_3fv unless quick_color](v: *const [f32; 3]) -> ();
     glColor3i => color_3i(red: i32, green: i32, blue: i32) -> ();
     glColor3iv => color_3iv(v: *const [i32; 3]) -> ();
     glColor3s => color_3s(red: i16, green: i16, blue: i16) -> ();
@@ -80,8 +93,8 @@ entry_points! {
     glColor4bv => color_4bv(v: *const [i8; 4]) -> ();
     glColor4d => color_4d(red: f64, green: f64, blue: f64, alpha: f64) -> ();
     glColor4dv => color_4dv(v: *const [f64; 4]) -> ();
-    glColor4f => color_4f(red: f32, green: f32, blue: f32, alpha: f32) -> ();
-    glColor4fv => color_4fv(v: *const [f32; 4]) -> ();
+    glColor4f => [color_4f unless quick_color](red: f32, green: f32, blue: f32, alpha: f32) -> ();
+    glColor4fv => [color_4fv unless quick_color](v: *const [f32; 4]) -> ();
     glColor4i => color_4i(red: i32, green: i32, blue: i32, alpha: i32) -> ();
     glColor4iv => color_4iv(v: *const [i32; 4]) -> ();
     glColor4s => color_4s(red: i16, green: i16, blue: i16, alpha: i16) -> ();
@@ -339,8 +352,8 @@ entry_points! {
     glNormal3bv => normal_3bv(v: *const [i8; 3]) -> ();
     glNormal3d => normal_3d(nx: f64, ny: f64, nz: f64) -> ();
     glNormal3dv => normal_3dv(v: *const [f64; 3]) -> ();
-    glNormal3f => normal_3f(nx: f32, ny: f32, nz: f32) -> ();
-    glNormal3fv => normal_3fv(v: *const [f32; 3]) -> ();
+    glNormal3f => [normal_3f unless quick_normal](nx: f32, ny: f32, nz: f32) -> ();
+    glNormal3fv => [normal_3fv unless quick_normal](v: *const [f32; 3]) -> ();
     glNormal3i => normal_3i(nx: i32, ny: i32, nz: i32) -> ();
     glNormal3iv => normal_3iv(v: *const [i32; 3]) -> ();
     glNormal3s => normal_3s(nx: i16, ny: i16, nz: i16) -> ();
@@ -454,32 +467,32 @@ entry_points! {
     glStencilOpSeparateATI glStencilOpSeparate => stencil_op_separate_ati(face: u32, sfail: u32, dpfail: u32, dppass: u32) -> ();
     glTexCoord1d => tex_coord_1d(s: f64) -> ();
     glTexCoord1dv => tex_coord_1dv(v: *const [f64; 1]) -> ();
-    glTexCoord1f => tex_coord_1f(s: f32) -> ();
-    glTexCoord1fv => tex_coord_1fv(v: *const [f32; 1]) -> ();
+    glTexCoord1f => [tex_coord_1f unless quick_tex_coord](s: f32) -> ();
+    glTexCoord1fv => [tex_coord_1fv unless quick_tex_coord](v: *const [f32; 1]) -> ();
     glTexCoord1i => tex_coord_1i(s: i32) -> ();
     glTexCoord1iv => tex_coord_1iv(v: *const [i32; 1]) -> ();
     glTexCoord1s => tex_coord_1s(s: i16) -> ();
     glTexCoord1sv => tex_coord_1sv(v: *const [i16; 1]) -> ();
     glTexCoord2d => tex_coord_2d(s: f64, t: f64) -> ();
     glTexCoord2dv => tex_coord_2dv(v: *const [f64; 2]) -> ();
-    glTexCoord2f => tex_coord_2f(s: f32, t: f32) -> ();
-    glTexCoord2fv => tex_coord_2fv(v: *const [f32; 2]) -> ();
+    glTexCoord2f => [tex_coord_2f unless quick_tex_coord](s: f32, t: f32) -> ();
+    glTexCoord2fv => [tex_coord_2fv unless quick_tex_coord](v: *const [f32; 2]) -> ();
     glTexCoord2i => tex_coord_2i(s: i32, t: i32) -> ();
     glTexCoord2iv => tex_coord_2iv(v: *const [i32; 2]) -> ();
     glTexCoord2s => tex_coord_2s(s: i16, t: i16) -> ();
     glTexCoord2sv => tex_coord_2sv(v: *const [i16; 2]) -> ();
     glTexCoord3d => tex_coord_3d(s: f64, t: f64, r: f64) -> ();
     glTexCoord3dv => tex_coord_3dv(v: *const [f64; 3]) -> ();
-    glTexCoord3f => tex_coord_3f(s: f32, t: f32, r: f32) -> ();
-    glTexCoord3fv => tex_coord_3fv(v: *const [f32; 3]) -> ();
+    glTexCoord3f => [tex_coord_3f unless quick_tex_coord](s: f32, t: f32, r: f32) -> ();
+    glTexCoord3fv => [tex_coord_3fv unless quick_tex_coord](v: *const [f32; 3]) -> ();
     glTexCoord3i => tex_coord_3i(s: i32, t: i32, r: i32) -> ();
     glTexCoord3iv => tex_coord_3iv(v: *const [i32; 3]) -> ();
     glTexCoord3s => tex_coord_3s(s: i16, t: i16, r: i16) -> ();
     glTexCoord3sv => tex_coord_3sv(v: *const [i16; 3]) -> ();
     glTexCoord4d => tex_coord_4d(s: f64, t: f64, r: f64, q: f64) -> ();
     glTexCoord4dv => tex_coord_4dv(v: *const [f64; 4]) -> ();
-    glTexCoord4f => tex_coord_4f(s: f32, t: f32, r: f32, q: f32) -> ();
-    glTexCoord4fv => tex_coord_4fv(v: *const [f32; 4]) -> ();
+    glTexCoord4f => [tex_coord_4f unless quick_tex_coord](s: f32, t: f32, r: f32, q: f32) -> ();
+    glTexCoord4fv => [tex_coord_4fv unless quick_tex_coord](v: *const [f32; 4]) -> ();
     glTexCoord4i => tex_coord_4i(s: i32, t: i32, r: i32, q: i32) -> ();
     glTexCoord4iv => tex_coord_4iv(v: *const [i32; 4]) -> ();
     glTexCoord4s => tex_coord_4s(s: i16, t: i16, r: i16, q: i16) -> ();
@@ -515,24 +528,24 @@ entry_points! {
     glUnmapBuffer glUnmapBufferARB => unmap_buffer(target: u32) -> u8;
     glVertex2d => vertex_2d(x: f64, y: f64) -> ();
     glVertex2dv => vertex_2dv(v: *const [f64; 2]) -> ();
-    glVertex2f => vertex_2f(x: f32, y: f32) -> ();
-    glVertex2fv => vertex_2fv(v: *const [f32; 2]) -> ();
+    glVertex2f => [vertex_2f unless quick_vertex](x: f32, y: f32) -> ();
+    glVertex2fv => [vertex_2fv unless quick_vertex](v: *const [f32; 2]) -> ();
     glVertex2i => vertex_2i(x: i32, y: i32) -> ();
     glVertex2iv => vertex_2iv(v: *const [i32; 2]) -> ();
     glVertex2s => vertex_2s(x: i16, y: i16) -> ();
     glVertex2sv => vertex_2sv(v: *const [i16; 2]) -> ();
     glVertex3d => vertex_3d(x: f64, y: f64, z: f64) -> ();
     glVertex3dv => vertex_3dv(v: *const [f64; 3]) -> ();
-    glVertex3f => vertex_3f(x: f32, y: f32, z: f32) -> ();
-    glVertex3fv => vertex_3fv(v: *const [f32; 3]) -> ();
+    glVertex3f => [vertex_3f unless quick_vertex](x: f32, y: f32, z: f32) -> ();
+    glVertex3fv => [vertex_3fv unless quick_vertex](v: *const [f32; 3]) -> ();
     glVertex3i => vertex_3i(x: i32, y: i32, z: i32) -> ();
     glVertex3iv => vertex_3iv(v: *const [i32; 3]) -> ();
     glVertex3s => vertex_3s(x: i16, y: i16, z: i16) -> ();
     glVertex3sv => vertex_3sv(v: *const [i16; 3]) -> ();
     glVertex4d => vertex_4d(x: f64, y: f64, z: f64, w: f64) -> ();
     glVertex4dv => vertex_4dv(v: *const [f64; 4]) -> ();
-    glVertex4f => vertex_4f(x: f32, y: f32, z: f32, w: f32) -> ();
-    glVertex4fv => vertex_4fv(v: *const [f32; 4]) -> ();
+    glVertex4f => [vertex_4f unless quick_vertex](x: f32, y: f32, z: f32, w: f32) -> ();
+    glVertex4fv => [vertex_4fv unless quick_vertex](v: *const [f32; 4]) -> ();
     glVertex4i => vertex_4i(x: i32, y: i32, z: i32, w: i32) -> ();
     glVertex4iv => vertex_4iv(v: *const [i32; 4]) -> ();
     glVertex4s => vertex_4s(x: i16, y: i16, z: i16, w: i16) -> ();

@@ -105,8 +105,20 @@ impl Builder {
     pub(crate) fn vertex(&mut self, position: [f32; 4], current: &Current) {
         self.batch.positions.push(position);
         if self.seen != 0 {
-            self.batch.push_attributes(self.seen, current);
+            self.push_seen(current);
         }
+    }
+
+    /// Adds what the last vertex has besides its position.
+    #[inline(never)]
+    pub(super) fn push_seen(&mut self, current: &Current) {
+        self.batch.push_attributes(self.seen, current);
+    }
+
+    /// Whether attribute `which` may change as it is: it has an array, or nothing is being gathered.
+    #[inline(always)]
+    pub(super) fn holds(&self, which: usize) -> bool {
+        !self.gathering || self.seen >> which & 1 == 1
     }
 
     /// Makes sure that attribute `which` has an array, before `current` changes.

@@ -14,6 +14,7 @@ mod lists;
 mod merge;
 mod names;
 mod position;
+mod quick;
 mod rect;
 
 pub(crate) use arrays::Arrays;

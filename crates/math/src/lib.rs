@@ -10,12 +10,14 @@
 mod bounding_sphere;
 pub mod bounds;
 pub mod color;
+mod fingerprint;
 pub mod frustum;
 pub mod func;
 pub mod lanes;
 pub mod obb;
 
 pub use bounds::{Aabb, Sphere};
+pub use fingerprint::{Fingerprint, mixed};
 pub use frustum::Frustum;
 pub use glam::{
     DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, IVec2, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, dvec2, dvec3,

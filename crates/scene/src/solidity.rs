@@ -15,6 +15,7 @@ use crate::disjoint_sets::DisjointSets;
 use crate::edge_table::{MAX_FACES, Outlines, Use, edges_at, for_each_edge, is_collapsed};
 use crate::weld::Weld;
 use vitral_exec::Workers;
+use vitral_math::{Fingerprint, mixed};
 
 /// What back-face culling must know. Triangles with two corners at one position are left out: they are invisible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,30 +72,13 @@ fn fingerprint(mesh: &Mesh, workers: &Workers) -> u64 {
     const PIECE: usize = 1 << 16;
     let hash = |words: &[u32]| {
         let pieces = workers.map(words.len().div_ceil(PIECE), |k| {
-            hash_words(&words[k * PIECE..words.len().min((k + 1) * PIECE)]).map(|h| [h as u32, (h >> 32) as u32])
+            let piece = Fingerprint::of(&words[k * PIECE..words.len().min((k + 1) * PIECE)]);
+            piece.0.map(|h| [h as u32, (h >> 32) as u32])
         });
-        let whole = hash_words(pieces.as_flattened().as_flattened());
-        whole.iter().fold(words.len() as u64, |all, h| mixed(all, *h))
+        let whole = Fingerprint::of(pieces.as_flattened().as_flattened());
+        whole.0.iter().fold(words.len() as u64, |all, h| mixed(all, *h))
     };
     mixed(hash(bytemuck::cast_slice(&mesh.positions)), hash(mesh.triangles.as_flattened()))
-}
-
-/// Eight hashes side by side, so that no step waits for the one before.
-fn hash_words(words: &[u32]) -> [u64; 8] {
-    let mut hashes = [0u64; 8];
-    let (sixteens, rest) = words.as_chunks::<16>();
-    for sixteen in sixteens {
-        for (h, pair) in hashes.iter_mut().zip(sixteen.as_chunks::<2>().0) {
-            *h = mixed(*h, u64::from(pair[0]) | u64::from(pair[1]) << 32);
-        }
-    }
-    rest.iter().for_each(|&word| hashes[0] = mixed(hashes[0], u64::from(word)));
-    hashes
-}
-
-fn mixed(hash: u64, word: u64) -> u64 {
-    let product = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xd6e8_feb8_6659_fd93);
-    product ^ product >> 29
 }
 
 /// The skins of a mesh, while its edges are looked at.

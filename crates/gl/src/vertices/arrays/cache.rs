@@ -26,11 +26,11 @@ pub(super) struct Key {
 
 impl Key {
     /// Whether it is the same draw, perhaps from other data.
-    fn is_same_draw(&self, other: &Self) -> bool {
+    pub(super) fn is_same_draw(&self, other: &Self) -> bool {
         self.mode == other.mode && self.vertices == other.vertices && self.arrays == other.arrays
     }
 
-    fn uses(&self, buffer: u32) -> bool {
+    pub(super) fn uses(&self, buffer: u32) -> bool {
         let element = matches!(self.vertices, Vertices::Elements { buffer: b, .. } if b == buffer);
         element || self.arrays.iter().any(|(_, array)| array.buffer == buffer)
     }
@@ -49,7 +49,8 @@ pub(super) struct Cache {
     vertices: usize,
 }
 
-fn weight(batch: &VertexBatch) -> usize {
+/// What a batch counts: vertices, and indices as far as they take memory.
+pub(super) fn weight(batch: &VertexBatch) -> usize {
     batch.positions.len() + batch.indices.as_ref().map_or(0, Vec::len) / 8
 }
 

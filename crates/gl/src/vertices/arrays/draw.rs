@@ -228,15 +228,15 @@ impl Context {
         };
         let reader = self.array_reader(&arrays, element_buffer.unwrap_or(0))?;
         let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| array.buffer != 0);
-        if !constant {
-            return build(&reader, &arrays, mode, vertices).map(Arc::new);
-        }
         let versions = reader.stores.iter().map(|store| store.version).collect();
         let key = Key { mode, vertices, arrays, versions };
+        if !constant {
+            return self.arrays.repeats.batch(&reader, key);
+        }
         if let Some(batch) = self.arrays.cache.find(&key) {
             return Ok(batch);
         }
-        let batch = Arc::new(build(&reader, &key.arrays, mode, vertices)?);
+        let batch = Arc::new(build(&reader, &key.arrays, mode, vertices)?.0);
         self.arrays.cache.insert(key, batch.clone());
         Ok(batch)
     }
@@ -278,13 +278,13 @@ impl Context {
     }
 }
 
-/// Reads everything that a draw takes.
-fn build(
+/// Reads everything that a draw takes; also says which elements that are.
+pub(super) fn build(
     reader: &Reader,
     arrays: &[(usize, ArrayPointer)],
     mode: u32,
     vertices: Vertices,
-) -> Result<VertexBatch, Refusal> {
+) -> Result<(VertexBatch, Vec<Run>), Refusal> {
     let mut batch = VertexBatch::default();
     let (runs, count) = match vertices {
         Vertices::Range { first, count } => (vec![(first, count)], count),
@@ -316,7 +316,7 @@ fn build(
         }
     }
     batch.add_primitive(mode, 0, count as u32);
-    Ok(batch)
+    Ok((batch, runs))
 }
 
 /// Renumbers indices from 0; the result says which elements to read for that.

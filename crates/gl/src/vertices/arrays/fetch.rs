@@ -1,12 +1,15 @@
 //! Reading array elements in bulk, out of buffer objects or the client's memory.
 
+use super::cache::Vertices;
 use crate::enums;
 use crate::memory::ClientMemory;
 use crate::objects::{Buffer, Names};
 use crate::pixels::float_from_half;
 use crate::state::ArrayPointer;
 use crate::vertices::client::{self, Component};
+use std::ops::Range;
 use std::sync::Arc;
+use vitral_math::Fingerprint;
 
 /// The size of an array of four components in the order blue, green, red, alpha.
 pub(super) const BGRA: i32 = enums::BGRA as i32;
@@ -93,8 +96,7 @@ impl Reader {
                 layout.convert(bytes, count, unit, default, &mut elements);
                 continue;
             }
-            // Elements far apart are read one by one: what lies between may not be the client's.
-            let at_once = if layout.stride > 4 * layout.size + 256 { 1 } else { (PIECE / layout.stride).max(1) };
+            let at_once = if layout.is_sparse() { 1 } else { (PIECE / layout.stride).max(1) };
             let mut left = count;
             while left > 0 {
                 let n = left.min(at_once);
@@ -111,6 +113,58 @@ impl Reader {
             elements.iter_mut().for_each(|element| element.swap(0, 2));
         }
         Ok(elements)
+    }
+
+    /// The fingerprint of all bytes of the client's memory that [`Self::elements`] would read for these arrays; `None` where it would read
+    /// them one by one, or not at all.
+    pub(super) fn fingerprint(&self, arrays: &[(usize, ArrayPointer)], runs: &[Run]) -> Option<Fingerprint> {
+        let mut ranges: Vec<Range<usize>> = Vec::new();
+        for (_, array) in arrays.iter().filter(|(_, array)| array.buffer == 0) {
+            let layout = Layout::of(array);
+            if layout.is_sparse() || array.pointer == 0 {
+                return None;
+            }
+            for &(first, count) in runs {
+                let start = first.checked_mul(layout.stride)?.checked_add(array.pointer)?;
+                ranges.push(start..start.checked_add(layout.span(count)?)?);
+            }
+        }
+        // Interleaved arrays are read once.
+        ranges.sort_unstable_by_key(|range| range.start);
+        ranges.dedup_by(|next, range| {
+            let overlap = next.start <= range.end;
+            if overlap {
+                range.end = range.end.max(next.end);
+            }
+            overlap
+        });
+        let mut fingerprint = Fingerprint::default();
+        ranges.into_iter().try_for_each(|range| self.add_bytes(&mut fingerprint, range))?;
+        Some(fingerprint)
+    }
+
+    /// The fingerprint of indices in the client's memory; `None` if there are none or they cannot be read.
+    pub(super) fn index_fingerprint(&self, vertices: Vertices) -> Option<Fingerprint> {
+        let Vertices::Elements { count, kind, pointer, buffer: 0, .. } = vertices else { return None };
+        let end = count.checked_mul(type_size(kind))?.checked_add(pointer)?;
+        let mut fingerprint = Fingerprint::default();
+        self.add_bytes(&mut fingerprint, pointer..end)?;
+        Some(fingerprint)
+    }
+
+    /// Adds bytes of the client's memory to a fingerprint.
+    fn add_bytes(&self, fingerprint: &mut Fingerprint, range: Range<usize>) -> Option<()> {
+        let mut words = vec![0u32; range.len().min(PIECE).div_ceil(4)];
+        for start in range.clone().step_by(PIECE) {
+            let len = (range.end - start).min(PIECE);
+            let words = &mut words[..len.div_ceil(4)];
+            words[len.div_ceil(4) - 1] = 0;
+            if !self.memory.read(start, &mut bytemuck::cast_slice_mut(words)[..len]) {
+                return None;
+            }
+            fingerprint.add(words);
+        }
+        Some(())
     }
 
     /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
@@ -160,6 +214,11 @@ impl Layout {
         let size = components * type_size(array.kind);
         let stride = if array.stride == 0 { size } else { array.stride as usize };
         Self { kind: array.kind, components, size, stride }
+    }
+
+    /// Elements far apart are read one by one: what lies between may not be the client's.
+    fn is_sparse(&self) -> bool {
+        self.stride > 4 * self.size + 256
     }
 
     /// Bytes from the first to the end of the last of `count` elements.

@@ -6,6 +6,7 @@ mod fetch;
 mod interleaved;
 mod objects;
 mod pointers;
+mod repeats;
 
 use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::Context;
@@ -20,6 +21,8 @@ const POSITION: usize = super::attribute::COUNT;
 pub(crate) struct Arrays {
     /// Batches built from buffer objects.
     cache: cache::Cache,
+    /// Batches built from the client's memory.
+    repeats: repeats::Repeats,
     /// Vertex array objects that are not bound; 0 is the default one.
     objects: Names<objects::VertexArray>,
     /// `LockArraysEXT`: first and count.
@@ -75,5 +78,6 @@ impl Context {
             }
         }
         self.arrays.cache.forget(name);
+        self.arrays.repeats.forget(name);
     }
 }

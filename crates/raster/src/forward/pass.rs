@@ -19,7 +19,7 @@ use crate::{SUBPIXEL, SamplePattern, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
-use vitral_math::lanes::{LANES, Level, dispatch};
+use vitral_math::lanes::{LANES, Level};
 
 /// Where fragments go. All planes have the same number of samples.
 #[derive(Clone, Debug)]
@@ -405,9 +405,7 @@ impl Runner {
             runs.push(run(*index, rows.clone(), copy.planes(scale, target.samples)));
         }
         let (many, one) = (pattern(target.samples), pattern(1));
-        self.workers.for_each(runs, |mut run| {
-            dispatch!(self.level, simd => run.walk(simd, items, &many, &one));
-        });
+        self.workers.for_each(runs, |mut run| run.run(self.level, items, &many, &one));
         for ((index, rows), copy) in others.iter().zip(copies) {
             copy.give_back(rows, &mut tiles[*index]);
         }

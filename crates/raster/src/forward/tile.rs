@@ -17,7 +17,7 @@ use crate::kernel::traverse::{Block, BlockSink, Placed, traverse_window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Simd};
+use vitral_math::lanes::{F32x8, LANES, Level, Simd, dispatch};
 
 /// A tile of the target and its planes.
 pub(crate) struct TileRun<'a> {
@@ -40,9 +40,14 @@ impl<'a> TileRun<'a> {
         Self { index, x, y, width, rows: rows.start.min(end)..end, planes }
     }
 
-    /// Everything that happens in this tile.
+    /// Everything that happens in this tile. A function of its own: whoever shares tiles among threads calls it at several places.
+    #[inline(never)]
+    pub(crate) fn run(&mut self, level: Level, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+        dispatch!(level, simd => self.walk(simd, items, many, one));
+    }
+
     #[inline(always)]
-    pub(crate) fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+    fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
         let mut memory = None;
         for item in items {
             match item {

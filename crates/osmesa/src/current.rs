@@ -77,6 +77,8 @@ pub(crate) fn call_unless<R: Default>(
     if context.is_some_and(quick) { R::default() } else { call_apart(name, body) }
 }
 
+/// Laid out behind what is called a million times a frame.
+#[cold]
 #[inline(never)]
 fn call_apart<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) -> R) -> R {
     call(name, body)

@@ -24,9 +24,10 @@ Cflags: -I${includedir}
 
 /// Builds the library in release and fills `target/osmesa`.
 pub(crate) fn run_all() -> Outcome {
-    // Names of its own functions are a sixth of the file, and of no use to programs.
-    let strip = ["--", "-C", "strip=symbols"];
-    run(cargo().args(["rustc", "--release", "--package", "vitral-osmesa", "--lib"]).args(strip))?;
+    // Names of its own functions are a sixth of the file, and of no use to programs. Entry points begin with a cache line: one
+    // that is called a million times a frame took up to 1.4 times as long where it did not.
+    let options = ["--", "-C", "strip=symbols", "-C", "llvm-args=-align-all-functions=6"];
+    run(cargo().args(["rustc", "--release", "--package", "vitral-osmesa", "--lib"]).args(options))?;
     let target = target_folder();
     let (built, folder) = (target.join("release/libOSMesa.so"), target.join("osmesa"));
     lay_out(&built, &folder).map_err(|e| format!("{}: {e}", folder.display()))?;

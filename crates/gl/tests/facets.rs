@@ -17,9 +17,9 @@ static THREADS: LazyLock<Arc<Runner>> = LazyLock::new(|| Arc::new(Runner::new(Wo
 /// What sends facets which way, and changes nothing.
 #[derive(Clone, Copy, Debug)]
 enum Way {
-    /// Tiny ones eight at a time, or row by row with a stencil test.
+    /// Tiny ones eight at a time.
     Tiny,
-    /// Tiny ones row by row: an alpha test that always passes has depths written after colours are known.
+    /// Tiny ones that change depths one by one: an alpha test that always passes has them written after colours are known.
     LateDepth,
     /// By blocks: a stencil is written that nobody asks for.
     Blocks,
@@ -36,7 +36,13 @@ enum With {
     Texture,
     Mipmaps,
     Cube,
+    /// A texture and a shadow map, whose lookups decide.
+    Shadow,
     Blending,
+    /// Whatever is drawn again is added where it is.
+    Adding,
+    /// Some fragments are dropped for their colour.
+    AlphaTest,
     FlatShade,
     Scissor,
     Stencil,
@@ -49,7 +55,7 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
     if strips {
         c.set_runner_source(|| Arc::clone(&THREADS));
     }
-    let names = c.put(&[0u32; 8]);
+    let names = c.put(&[0u32; 16]);
     c.gen_framebuffers(1, names);
     c.gen_renderbuffers(2, names + 4);
     let [framebuffer, color, depth] = c.take::<u32>(names, 3).try_into().unwrap();
@@ -101,6 +107,26 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             c.enable(gl::TEXTURE_CUBE_MAP_SEAMLESS);
             c.enable(gl::TEXTURE_CUBE_MAP);
         }
+        With::Shadow => {
+            let texels = c.put(&[[255u8, 40, 90, 255], [90, 255, 70, 255], [60, 80, 255, 255], [255; 4]]);
+            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGB as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
+            c.enable(gl::TEXTURE_2D);
+            c.active_texture(gl::TEXTURE1);
+            shadow_map(&mut c, names + 16);
+            c.bind_framebuffer(gl::FRAMEBUFFER, if samples > 0 { framebuffer } else { 0 });
+            c.enable(gl::TEXTURE_2D);
+            c.enable(gl::ALPHA_TEST);
+            c.alpha_func(gl::GEQUAL, 0.3);
+        }
+        With::Adding => {
+            c.enable(gl::BLEND);
+            c.blend_func(gl::ONE, gl::ONE);
+        }
+        With::AlphaTest => {
+            c.enable(gl::ALPHA_TEST);
+            c.alpha_func(gl::GREATER, 0.4);
+        }
         With::Blending => {
             c.enable(gl::BLEND);
             c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
@@ -148,28 +174,12 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             c.begin_query(gl::SAMPLES_PASSED, query);
         }
     }
-    let mut state = 5u32;
-    let mut random = move |below: f32| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 8) as f32 / (1 << 24) as f32 * below
-    };
-    c.begin(gl::TRIANGLES);
-    for k in 0..3000 {
-        let size = if k % 50 == 0 { 60.0 } else { 9.0 };
-        let middle = [random(150.0), random(90.0), random(2.0) - 1.0];
-        for _ in 0..3 {
-            let color = [random(1.0), random(1.0), random(1.0), random(1.0)];
-            if !matches!(with, With::OneColor) {
-                c.color_4f(color[0], color[1], color[2], color[3]);
-            }
-            c.tex_coord_3f(random(2.0), random(2.0), if matches!(with, With::Cube) { random(2.0) - 1.0 } else { 0.0 });
-            // The eye is near to some.
-            let w = 1.0 + random(if k % 7 == 0 { 30.0 } else { 2.0 });
-            let (x, y) = ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
-            c.vertex_4f(x * w, y * w, (middle[2] * 0.9 + random(0.1)) * w, w);
-        }
+    triangles(&mut c, with);
+    if matches!(with, With::Adding) {
+        // With equal depths nothing but colours changes.
+        c.depth_func(gl::LEQUAL);
+        triangles(&mut c, with);
     }
-    c.end();
     if matches!(way, Way::Everything) {
         c.end_query(gl::SAMPLES_PASSED);
     }
@@ -188,6 +198,86 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
     c.bytes()
 }
 
+/// Binds a shadow map of some random triangles to the current unit.
+fn shadow_map(c: &mut Stage, names: usize) {
+    c.gen_textures(1, names);
+    c.gen_framebuffers(1, names + 4);
+    let [texture, framebuffer] = c.take::<u32>(names, 2).try_into().unwrap();
+    c.bind_texture(gl::TEXTURE_2D, texture);
+    c.tex_image_2d(
+        gl::TEXTURE_2D,
+        0,
+        gl::DEPTH_COMPONENT24 as i32,
+        96,
+        96,
+        0,
+        gl::DEPTH_COMPONENT,
+        gl::UNSIGNED_INT,
+        0,
+    );
+    for (parameter, value) in [
+        (gl::TEXTURE_MIN_FILTER, gl::NEAREST),
+        (gl::TEXTURE_MAG_FILTER, gl::NEAREST),
+        (gl::TEXTURE_WRAP_S, gl::CLAMP_TO_EDGE),
+        (gl::TEXTURE_WRAP_T, gl::CLAMP_TO_EDGE),
+        (gl::TEXTURE_COMPARE_MODE, gl::COMPARE_R_TO_TEXTURE),
+        (gl::TEXTURE_COMPARE_FUNC, gl::LEQUAL),
+        (gl::DEPTH_TEXTURE_MODE, gl::INTENSITY),
+    ] {
+        c.tex_parameteri(gl::TEXTURE_2D, parameter, value as i32);
+    }
+    c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
+    c.framebuffer_texture_2d(gl::FRAMEBUFFER, gl::DEPTH_ATTACHMENT, gl::TEXTURE_2D, texture, 0);
+    c.draw_buffer(gl::NONE);
+    c.viewport(0, 0, 96, 96);
+    c.clear(gl::DEPTH_BUFFER_BIT);
+    c.color_mask(0, 0, 0, 0);
+    let mut state = 7u32;
+    let mut random = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+    };
+    c.begin(gl::TRIANGLES);
+    for _ in 0..40 {
+        let middle = [random(), random(), random()];
+        for _ in 0..3 {
+            c.vertex_3f(middle[0] + random() * 0.3, middle[1] + random() * 0.3, middle[2] * 0.8 + random() * 0.1);
+        }
+    }
+    c.end();
+    c.color_mask(1, 1, 1, 1);
+    c.viewport(0, 0, 150, 90);
+}
+
+/// Random triangles, most of them small.
+fn triangles(c: &mut Stage, with: With) {
+    let mut state = 5u32;
+    let mut random = move |below: f32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32 * below
+    };
+    c.begin(gl::TRIANGLES);
+    for k in 0..3000 {
+        let size = if k % 50 == 0 { 60.0 } else { 9.0 };
+        let middle = [random(150.0), random(90.0), random(2.0) - 1.0];
+        for _ in 0..3 {
+            let color = [random(1.0), random(1.0), random(1.0), random(1.0)];
+            if !matches!(with, With::OneColor) {
+                c.color_4f(color[0], color[1], color[2], color[3]);
+            }
+            c.tex_coord_3f(random(2.0), random(2.0), if matches!(with, With::Cube) { random(2.0) - 1.0 } else { 0.0 });
+            if matches!(with, With::Shadow) {
+                c.multi_tex_coord_4f(gl::TEXTURE1, random(1.6), random(1.6), random(1.6), 1.0 + random(0.6));
+            }
+            // The eye is near to some.
+            let w = 1.0 + random(if k % 7 == 0 { 30.0 } else { 2.0 });
+            let (x, y) = ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
+            c.vertex_4f(x * w, y * w, (middle[2] * 0.9 + random(0.1)) * w, w);
+        }
+    }
+    c.end();
+}
+
 #[test]
 fn facets_look_the_same_whichever_way_they_go() {
     for samples in [(0, true), (4, true), (4, false)] {
@@ -198,7 +288,10 @@ fn facets_look_the_same_whichever_way_they_go() {
             With::Texture,
             With::Mipmaps,
             With::Cube,
+            With::Shadow,
             With::Blending,
+            With::Adding,
+            With::AlphaTest,
             With::FlatShade,
             With::Scissor,
             With::Stencil,

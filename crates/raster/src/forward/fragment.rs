@@ -109,7 +109,7 @@ pub(crate) struct FragmentOps {
     protected: u32,
     /// Nothing needs the row-by-row operations, see [`super::block`].
     pub(crate) common: bool,
-    /// Common, and nothing but depths and colours is written, see [`super::tiny`].
+    /// Common, and nothing but depths and colours is written, see [`super::tiny_eight`].
     pub(crate) direct: bool,
     all_protected: bool,
     coverage: u32,

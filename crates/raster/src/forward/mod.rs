@@ -26,7 +26,6 @@ mod surface;
 mod texture;
 mod tile;
 mod tile_index;
-mod tiny;
 mod tiny_eight;
 mod wide;
 

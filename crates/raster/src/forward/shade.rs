@@ -1,9 +1,9 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
 
-mod plain;
+mod eight_facets;
 mod textures;
 
-pub(crate) use plain::PlainEight;
+pub(crate) use eight_facets::{EightFacets, FacetPixels, go_together};
 
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
@@ -492,20 +492,6 @@ impl<'a> Shader<'a> {
             }
         }
         if tested { passed } else { any }
-    }
-
-    /// Whether a draw's colours are those of the corners and nothing else.
-    #[inline(always)]
-    pub(crate) fn is_plain(draw: &DrawContext<'_>) -> bool {
-        let state = draw.state;
-        let alone = state.units.is_empty() && state.fog.is_none() && !state.color_sum;
-        alone && !state.flat && draw.layout.grid.is_none()
-    }
-
-    /// The packed colours of the eight pixels with centres `x`, `y` of a facet that [`Self::is_plain`] and prepared.
-    #[inline(always)]
-    pub(crate) fn plain_row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
-        pack::<S, F32x8<S>>(&self.four(simd, &self.weights(simd, x, y), self.color_at()))
     }
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.

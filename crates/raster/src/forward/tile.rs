@@ -123,11 +123,7 @@ impl<'a> TileRun<'a> {
                     self.tiny_facets(simd, job, memory);
                     let shader = Shader::new(facet, draw, job.primitives, [x as f32, y as f32], &mut memory.scratch);
                     let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut memory.words };
-                    if place.is_tiny() && sink.by_rows() {
-                        sink.tiny(simd, setup, &place);
-                    } else {
-                        traverse_window(simd, setup, (x, y), &window, pattern, &mut sink);
-                    }
+                    traverse_window(simd, setup, (x, y), &window, pattern, &mut sink);
                 }
                 self.tiny_facets(simd, job, memory);
             },

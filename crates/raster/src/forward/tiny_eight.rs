@@ -1,21 +1,23 @@
-//! Tiny facets of one draw, eight at a time, where nothing but depths and colours is tested and written.
+//! Facets of at most 8x8 pixels, of which a fine mesh is made, eight of one draw at a time, where nothing but depths and colours is
+//! written.
 //!
 //! Coverage and depths of all eight are computed together, then each facet's pixels meet the stored depths, one after the other,
-//! since two facets may lie in one pixel. Where colours are those of corners they are computed together again; else each facet
-//! colours its own pixels. The results are those of [`super::tiny`].
+//! since two facets may lie in one pixel. Where colours come from corners and common textures they are found together again
+//! ([`super::shade::EightFacets`]); else each facet colours its own pixels. The results are those of [`super::block`].
 
-use super::assemble::Primitives;
+use super::assemble::{Facet, Primitives};
 use super::block::{self, BlockWords, Words};
 use super::fragment::{ColorTile, Mixing, SAMPLES, stored_depth};
 use super::fragment_ops::compare::holds;
+use super::fragment_ops::packed::add_words;
+use super::fragment_ops::stencil::stencil_holds;
 use super::pass::{DrawContext, facet_of};
-use super::shade::{PlainEight, Scratch, Shader};
+use super::shade::{EightFacets, FacetPixels, Scratch, Shader, go_together};
 use super::state::{Compare, DepthTest};
 use super::tile::TileRun;
 use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
 use crate::kernel::traverse::Placed;
 use crate::{BLOCK, SamplePattern, Setup, TILE_PIXELS};
-use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd};
 
 /// Tiny facets of one draw that wait until there are eight.
@@ -35,6 +37,8 @@ pub(super) struct FacetMemory {
     pub(super) words: BlockWords,
     /// Colours at places of tiny facets, of all eight.
     each: [[u32; LANES]; PLACES],
+    /// Pixels of all eight that show.
+    pixels: FacetPixels,
     pub(super) waiting: TinyFacets,
 }
 
@@ -44,6 +48,7 @@ impl Default for FacetMemory {
             scratch: Scratch::default(),
             words: [0; BLOCK * BLOCK],
             each: [[0; LANES]; PLACES],
+            pixels: FacetPixels::default(),
             waiting: TinyFacets::default(),
         }
     }
@@ -79,14 +84,17 @@ impl TinyFacets {
         self.draw = draw;
         self.eight.push(setup, place);
     }
+
+    /// One of them.
+    #[inline(always)]
+    fn facet<'p>(&self, primitives: &'p Primitives, number: usize) -> &'p Facet {
+        facet_of(primitives, primitives.batch.item(self.entries[number % LANES]).facet)
+    }
 }
 
 /// Whether a draw's tiny facets may come this way.
 pub(super) fn by_eights(draw: &DrawContext<'_>, run: &TileRun<'_>) -> bool {
-    let state = draw.state;
     draw.ops.direct
-        && state.stencil.is_none()
-        && state.alpha_test.is_none()
         && !draw.layout.smooth[2]
         && matches!(run.planes.samples, 1 | SAMPLES)
         && !matches!(run.planes.color, Some(ColorTile::RgbaF32(_)))
@@ -121,36 +129,40 @@ impl TileRun<'_> {
         job: &JobContext<'_>,
         memory: &mut FacetMemory,
     ) {
-        let FacetMemory { scratch, words, each, waiting } = memory;
-        let draw = &job.draws[waiting.draw as usize];
-        let Some(passed) = self.tiny_tested::<S, N>(simd, draw, job.pattern(draw), &mut waiting.eight) else { return };
-        if !draw.shaded || passed.any == [0; LANES] || self.tiny_replaced(simd, job, waiting, &passed, each) {
+        let Some(covered) = self.tiny_covered::<S, N>(simd, job, &mut memory.waiting) else { return };
+        let draw = &job.draws[memory.waiting.draw as usize];
+        let mut seen = covered;
+        if draw.state.alpha_test.is_none() {
+            self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, true);
+            self.tiny_colored(simd, job, memory, &mut seen);
             return;
         }
-        let (eight, Passed { masks, any, .. }) = (&waiting.eight, &passed);
-        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
-            let setup = job.primitives.batch.item(waiting.entries[facet]);
-            let (own, tile) = (facet_of(job.primitives, setup.facet), [self.x as f32, self.y as f32]);
-            let mut shader = Shader::new(own, draw, job.primitives, tile, scratch);
-            let block = eight.block(facet, any[facet]);
-            let corner = (self.x as usize + block.x, self.y as usize + block.y);
-            let (one, _) = shader.block(simd, setup, corner, any[facet], words);
-            let each = [masks[0][facet], masks[1][facet], masks[2][facet], masks[3][facet]];
-            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &each);
+        // Before the alpha test depths may be looked at, but not written. Mostly they are there already, from a draw before.
+        if !self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, false) {
+            self.tiny_colored(simd, job, memory, &mut seen);
+            return;
+        }
+        // Else what one facet leaves may hide the next.
+        for facet in 0..memory.waiting.eight.len() {
+            let mut seen = covered.of(facet);
+            self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, false);
+            self.tiny_colored(simd, job, memory, &mut seen);
+            self.tiny_written::<N>(&memory.waiting.eight, &seen);
         }
     }
 
-    /// Coverage and depth test. `None` if nothing is covered.
+    /// What is covered and passes the stencil test. `None` if that is nothing.
     #[inline(always)]
-    fn tiny_tested<S: Simd, const N: usize>(
+    fn tiny_covered<S: Simd, const N: usize>(
         &mut self,
         simd: S,
-        draw: &DrawContext<'_>,
-        pattern: &SamplePattern,
-        eight: &mut TinyEight,
-    ) -> Option<Passed> {
+        job: &JobContext<'_>,
+        waiting: &mut TinyFacets,
+    ) -> Option<Seen> {
+        let draw = &job.draws[waiting.draw as usize];
+        let (eight, pattern) = (&mut waiting.eight, job.pattern(draw));
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
-        let (mut masks, mut any) = ([[0; LANES]; SAMPLES], [0; LANES]);
+        let mut masks = [[0; LANES]; SAMPLES];
         for sample in 0..N {
             masks[sample] = eight.cover(
                 simd,
@@ -159,117 +171,268 @@ impl TileRun<'_> {
                 #[inline(always)]
                 |depth| stored_depth(simd, depth, scale),
             );
-            join(&mut any, &masks[sample]);
         }
-        let mut touched = 0;
-        for facet in (0..eight.len()).filter(|&facet| any[facet] != 0) {
-            touched |= eight.block(facet, any[facet]).touched();
+        // A draw without multisampling covers all samples of a pixel alike; where all have one value, one stands for all.
+        let mut seen = Seen { masks, any: [0; LANES], touched: 0, alike: N == 1 };
+        seen.settle(eight)?;
+        if draw.state.stencil.is_some() {
+            self.tiny_stencilled(job, waiting, &mut seen);
+            seen.settle(&waiting.eight)?;
         }
-        if touched == 0 {
-            return None;
-        }
-        // A draw without multisampling covers all samples of a pixel alike; where all have one depth, one stands for all.
-        let mut alike = N == 1;
-        if alike {
-            masks = [masks[0]; SAMPLES];
-        }
-        if let (Some(rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) {
-            if rule.write {
-                self.planes.ranges.forget(touched);
-            }
-            any = [0; LANES];
-            let (count, stored) = tile.open(touched, alike, self.planes.samples);
-            for (sample, stored) in stored.as_chunks_mut().0.iter_mut().enumerate().take(count) {
-                test(eight, &mut masks[sample], sample % N, rule, stored);
-                join(&mut any, &masks[sample]);
-            }
-            alike &= count == 1;
-            if alike {
-                masks = [masks[0]; SAMPLES];
-            }
-        }
-        Some(Passed { masks, any, touched, alike })
+        Some(seen)
     }
 
-    /// Colours what passed, if colours replace what is there and are one a facet or those of corners; whether they are.
+    /// Stencil test, which changes nothing.
+    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut Seen) {
+        let draw = &job.draws[waiting.draw as usize];
+        let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else { return };
+        let face = |facet: usize| if waiting.facet(job.primitives, facet).back { &test.back } else { &test.front };
+        if let Some(value) = tile.uniform() {
+            for facet in (0..waiting.eight.len()).filter(|&facet| !stencil_holds(face(facet), value)) {
+                seen.masks.iter_mut().for_each(|masks| masks[facet] = 0);
+            }
+            return;
+        }
+        let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
+        seen.alike &= count == 1;
+        for (stored, masks) in stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count) {
+            for facet in 0..waiting.eight.len() {
+                let (face, first) = (face(facet), waiting.eight.first(facet));
+                for place in places(masks[facet]) {
+                    let holds = stencil_holds(face, stored[pixel(first, place) % TILE_PIXELS]);
+                    masks[facet] &= !(u64::from(!holds) << place);
+                }
+            }
+        }
+    }
+
+    /// Depth test, with its writes if `write` is set and the draw writes depths. Otherwise, whether they would change anything.
     #[inline(always)]
-    fn tiny_replaced<S: Simd>(
+    fn tiny_tested<const N: usize>(
+        &mut self,
+        draw: &DrawContext<'_>,
+        eight: &TinyEight,
+        seen: &mut Seen,
+        write: bool,
+    ) -> bool {
+        let (Some(mut rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) else { return false };
+        let wanted = rule.write;
+        rule.write &= write;
+        if rule.write {
+            self.planes.ranges.forget(seen.touched);
+        }
+        let mut changes = false;
+        let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
+        seen.alike &= count == 1;
+        for (sample, stored) in stored.as_chunks_mut().0.iter_mut().enumerate().take(count) {
+            changes |= test(eight, &mut seen.masks[sample], sample % N, rule, stored);
+        }
+        seen.join();
+        wanted && !write && changes
+    }
+
+    /// Writes depths of what is seen, if there are any.
+    fn tiny_written<const N: usize>(&mut self, eight: &TinyEight, seen: &Seen) {
+        let Some((tile, _)) = &mut self.planes.depth else { return };
+        self.planes.ranges.forget(seen.touched);
+        let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
+        for (sample, stored) in stored.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().enumerate().take(count) {
+            for (facet, &mask) in seen.masks[sample].iter().enumerate().take(eight.len()) {
+                let first = eight.first(facet);
+                for place in places(mask) {
+                    stored[pixel(first, place) % TILE_PIXELS] = eight.depth(facet, place, sample % N);
+                }
+            }
+        }
+    }
+
+    /// Colours what is seen; what fails the alpha test no longer is.
+    #[inline(never)]
+    fn tiny_colored<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory, seen: &mut Seen) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.tiny_colored_inlined(simd, job, memory, seen),
+        );
+    }
+
+    #[inline(always)]
+    fn tiny_colored_inlined<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+        seen: &mut Seen,
+    ) {
+        let FacetMemory { scratch, words, each, pixels, waiting } = memory;
+        let (eight, draw) = (&waiting.eight, &job.draws[waiting.draw as usize]);
+        if !draw.shaded || seen.any == [0; LANES] {
+            return;
+        }
+        if self.tiny_shaded(simd, job, waiting, seen, pixels, each) {
+            return self.tiny_mixed(simd, draw, eight, seen, each, words);
+        }
+        for facet in 0..eight.len() {
+            if seen.any[facet] == 0 {
+                continue;
+            }
+            let setup = job.primitives.batch.item(waiting.entries[facet]);
+            let (own, tile) = (facet_of(job.primitives, setup.facet), [self.x as f32, self.y as f32]);
+            let mut shader = Shader::new(own, draw, job.primitives, tile, scratch);
+            let block = eight.block(facet, seen.any[facet]);
+            let corner = (self.x as usize + block.x, self.y as usize + block.y);
+            let (one, visible) = shader.block(simd, setup, corner, seen.any[facet], words);
+            let masks = seen.limit(facet, visible);
+            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &masks);
+        }
+    }
+
+    /// The colours at the places of all facets that are seen, and the alpha test, if that can be found for all together; whether it
+    /// can.
+    #[inline(always)]
+    fn tiny_shaded<S: Simd>(
         &mut self,
         simd: S,
         job: &JobContext<'_>,
         waiting: &TinyFacets,
-        passed: &Passed,
+        seen: &mut Seen,
+        pixels: &mut FacetPixels,
         each: &mut [[u32; LANES]; PLACES],
     ) -> bool {
         let (eight, draw) = (&waiting.eight, &job.draws[waiting.draw as usize]);
-        let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return false };
-        if draw.ops.mixing != Mixing::Replace {
-            return false;
-        }
-        let batch = &job.primitives.batch;
-        let facet_at = |lane: usize| facet_of(job.primitives, batch.item(waiting.entries[lane]).facet);
         // Lanes without a facet of their own repeat the first one's.
-        let mut facets = [facet_at(0); LANES];
+        let mut facets = [waiting.facet(job.primitives, 0); LANES];
         for lane in 1..eight.len() {
-            facets[lane] = facet_at(lane);
+            facets[lane] = waiting.facet(job.primitives, lane);
         }
-        let shown = places(passed.any.iter().fold(0, |all, mask| all | mask));
+        let mut shown = seen.any;
         if draw.constant {
             let mut words = [0; LANES];
             for lane in 0..LANES {
-                words[lane] = Shader::constant_of(draw, facets[lane], job.primitives).0;
+                let (word, passes) = Shader::constant_of(draw, facets[lane], job.primitives);
+                words[lane] = word;
+                shown[lane] = if passes { shown[lane] } else { 0 };
             }
-            shown.for_each(|place| each[place] = words);
-        } else if Shader::is_plain(draw) {
+            places(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
+        } else if go_together(draw) {
             let tile = [self.x, self.y];
-            let Some(colors) = PlainEight::new(simd, eight, &facets, (draw, job.primitives), tile) else {
+            let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile) else {
                 return false;
             };
-            for place in shown {
-                colors.colors(simd, eight, place, tile).store_slice(&mut each[place]);
-            }
+            colors.colors(simd, eight, tile, &mut shown, pixels, each);
         } else {
             return false;
         }
-        let (count, values) = plane.open(passed.touched, passed.alike, self.planes.samples);
-        for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&passed.masks).take(count) {
-            for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
-                let first = eight.first(facet);
-                for place in places(mask) {
-                    values[pixel(first, place) % TILE_PIXELS] = each[place % PLACES][facet];
-                }
+        for facet in 0..LANES {
+            if shown[facet] != seen.any[facet] {
+                seen.limit(facet, shown[facet]);
             }
         }
         true
     }
-}
 
-/// What eight tiny facets cover and passed the depth test.
-struct Passed {
-    /// Pixels of each facet, sample by sample.
-    masks: [[u64; LANES]; SAMPLES],
-    /// Those of which some samples did.
-    any: [u64; LANES],
-    /// Bits of the tile's blocks that were covered.
-    touched: u64,
-    /// All samples of a pixel are alike.
-    alike: bool,
-}
-
-/// Adds pixels to those of each facet.
-#[inline(always)]
-fn join(all: &mut [u64; LANES], more: &[u64; LANES]) {
-    for facet in 0..LANES {
-        all[facet] |= more[facet];
+    /// Brings colours of places to the samples that are seen, one facet's after the other.
+    #[inline(always)]
+    fn tiny_mixed<S: Simd>(
+        &mut self,
+        simd: S,
+        draw: &DrawContext<'_>,
+        eight: &TinyEight,
+        seen: &Seen,
+        each: &[[u32; LANES]; PLACES],
+        words: &mut BlockWords,
+    ) {
+        let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return };
+        let adds = draw.ops.mixing == Mixing::Add;
+        if adds || draw.ops.mixing == Mixing::Replace {
+            let (count, values) = plane.open(seen.touched, seen.alike, self.planes.samples);
+            for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&seen.masks).take(count) {
+                for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
+                    let first = eight.first(facet);
+                    for place in places(mask) {
+                        let (value, new) =
+                            (&mut values[pixel(first, place) % TILE_PIXELS], each[place % PLACES][facet]);
+                        *value = if adds { add_words(new, *value) } else { new };
+                    }
+                }
+            }
+            return;
+        }
+        for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
+            places(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
+            let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
+            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::Each(words), &masks);
+        }
     }
 }
 
-/// Depth tests of a sample of the pixels of `masks`, facet by facet, with their writes: those that pass remain.
+/// Pixels of eight tiny facets that still count.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Those of each facet, sample by sample.
+    masks: [[u64; LANES]; SAMPLES],
+    /// Those of which some samples are.
+    any: [u64; LANES],
+    /// Bits of the tile's blocks that they may lie in.
+    touched: u64,
+    /// All samples of a pixel are alike: the first one's say it for all.
+    alike: bool,
+}
+
+impl Seen {
+    /// After masks have changed, brings the rest up to date.
+    #[inline(always)]
+    fn join(&mut self) {
+        if self.alike {
+            self.masks = [self.masks[0]; SAMPLES];
+        }
+        let [a, b, c, d] = &self.masks;
+        for facet in 0..LANES {
+            self.any[facet] = a[facet] | b[facet] | c[facet] | d[facet];
+        }
+    }
+
+    /// [`Self::join`], and finds the blocks. `None` if nothing is left.
+    #[inline(always)]
+    fn settle(&mut self, eight: &TinyEight) -> Option<()> {
+        self.join();
+        self.touched = 0;
+        for facet in (0..eight.len()).filter(|&facet| self.any[facet] != 0) {
+            self.touched |= eight.block(facet, self.any[facet]).touched();
+        }
+        (self.touched != 0).then_some(())
+    }
+
+    /// One facet's.
+    fn of(&self, facet: usize) -> Self {
+        let alone = |masks: &[u64; LANES]| std::array::from_fn(|f| if f == facet { masks[f] } else { 0 });
+        Self { masks: std::array::from_fn(|s| alone(&self.masks[s])), any: alone(&self.any), ..*self }
+    }
+
+    /// Leaves of a facet's pixels those that are `visible`.
+    #[inline(always)]
+    fn limit(&mut self, facet: usize, visible: u64) -> [u64; SAMPLES] {
+        self.any[facet] &= visible;
+        self.masks.each_mut().map(|masks| {
+            masks[facet] &= visible;
+            masks[facet]
+        })
+    }
+}
+
+/// Depth tests of a sample of the pixels of `masks`, facet by facet, with their writes: those that pass remain. Gives whether one
+/// of them is not the depth that was stored.
 #[inline(always)]
-fn test(eight: &TinyEight, masks: &mut [u64; LANES], sample: usize, rule: DepthTest, stored: &mut [f32; TILE_PIXELS]) {
+fn test(
+    eight: &TinyEight,
+    masks: &mut [u64; LANES],
+    sample: usize,
+    rule: DepthTest,
+    stored: &mut [f32; TILE_PIXELS],
+) -> bool {
     match rule.func {
         Compare::Less => test_by(eight, masks, sample, rule.write, stored, |new, old| new < old),
         Compare::LessOrEqual => test_by(eight, masks, sample, rule.write, stored, |new, old| new <= old),
+        Compare::GreaterOrEqual => test_by(eight, masks, sample, rule.write, stored, |new, old| new >= old),
         func => test_by(eight, masks, sample, rule.write, stored, |new, old| holds(func, new, old)),
     }
 }
@@ -282,7 +445,8 @@ fn test_by(
     write: bool,
     stored: &mut [f32; TILE_PIXELS],
     passes: impl Fn(f32, f32) -> bool,
-) {
+) -> bool {
+    let mut changes = false;
     for (facet, mask) in masks.iter_mut().enumerate().take(eight.len()) {
         let (first, covered) = (eight.first(facet), *mask);
         for place in places(covered) {
@@ -292,7 +456,10 @@ fn test_by(
             *mask ^= u64::from(!pass) << place;
             if write {
                 *old = if pass { new } else { *old };
+            } else {
+                changes |= pass & (new != *old);
             }
         }
     }
+    changes
 }

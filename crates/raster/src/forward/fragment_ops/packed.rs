@@ -47,6 +47,17 @@ pub(crate) fn add_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S
     rb | (ga << 8)
 }
 
+/// [`add_packed`] of one word.
+#[inline(always)]
+pub(crate) fn add_words(source: u32, stored: u32) -> u32 {
+    let add = |a: u32, b: u32| {
+        let sum = a + b;
+        let over = (sum >> 8) & 0x0001_0001;
+        (sum | ((over << 8) - over)) & HALVES
+    };
+    add(source & HALVES, stored & HALVES) | add((source >> 8) & HALVES, (stored >> 8) & HALVES) << 8
+}
+
 /// Blending with `SRC_ALPHA, ONE`.
 #[inline(always)]
 pub(crate) fn add_scaled_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S> {
@@ -145,6 +156,7 @@ mod tests {
                         (add_packed(s, d).to_array(), add_scaled_packed(s, d).to_array(), mix_packed(s, d).to_array())
                     });
                     assert_eq!(sum, float_blend(level, [one; 2], &s, &d), "{name} add");
+                    assert_eq!(sum, std::array::from_fn(|k| add_words(s[k], d[k])), "{name} add");
                     let factors = [BlendFactor::SrcAlpha, one];
                     assert_eq!(scaled, float_blend(level, factors, &s, &d), "{name} add scaled");
                     let factors = [BlendFactor::SrcAlpha, BlendFactor::OneMinusSrcAlpha];

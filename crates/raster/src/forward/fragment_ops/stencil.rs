@@ -1,5 +1,6 @@
 //! The stencil test and what it writes. Stencil values are widened to 32 bits.
 
+use super::compare::holds;
 use crate::forward::state::{Compare, StencilFace, StencilOp};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{I32x8, LANES, Mask8, Simd};
@@ -38,6 +39,12 @@ pub(crate) fn stencil_test<S: Simd>(simd: S, face: &StencilFace, stored: I32x8<S
         Compare::GreaterOrEqual => reference.simd_ge(stored),
         Compare::Always => Mask8::splat(simd, true),
     }
+}
+
+/// [`stencil_test`] of one value.
+#[inline(always)]
+pub(crate) fn stencil_holds(face: &StencilFace, stored: u8) -> bool {
+    holds(face.func, f32::from(face.reference & face.mask), f32::from(stored & face.mask))
 }
 
 /// The values after the test: `covered` lanes change by the operation of their case, within the write mask.

@@ -66,7 +66,7 @@ pub(crate) struct InfoArgs {
     #[arg(long)]
     pub(crate) allow_external: bool,
     /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
     pub(crate) threads: usize,
     /// No warnings
     #[arg(long, short)]
@@ -83,7 +83,7 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "B")]
     pub(crate) second: PathBuf,
     /// How far a channel may be apart, 0 to 1 of its range, before a pixel counts as different
-    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::share)]
+    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::share, allow_negative_numbers = true)]
     pub(crate) threshold: f64,
     /// Write a picture of the difference: the first one in grey, differing pixels in red
     #[arg(long, value_name = "OUT")]
@@ -129,7 +129,7 @@ pub(crate) struct BenchArgs {
     #[arg(long)]
     pub(crate) allow_external: bool,
     /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
     pub(crate) threads: usize,
     /// One JSON object on standard output
     #[arg(long)]

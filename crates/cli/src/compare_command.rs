@@ -2,10 +2,11 @@
 
 use crate::args::CompareArgs;
 use crate::report::{self, DIFFERENT, Failure};
+use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
 use vitral::frame::Plane;
-use vitral::frame::compare::{self, Difference, SizeMismatch};
+use vitral::frame::compare::{self, Component, Difference, SizeMismatch};
 use vitral::{PictureFormat, picture};
 
 /// Largest picture file that is read, in bytes.
@@ -20,12 +21,25 @@ pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
         return Err(Failure::usage("--json and --diff - both want standard output"));
     }
     let format = args.diff.as_deref().map(difference_format).transpose()?;
-    let (first, second) = (read(&args.first)?, read(&args.second)?);
-    let found = compare::compare(&first, &second, threshold_byte(args.threshold));
+    let (first, second) = (Picture::read(&args.first)?, Picture::read(&args.second)?);
 
-    // Draw the difference where there can be one.
-    if let (Some(path), Some(format), Ok(_)) = (&args.diff, format, &found) {
-        let shown = compare::picture(&first, &second).expect("compared pictures have one size");
+    if first.deep.is_none() && second.deep.is_none() {
+        return between(args, format, [&first.bytes, &second.bytes], threshold_byte(args.threshold));
+    }
+    let threshold = threshold_of(args.threshold, u16::MAX.into()) as u16;
+    between(args, format, [&first.deep(), &second.deep()], threshold)
+}
+
+/// Compares two pictures, draws the difference where it is wanted and there can be one, and says what was found; gives the exit
+/// code.
+fn between<T: Component + Serialize>(
+    args: &CompareArgs,
+    format: Option<PictureFormat>,
+    [first, second]: [&Plane<[T; 4]>; 2],
+    threshold: T,
+) -> Result<u8, Failure> {
+    let found = compare::compare(first, second, threshold);
+    if let (Some(path), Some(format), Ok(shown)) = (&args.diff, format, compare::picture(first, second)) {
         write_picture(path, &shown, format)?;
     }
     if args.json {
@@ -37,26 +51,57 @@ pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
     Ok(if differs(&found) { DIFFERENT } else { 0 })
 }
 
+/// A picture in bytes, and with what a file of 16 bits a channel has beyond.
+struct Picture {
+    bytes: Plane<[u8; 4]>,
+    deep: Option<Plane<[u16; 4]>>,
+}
+
+impl Picture {
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let file = vitral::read(path, MAX_FILE_BYTES)?;
+        let bytes = decode(&file, path)?;
+        Ok(Self { bytes, deep: vitral::io::image::decode_deep(&file) })
+    }
+
+    /// 16 bits a channel.
+    fn deep(&self) -> Plane<[u16; 4]> {
+        let widened = || {
+            let (width, height) = (self.bytes.width(), self.bytes.height());
+            let pixels = self.bytes.data().iter().map(|p| p.map(|c| u16::from(c) * 257)).collect();
+            Plane::from_rows(width, height, pixels).expect("as many pixels")
+        };
+        self.deep.clone().unwrap_or_else(widened)
+    }
+}
+
 /// Whether the pictures are to be called different.
-pub(crate) fn differs(found: &Result<Difference, SizeMismatch>) -> bool {
+pub(crate) fn differs<T: Component>(found: &Result<Difference<T>, SizeMismatch>) -> bool {
     found.as_ref().map_or(true, |d| d.over > 0)
 }
 
 /// A share of a channel's range as a distance of bytes.
 pub(crate) fn threshold_byte(share: f64) -> u8 {
+    threshold_of(share, 255.0) as u8
+}
+
+/// A share of a channel's range as a distance, whose largest is `most`.
+fn threshold_of(share: f64, most: f64) -> f64 {
     // The smallest bit more lets 3/255, as written with a few decimals, mean 3.
-    (share * 255.0 + 1e-3).floor().clamp(0.0, 255.0) as u8
+    (share * most + 1e-3).floor().clamp(0.0, most)
 }
 
 /// Reads a picture in any format that is written.
 pub(crate) fn read(path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
-    let bytes = vitral::read(path, MAX_FILE_BYTES)?;
-    let plane = vitral::io::encode::decode_picture(&bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?;
-    Ok(plane)
+    decode(&vitral::read(path, MAX_FILE_BYTES)?, path)
+}
+
+fn decode(bytes: &[u8], path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
+    Ok(vitral::io::encode::decode_picture(bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?)
 }
 
 /// What was found, for programs.
-pub(crate) fn as_json(found: &Result<Difference, SizeMismatch>) -> serde_json::Value {
+fn as_json<T: Component + Serialize>(found: &Result<Difference<T>, SizeMismatch>) -> serde_json::Value {
     match found {
         Ok(d) => json!({
             "equal": d.over == 0,

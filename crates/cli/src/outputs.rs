@@ -23,13 +23,13 @@ impl Output {
             let counts = format!("{} --channel for {} --output", channels.len(), outputs.len());
             return Err(Failure::usage(counts).with_hint("the n-th channel goes to the n-th output"));
         }
-        let standard = outputs.iter().filter(|o| o.as_os_str() == "-").count();
-        if standard > 1 {
-            return Err(Failure::usage("standard output holds only one picture"));
+        if let Some(twice) = outputs.iter().enumerate().find(|(i, o)| outputs[..*i].contains(o)) {
+            let name = if report::is_standard(twice.1) { "standard output".into() } else { twice.1.to_string_lossy() };
+            return Err(Failure::usage(format!("{name} cannot hold two pictures")));
         }
         let make = |(pattern, &channel): (&PathBuf, &Channel)| {
-            let standard = pattern.as_os_str() == "-";
-            let format = if standard { PictureFormat::Png } else { PictureFormat::from_path(pattern)? };
+            let format =
+                if report::is_standard(pattern) { PictureFormat::Png } else { PictureFormat::from_path(pattern)? };
             Ok(Self { pattern: pattern.clone(), channel, format })
         };
         outputs.iter().zip(channels).map(make).collect()
@@ -37,7 +37,7 @@ impl Output {
 
     /// Whether the picture goes to standard output.
     pub(crate) fn is_standard(&self) -> bool {
-        self.pattern.as_os_str() == "-"
+        report::is_standard(&self.pattern)
     }
 
     /// Whether each frame gets a file of its own.
@@ -116,5 +116,6 @@ mod tests {
         assert!(Output::pair(&files, &[Channel::Color]).is_err());
         assert!(Output::pair(&files, &[]).is_err());
         assert!(Output::pair(&["a.gif".into()], &[]).is_err());
+        assert!(Output::pair(&["a.png".into(), "a.png".into()], &[Channel::Color, Channel::Depth]).is_err());
     }
 }

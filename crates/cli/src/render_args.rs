@@ -45,7 +45,7 @@ pub(crate) struct OutputArgs {
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
     pub(crate) channel: Vec<Channel>,
     /// N views around the model; --output needs {frame} [default: one picture]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(crate) turntable: Option<u32>,
     /// Only these frames of the turntable, counted from 0: 3 or 0-9
     #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "turntable")]
@@ -54,7 +54,7 @@ pub(crate) struct OutputArgs {
     #[arg(long, value_name = "IMG")]
     pub(crate) reference: Option<PathBuf>,
     /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
-    #[arg(long, value_name = "F", value_parser = values::share, requires = "reference")]
+    #[arg(long, value_name = "F", value_parser = values::share, requires = "reference", allow_negative_numbers = true)]
     pub(crate) reference_threshold: Option<f64>,
     /// Write the notes' figure of the shadow algorithm instead of one picture: six panels, each of the size of a picture;
     /// for --shadows map and object-precision
@@ -82,7 +82,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "WxH", value_parser = values::resolution)]
     pub(crate) resolution: Option<[u32; 2]>,
     /// Samples a pixel; 1 means no anti-aliasing [default: 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16), allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
     /// A name, #rrggbb, or r,g,b from 0 to 1 [default: a soft gradient]
     #[arg(long, value_name = "COLOR", value_parser = values::color, conflicts_with = "no_background")]
@@ -105,7 +105,7 @@ pub(crate) struct AlgorithmArgs {
     /// What finds the triangles near a ray, where --visibility casts rays [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
-    /// Kinds of coherence to use: a list, or none; `vitral algorithms` explains them and says which an algorithm exploits
+    /// Kinds of coherence to use: a list, all, or none; `vitral algorithms` explains them and says which an algorithm exploits
     /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = values::coherence)]
     pub(crate) coherence: Option<values::CoherenceList>,
@@ -128,20 +128,20 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
     /// Rays a pixel, about, that a translucent surface scatters, 1 to 4096 [default: 32]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
     pub(crate) scatter_samples: Option<u32>,
     /// How shadows are found [default: none; with --global: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
     pub(crate) shadows: Option<String>,
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,
     /// Texels along the longer side of a shadow map, 16 to 8192; with --shadows map [default: 2048]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192), allow_negative_numbers = true)]
     pub(crate) shadow_map_size: Option<u32>,
     /// Shadow maps for each light, 1 to 8, cut in depth: the sharper the nearer, for large scenes; with --shadows map
     /// [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8), allow_negative_numbers = true)]
     pub(crate) shadow_cascades: Option<u32>,
     /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
     #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
@@ -150,13 +150,13 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "NAME", value_parser = choices::global())]
     pub(crate) global: Option<Global>,
     /// How often a ray may be mirrored or bent, 1 to 64; with --global ray-trace [default: 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
     /// Longest edge of a patch, with --global radiosity [default: 1/16 of the scene's diagonal]
-    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) patch_size: Option<f64>,
     /// Patches that may send light, with --global radiosity [default: until 1 % of it is left]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
@@ -185,7 +185,7 @@ pub(crate) struct LightArgs {
     #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
     pub(crate) light: Vec<Light>,
     /// Multiplies all lights [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = values::not_negative)]
+    #[arg(long, value_name = "FACTOR", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f64>,
     /// Override a material's property, such as glass.opacity=0.5; repeatable
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
@@ -203,7 +203,7 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(Axis), allow_hyphen_values = true)]
     pub(crate) up: Option<Axis>,
     /// The model's camera of this number, counted from 0
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) camera_index: Option<usize>,
     /// Where the viewer is
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
@@ -215,20 +215,20 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) camera_view_up: Option<DVec3>,
     /// Vertical angle of view in degrees [default: 30]
-    #[arg(long, value_name = "DEGREES", value_parser = values::view_angle)]
+    #[arg(long, value_name = "DEGREES", value_parser = values::view_angle, allow_negative_numbers = true)]
     pub(crate) camera_view_angle: Option<f64>,
     /// The direction in which the viewer looks, from the usual distance
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with = "camera_position")]
     pub(crate) camera_direction: Option<DVec3>,
     /// Zoom in (above 1) or out (below 1) [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) camera_zoom_factor: Option<f64>,
     /// Walk round the model, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true, allow_negative_numbers = true)]
     pub(crate) camera_azimuth_angle: Option<f64>,
     /// Climb above the model, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true, allow_negative_numbers = true)]
     pub(crate) camera_elevation_angle: Option<f64>,
     /// Parallel projection
     #[arg(long)]
@@ -255,13 +255,13 @@ pub(crate) struct ProcessArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) load_state: Option<PathBuf>,
     /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
     pub(crate) threads: usize,
     /// Seconds until the work stops with exit code 7
-    #[arg(long, value_name = "S", value_parser = values::positive)]
+    #[arg(long, value_name = "S", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
     /// Memory allowed, such as 512M or 1G
-    #[arg(long, value_name = "B", value_parser = values::bytes)]
+    #[arg(long, value_name = "B", value_parser = values::bytes, allow_negative_numbers = true)]
     pub(crate) max_memory: Option<u64>,
 }
 
@@ -277,7 +277,7 @@ pub(crate) struct ReportArgs {
     pub(crate) stats_file: Option<PathBuf>,
     /// Explain a pixel on standard output: the surfaces over its centre, and what each algorithm decided; an algorithm
     /// may take 20 s, or what --time-limit says
-    #[arg(long, value_name = "X,Y", value_parser = values::pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true)]
     pub(crate) pixel: Option<[u32; 2]>,
     /// Write the steps of the visibility algorithm into this file, a JSON object a line
     #[arg(long, value_name = "FILE")]

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let plan = resolve(args)?;
     if let Some(file) = &args.process.save_state {
-        vitral::picture::write(file, plan.state.to_json().as_bytes())?;
+        report::write(file, plan.state.to_json().as_bytes())?;
     }
     let mut execution = execution(args.process.threads)?;
     execution.budget =
@@ -201,9 +201,9 @@ fn differs(args: &RenderArgs, reference: &Path, frame: &Frame) -> Result<bool, F
 
 fn write_stats(args: &ReportArgs, stats: &Value) -> Result<(), Failure> {
     if let Some(file) = &args.stats_file {
-        vitral::picture::write(file, &report::json(stats))?;
+        report::write(file, &report::json(stats))?;
     }
-    if args.stats && !args.json {
+    if args.stats {
         use std::io::Write;
         // Diagnostics that nobody can read are not worth failing for.
         let _ = std::io::stderr().lock().write_all(&report::json(stats));

@@ -2,6 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::io::Write;
+use std::path::Path;
 
 /// Warnings that are shown before the rest is only counted.
 const MOST_WARNINGS: usize = 10;
@@ -47,7 +48,7 @@ impl Failure {
     }
 
     /// Standard output cannot be written. A reader that has gone away had enough, which is no failure.
-    fn standard_output(error: &std::io::Error) -> Self {
+    pub(crate) fn standard_output(error: &std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self { code: 0, message: None, hint: None },
             _ => Self { code: 5, message: Some(format!("standard output: {error}")), hint: None },
@@ -108,6 +109,16 @@ impl From<clap::Error> for Failure {
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
+}
+
+/// Writes a file, or to standard output for `-`.
+pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    if is_standard(file) { print(bytes) } else { Ok(vitral::picture::write(file, bytes)?) }
+}
+
+/// Whether a file's name means standard output.
+pub(crate) fn is_standard(file: &Path) -> bool {
+    file.as_os_str() == "-"
 }
 
 /// Prints a value as JSON, ending with a new line.

@@ -2,7 +2,7 @@
 
 use crate::outputs::Output;
 use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
-use crate::report::Failure;
+use crate::report::{self, Failure};
 use crate::values;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -89,11 +89,11 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
-    if args.report.json && outputs.iter().any(Output::is_standard) {
-        return Err(Failure::usage("--json and --output - both want standard output"));
-    }
-    if args.report.pixel.is_some() && outputs.iter().any(Output::is_standard) {
-        return Err(Failure::usage("--pixel and --output - both want standard output"));
+    check_standard_output(args, &outputs)?;
+    let [width, height] = [state.settings.width, state.settings.height];
+    if let Some([x, y]) = args.report.pixel.filter(|[x, y]| *x >= width || *y >= height) {
+        return Err(Failure::usage(format!("--pixel {x},{y}: the picture has {width}x{height} pixels"))
+            .with_hint("they are counted from 0"));
     }
 
     let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
@@ -110,6 +110,25 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(Failure::usage(format!("{name} holds one picture, the turntable has {views}")).with_hint(hint));
     }
     Ok(Plan { state, outputs, frames, views })
+}
+
+/// Standard output holds one thing; an explained pixel goes into the object of `--json`.
+fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Failure> {
+    let report = &args.report;
+    let is_standard = |file: &Option<PathBuf>| file.as_deref().is_some_and(report::is_standard);
+    let wanted = [
+        (report.json, "--json"),
+        (report.pixel.is_some() && !report.json, "--pixel"),
+        (outputs.iter().any(Output::is_standard), "--output -"),
+        (is_standard(&args.process.save_state), "--save-state -"),
+        (is_standard(&report.stats_file), "--stats-file -"),
+        (is_standard(&report.trace), "--trace -"),
+    ];
+    let mut wanted = wanted.iter().filter(|(wants, _)| *wants).map(|(_, option)| option);
+    match (wanted.next(), wanted.next()) {
+        (Some(one), Some(other)) => Err(Failure::usage(format!("{one} and {other} both want standard output"))),
+        _ => Ok(()),
+    }
 }
 
 /// The configuration file to use, if any: the one that was named, else the user's if it exists.

@@ -36,6 +36,17 @@ pub(crate) fn view_angle(text: &str) -> Result<f64, String> {
     })
 }
 
+/// Most threads that may be asked for: more than machines have processors, and few enough to start at once.
+const MOST_THREADS: usize = 1024;
+
+/// A number of threads; 0 lets the machine decide.
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(count) if count <= MOST_THREADS => Ok(count),
+        _ => Err(format!("a whole number from 0 to {MOST_THREADS} is required")),
+    }
+}
+
 /// `N` finite numbers, separated by commas.
 pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
@@ -146,15 +157,17 @@ pub(crate) fn culling(text: &str) -> Result<Culling, String> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CoherenceList(pub(crate) Vec<Coherence>);
 
-/// Kinds of coherence with commas between them, or `none`.
+/// Kinds of coherence with commas between them, or `all`, or `none`.
 pub(crate) fn coherence(text: &str) -> Result<CoherenceList, String> {
-    if text == "none" {
-        return Ok(CoherenceList(Vec::new()));
+    match text {
+        "none" => return Ok(CoherenceList(Vec::new())),
+        "all" => return Ok(CoherenceList(Coherence::ALL.iter().map(|(kind, _)| *kind).collect())),
+        _ => {}
     }
     let kind = |word: &str| {
         let found = Coherence::ALL.iter().find(|(_, name)| *name == word).map(|(kind, _)| *kind);
         let names: Vec<_> = Coherence::ALL.iter().map(|(_, name)| *name).collect();
-        found.ok_or_else(|| format!("`{word}` is not one of {}; or none alone", names.join(", ")))
+        found.ok_or_else(|| format!("`{word}` is not one of {}; or all or none alone", names.join(", ")))
     };
     text.split(',').map(kind).collect::<Result<_, _>>().map(CoherenceList)
 }
@@ -236,9 +249,16 @@ mod tests {
     fn coherence_is_a_list_or_none() {
         assert_eq!(coherence("edge,scan-line"), Ok(CoherenceList(vec![Coherence::Edge, Coherence::ScanLine])));
         assert_eq!(coherence("none"), Ok(CoherenceList(Vec::new())));
+        assert_eq!(coherence("all").map(|list| list.0.len()), Ok(Coherence::ALL.len()));
         assert!(coherence("none,edge").is_err() && coherence("").is_err());
         assert_eq!(pixel("3, 4"), Ok([3, 4]));
         assert!(["", "3", "3,", "-1,2", "1,2,3"].iter().all(|t| pixel(t).is_err()));
+    }
+
+    #[test]
+    fn threads_are_some() {
+        assert_eq!((threads("0"), threads("1024")), (Ok(0), Ok(1024)));
+        assert!(["1025", "1000000", "-1", "two", ""].iter().all(|t| threads(t).is_err()));
     }
 
     #[test]

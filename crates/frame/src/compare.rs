@@ -4,7 +4,7 @@
 //! apart than a threshold. The peak signal-to-noise ratio looks at red, green and blue only, since an alpha plane that is
 //! opaque on both sides would flatter it.
 //!
-//! In: two planes of RGBA bytes of one size, the top row first.
+//! In: two planes of RGBA of one size, of 8 or 16 bits a channel, the top row first.
 //! Out: a [`Difference`], and [`picture`], which shows where it lies.
 //! Cost: one pass over the pixels.
 
@@ -30,15 +30,41 @@ pub struct Bounds {
     pub max: [u32; 2],
 }
 
+/// A channel of a pixel: 8 or 16 bits.
+pub trait Component: Copy + Default + Ord + Into<u64> + std::fmt::Display {
+    /// The largest value.
+    const MOST: Self;
+
+    /// How far two are apart.
+    #[must_use]
+    fn apart(self, other: Self) -> Self;
+}
+
+impl Component for u8 {
+    const MOST: Self = Self::MAX;
+
+    fn apart(self, other: Self) -> Self {
+        self.abs_diff(other)
+    }
+}
+
+impl Component for u16 {
+    const MOST: Self = Self::MAX;
+
+    fn apart(self, other: Self) -> Self {
+        self.abs_diff(other)
+    }
+}
+
 /// What [`compare`] found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
+pub struct Difference<T = u8> {
     /// Pixels in each plane.
     pub pixels: u64,
     /// Pixels with a channel further apart than the threshold.
     pub over: u64,
     /// Largest distance in each channel, whatever the threshold.
-    pub max: [u8; 4],
+    pub max: [T; 4],
     /// Peak signal-to-noise ratio over red, green and blue, in decibels; infinite when they are equal.
     pub psnr: f64,
     /// The topmost, then leftmost pixel over the threshold: column, row.
@@ -47,19 +73,19 @@ pub struct Difference {
     pub bounds: Option<Bounds>,
 }
 
-impl Difference {
+impl<T: Component> Difference<T> {
     /// The share of pixels over the threshold, `0..=1`; 0 for a picture without pixels.
     pub fn share(&self) -> f64 {
         if self.pixels == 0 { 0.0 } else { self.over as f64 / self.pixels as f64 }
     }
 
     /// The largest distance in any channel.
-    pub fn max_any(&self) -> u8 {
-        self.max.into_iter().max().unwrap_or(0)
+    pub fn max_any(&self) -> T {
+        self.max.into_iter().max().unwrap_or_default()
     }
 }
 
-impl std::fmt::Display for Difference {
+impl<T: Component> std::fmt::Display for Difference<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { pixels, over, max: [r, g, b, a], psnr, .. } = self;
         write!(
@@ -78,12 +104,16 @@ impl std::fmt::Display for Difference {
 ///
 /// # Errors
 /// If the sizes differ.
-pub fn compare(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>, threshold: u8) -> Result<Difference, SizeMismatch> {
+pub fn compare<T: Component>(
+    a: &Plane<[T; 4]>,
+    b: &Plane<[T; 4]>,
+    threshold: T,
+) -> Result<Difference<T>, SizeMismatch> {
     check_sizes(a, b)?;
     let mut found = Difference {
         pixels: a.data().len() as u64,
         over: 0,
-        max: [0; 4],
+        max: [T::default(); 4],
         psnr: f64::INFINITY,
         first: None,
         bounds: None,
@@ -96,8 +126,8 @@ pub fn compare(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>, threshold: u8) -> Result<
             if p == q {
                 continue;
             }
-            let apart: [u8; 4] = std::array::from_fn(|c| p[c].abs_diff(q[c]));
-            squares += apart[..3].iter().map(|&d| u64::from(d) * u64::from(d)).sum::<u64>();
+            let apart: [T; 4] = std::array::from_fn(|c| p[c].apart(q[c]));
+            squares += apart[..3].iter().map(|&d| d.into().pow(2)).sum::<u64>();
             for (max, d) in found.max.iter_mut().zip(apart) {
                 *max = (*max).max(d);
             }
@@ -109,10 +139,11 @@ pub fn compare(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>, threshold: u8) -> Result<
         }
     }
 
-    // Turn the mean square into decibels below the peak value 255.
+    // Turn the mean square into decibels below the peak value.
     if squares > 0 {
         let mean = squares as f64 / (3.0 * found.pixels as f64);
-        found.psnr = 10.0 * func::ln(255.0 * 255.0 / mean) / std::f64::consts::LN_10;
+        let peak = T::MOST.into() as f64;
+        found.psnr = 10.0 * func::ln(peak * peak / mean) / std::f64::consts::LN_10;
     }
     Ok(found)
 }
@@ -122,19 +153,19 @@ pub fn compare(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>, threshold: u8) -> Result<
 ///
 /// # Errors
 /// If the sizes differ.
-pub fn picture(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>) -> Result<Plane<[u8; 4]>, SizeMismatch> {
+pub fn picture<T: Component>(a: &Plane<[T; 4]>, b: &Plane<[T; 4]>) -> Result<Plane<[u8; 4]>, SizeMismatch> {
     check_sizes(a, b)?;
-    let mut shown = a.clone();
-    for (p, q) in shown.data_mut().iter_mut().zip(b.data()) {
-        let apart = (0..4).map(|c| p[c].abs_diff(q[c])).max().unwrap_or(0);
-        let grey = (u32::from(p[0]) + 2 * u32::from(p[1]) + u32::from(p[2])) / 4;
+    let byte = |value: T| value.into() * 255 / T::MOST.into();
+    let shown = a.data().iter().zip(b.data()).map(|(p, q)| {
+        let apart = (0..4).map(|c| p[c].apart(q[c])).max().unwrap_or_default();
+        let grey = (byte(p[0]) + 2 * byte(p[1]) + byte(p[2])) / 4;
         let faded = (160 + grey / 4) as u8;
-        *p = if apart == 0 { [faded, faded, faded, 255] } else { [128 + apart / 2, 0, 0, 255] };
-    }
-    Ok(shown)
+        if apart == T::default() { [faded, faded, faded, 255] } else { [(128 + byte(apart) / 2) as u8, 0, 0, 255] }
+    });
+    Ok(Plane::from_rows(a.width(), a.height(), shown.collect()).unwrap_or_default())
 }
 
-fn check_sizes(a: &Plane<[u8; 4]>, b: &Plane<[u8; 4]>) -> Result<(), SizeMismatch> {
+fn check_sizes<T>(a: &Plane<[T; 4]>, b: &Plane<[T; 4]>) -> Result<(), SizeMismatch> {
     let (first, second) = ([a.width(), a.height()], [b.width(), b.height()]);
     if first == second { Ok(()) } else { Err(SizeMismatch { first, second }) }
 }
@@ -182,6 +213,16 @@ mod tests {
         let one_off = Plane::filled(2, 2, [1, 1, 1, 255]);
         let psnr = compare(&black(2, 2), &one_off, 0).unwrap().psnr;
         assert!((psnr - 48.130_803_6).abs() < 1e-6, "20 log10(255), was {psnr}");
+    }
+
+    #[test]
+    fn sixteen_bits_are_told_apart() {
+        let grey = |v: u16| Plane::filled(2, 2, [v, v, v, u16::MAX]);
+        let found = compare(&grey(30_000), &grey(30_101), 100).unwrap();
+        assert_eq!((found.over, found.max), (4, [101, 101, 101, 0]));
+        assert_eq!(compare(&grey(30_000), &grey(30_101), 101).unwrap().over, 0);
+        assert_eq!(compare(&grey(0), &grey(u16::MAX), 0).unwrap().psnr, 0.0);
+        assert_eq!(picture(&grey(30_000), &grey(30_001)).unwrap().data(), [[128, 0, 0, 255]; 4]);
     }
 
     #[test]

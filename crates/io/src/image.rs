@@ -89,6 +89,29 @@ fn decode_png(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     plane(width, height, rgba, file)
 }
 
+/// The channels of a PNG file of 16 bits a channel; `None` for anything else, damaged files among it.
+pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
+    let header = decoder.read_header_info().ok()?;
+    let (width, height, color) = (header.width, header.height, header.color_type);
+    check_size(width, height, "").ok()?;
+    let mut reader = decoder.read_info().ok().filter(|r| r.info().bit_depth == png::BitDepth::Sixteen)?;
+    let mut data = vec![0; reader.output_buffer_size()?];
+    let info = reader.next_frame(&mut data).ok()?;
+    data.truncate(info.buffer_size());
+    let values = data.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair));
+    let values: Vec<u16> = values.collect();
+    const OPAQUE: u16 = u16::MAX;
+    let rgba = match color {
+        png::ColorType::Grayscale => values.iter().map(|&l| [l, l, l, OPAQUE]).collect(),
+        png::ColorType::GrayscaleAlpha => values.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect(),
+        png::ColorType::Rgb => values.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, OPAQUE]).collect(),
+        png::ColorType::Rgba => values.as_chunks().0.to_vec(),
+        png::ColorType::Indexed => return None,
+    };
+    Plane::from_rows(width, height, rgba)
+}
+
 fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     use image::ImageDecoder;
     let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("JPEG: {e}"));
@@ -143,6 +166,9 @@ mod tests {
             read(png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xff], none)),
             [[128, 128, 128, 255]]
         );
+        let deep = decode_deep(&png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xfe], none));
+        assert_eq!(deep.unwrap().into_data(), [[0x80fe, 0x80fe, 0x80fe, 0xffff]]);
+        assert!(decode_deep(&png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], none)).is_none());
         assert_eq!(read(png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, 1, &[9, 7], none)), [[9, 9, 9, 7]]);
         assert_eq!(
             read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e.set_trns(vec![0, 1, 0, 2, 0, 3]))),

@@ -4,6 +4,7 @@
 //! touches the file system or the clock, so the same code runs in a browser.
 #![forbid(unsafe_code)]
 
+mod colored;
 pub mod encode;
 mod error;
 mod format;
@@ -41,14 +42,16 @@ use vitral_scene::{Mesh, Scene};
 /// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`] names a file that it
 /// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
-    match Format::detect(bytes, file)? {
+    let mut scene = match Format::detect(bytes, file)? {
         Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
         Format::Obj => obj::load(bytes, file, resolver, workers),
         Format::Stl => stl::load(bytes, file, workers),
         Format::Ply => ply::load(bytes, file, workers),
         Format::Off => off::load(bytes, file, workers),
-        Format::SceneJson => scene_json::load(bytes, file, resolver, workers),
-    }
+        Format::SceneJson => return scene_json::load(bytes, file, resolver, workers),
+    }?;
+    colored::give_materials(&mut scene);
+    Ok(scene)
 }
 
 /// The name of a file without folder and extension, for meshes that have no name of their own.

@@ -152,7 +152,7 @@ impl MtlMaterial {
             name: self.name.clone(),
             reflectance: Reflectance::Phong {
                 ka: self.ka.unwrap_or([0.2; 3]),
-                kd: self.kd.unwrap_or([0.8; 3]),
+                kd: self.kd.unwrap_or(if self.map_kd.is_some() { [1.0; 3] } else { [0.8; 3] }),
                 ks,
                 shininess: self.ns.unwrap_or(10.0).max(1.0),
             },

@@ -16,6 +16,9 @@ use vitral_math::{DMat4, DVec3, func};
 
 /// Positions and distances beyond this do not take part in lighting: their squares must stay finite.
 const FARTHEST: f32 = 1e18;
+/// A light is in the very place of a point if it is nearer than this part of the point's distance from the origin, squared:
+/// four steps of single precision. What lies between is rounding, which has no direction.
+const SAME_PLACE2: f32 = 1.0 / (1u64 << 42) as f32;
 /// Square of the least distance that the inverse square laws tell apart from zero.
 const LEAST_DISTANCE2: f64 = 1e-18;
 /// Brightest intensity of a channel.
@@ -156,7 +159,8 @@ impl PreparedLight {
         let to = V3::splat(position.x, at) - position;
         let square = to.dot(to);
         let (zero, limit) = (square.splat(0.0), square.splat(FARTHEST * FARTHEST));
-        let reachable = zero.lt(square) & square.le(limit);
+        let rounding = position.dot(position) * SAME_PLACE2;
+        let reachable = rounding.lt(square) & square.le(limit);
         let square = square.min(limit);
         let distance = square.sqrt();
         let inverse = T::select(reachable, square.splat(1.0) / distance, zero);

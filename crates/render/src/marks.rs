@@ -11,7 +11,7 @@
 use crate::{Background, Execution, Lines, PreparedView, Settings};
 use vitral_light::Reflectance;
 use vitral_math::color::linear_from_srgb;
-use vitral_math::{DMat4, Mat4, Vec2, Vec4};
+use vitral_math::{Mat4, Vec2, Vec4};
 use vitral_raster::geometry::transform_point;
 use vitral_raster::{Batch, CornerPosition, snap};
 use vitral_scene::Instance;
@@ -65,13 +65,13 @@ impl MarkColors {
 pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution) -> (Batch, MarkColors) {
     let world = &view.session.world;
     let mut marks = MarkColors { first: world.facet_count, colors: Vec::new() };
-    let mut pen = Pen { view, batch: Batch::default(), clip_from_model: Mat4::IDENTITY };
+    let mut pen = Pen { view, batch: Batch::default(), clip_from_model: Mat4::IDENTITY, lift: Lift::new(view) };
     let raw = settings.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
     let edge_color = encode(edge_color(&settings.background));
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
-        pen.clip_from_model = lifted_clip_from_model(view, instance);
+        pen.clip_from_model = (view.view.clip_from_world() * instance.world_from_model).as_mat4();
         if settings.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
@@ -118,18 +118,34 @@ fn mark_color(view: &PreparedView<'_>, instance: &Instance, vertex: u32) -> [f32
     }
 }
 
-/// Model to clip space by way of points moved towards the viewer by [`LIFT`] pixels.
-fn lifted_clip_from_model(view: &PreparedView<'_>, instance: &Instance) -> Mat4 {
-    let height = f64::from(view.viewport.height);
-    // Vertical size of a pixel: at distance 1 for a perspective, anywhere for a parallel projection.
-    let pixel = 2.0 / (view.view.clip_from_view.y_axis.y * height);
-    let lift = if view.view.perspective {
-        let scale = 1.0 - (LIFT * pixel).min(0.5);
-        DMat4::from_scale(vitral_math::DVec3::splat(scale))
-    } else {
-        DMat4::from_translation(vitral_math::DVec3::new(0.0, 0.0, LIFT * pixel))
-    };
-    (view.view.clip_from_view * lift * view.view.view_from_world * instance.world_from_model).as_mat4()
+/// What moves depths towards the viewer by [`LIFT`] pixels, whatever the place on the screen.
+struct Lift {
+    /// Depth with a perspective is `factor / distance - offset`.
+    offset: f64,
+    /// Distances are multiplied with it.
+    scale: f64,
+    /// What is added in a parallel projection.
+    shift: f64,
+}
+
+impl Lift {
+    fn new(view: &PreparedView<'_>) -> Self {
+        let (clip_from_view, height) = (view.view.clip_from_view, f64::from(view.viewport.height));
+        // Vertical size of a pixel: at distance 1 for a perspective, anywhere for a parallel projection.
+        let pixel = 2.0 / (clip_from_view.y_axis.y * height);
+        if view.view.perspective {
+            Self { offset: clip_from_view.z_axis.z, scale: 1.0 - (LIFT * pixel).min(0.5), shift: 0.0 }
+        } else {
+            Self { offset: 0.0, scale: 1.0, shift: LIFT * pixel * clip_from_view.z_axis.z }
+        }
+    }
+
+    /// The depth of a mark that lies at depth `z`. What would come before the near plane lies in it: the fitted one is just in
+    /// front of the model.
+    fn lifted(&self, z: f32) -> f32 {
+        let z = (f64::from(z) + self.offset) / self.scale - self.offset + self.shift;
+        z.clamp(0.0, 1.0) as f32
+    }
 }
 
 /// Draws strokes and dots into a batch.
@@ -137,6 +153,7 @@ struct Pen<'v, 'a> {
     view: &'v PreparedView<'a>,
     batch: Batch,
     clip_from_model: Mat4,
+    lift: Lift,
 }
 
 impl Pen<'_, '_> {
@@ -176,7 +193,7 @@ impl Pen<'_, '_> {
         let viewport = self.view.viewport;
         let half = Vec2::new(viewport.width as f32, viewport.height as f32) * 0.5;
         let ndc = clip / clip.w;
-        let z = ndc.z.clamp(0.0, 1.0);
+        let z = self.lift.lifted(ndc.z);
         [Vec2::new(half.x + ndc.x * half.x, half.y - ndc.y * half.y), Vec2::splat(z)]
     }
 

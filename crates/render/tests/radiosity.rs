@@ -253,6 +253,9 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     loaded.load_radiosity(&stored).unwrap();
     let from_file = render(&mut loaded, &shot(camera), &settings(), &execution).unwrap();
     assert!(from_file.frame.color == first.frame.color && from_file.stats.radiosity.shots == 0);
+    let dimmer: Vec<_> = lights.iter().map(|l| Light { diffuse: l.diffuse.map(|c| c * 0.5), ..l.clone() }).collect();
+    let refused = render(&mut loaded, &Shot { lights: &dimmer, ..shot(camera) }, &settings(), &execution);
+    assert!(refused.unwrap_err().to_string().contains("other lights"));
     let (elsewhere, _) = look_in(&builtin::scene("scene0").unwrap());
     assert!(elsewhere.load_radiosity(&stored).unwrap_err().to_string().contains("another scene"));
 }

@@ -1,7 +1,8 @@
 //! The one error of this crate, with the exit code and the hint that a program shows.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use vitral_exec::Limit;
+use vitral_io::FormatKind;
 use vitral_render::SettingsError;
 
 /// Why something could not be done. Displays in one line as `FILE: WHERE: WHAT`, as far as these are known.
@@ -66,6 +67,14 @@ pub enum Error {
     },
 }
 
+/// Whether a file's name may be that of a model.
+fn is_model(path: &Path) -> bool {
+    let Some(extension) = path.extension() else { return true };
+    vitral_io::formats()
+        .iter()
+        .any(|f| f.kind != FormatKind::Picture && f.extensions.iter().any(|e| extension.eq_ignore_ascii_case(e)))
+}
+
 impl From<vitral_io::Error> for Error {
     fn from(error: vitral_io::Error) -> Self {
         Self::Input(error)
@@ -103,7 +112,9 @@ impl Error {
                     if *width.max(height) > vitral_raster::MAX_SIDE { 7 } else { 2 }
                 }
                 vitral_render::Error::Settings(_) => 2,
-                vitral_render::Error::World(_) | vitral_render::Error::Scene(_) => 3,
+                vitral_render::Error::World(_)
+                | vitral_render::Error::Scene(_)
+                | vitral_render::Error::Radiosity(_) => 3,
                 vitral_render::Error::Limit(Limit::Cancelled { .. }) => 130,
                 vitral_render::Error::Limit(_) => 7,
                 _ => 1,
@@ -115,7 +126,7 @@ impl Error {
     pub fn hint(&self) -> Option<String> {
         let text = match self {
             Self::Usage { hint, .. } | Self::Unsupported { hint, .. } => hint.clone(),
-            Self::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+            Self::Read { path, source } if source.kind() == std::io::ErrorKind::NotFound && is_model(path) => {
                 let names: Vec<_> = vitral_scene::builtin::names().iter().map(|(name, _)| *name).collect();
                 format!("scenes without a file: builtin:{}", names.join(", builtin:"))
             }

@@ -103,9 +103,8 @@ pub fn load_bytes(
 /// # Errors
 /// [`Error::Read`] for a name that no scene has; the hint lists the names.
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
-    let missing =
-        || Error::Read { path: format!("builtin:{name}").into(), source: std::io::ErrorKind::NotFound.into() };
-    builtin::scene(name).ok_or_else(missing)
+    let none = || std::io::Error::new(std::io::ErrorKind::NotFound, "there is no such scene");
+    builtin::scene(name).ok_or_else(|| Error::Read { path: format!("builtin:{name}").into(), source: none() })
 }
 
 /// The upward axis that models of this name usually have: +Z for STL, +Y for all others.

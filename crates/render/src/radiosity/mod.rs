@@ -61,8 +61,11 @@ pub(crate) fn solution(
     settings: &Settings,
     execution: &Execution,
     counters: &mut RadiosityCounters,
-) -> Result<Arc<Solution>, Limit> {
+) -> Result<Arc<Solution>, crate::Error> {
     if let Some(loaded) = &*session.loaded_radiosity.lock().expect("it is only replaced") {
+        if loaded.key() != fingerprint_of(lights, settings) {
+            return Err(crate::Error::Radiosity("the stored radiosity was found for other lights".to_owned()));
+        }
         return Ok(Arc::clone(loaded));
     }
     let key = Key {
@@ -72,7 +75,7 @@ pub(crate) fn solution(
         lighting: settings.lighting,
         color_space: settings.color_space,
     };
-    session::keep_for(&session.radiosity, key, || solve(session, lights, settings, execution, counters))
+    Ok(session::keep_for(&session.radiosity, key, || solve(session, lights, settings, execution, counters))?)
 }
 
 /// Patches, rough solutions that say where to cut elements, and the solution.
@@ -103,7 +106,7 @@ fn solve(
         enclosure = enclosed(trees, session, lights, settings, execution)?;
     }
     let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, execution)?;
-    let solution = Solution::new(&enclosure, &progress);
+    let solution = Solution::new(&enclosure, &progress).with_key(fingerprint_of(lights, settings));
     *counters = RadiosityCounters {
         patches: enclosure.patches.len() as u64,
         elements: enclosure.elements.len() as u64,
@@ -133,10 +136,18 @@ fn enclosed(
     Enclosure::new(trees, session, lights, settings, execution)
 }
 
+/// A number that tells these lights, and whether they are on, from others, for stored solutions.
+fn fingerprint_of(lights: &[Light], settings: &Settings) -> u64 {
+    solution::mix(FINGERPRINT, format!("{lights:?} {}", settings.lighting).as_bytes())
+}
+
+/// Where fingerprints start.
+const FINGERPRINT: u64 = 0xcbf2_9ce4_8422_2325;
+
 impl Session {
     /// A number that tells this scene's shapes and materials from others, for stored solutions.
     fn fingerprint(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325;
+        let mut hash = FINGERPRINT;
         for instance in &self.world.instances {
             let matrix = instance.world_from_model.to_cols_array();
             matrix.iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
@@ -144,8 +155,9 @@ impl Session {
             mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
             mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
         }
-        for material in &self.scene.materials {
-            hash = solution::mix(hash, format!("{:?} {:?}", material.reflectance, material.emission).as_bytes());
+        for m in &self.scene.materials {
+            let text = format!("{:?} {:?} {:?} {:?}", m.reflectance, m.emission, m.opacity, m.alpha_mode);
+            hash = solution::mix(hash, text.as_bytes());
         }
         hash
     }

@@ -18,7 +18,7 @@ use vitral_light::Rgb;
 use vitral_math::DVec3;
 
 /// First bytes of a stored solution.
-const MAGIC: &[u8; 20] = b"vitral radiosity 2\n\0";
+const MAGIC: &[u8; 20] = b"vitral radiosity 3\n\0";
 /// Elements whose normals are apart by less than 30 degrees are one surface.
 const SAME_SURFACE: f64 = 0.866;
 
@@ -37,6 +37,8 @@ pub struct Solution {
     /// For each node its place among the leaves.
     leaf: Vec<u32>,
     ambient: Rgb,
+    /// What tells the lights that it was found for from others.
+    key: u64,
 }
 
 impl Solution {
@@ -62,13 +64,23 @@ impl Solution {
         Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient)
     }
 
+    /// The same, marked with what tells its lights from others.
+    pub(super) fn with_key(self, key: u64) -> Self {
+        Self { key, ..self }
+    }
+
+    /// See [`Self::with_key`].
+    pub(super) fn key(&self) -> u64 {
+        self.key
+    }
+
     fn assemble(nodes: Vec<Node>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
         let mut leaves = 0;
         let leaf = nodes.iter().map(|n| {
             leaves += u32::from(n.children == NONE);
             leaves.wrapping_sub(1)
         });
-        Self { leaf: leaf.collect(), nodes, roots, cuts, light, ambient }
+        Self { leaf: leaf.collect(), nodes, roots, cuts, light, ambient, key: 0 }
     }
 
     /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take no part.
@@ -105,6 +117,7 @@ impl Solution {
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(fingerprint.to_le_bytes());
+        bytes.extend(self.key.to_le_bytes());
         for count in [self.nodes.len(), self.roots.len(), self.light.len()] {
             bytes.extend((count as u32).to_le_bytes());
         }
@@ -127,6 +140,7 @@ impl Solution {
         if u64::from_le_bytes(*own) != fingerprint {
             return Err(bad("the solution belongs to another scene, or to other materials"));
         }
+        let (key, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
         let (words, extra) = rest.as_chunks::<4>();
         if words.len() < 7 || !extra.is_empty() {
             return Err(bad("the file is cut off"));
@@ -165,7 +179,7 @@ impl Solution {
         let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
         let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
         let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
-        Ok(Self::assemble(nodes, (roots, cuts), light, color(12 * leaves)))
+        Ok(Self::assemble(nodes, (roots, cuts), light, color(12 * leaves)).with_key(u64::from_le_bytes(*key)))
     }
 }
 

@@ -6,6 +6,7 @@ mod culling;
 mod determinism;
 mod interpolation;
 mod lighting;
+mod marks;
 mod ray_trace;
 mod robust;
 mod translucent;

@@ -1,0 +1,56 @@
+//! A material for surfaces that have colours at their vertices and no material: white, so that they are seen in these colours.
+
+use std::sync::Arc;
+use vitral_light::{AlphaMode, Material, Reflectance};
+use vitral_scene::{Mesh, Scene};
+
+/// Gives parts without a material one if their mesh has colours; where some of these are not opaque it blends.
+pub(crate) fn give_materials(scene: &mut Scene) {
+    let bare = |mesh: &Mesh| mesh.colors.is_some() && mesh.parts.iter().any(|part| part.material.is_none());
+    let mut known = [None; 2];
+    for number in 0..scene.meshes.len() {
+        let Some(colors) = scene.meshes[number].colors.as_ref().filter(|_| bare(&scene.meshes[number])) else {
+            continue;
+        };
+        let blends = colors.values.iter().any(|color| color[3] < 1.0);
+        let index = *known[usize::from(blends)].get_or_insert_with(|| scene.add_material(white(blends)));
+        for part in &mut Arc::make_mut(&mut scene.meshes[number]).parts {
+            part.material.get_or_insert(index);
+        }
+    }
+}
+
+/// The default material with the diffuse colour left to the vertices.
+fn white(blends: bool) -> Material {
+    let mut material = Material { name: "default".to_owned(), ..Material::default() };
+    if let Reflectance::Phong { ka, kd, .. } = &mut material.reflectance {
+        (*ka, *kd) = ([1.0; 3], [1.0; 3]);
+    }
+    if blends {
+        material.alpha_mode = AlphaMode::Blend;
+    }
+    material
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{NoFiles, load};
+    use vitral_exec::Workers;
+    use vitral_light::{AlphaMode, Reflectance};
+
+    #[test]
+    fn colours_of_vertices_are_not_dimmed_and_their_opacity_counts() {
+        let square = |alphas: &str| {
+            let corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].map(|p| format!("{p} 255 128 0 {alphas}\n")).concat();
+            format!("COFF\n4 1 0\n{corners}4 0 1 2 3\n")
+        };
+        for (alphas, mode) in [("255", AlphaMode::Opaque), ("128", AlphaMode::Blend)] {
+            let scene = load(square(alphas).as_bytes(), "square.off", &NoFiles, &Workers::single()).unwrap();
+            let material = &scene.materials[scene.meshes[0].parts[0].material.unwrap() as usize];
+            assert_eq!(material.alpha_mode, mode);
+            assert!(matches!(material.reflectance, Reflectance::Phong { kd: [1.0, 1.0, 1.0], .. }), "{material:?}");
+        }
+        let plain = load(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off", &NoFiles, &Workers::single()).unwrap();
+        assert!(plain.materials.is_empty());
+    }
+}

@@ -549,3 +549,37 @@ fn accumulation_holds_more_than_one() {
     c.accum(gl::RETURN, 1.0);
     assert_color(c.pixel(1, 1), [0.5, 0.3, 0.2, 0.6]);
 }
+
+#[test]
+fn what_does_nothing_is_still_not_allowed_between_begin_and_end() {
+    let mut c = Stage::new(4, 4);
+    let calls: [fn(&mut Stage); 5] = [
+        |c| c.prioritize_textures(0, 0, 0),
+        |c| c.multi_draw_arrays(gl::POINTS, 0, 0, 0),
+        |c| c.multi_draw_elements(gl::POINTS, 0, gl::UNSIGNED_INT, 0, 0),
+        |c| c.copy_buffer_sub_data(0, 0, 0, 0, 0),
+        |c| c.draw_arrays(gl::POINTS, 0, 0),
+    ];
+    for (i, call) in calls.into_iter().enumerate() {
+        for listed in [false, true] {
+            // Of what a list cannot hold the error comes at once.
+            if listed && i == 3 {
+                continue;
+            }
+            if listed {
+                c.new_list(1, gl::COMPILE);
+                call(&mut c);
+                c.end_list();
+                c.no_error();
+            }
+            c.begin(gl::POINTS);
+            if listed {
+                c.call_list(1)
+            } else {
+                call(&mut c)
+            }
+            c.end();
+            assert_eq!(c.get_error(), gl::INVALID_OPERATION, "call {i}");
+        }
+    }
+}

@@ -151,3 +151,44 @@ fn indices_count_from_a_base() {
     c.draw_elements_base_vertex(gl::POINTS, 3, gl::FLOAT, indices, 2);
     assert_eq!(c.get_error(), gl::INVALID_ENUM);
 }
+
+#[test]
+fn an_incomplete_framebuffer_refuses_what_draws_nothing_too() {
+    let mut c = Stage::new(4, 4);
+    let names = c.put(&[0u32]);
+    let feedback = c.put(&[0.0f32; 64]);
+    c.feedback_buffer(64, gl::_2D, feedback);
+    c.gen_framebuffers(1, names);
+    let name = c.take(names, 1)[0];
+    c.new_list(1, gl::COMPILE);
+    c.rectangle([-1.0, -1.0, 1.0, 1.0], 0.0);
+    c.draw_arrays(gl::POINTS, 0, 0);
+    c.end_list();
+    let calls: [fn(&mut Stage); 6] = [
+        |c| {
+            c.begin(gl::QUADS);
+            c.end();
+        },
+        |c| c.rectangle([-1.0, -1.0, 1.0, 1.0], 0.0),
+        |c| c.rectf(-1.0, -1.0, 1.0, 1.0),
+        |c| c.call_list(1),
+        |c| c.draw_arrays(gl::POINTS, 0, 0),
+        |c| c.raster_pos_2f(0.5, 0.5),
+    ];
+    for mode in [gl::RENDER, gl::FEEDBACK] {
+        c.render_mode(mode);
+        for (i, call) in calls.into_iter().enumerate() {
+            c.bind_framebuffer(gl::FRAMEBUFFER, name);
+            call(&mut c);
+            assert_eq!(c.get_error(), gl::INVALID_FRAMEBUFFER_OPERATION, "call {i}");
+            c.no_error();
+            assert_eq!(c.get::<4>(gl::CURRENT_RASTER_POSITION)[0], 0.0);
+        }
+    }
+    assert_eq!(c.render_mode(gl::RENDER), 0);
+    c.bind_framebuffer(gl::FRAMEBUFFER, 0);
+    assert!(c.bytes().iter().all(|pixel| *pixel == [0; 4]));
+    calls.into_iter().for_each(|call| call(&mut c));
+    c.no_error();
+    assert_eq!(c.pixel(1, 1), [255; 4]);
+}

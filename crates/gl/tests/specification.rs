@@ -239,6 +239,26 @@ fn a_smooth_line_has_the_coverage_of_its_rectangle() {
 }
 
 #[test]
+fn an_aliased_line_is_as_wide_as_the_nearest_whole_number() {
+    let mut c = Stage::new(16, 16);
+    c.pixels();
+    for (width, expected) in [(0.3, 1), (1.0, 1), (1.6, 2), (2.4, 2), (2.5, 3), (2.76, 3), (3.5, 4), (4.6, 5)] {
+        for [x, y] in [[13.0, 8.5], [8.5, 13.0], [13.0, 12.0], [12.0, 13.0]] {
+            c.clear(gl::COLOR_BUFFER_BIT);
+            c.line_width(width);
+            c.begin(gl::LINES);
+            c.vertex_2f(if x == 8.5 { x } else { 3.0 }, if y == 8.5 { y } else { 3.0 });
+            c.vertex_2f(x, y);
+            c.end();
+            let bytes = c.bytes();
+            // Across the longer axis in its middle.
+            let drawn = (0..16).filter(|&i| bytes[if x > y { i * 16 + 8 } else { 8 * 16 + i }][0] == 255).count();
+            assert_eq!(drawn, expected, "{width} to ({x}, {y})");
+        }
+    }
+}
+
+#[test]
 fn a_smooth_polygon_covers_its_area() {
     let mut c = Stage::new(32, 32);
     c.pixels();
@@ -528,4 +548,38 @@ fn accumulation_holds_more_than_one() {
     c.accum(gl::ADD, 0.1);
     c.accum(gl::RETURN, 1.0);
     assert_color(c.pixel(1, 1), [0.5, 0.3, 0.2, 0.6]);
+}
+
+#[test]
+fn what_does_nothing_is_still_not_allowed_between_begin_and_end() {
+    let mut c = Stage::new(4, 4);
+    let calls: [fn(&mut Stage); 5] = [
+        |c| c.prioritize_textures(0, 0, 0),
+        |c| c.multi_draw_arrays(gl::POINTS, 0, 0, 0),
+        |c| c.multi_draw_elements(gl::POINTS, 0, gl::UNSIGNED_INT, 0, 0),
+        |c| c.copy_buffer_sub_data(0, 0, 0, 0, 0),
+        |c| c.draw_arrays(gl::POINTS, 0, 0),
+    ];
+    for (i, call) in calls.into_iter().enumerate() {
+        for listed in [false, true] {
+            // Of what a list cannot hold the error comes at once.
+            if listed && i == 3 {
+                continue;
+            }
+            if listed {
+                c.new_list(1, gl::COMPILE);
+                call(&mut c);
+                c.end_list();
+                c.no_error();
+            }
+            c.begin(gl::POINTS);
+            if listed {
+                c.call_list(1)
+            } else {
+                call(&mut c)
+            }
+            c.end();
+            assert_eq!(c.get_error(), gl::INVALID_OPERATION, "call {i}");
+        }
+    }
 }

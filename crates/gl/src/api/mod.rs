@@ -28,6 +28,7 @@ pub(crate) use attributes::AttribStacks;
 pub(crate) use debug::DebugState;
 pub(crate) use debug::Labels;
 pub use debug::{DebugHook, DebugMessage};
+pub(crate) use get::integer_of_component;
 pub(crate) use queries::Queries;
 pub(crate) use sync::Fences;
 

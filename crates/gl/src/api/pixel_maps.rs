@@ -77,7 +77,7 @@ impl Context {
             });
         };
         let mut given = vec![T::zeroed(); length];
-        let there = match self.unpack_memory(values) {
+        let there = match self.unpack_memory(values, size_of::<T>()) {
             Err((error, why)) => return self.record_error(error, call, why),
             Ok((memory, at)) => at != 0 && memory.read(at, bytemuck::cast_slice_mut(&mut given)),
         };
@@ -107,7 +107,7 @@ impl Context {
             return;
         }
         let write = |memory: &dyn ClientMemory, at: usize| memory.write(at, bytemuck::cast_slice(&entries));
-        if let Err((error, why)) = self.pack_into(values, write) {
+        if let Err((error, why)) = self.pack_into(values, size_of::<T>(), write) {
             self.record_error(error, call, why);
         }
     }

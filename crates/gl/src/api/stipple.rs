@@ -25,36 +25,43 @@ fn locate(at: usize, lsb_first: bool) -> (usize, u8) {
     (at / 8, if lsb_first { 1 << (at % 8) } else { 0x80 >> (at % 8) })
 }
 
+/// Reads the 32x32 bits at `address`.
+fn read_stipple(store: &PixelStore, memory: &dyn ClientMemory, address: usize) -> Option<[u32; 32]> {
+    let mut pattern = [0; 32];
+    for (row, bits) in pattern.iter_mut().enumerate() {
+        let (start, first) = row_start(store, address, row)?;
+        let mut bytes = [0; 5];
+        if address == 0 || !memory.read(start, &mut bytes[..row_bytes(first)]) {
+            return None;
+        }
+        for x in 0..32 {
+            let (byte, mask) = locate(first + x, store.lsb_first);
+            *bits = *bits << 1 | u32::from(bytes[byte] & mask != 0);
+        }
+    }
+    Some(pattern)
+}
+
 impl Context {
     /// `glPolygonStipple`.
     pub fn polygon_stipple(&mut self, mask: usize) {
-        let Some(pattern) = self.read_stipple(mask) else {
-            return self.refuse_value("glPolygonStipple", "the pattern is not in readable memory");
+        const CALL: &str = "glPolygonStipple";
+        let pattern = match self.unpack_memory(mask, 1) {
+            Err((error, why)) => return self.record_error(error, CALL, why),
+            Ok((memory, at)) => read_stipple(&self.client.unpack, &*memory, at),
+        };
+        let Some(pattern) = pattern else {
+            return match self.client.unpack.buffer {
+                0 => self.refuse_value(CALL, "the pattern is not in readable memory"),
+                _ => self.refuse_operation(CALL, "the pattern does not lie in the buffer"),
+            };
         };
         let pattern = Arc::new(pattern);
         self.listable(move |c| {
-            if c.may_set("glPolygonStipple") {
+            if c.may_set(CALL) {
                 c.state.polygons.stipple_pattern = pattern.clone();
             }
         });
-    }
-
-    fn read_stipple(&self, address: usize) -> Option<[u32; 32]> {
-        let store = &self.client.unpack;
-        let (memory, address) = self.unpack_memory(address).ok()?;
-        let mut pattern = [0; 32];
-        for (row, bits) in pattern.iter_mut().enumerate() {
-            let (start, first) = row_start(store, address, row)?;
-            let mut bytes = [0; 5];
-            if address == 0 || !memory.read(start, &mut bytes[..row_bytes(first)]) {
-                return None;
-            }
-            for x in 0..32 {
-                let (byte, mask) = locate(first + x, store.lsb_first);
-                *bits = *bits << 1 | u32::from(bytes[byte] & mask != 0);
-            }
-        }
-        Some(pattern)
     }
 
     /// `glGetPolygonStipple`.
@@ -64,7 +71,7 @@ impl Context {
             return;
         }
         let mut there = false;
-        let written = self.pack_into(mask, |memory, address| {
+        let written = self.pack_into(mask, 1, |memory, address| {
             there = self.write_stipple(memory, address).is_some();
             there
         });
@@ -144,5 +151,20 @@ mod tests {
         assert_eq!(written, [0b1100_0000, 0, 0, 0]);
         c.polygon_stipple(usize::MAX - 3);
         assert_eq!(c.get_error(), gl::INVALID_VALUE);
+    }
+
+    #[test]
+    fn a_buffer_holds_the_whole_pattern_or_none() {
+        let mut c = context();
+        c.bind_buffer(gl::PIXEL_UNPACK_BUFFER, 1);
+        c.buffer_data(gl::PIXEL_UNPACK_BUFFER, 129, 0, gl::STREAM_DRAW);
+        c.polygon_stipple(2);
+        assert_eq!(c.get_error(), gl::INVALID_OPERATION);
+        c.polygon_stipple(1);
+        assert_eq!(c.get_error(), gl::NO_ERROR);
+        assert_eq!(*c.state.polygons.stipple_pattern, [0; 32]);
+        c.map_buffer(gl::PIXEL_UNPACK_BUFFER, gl::READ_ONLY);
+        c.polygon_stipple(0);
+        assert_eq!(c.get_error(), gl::INVALID_OPERATION);
     }
 }

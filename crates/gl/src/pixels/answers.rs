@@ -4,6 +4,7 @@ use super::image::lock;
 use super::internal_format::{Bits, Storage};
 use super::texture::{TextureHandle, TextureParameters};
 use crate::Context;
+use crate::enums::FRONT;
 use crate::state::MAX_TEXTURE_UNITS;
 use std::sync::Arc;
 
@@ -84,11 +85,12 @@ impl Context {
 
     /// The bits of the draw framebuffer.
     pub(crate) fn framebuffer_bits(&mut self) -> FramebufferBits {
-        let surfaces = self.draw_surfaces();
         let bits =
             |surface: &Option<super::target::Surface>| surface.as_ref().map_or(Bits::default(), |s| s.format.bits());
         let unsigned = i32::cast_unsigned;
         let object = self.framebuffers.object(self.framebuffers.draw).is_some();
+        // Framebuffer 0 has its colours even while nothing is drawn to them.
+        let surfaces = if object { self.draw_surfaces() } else { self.default_framebuffer.surfaces(FRONT) };
         let accum = if object { 0 } else { unsigned(self.default_framebuffer.accum_bits()) };
         FramebufferBits {
             color: bits(&surfaces.color).rgba.map(unsigned),
@@ -153,6 +155,8 @@ mod tests {
         let mut c = context_with(4, 4);
         let bits = c.framebuffer_bits();
         assert_eq!((bits.color, bits.depth, bits.stencil, bits.accum), ([8; 4], 24, 8, [16; 4]));
+        c.draw_buffer(NONE);
+        assert_eq!(c.framebuffer_bits(), bits);
     }
 
     #[test]

@@ -197,7 +197,9 @@ impl Context {
         const CALL: &str = "glPrioritizeTextures";
         let names = self.read_names(CALL, n, textures);
         let mut values = vec![0.0f32; names.len()];
-        if names.is_empty() || priorities == 0 || !self.memory.read(priorities, bytemuck::cast_slice_mut(&mut values)) {
+        let there = priorities != 0 && self.memory.read(priorities, bytemuck::cast_slice_mut(&mut values));
+        // Between Begin and End even a call without names is an error.
+        if !names.is_empty() && !there {
             return;
         }
         self.listable(move |c| {

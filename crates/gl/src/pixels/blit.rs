@@ -49,6 +49,11 @@ impl Blit {
         Ok(())
     }
 
+    /// Whether the source or the destination has no pixels: then nothing is copied.
+    fn is_empty(&self) -> bool {
+        [self.from, self.to].iter().any(|r| r[0] == r[2] || r[1] == r[3])
+    }
+
     /// The plan for a source and a destination; `clip` is the part of the destination that may change.
     fn plan(&self, from: Viewport, clip: [i32; 4], workers: Workers) -> Plan {
         let axis = |i: usize, size| {
@@ -179,7 +184,7 @@ impl Context {
         let (Some(from), Some(to)) = (read.size, draw.size) else { return Ok(()) };
         let plan = blit.plan(from, self.scissored(to), self.workers());
         // The copy counts as a draw, and happens at once.
-        if blit.mask == 0 || self.draw_target().is_none() {
+        if blit.mask == 0 || blit.is_empty() || self.draw_target().is_none() {
             return Ok(());
         }
         self.flush_recorded();
@@ -271,6 +276,24 @@ mod tests {
         assert_eq!([4, 5, 6, 7].map(|x| pixel(&mut c, x, 1)), [30, 30, 10, 10]);
         assert_eq!([0, 1, 2, 3].map(|x| pixel(&mut c, x, 6)), [10, 15, 25, 30]);
         assert_eq!([0, 1].map(|x| pixel(&mut c, x, 7)), [30, 0]);
+    }
+
+    #[test]
+    fn empty_rectangles_copy_nothing() {
+        let mut c = context_with(4, 4);
+        let source = framebuffer(&mut c, 0, 2, 2);
+        draw(&mut c, 0, 0, &[10]);
+        let target = framebuffer(&mut c, 0, 4, 4);
+        c.bind_framebuffer(READ_FRAMEBUFFER, source);
+        for filter in [NEAREST, LINEAR] {
+            for [x, y] in [[0, 0], [0, 1], [1, 0]] {
+                c.blit_framebuffer(0, 0, x, y, 0, 0, 4, 4, COLOR_BUFFER_BIT, filter);
+                c.blit_framebuffer(0, 0, 1, 1, 0, 0, 4 * x, 4 * y, COLOR_BUFFER_BIT, filter);
+            }
+        }
+        assert_eq!(c.error, NO_ERROR);
+        c.bind_framebuffer(FRAMEBUFFER, target);
+        assert!((0..16).all(|i| pixel(&mut c, i % 4, i / 4) == 0));
     }
 
     #[test]

@@ -48,6 +48,12 @@ impl ClientMemory for Store {
     }
 }
 
+/// Where an offset lies in a store of elements of `unit` bytes.
+fn place(offset: usize, unit: usize) -> Result<usize, Failure> {
+    let whole = offset.is_multiple_of(unit).then(|| offset.saturating_add(START));
+    whole.ok_or((INVALID_OPERATION, "the offset is not one of whole numbers"))
+}
+
 impl Context {
     fn pixel_store_of(&self, name: u32) -> Result<Store, Failure> {
         match self.buffers().get(&name) {
@@ -56,19 +62,20 @@ impl Context {
         }
     }
 
-    /// Where pixels are unpacked from: a memory, and the address there.
-    pub(crate) fn unpack_memory(&self, address: usize) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
+    /// Where pixels of elements of `unit` bytes are unpacked from: a memory, and the address there.
+    pub(crate) fn unpack_memory(&self, address: usize, unit: usize) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
         match self.client.unpack.buffer {
             0 => Ok((self.memory.clone(), address)),
-            name => Ok((Arc::new(self.pixel_store_of(name)?), address.saturating_add(START))),
+            name => Ok((Arc::new(self.pixel_store_of(name)?), place(address, unit)?)),
         }
     }
 
-    /// Runs `write` with the memory that pixels are packed into and the address there. `false` of `write` is an error with a
-    /// buffer, which then keeps what it had.
+    /// Runs `write` with the memory that pixels of elements of `unit` bytes are packed into and the address there. `false`
+    /// of `write` is an error with a buffer, which then keeps what it had.
     pub(crate) fn pack_into(
         &self,
         address: usize,
+        unit: usize,
         write: impl FnOnce(&dyn ClientMemory, usize) -> bool,
     ) -> Result<(), Failure> {
         let name = self.client.pack.buffer;
@@ -77,7 +84,7 @@ impl Context {
             return Ok(());
         }
         let store = self.pixel_store_of(name)?;
-        if !write(&store, address.saturating_add(START)) {
+        if !write(&store, place(address, unit)?) {
             return Err((INVALID_OPERATION, "the pixels do not fit in the buffer"));
         }
         let bytes = store.bytes().clone();
@@ -122,5 +129,29 @@ mod tests {
         c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, 0);
         assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
         c.unmap_buffer(PIXEL_PACK_BUFFER);
+    }
+
+    #[test]
+    fn offsets_are_multiples_of_the_type() {
+        let mut c = context_with(2, 2);
+        let mut error = |call: &dyn Fn(&mut Context)| {
+            call(&mut c);
+            std::mem::take(&mut c.error)
+        };
+        for target in [PIXEL_PACK_BUFFER, PIXEL_UNPACK_BUFFER] {
+            error(&|c| c.bind_buffer(target, 1));
+        }
+        error(&|c| c.buffer_data(PIXEL_PACK_BUFFER, 64, 0, STREAM_READ));
+        for (kind, good, bad) in [(FLOAT, 4, 2), (UNSIGNED_SHORT, 2, 1), (UNSIGNED_SHORT_5_6_5, 2, 3)] {
+            assert_eq!(error(&|c| c.read_pixels(0, 0, 1, 1, RGB, kind, good)), NO_ERROR);
+            assert_eq!(error(&|c| c.read_pixels(0, 0, 1, 1, RGB, kind, bad)), INVALID_OPERATION);
+        }
+        assert_eq!(error(&|c| c.read_pixels(0, 0, 1, 1, RGB, UNSIGNED_BYTE, 3)), NO_ERROR);
+        assert_eq!(error(&|c| c.pixel_mapfv(PIXEL_MAP_R_TO_R, 2, 2)), INVALID_OPERATION);
+        assert_eq!(error(&|c| c.pixel_mapuiv(PIXEL_MAP_R_TO_R, 2, 2)), INVALID_OPERATION);
+        assert_eq!(error(&|c| c.pixel_mapusv(PIXEL_MAP_R_TO_R, 2, 1)), INVALID_OPERATION);
+        assert_eq!(error(&|c| c.pixel_mapusv(PIXEL_MAP_R_TO_R, 2, 2)), NO_ERROR);
+        assert_eq!(error(&|c| c.get_pixel_mapfv(PIXEL_MAP_R_TO_R, 2)), INVALID_OPERATION);
+        assert_eq!(error(&|c| c.get_pixel_mapusv(PIXEL_MAP_R_TO_R, 2)), NO_ERROR);
     }
 }

@@ -217,12 +217,8 @@ pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
 }
 
 impl Context {
-    /// `glGenerateMipmap`.
+    /// `glGenerateMipmap`. It is not compiled into display lists.
     pub fn generate_mipmap(&mut self, target: u32) {
-        self.listable(move |c| c.exec_generate_mipmap(target));
-    }
-
-    fn exec_generate_mipmap(&mut self, target: u32) {
         const CALL: &str = "glGenerateMipmap";
         if !self.outside_begin(CALL) {
             return;
@@ -292,6 +288,20 @@ mod tests {
         let light = source.map(light_from_word);
         let mean = std::array::from_fn(|c| light.iter().map(|l| l[c]).sum::<f32>() / 4.0);
         assert_eq!(halve_srgb(&source, 2), [word_from_light(mean)]);
+    }
+
+    #[test]
+    fn lists_do_not_hold_back_mipmaps() {
+        let mut c = super::super::testing::context();
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 2, 2, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.new_list(1, COMPILE);
+        c.generate_mipmap(TEXTURE_2D);
+        c.end_list();
+        let texture = c.bound_texture(0, slot::TWO);
+        assert!(lock(&texture).image(0, 1).is_some());
+        lock(&texture).set_image(0, 1, None);
+        c.call_list(1);
+        assert!(lock(&texture).image(0, 1).is_none());
     }
 
     #[test]

@@ -268,7 +268,7 @@ impl Context {
         let write = |memory: &dyn ClientMemory, address: usize| {
             write_region(memory, &self.client.pack, format, &region, address, bytes)
         };
-        if let Err((error, why)) = self.pack_into(pixels, write) {
+        if let Err((error, why)) = self.pack_into(pixels, format.element_bytes(), write) {
             self.record_error(error, CALL, why);
         }
     }

@@ -85,6 +85,10 @@ impl Context {
 
     /// `glBindSampler`.
     pub fn bind_sampler(&mut self, unit: u32, sampler: u32) {
+        self.listable(move |c| c.exec_bind_sampler(unit, sampler));
+    }
+
+    fn exec_bind_sampler(&mut self, unit: u32, sampler: u32) {
         const CALL: &str = "glBindSampler";
         if !self.outside_begin(CALL) {
             return;
@@ -118,7 +122,11 @@ impl Context {
         found
     }
 
-    fn sampler_parameter(&mut self, call: &str, name: u32, pname: u32, value: Option<Value>) {
+    fn sampler_parameter(&mut self, call: &'static str, name: u32, pname: u32, value: Option<Value>) {
+        self.listable(move |c| c.exec_sampler_parameter(call, name, pname, value));
+    }
+
+    fn exec_sampler_parameter(&mut self, call: &str, name: u32, pname: u32, value: Option<Value>) {
         let (Some(sampler), Some(value)) = (self.sampler(call, name, pname), value) else { return };
         let result = set(&mut lock(&sampler).parameters, slot::TWO, pname, value);
         if let Err((error, why)) = result {
@@ -226,6 +234,37 @@ mod tests {
         c.delete_samplers(1, BASE);
         assert!(c.sampled_texture(0).is_none());
         assert_eq!(c.is_sampler(sampler), 0);
+    }
+
+    #[test]
+    fn lists_hold_samplers_and_their_parameters() {
+        let mut c = context();
+        c.gen_samplers(1, BASE);
+        let sampler = read_u32(&c, BASE);
+        c.new_list(1, COMPILE);
+        c.bind_sampler(2, sampler);
+        c.sampler_parameteri(sampler, TEXTURE_WRAP_S, CLAMP_TO_EDGE as i32);
+        crate::pixels::testing::put(&c, BASE, &2.0f32.to_ne_bytes());
+        c.sampler_parameterfv(sampler, TEXTURE_LOD_BIAS, BASE);
+        c.sampler_parameteri(sampler, TEXTURE_BASE_LEVEL, 0);
+        c.end_list();
+        crate::pixels::testing::put(&c, BASE, &[0; 4]);
+        let wrap = |c: &mut Context| {
+            c.get_sampler_parameteriv(sampler, TEXTURE_WRAP_S, BASE);
+            read_u32(c, BASE)
+        };
+        assert_eq!((c.error, c.sampler_name(2), wrap(&mut c)), (NO_ERROR, 0, REPEAT));
+        c.call_list(1);
+        assert_eq!((c.error, c.sampler_name(2), wrap(&mut c)), (INVALID_ENUM, sampler, CLAMP_TO_EDGE));
+        assert_eq!(c.texture_lod_bias(2), 2.0);
+    }
+
+    #[test]
+    fn border_colours_are_given_as_other_colours_are() {
+        let mut c = context();
+        c.gen_samplers(1, BASE);
+        c.get_sampler_parameteriv(1, TEXTURE_BORDER_COLOR, BASE);
+        assert_eq!((read_u32(&c, BASE), c.error), (0, NO_ERROR));
     }
 
     #[test]

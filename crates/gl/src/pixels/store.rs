@@ -246,10 +246,7 @@ impl Context {
         if address == 0 && !bound {
             return Ok(None);
         }
-        if bound && !address.is_multiple_of(format.element_bytes()) {
-            return Err((INVALID_OPERATION, "the offset is not one of whole numbers"));
-        }
-        let (memory, address) = self.unpack_memory(address)?;
+        let (memory, address) = self.unpack_memory(address, format.element_bytes())?;
         let region = Region::whole(size, volume);
         match read_region(&*memory, &self.client.unpack, format, &region, address) {
             Some(bytes) => Ok(Some(ClientImage { format, size, bytes })),

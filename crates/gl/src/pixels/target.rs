@@ -206,6 +206,11 @@ impl Context {
         complete
     }
 
+    /// Whether an incomplete framebuffer object stands against a call that draws nothing itself; then the error is recorded.
+    pub(crate) fn refused_by_framebuffer(&mut self, call: &str) -> bool {
+        self.framebuffers.draw != 0 && !self.draw_framebuffer_complete(call)
+    }
+
     /// Which of red, green, blue, alpha the draw buffer does not store: writes to them must be masked.
     pub(crate) fn missing_components(&mut self) -> [bool; 4] {
         self.resolve().surfaces.color.as_ref().map_or([false; 4], |c| c.format.missing())

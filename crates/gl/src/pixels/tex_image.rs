@@ -74,13 +74,20 @@ impl ImageArguments {
         if too_large && !target.proxy {
             return Err((OUT_OF_MEMORY, "the image is too large"));
         }
-        Ok(CheckedImage { target, level, format, size, border, too_large: too_large || beyond })
+        let too_large = too_large || beyond || is_skewed(target, size);
+        Ok(CheckedImage { target, level, format, size, border, too_large })
     }
 }
 
-/// Whether a target takes images of this format and shape.
+/// Whether a face of a cube map is not square.
+pub(super) fn is_skewed(target: ImageTarget, size: [u32; 3]) -> bool {
+    target.slot == slot::CUBE && size[0] != size[1]
+}
+
+/// Whether a target takes images of this format and shape. A proxy takes faces that are not square, as it does images that
+/// are too large.
 pub(super) fn check_shape(target: ImageTarget, format: &InternalFormat, size: [u32; 3]) -> Result<(), Failure> {
-    if target.slot == slot::CUBE && size[0] != size[1] {
+    if !target.proxy && is_skewed(target, size) {
         return Err((INVALID_VALUE, "a cube map's face is not square"));
     }
     // OpenGL 1.5 has no depth cube maps; 3.0 has, and Mesa in every version.
@@ -346,6 +353,18 @@ mod tests {
         assert_eq!(error(PROXY_TEXTURE_2D, 0, RGBA, 1 << 20, 0, RGBA, FLOAT), NO_ERROR);
         assert_eq!(level_parameter(&mut c, PROXY_TEXTURE_2D, 0, TEXTURE_WIDTH), 0);
         assert_eq!(level_parameter(&mut c, TEXTURE_2D, 0, TEXTURE_WIDTH), 0);
+    }
+
+    #[test]
+    fn a_proxy_of_a_skewed_cube_has_no_size() {
+        let mut c = context();
+        for (height, kept) in [(16, 16), (8, 0)] {
+            c.tex_image_2d(PROXY_TEXTURE_CUBE_MAP, 0, RGBA as i32, 16, height, 0, RGBA, FLOAT, 0);
+            assert_eq!(level_parameter(&mut c, PROXY_TEXTURE_CUBE_MAP, 0, TEXTURE_WIDTH), kept);
+        }
+        assert_eq!(c.error, NO_ERROR);
+        c.tex_image_2d(TEXTURE_CUBE_MAP_POSITIVE_X, 0, RGBA as i32, 16, 8, 0, RGBA, FLOAT, 0);
+        assert_eq!(c.error, INVALID_VALUE);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::Failure;
 use super::image::lock;
 use super::texture::{ImageTarget, MAX_ANISOTROPY, TextureParameters, slot, slot_of};
 use crate::Context;
+use crate::api::integer_of_component;
 use crate::enums::*;
 use crate::memory::ClientMemory;
 
@@ -23,8 +24,8 @@ fn component(value: i32) -> f32 {
 
 /// What [`get`] gives, as integers: components of a colour by their whole range, others rounded.
 pub(super) fn integers((values, color): (Vec<f64>, bool)) -> Vec<i32> {
-    let convert = |v: f64| if color { (f64::from(u32::MAX) * v - 1.0) / 2.0 } else { v };
-    values.into_iter().map(|v| convert(v).round() as i32).collect()
+    let convert = |v: f64| if color { integer_of_component(v) } else { v.round() as i32 };
+    values.into_iter().map(convert).collect()
 }
 
 impl Value {
@@ -320,5 +321,9 @@ mod tests {
         assert_eq!([values[0], values[1], values[3]], [1.0, 0.0, 1.0]);
         c.get_tex_parameteriv(TEXTURE_3D, TEXTURE_PRIORITY, BASE);
         assert_eq!(read_u32(&c, BASE), i32::MAX as u32);
+        put(&c, BASE, bytemuck::cast_slice(&[0.0f32, 1.0, 0.5, 0.0]));
+        c.tex_parameterfv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE);
+        c.get_tex_parameteriv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE + 64);
+        assert_eq!([0, 4, 8, 12].map(|i| read_u32(&c, BASE + 64 + i) as i32), [0, i32::MAX, i32::MAX / 2, 0]);
     }
 }

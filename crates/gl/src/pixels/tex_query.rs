@@ -156,7 +156,7 @@ impl Context {
             }
         }
         let region = Region::whole(full, dimensions == 3);
-        self.pack_into(pixels, |memory, address| {
+        self.pack_into(pixels, format.element_bytes(), |memory, address| {
             write_region(memory, &self.client.pack, format, &region, address, bytes)
         })
     }

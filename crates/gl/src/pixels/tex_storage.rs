@@ -5,7 +5,7 @@
 use super::Failure;
 use super::image::{TextureImage, lock};
 use super::internal_format::{InternalFormat, is_sized};
-use super::tex_image::check_shape;
+use super::tex_image::{check_shape, is_skewed};
 use super::texture::{ImageTarget, slot, slot_of};
 use crate::Context;
 use crate::enums::*;
@@ -65,7 +65,8 @@ impl Context {
         if levels as usize > most {
             return Err((INVALID_OPERATION, "images of this size have fewer levels"));
         }
-        let fits = TextureImage::fits(&format, size) && size.iter().all(|&s| s as usize <= target.max_size());
+        let beyond = size.iter().any(|&s| s as usize > target.max_size());
+        let fits = TextureImage::fits(&format, size) && !beyond && !is_skewed(target, size);
         if target.proxy {
             let proxy = &mut self.textures.proxies[target.slot];
             proxy.allocate(format, if fits { levels as usize } else { 0 }, size);
@@ -80,7 +81,6 @@ impl Context {
             return Err((INVALID_OPERATION, "the texture is immutable"));
         }
         if !fits {
-            let beyond = size.iter().any(|&s| s as usize > target.max_size());
             return Err((if beyond { INVALID_VALUE } else { OUT_OF_MEMORY }, "the images are too large"));
         }
         texture.allocate(format, levels as usize, size);
@@ -170,6 +170,8 @@ mod tests {
         assert_eq!(error(1, TEXTURE_2D, 4, RGBA8, 4), INVALID_OPERATION);
         assert_eq!(error(1, TEXTURE_2D, 1, RGBA8, 1 << 20), INVALID_VALUE);
         assert_eq!(error(1, PROXY_TEXTURE_2D, 1, RGBA8, 1 << 20), NO_ERROR);
+        assert_eq!(error(1, PROXY_TEXTURE_CUBE_MAP, 1, RGBA8, 8), NO_ERROR);
+        assert_eq!(error(1, TEXTURE_CUBE_MAP, 1, RGBA8, 8), INVALID_VALUE);
         assert_eq!(error(1, TEXTURE_2D, 3, RGBA8, 4), NO_ERROR);
     }
 }

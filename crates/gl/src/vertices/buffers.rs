@@ -205,11 +205,16 @@ impl Buffer {
     }
 
     fn parameter(&self, pname: u32) -> Result<i32, Refusal> {
+        let number = |value: usize| value.try_into().unwrap_or(i32::MAX);
+        let mapping = self.mapping.as_ref();
         Ok(match pname {
-            enums::BUFFER_SIZE => self.size().try_into().unwrap_or(i32::MAX),
+            enums::BUFFER_SIZE => number(self.size()),
             enums::BUFFER_USAGE => self.usage as i32,
             enums::BUFFER_ACCESS => self.access as i32,
             enums::BUFFER_MAPPED => self.is_mapped().into(),
+            enums::BUFFER_ACCESS_FLAGS => mapping.map_or(0, |m| m.flags as i32),
+            enums::BUFFER_MAP_OFFSET => mapping.map_or(0, |m| number(m.offset)),
+            enums::BUFFER_MAP_LENGTH => mapping.map_or(0, |m| number(m.length)),
             _ => return Err((enums::INVALID_ENUM, "pname is not a parameter of buffers")),
         })
     }
@@ -316,6 +321,9 @@ impl Context {
         size: isize,
     ) {
         const CALL: &str = "glCopyBufferSubData";
+        if self.refused_inside_begin(CALL) {
+            return;
+        }
         let Some(source) = self.buffer_binding(CALL, read).copied() else { return };
         let Some(target) = self.buffer_binding(CALL, write).copied() else { return };
         let part = self.with_buffer(CALL, read, |buffer, _| {
@@ -450,5 +458,27 @@ mod tests {
         assert_eq!(c.unmap_buffer(TARGET), 1);
         assert_eq!(*c.buffers()[&9].as_ref().unwrap().bytes, [0, 0, 0, 0, 5, 5, 5, 5]);
         assert_eq!((c.unmap_buffer(TARGET), c.error), (0, enums::INVALID_OPERATION));
+    }
+
+    #[test]
+    fn a_mapping_can_be_asked_for() {
+        let mut c = context();
+        c.bind_buffer(TARGET, 9);
+        c.buffer_data(TARGET, 8, 0, enums::STREAM_DRAW);
+        let ask = |c: &mut Context| {
+            [enums::BUFFER_MAP_OFFSET, enums::BUFFER_MAP_LENGTH, enums::BUFFER_ACCESS_FLAGS].map(|pname| {
+                c.get_buffer_parameteriv(TARGET, pname, BASE);
+                u32::from(read(c, BASE, 4)[0])
+            })
+        };
+        assert_eq!(ask(&mut c), [0; 3]);
+        let flags = enums::MAP_WRITE_BIT | enums::MAP_UNSYNCHRONIZED_BIT;
+        c.map_buffer_range(TARGET, 3, 4, flags);
+        assert_eq!(ask(&mut c), [3, 4, flags]);
+        c.unmap_buffer(TARGET);
+        assert_eq!(ask(&mut c), [0; 3]);
+        c.map_buffer(TARGET, enums::READ_WRITE);
+        assert_eq!(ask(&mut c), [0, 8, enums::MAP_READ_BIT | enums::MAP_WRITE_BIT]);
+        assert_eq!(c.error, enums::NO_ERROR);
     }
 }

@@ -152,7 +152,7 @@ impl Context {
             self.record_error(enums::INVALID_OPERATION, "glBegin", "a glBegin is open already");
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
-        } else {
+        } else if !self.refused_by_framebuffer("glBegin") {
             if !self.builder.gathering {
                 self.builder.material = self.state.lighting.material;
             }

@@ -39,7 +39,7 @@ impl Context {
         self.builder.log.push(batch.clone());
         if self.feedback.mode == enums::RENDER {
             self.record_draw(batch, sent);
-        } else {
+        } else if !self.refused_by_framebuffer("draw") {
             self.feed_batch(&batch);
         }
     }

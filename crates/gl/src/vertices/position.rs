@@ -9,7 +9,7 @@ impl Context {
     fn raster_pos<const N: usize>(&mut self, call: &'static str, given: [f32; N]) {
         let position = filled(given);
         self.listable(move |c| {
-            if !c.refused_inside_begin(call) {
+            if !c.refused_inside_begin(call) && !c.refused_by_framebuffer(call) {
                 let position = c.raster_position(position);
                 c.set_raster_position(position);
             }

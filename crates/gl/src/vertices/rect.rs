@@ -6,7 +6,7 @@ use crate::{Context, enums};
 impl Context {
     fn rect(&mut self, call: &'static str, [x1, y1]: [f32; 2], [x2, y2]: [f32; 2]) {
         self.listable(move |c| {
-            if c.refused_inside_begin(call) {
+            if c.refused_inside_begin(call) || c.refused_by_framebuffer(call) {
                 return;
             }
             c.exec_begin(enums::POLYGON);

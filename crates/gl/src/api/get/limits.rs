@@ -34,6 +34,8 @@ impl Context {
             gl::MAX_DEBUG_MESSAGE_LENGTH => Value::size(MAX_MESSAGE_LENGTH),
             gl::MAX_DEBUG_LOGGED_MESSAGES => Value::size(MAX_LOGGED),
             gl::MAX_DEBUG_GROUP_STACK_DEPTH => Value::size(MAX_GROUPS),
+            // Everything has been done before a wait begins.
+            gl::MAX_SERVER_WAIT_TIMEOUT => Value::integer(0),
             gl::MAX_LABEL_LENGTH => Value::size(MAX_LABEL_LENGTH),
             _ => return texture_limit(pname),
         })

@@ -84,6 +84,11 @@ impl Value {
     }
 }
 
+/// A component of a colour as an integer: -1..=1 becomes the range of the type, and 0.0 becomes 0.
+pub(crate) fn integer_of_component(number: f64) -> i32 {
+    ((number * f64::from(u32::MAX) - 1.0) / 2.0) as i32
+}
+
 /// A type that can be asked for.
 pub(super) trait Answer: bytemuck::Pod {
     /// One number of a value.
@@ -101,7 +106,7 @@ impl Answer for i32 {
         match kind {
             Kind::Boolean | Kind::Integer => number as i64 as Self,
             Kind::Float => number.round() as Self,
-            Kind::Normalized => ((number * f64::from(u32::MAX) - 1.0) / 2.0) as Self,
+            Kind::Normalized => integer_of_component(number),
         }
     }
 }

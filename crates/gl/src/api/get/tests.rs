@@ -58,6 +58,7 @@ fn initial_tokens_and_integers() {
         (gl::COLOR_ARRAY_TYPE, gl::FLOAT),
         (gl::SECONDARY_COLOR_ARRAY_SIZE, 3),
         (gl::ARRAY_BUFFER_BINDING, 0),
+        (gl::MAX_SERVER_WAIT_TIMEOUT, 0),
         (gl::LIST_BASE, 0),
         (gl::RENDER_MODE, gl::RENDER),
         (gl::ATTRIB_STACK_DEPTH, 0),

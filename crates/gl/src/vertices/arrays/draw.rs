@@ -155,23 +155,28 @@ impl Context {
         }
     }
 
-    fn draw_count(&mut self, call: &str, mode: u32, n: i32) -> Option<usize> {
+    /// The number of draws of a call of many, if it may go on.
+    fn draw_count(&mut self, call: &'static str, mode: u32, n: i32) -> Option<usize> {
+        if self.refused_draw(call) {
+            return None;
+        }
         if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, call, &format!("mode {mode:#x} is not a primitive"));
             return None;
         }
-        let count = usize::try_from(n).ok();
-        if count.is_none() {
-            self.record_error(enums::INVALID_VALUE, call, &format!("the number of draws {n} is negative"));
+        match usize::try_from(n) {
+            Ok(0) => self.draw_nothing(call),
+            Ok(n) => return Some(n),
+            Err(_) => {
+                self.record_error(enums::INVALID_VALUE, call, &format!("the number of draws {n} is negative"));
+            }
         }
-        count
+        None
     }
 
     /// Draws, or compiles what the arrays hold now.
     fn draw_vertices(&mut self, call: &'static str, mode: u32, vertices: Vertices) {
-        let executed = !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE;
-        if executed && self.refused_inside_begin(call) {
-            self.compile_refusal(call);
+        if self.refused_draw(call) {
             return;
         }
         if mode > enums::POLYGON {
@@ -180,7 +185,7 @@ impl Context {
         }
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = vertices;
         if count == 0 || !self.client.vertex.enabled {
-            self.compile_refusal(call);
+            self.draw_nothing(call);
             return;
         }
         if count > MAX_VERTICES {
@@ -197,16 +202,38 @@ impl Context {
         if self.lists.recording {
             self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
         }
-        if executed {
+        if self.executes() {
             self.draw_batch(batch, Sent::Now);
         }
     }
 
-    /// A list gets a draw of nothing: called between Begin and End even that is an error.
+    /// Whether draws happen now, be they compiled or not.
+    fn executes(&self) -> bool {
+        !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE
+    }
+
+    /// Whether an open Begin stands against a draw that happens now.
+    fn refused_draw(&mut self, call: &'static str) -> bool {
+        let refused = self.executes() && self.refused_inside_begin(call);
+        if refused {
+            self.compile_refusal(call);
+        }
+        refused
+    }
+
+    /// A draw of nothing: only the framebuffer may stand against it.
+    fn draw_nothing(&mut self, call: &'static str) {
+        if self.executes() {
+            self.refused_by_framebuffer(call);
+        }
+        self.compile_refusal(call);
+    }
+
+    /// A list gets a draw of nothing: called between Begin and End, or with an incomplete framebuffer, even that is an error.
     fn compile_refusal(&mut self, call: &'static str) {
         if self.lists.recording {
             let check: Call = Box::new(move |c| {
-                c.refused_inside_begin(call);
+                let _ = c.refused_inside_begin(call) || c.refused_by_framebuffer(call);
             });
             self.compile(|compiler| compiler.call(check));
         }

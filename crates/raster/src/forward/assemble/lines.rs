@@ -53,8 +53,8 @@ impl Assembler<'_> {
                 [at[0][0] - ex + nx, at[0][1] - ey + ny],
             ]
         } else {
-            // Aliased lines are widened along the minor axis, to whole pixels.
-            let half = width.floor().max(1.0) * 0.5;
+            // Aliased lines are widened along the minor axis, to the nearest whole number of pixels.
+            let half = (width + 0.5).floor().max(1.0) * 0.5;
             let (nx, ny) = if dx.abs() >= dy.abs() { (0.0, half) } else { (half, 0.0) };
             let [[x0, y0], [x1, y1]] = diamond_exit(at);
             [[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]]

@@ -259,6 +259,37 @@ fn an_aliased_line_is_as_wide_as_the_nearest_whole_number() {
 }
 
 #[test]
+fn a_point_sprite_covers_the_centres_in_its_square_and_counts_from_its_place() {
+    let mut c = Stage::new(16, 16);
+    c.pixels();
+    c.enable(gl::POINT_SPRITE_ARB);
+    c.tex_envi(gl::POINT_SPRITE_ARB, gl::COORD_REPLACE_ARB, 1);
+    let texels: Vec<[u8; 4]> = (0..=255).map(|s| [s, 0, 0, 255]).collect();
+    let texels = c.put(&texels);
+    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 256, 1, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, gl::NEAREST as i32);
+    c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
+    c.enable(gl::TEXTURE_2D);
+    for (size, x, y) in
+        [(2.0f32, 8.5f32, 7.5f32), (2.0, 8.25, 7.75), (3.5, 8.25, 6.0), (4.25, 5.5, 9.75), (1.0, 8.0, 8.0)]
+    {
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.point_size(size);
+        c.begin(gl::POINTS);
+        c.vertex_2f(x, y);
+        c.end();
+        for (i, pixel) in c.bytes().into_iter().enumerate() {
+            let (px, py) = ((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5);
+            let inside = |p: f32, middle: f32| p >= middle - size / 2.0 && p < middle + size / 2.0;
+            let s = 0.5 + (px - x) / size;
+            let expected = if inside(px, x) && inside(py, y) { [(s * 256.0) as u8, 255] } else { [0, 0] };
+            assert_eq!([pixel[0], pixel[3]], expected, "size {size} at ({x}, {y}): pixel ({px}, {py})");
+        }
+    }
+}
+
+#[test]
 fn a_smooth_polygon_covers_its_area() {
     let mut c = Stage::new(32, 32);
     c.pixels();

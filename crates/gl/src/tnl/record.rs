@@ -233,6 +233,7 @@ impl Context {
             line_smooth: s.lines.smooth && !multisample,
             multisample,
             polygon_smooth: s.polygons.smooth && !multisample,
+            point_sprite: s.points.sprite,
             point_smooth: s.points.smooth && !multisample && !s.points.sprite,
             clip,
             draw: 0,

@@ -115,6 +115,8 @@ pub struct PrimitiveState {
     pub multisample: bool,
     /// Points are smooth.
     pub point_smooth: bool,
+    /// Points are sprites: true squares round their places.
+    pub point_sprite: bool,
     /// Polygons are smooth.
     pub polygon_smooth: bool,
     /// Allowed pixels x0, y0, x1, y1 for polygons and lines: scissor, target and viewport.

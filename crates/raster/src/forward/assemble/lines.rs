@@ -128,7 +128,7 @@ impl Assembler<'_> {
         let [size, fade] = self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0]);
         let slot = self.slot(vertex);
         let provoking = self.slot(provoking);
-        let (center, half) = if self.state.point_smooth || self.state.multisample {
+        let (center, half) = if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
             ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
         } else {
             // An aliased point is a square of whole pixels round the vertex.

@@ -112,10 +112,7 @@ pub(super) fn model_corners<S: Simd>(simd: S, triangles: &[u32], mesh: &Mesh) ->
     gather(
         simd,
         #[inline(always)]
-        |lane| {
-            let [a, b, c] = mesh.triangles[triangles[lane.min(last)] as usize];
-            [mesh.positions[a as usize], mesh.positions[b as usize], mesh.positions[c as usize]]
-        },
+        |lane, corner| mesh.positions[mesh.triangles[triangles[lane.min(last)] as usize][corner] as usize],
     )
 }
 
@@ -201,13 +198,10 @@ fn corner_normals<S: Simd>(simd: S, triangles: &[u32], subject: &Subject<'_>, ge
     let mut normals = [geometric; 3];
     if let Some(attribute) = &mesh.normals {
         let corners = attribute.corners.as_deref().unwrap_or(&mesh.triangles);
-        let values = gather(
+        let values: [[F<S>; 3]; 3] = gather(
             simd,
             #[inline(always)]
-            |lane| {
-                let [a, b, c] = corners[triangles[lane.min(last)] as usize];
-                [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
-            },
+            |lane, corner| attribute.values[corners[triangles[lane.min(last)] as usize][corner] as usize],
         );
         for c in 0..3 {
             let n = linear(&subject.instance.view_from_model_normal, &values[c]).normalize();

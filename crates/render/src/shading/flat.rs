@@ -53,12 +53,12 @@ pub(crate) fn shade<S: Simd>(
         let third = a.x.splat(1.0 / 3.0);
         return lighting.reflect(simd, &(a + b + c).scale(third), &surface.facet_normal, coefficients);
     }
-    let [center, normal, _] = gather(
+    let [center, normal] = gather(
         simd,
         #[inline(always)]
-        |lane| {
-            let [center, normal] = faces.centers_and_normals[mesh.face_of_triangle(slots.triangle[lane] as usize)];
-            [center, normal, [0.0; 3]]
+        |lane, which| {
+            let face = mesh.face_of_triangle(slots.triangle[lane] as usize);
+            faces.centers_and_normals[face][which]
         },
     );
     let position = affine(&instance.view_from_model, &center);

@@ -28,25 +28,29 @@ pub(crate) fn constant<S: Simd>(simd: S, value: f32) -> F<S> {
     <F<S> as SimdBase<S>>::splat(simd, value)
 }
 
-/// Gathers three values with `N` components for each lane: `[corner][component]`.
+/// Gathers `C` values with `N` components, at most four, for each lane: `[value][component]`. `value` gives a lane's by number. Each is one load, and they are transposed in registers: numbers that are put side by side in memory one by one are
+/// slow to load together.
 #[inline(always)]
-pub(crate) fn gather<S: Simd, const N: usize>(simd: S, corners: impl Fn(usize) -> [[f32; N]; 3]) -> [[F<S>; N]; 3] {
-    let mut soa = [[[0.0f32; LANES]; N]; 3];
-    for lane in 0..LANES {
-        let values = corners(lane);
-        for c in 0..3 {
-            for k in 0..N {
-                soa[c][k][lane] = values[c][k];
-            }
-        }
-    }
-    let mut lanes = [[constant(simd, 0.0); N]; 3];
-    for c in 0..3 {
+pub(crate) fn gather<S: Simd, const N: usize, const C: usize>(
+    simd: S,
+    value: impl Fn(usize, usize) -> [f32; N],
+) -> [[F<S>; N]; C] {
+    let mut gathered = [[constant(simd, 0.0); N]; C];
+    for c in 0..C {
+        let columns = lanes::columns_of_rows(
+            simd,
+            #[inline(always)]
+            |lane| {
+                let mut row = [0.0f32; 4];
+                row[..N].copy_from_slice(&value(lane, c));
+                bytemuck::cast(row)
+            },
+        );
         for k in 0..N {
-            lanes[c][k] = F32x8::from_slice(simd, &soa[c][k]);
+            gathered[c][k] = columns[k].bitcast();
         }
     }
-    lanes
+    gathered
 }
 
 /// `Σ weight * value` over the three corners.

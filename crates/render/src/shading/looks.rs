@@ -275,10 +275,7 @@ fn gather_attribute<S: Simd, const N: usize>(
     gather(
         simd,
         #[inline(always)]
-        |lane| {
-            let [a, b, c] = corners[slots.triangle[lane] as usize];
-            [attribute.values[a as usize], attribute.values[b as usize], attribute.values[c as usize]]
-        },
+        |lane, corner| attribute.values[corners[slots.triangle[lane] as usize][corner] as usize],
     )
 }
 

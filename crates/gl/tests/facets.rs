@@ -36,7 +36,7 @@ enum With {
     Texture,
     Mipmaps,
     Cube,
-    /// A texture and a shadow map, whose lookups decide.
+    /// A texture and a shadow map, whose lookups decide, and fog.
     Shadow,
     Blending,
     /// Whatever is drawn again is added where it is.
@@ -118,6 +118,9 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             c.enable(gl::TEXTURE_2D);
             c.enable(gl::ALPHA_TEST);
             c.alpha_func(gl::GEQUAL, 0.3);
+            c.enable(gl::FOG);
+            c.fogi(gl::FOG_MODE, gl::LINEAR as i32);
+            c.fogf(gl::FOG_END, 2.0);
         }
         With::Adding => {
             c.enable(gl::BLEND);

@@ -1,4 +1,4 @@
-//! Colours of tiny facets eight at a time, where they come from corners and textures of the common kinds.
+//! Colours of tiny facets eight at a time, where they come from corners, textures of the common kinds and fog.
 //!
 //! Each facet has a lane while what its corners have is interpolated, at one place of all boxes after the other. The pixels that
 //! show are then brought together, since boxes are mostly empty, and textures are looked up for eight of them at a time,
@@ -7,6 +7,7 @@
 use super::{MOST_W, Shader};
 use crate::SUBPIXEL;
 use crate::forward::assemble::{Facet, Primitives};
+use crate::forward::environment::fog::fog;
 use crate::forward::environment::{format_of, modulate};
 use crate::forward::fragment_ops::compare::alpha_test;
 use crate::forward::fragment_ops::packed::pack;
@@ -25,8 +26,11 @@ use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Simd};
 /// Most units whose textures are looked up here.
 const MOST_UNITS: usize = 2;
 
-/// Numbers of a pixel: a colour, and where in each unit's texture it is looked up.
-const NUMBERS: usize = 4 * (1 + MOST_UNITS);
+/// Numbers of a pixel: a colour, where in each unit's texture it is looked up, the fog coordinate.
+const NUMBERS: usize = 4 * (1 + MOST_UNITS) + 1;
+
+/// The fog coordinate's place among them.
+const FOG: usize = NUMBERS - 1;
 
 /// Pixels of all eight facets, and room for eights that reach beyond the last.
 const ROOM: usize = LANES * PLACES + LANES;
@@ -69,13 +73,15 @@ pub(crate) struct EightFacets<'d, S: Simd> {
     sum: [F32x8<S>; 3],
     color: Numbers<S>,
     coordinates: [Numbers<S>; MOST_UNITS],
+    /// The fog coordinate, as one of [`Numbers`].
+    fog: [F32x8<S>; 3],
 }
 
-/// Whether a draw's colours are those of corners and textures of the common kinds, and nothing else.
+/// Whether a draw's colours are those of corners, textures of the common kinds and fog, and nothing else.
 pub(crate) fn go_together(draw: &DrawContext<'_>) -> bool {
     let (state, layout) = (draw.state, draw.layout);
     let common = |unit: &Unit| unit.mode == EnvironmentMode::Modulate && layout.tex[unit.index].is_some();
-    state.fog.is_none()
+    (state.fog.is_none() || layout.fog.is_some())
         && !state.color_sum
         && layout.grid.is_none()
         && state.units.len() <= MOST_UNITS
@@ -128,7 +134,14 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             }
             coordinates[i % MOST_UNITS] = own;
         }
-        Some(Self::with_planes(simd, eight, inverse_w, tile, (draw, color, coordinates)))
+        let mut fog = [zero[0]; 3];
+        if let (Some(_), Some(at)) = (&draw.state.fog, draw.layout.fog) {
+            // Four that lie within a record, and it among them.
+            let first = at.min(draw.layout.stride.saturating_sub(4));
+            let four = Numbers::of_corners(simd, records, facets, |_| first);
+            fog = [four.base, four.d1, four.d2].map(|numbers| numbers[(at - first) % 4]);
+        }
+        Some(Self::with_planes(simd, eight, inverse_w, tile, (draw, color, coordinates, fog)))
     }
 
     /// The operations of `Interpolation::near`, in their order.
@@ -138,7 +151,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         eight: &TinyEight,
         inverse_w: [F32x8<S>; 3],
         tile: [u32; 2],
-        (draw, color, coordinates): (&'d DrawContext<'d>, Numbers<S>, [Numbers<S>; MOST_UNITS]),
+        (draw, color, coordinates, fog): (&'d DrawContext<'d>, Numbers<S>, [Numbers<S>; MOST_UNITS], [F32x8<S>; 3]),
     ) -> Self {
         let [x, y] = eight.corners(simd);
         let double = lanes::inlined(
@@ -187,6 +200,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             sum: [single(w0), single(a[0] * e1 + b[0] * e2), single(a[1] * e1 + b[1] * e2)],
             color,
             coordinates,
+            fog,
         }
     }
 
@@ -204,7 +218,11 @@ impl<'d, S: Simd> EightFacets<'d, S> {
     ) {
         if self.draw.state.units.is_empty() && self.draw.state.alpha_test.is_none() {
             for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
-                let color = value(&self.weights(simd, eight, place, tile), &self.color);
+                let weights = self.weights(simd, eight, place, tile);
+                let mut color = value(&weights, &self.color);
+                if let Some(state) = &self.draw.state.fog {
+                    color = fog(state, saturate_rgba(color), self.fog_coordinate(&weights));
+                }
                 pack::<S, F32x8<S>>(&color).store_slice(&mut words[place]);
             }
             return;
@@ -232,7 +250,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 #[inline(always)]
                 |first: usize, four: Rgba<S>| {
                     for k in 0..4 {
-                        four[k].store_slice(&mut numbers[(first + k) % NUMBERS]);
+                        four[k].store_slice(&mut numbers[(first + k) % FOG]);
                     }
                 },
             );
@@ -250,6 +268,9 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     }
                 };
                 keep(4 + 4 * i, where_to);
+            }
+            if self.draw.state.fog.is_some() {
+                self.fog_coordinate(&weights).store_slice(&mut numbers[FOG]);
             }
             for facet in 0..LANES {
                 if shown[facet] >> place & 1 == 1 {
@@ -285,7 +306,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
                 let [a, b, c, d] = lanes::four(
                     #[inline(always)]
-                    |k| number((4 + 4 * i + k) % NUMBERS),
+                    |k| number((4 + 4 * i + k) % FOG),
                 );
                 let texture = match common {
                     Common::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
@@ -296,6 +317,9 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     Common::Shadow(packed) => packed.at(simd, [a, b, c], active),
                 };
                 color = modulate(format_of(&unit.texture), &texture, color);
+            }
+            if let Some(state) = &self.draw.state.fog {
+                color = fog(state, color, number(FOG));
             }
             let mut passed = u32::MAX;
             if let Some(test) = self.draw.state.alpha_test {
@@ -324,6 +348,12 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let w = splat(simd, 1.0) / (dx * self.sum[1] + dy * self.sum[2] + self.sum[0]);
         let (q1, q2) = (dx * self.first[0] + dy * self.first[1], dx * self.second[0] + dy * self.second[1]);
         Weights { b1: q1 * w, b2: q2 * w, w }
+    }
+
+    #[inline(always)]
+    fn fog_coordinate(&self, weights: &Weights<S>) -> F32x8<S> {
+        let [base, d1, d2] = self.fog;
+        weights.b1 * d1 + weights.b2 * d2 + base
     }
 
     /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up. Where w is the same at all

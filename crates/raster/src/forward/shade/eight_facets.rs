@@ -71,7 +71,13 @@ pub(crate) struct EightFacets<'d, S: Simd> {
     first: [F32x8<S>; 2],
     second: [F32x8<S>; 2],
     sum: [F32x8<S>; 3],
+    values: Values<S>,
+}
+
+/// What is interpolated.
+struct Values<S: Simd> {
     color: Numbers<S>,
+    /// Of each unit's texture.
     coordinates: [Numbers<S>; MOST_UNITS],
     /// The fog coordinate, as one of [`Numbers`].
     fog: [F32x8<S>; 3],
@@ -141,7 +147,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             let four = Numbers::of_corners(simd, records, facets, |_| first);
             fog = [four.base, four.d1, four.d2].map(|numbers| numbers[(at - first) % 4]);
         }
-        Some(Self::with_planes(simd, eight, inverse_w, tile, (draw, color, coordinates, fog)))
+        Some(Self::with_planes(simd, eight, inverse_w, tile, draw, Values { color, coordinates, fog }))
     }
 
     /// The operations of `Interpolation::near`, in their order.
@@ -151,7 +157,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         eight: &TinyEight,
         inverse_w: [F32x8<S>; 3],
         tile: [u32; 2],
-        (draw, color, coordinates, fog): (&'d DrawContext<'d>, Numbers<S>, [Numbers<S>; MOST_UNITS], [F32x8<S>; 3]),
+        draw: &'d DrawContext<'d>,
+        values: Values<S>,
     ) -> Self {
         let [x, y] = eight.corners(simd);
         let double = lanes::inlined(
@@ -198,9 +205,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             first: [single(a[0] * w1), single(a[1] * w1)],
             second: [single(b[0] * w2), single(b[1] * w2)],
             sum: [single(w0), single(a[0] * e1 + b[0] * e2), single(a[1] * e1 + b[1] * e2)],
-            color,
-            coordinates,
-            fog,
+            values,
         }
     }
 
@@ -219,7 +224,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         if self.draw.state.units.is_empty() && self.draw.state.alpha_test.is_none() {
             for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
                 let weights = self.weights(simd, eight, place, tile);
-                let mut color = value(&weights, &self.color);
+                let mut color = value(&weights, &self.values.color);
                 if let Some(state) = &self.draw.state.fog {
                     color = fog(state, saturate_rgba(color), self.fog_coordinate(&weights));
                 }
@@ -239,7 +244,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             if let Common::Flat(packed) = common
                 && packed.needs_lod()
             {
-                slopes[i % MOST_UNITS] = Some(self.slopes(packed, &self.coordinates[i % MOST_UNITS]));
+                slopes[i % MOST_UNITS] = Some(self.slopes(packed, &self.values.coordinates[i % MOST_UNITS]));
             }
         }
         let mut count = 0;
@@ -254,10 +259,10 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     }
                 },
             );
-            keep(0, saturate_rgba(value(&weights, &self.color)));
+            keep(0, saturate_rgba(value(&weights, &self.values.color)));
             for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
                 let i = i % MOST_UNITS;
-                let coordinates = &self.coordinates[i];
+                let coordinates = &self.values.coordinates[i];
                 let at = value(&weights, coordinates);
                 let where_to = match common {
                     Common::Flat(_) => self.place(simd, &weights, unit, coordinates, at, &slopes[i]),
@@ -352,7 +357,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
 
     #[inline(always)]
     fn fog_coordinate(&self, weights: &Weights<S>) -> F32x8<S> {
-        let [base, d1, d2] = self.fog;
+        let [base, d1, d2] = self.values.fog;
         weights.b1 * d1 + weights.b2 * d2 + base
     }
 

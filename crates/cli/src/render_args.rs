@@ -225,10 +225,10 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "FACTOR", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) camera_zoom_factor: Option<f64>,
     /// Walk round the model, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
     pub(crate) camera_azimuth_angle: Option<f64>,
     /// Climb above the model, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
     pub(crate) camera_elevation_angle: Option<f64>,
     /// Parallel projection
     #[arg(long)]

@@ -99,8 +99,7 @@ pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
     let mut data = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut data).ok()?;
     data.truncate(info.buffer_size());
-    let values = data.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair));
-    let values: Vec<u16> = values.collect();
+    let values: Vec<u16> = data.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
     const OPAQUE: u16 = u16::MAX;
     let rgba = match color {
         png::ColorType::Grayscale => values.iter().map(|&l| [l, l, l, OPAQUE]).collect(),

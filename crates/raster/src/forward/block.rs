@@ -65,7 +65,7 @@ pub(super) struct Slope<S: Simd> {
 impl<S: Simd> Slope<S> {
     /// For the block at pixel `(left, bottom)` of the target, and the sample at `[x, y]` of its pixels, in 1/256 pixel.
     #[inline(always)]
-    pub(super) fn new(simd: S, plane: &DepthPlane, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
+    fn new(simd: S, plane: &DepthPlane, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
         let mut rows = [0.0; BLOCK];
         upwards(simd, plane, bottom as i32 * SUBPIXEL + y).store_slice(&mut rows);
         Self { across: across(simd, plane, left as i32 * SUBPIXEL + x), rows }
@@ -73,7 +73,7 @@ impl<S: Simd> Slope<S> {
 
     /// The depths of a row as stored.
     #[inline(always)]
-    pub(super) fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
+    fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
         stored_depth(simd, min(max(self.across + self.rows[row % BLOCK], low), high), scale)
     }
 
@@ -173,7 +173,7 @@ pub(crate) fn depths<S: Simd>(
 
 /// Whether all samples have the same mask.
 #[inline(always)]
-pub(super) fn all_alike(masks: &[u64; SAMPLES], samples: usize) -> bool {
+fn all_alike(masks: &[u64; SAMPLES], samples: usize) -> bool {
     (1..samples.min(SAMPLES)).all(|s| masks[s] == masks[0])
 }
 
@@ -459,7 +459,7 @@ pub(crate) fn colors<S: Simd>(
 
 /// Writes colours to the pixels of a row whose bits are set.
 #[inline(always)]
-pub(super) fn write_row<S: Simd>(simd: S, new: U32x8<S>, bits: u32, mixing: Mixing, stored: &mut [u32]) {
+fn write_row<S: Simd>(simd: S, new: U32x8<S>, bits: u32, mixing: Mixing, stored: &mut [u32]) {
     let old = U32x8::from_slice(simd, stored);
     let new = match mixing {
         Mixing::Add => add_packed(new, old),

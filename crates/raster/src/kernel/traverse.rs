@@ -333,8 +333,6 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
         |sample| (sample, RowPlane::new(simd, setup, firsts[sample])),
         #[inline(always)]
         |(sample, plane), y, covered| sink.cover_row(simd, (setup, plane), *sample, [left, y], covered),
-        #[inline(always)]
-        |_, _| {},
     );
     sink.end(simd, [x0, y0]);
 }
@@ -414,15 +412,14 @@ impl Placed {
 
     /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits, sample by
     /// sample. `begin` is called for each sample; `row` with what that gave, the row of the tile and which of the eight
-    /// pixels from [`Self::left`] on are covered, if any are; `end` with the sample and what became of it.
+    /// pixels from [`Self::left`] on are covered, if any are.
     #[inline(always)]
-    pub(crate) fn each_row<S: Simd, T, const MOST: usize>(
+    fn each_row<S: Simd, T, const MOST: usize>(
         &self,
         simd: S,
         pattern: &SamplePattern,
         mut begin: impl FnMut(usize) -> T,
         mut row: impl FnMut(&mut T, usize, Mask8<S>),
-        mut end: impl FnMut(usize, T),
     ) {
         let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
         let (left, [y0, y1]) = (self.left(), self.rows);
@@ -447,7 +444,6 @@ impl Placed {
                     e[i] += edges[i].b;
                 }
             }
-            end(s, begun);
         }
     }
 

@@ -25,6 +25,7 @@
 
 mod count;
 mod edges;
+mod paths;
 
 use super::casters::{Casters, away, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
@@ -39,6 +40,7 @@ pub(crate) use edges::Surface;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
+use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
@@ -68,6 +70,7 @@ struct LightVolumes {
 struct Counting<'a> {
     volumes: Arc<Volumes>,
     occluders: Occluders<'a>,
+    level: Level,
     counting: VolumeCounting,
     /// Less the scene's middle; a little beside the true one, lest a light there lie on every path.
     viewer: DVec4,
@@ -109,7 +112,7 @@ impl ShadowAlgorithm for VolumeShadows {
             places.iter().map(around).collect()
         });
         let around_viewer = around_viewer.collect();
-        Ok(Box::new(Counting { volumes, occluders, counting, viewer, around_viewer }))
+        Ok(Box::new(Counting { volumes, occluders, level: execution.level, counting, viewer, around_viewer }))
     }
 }
 
@@ -180,7 +183,8 @@ impl Shadows for Counting<'_> {
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
             batch.reset(asked.map(|(i, p)| (i as u32, lifted(p, extent))));
             let lit = self.volumes.lit(place_of_light);
-            batch.count(&lit, self.counting, self.viewer, around_viewer, |index, at, count, filters| {
+            let start = (self.counting, self.viewer, around_viewer);
+            batch.count(self.level, &lit, start, |index, at, count, filters| {
                 if count <= 0 {
                     let own = places[index].facet;
                     let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);

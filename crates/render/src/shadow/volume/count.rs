@@ -2,6 +2,7 @@
 
 use super::super::casters::{Casters, Solid, away, box_around, collect, near, ordered, wide};
 use super::edges::Side;
+use super::paths::{Boxes, Paths};
 use super::{LightVolumes, ODD, RUN};
 use crate::VolumeCounting;
 use crate::raytrace::beam::Beam;
@@ -9,10 +10,9 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::shaft::{Block, Shaft};
 use crate::raytrace::{Probe, Structure};
 use std::ops::Range;
+use vitral_math::lanes::{LANES, Level, Simd, dispatch};
 use vitral_math::{DVec3, DVec4};
 
-/// As many places are counted together.
-const FEW: usize = 8;
 /// Pairs of a place and a polygon that are sooner looked at than thinned out.
 const FEW_PAIRS: usize = 320;
 
@@ -33,7 +33,7 @@ pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
 
 /// The side of a plane on which a place is. Two paths that end and begin there agree about it.
 #[inline(always)]
-fn before(plane: DVec4, place: DVec3) -> bool {
+pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
     height(plane, place) > 0.0
 }
 
@@ -118,21 +118,6 @@ impl Lit<'_> {
         sides.iter().map(of_side).sum::<i32>() + caps.iter().map(of_cap).sum::<i32>()
     }
 
-    /// The same along paths from one place to a few others: each side and cap is looked at once.
-    fn changes(&self, paths: &[Path], sides: &[u32], caps: &[u32]) -> [i32; FEW] {
-        let mut changes = [0; FEW];
-        let Some(first) = paths.first() else { return changes };
-        for &s in sides {
-            let side = self.side(s);
-            add_crossings(side.plane, first.from, paths.iter(), &mut changes, |path, along| path.side(side, along));
-        }
-        for &t in caps {
-            let plane = self.planes[t as usize];
-            add_crossings(plane, first.from, paths.iter(), &mut changes, |path, along| self.cap(path, t, along));
-        }
-        changes
-    }
-
     /// The opaque triangles near a path.
     fn caps_near(&self, path: &Path) -> Vec<u32> {
         let extent = self.casters.extent();
@@ -194,25 +179,6 @@ impl Lit<'_> {
     }
 }
 
-/// For each path from one place that crosses a plane, adds to its change what `met` says: of the path, and whether it goes along
-/// the normal.
-#[inline(always)]
-fn add_crossings<'a>(
-    plane: DVec4,
-    from: DVec3,
-    paths: impl Iterator<Item = &'a Path>,
-    changes: &mut [i32],
-    met: impl Fn(&Path, i32) -> i32,
-) {
-    let start = before(plane, from);
-    for (path, change) in paths.zip(changes) {
-        let end = before(plane, path.to);
-        if end != start {
-            *change += met(path, i32::from(end) - i32::from(start));
-        }
-    }
-}
-
 /// Places in one batch.
 #[derive(Default)]
 pub(super) struct Batch {
@@ -220,24 +186,21 @@ pub(super) struct Batch {
     places: Vec<(u32, DVec3)>,
     /// Lists of sides, caps and filters: those of a part are behind those of the part that it was cut from.
     lists: [Vec<u32>; 3],
-    /// What the second half keeps, while a list is gone through.
-    second: Vec<u32>,
-}
-
-/// Half of a part: the box round its places, and the way there.
-struct Half {
-    middle: DVec3,
-    half: DVec3,
-    path: Path,
+    /// What each of eight parts keeps, while a list is gone through.
+    dealt: [Vec<u32>; LANES],
 }
 
 /// Part of a batch: what is known of it, and where its lists are.
+#[derive(Clone)]
 struct Part {
     places: Range<usize>,
     /// A place, and how many volumes it is in.
     known: (DVec3, i32),
-    lists: [Range<usize>; 3],
+    lists: Lists,
 }
+
+/// Where a part's lists of sides, caps and filters are.
+type Lists = [Range<usize>; 3];
 
 impl Batch {
     pub(super) fn reset(&mut self, places: impl Iterator<Item = (u32, DVec3)>) {
@@ -248,10 +211,9 @@ impl Batch {
     /// Calls `found` for each place: which, where, its count, and the transparent triangles that may filter its light.
     pub(super) fn count(
         &mut self,
+        level: Level,
         lit: &Lit<'_>,
-        counting: VolumeCounting,
-        viewer: DVec4,
-        around_viewer: i32,
+        (counting, viewer, around_viewer): (VolumeCounting, DVec4, i32),
         mut found: impl FnMut(usize, DVec3, i32, &[u32]),
     ) {
         if self.places.is_empty() {
@@ -270,106 +232,126 @@ impl Batch {
         let from = inner(middle, half);
         let known = (from, lit.at(from, counting, viewer, around_viewer));
         let lists = [0, 1, 2].map(|k| 0..self.lists[k].len());
-        self.part(lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
+        self.part(level, lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
     }
 
     /// The counts of a part, whose box holds the known place too.
-    fn part(&mut self, lit: &Lit<'_>, part: Part, slack: f64, found: &mut impl FnMut(usize, DVec3, i32, &[u32])) {
-        let (from, count) = part.known;
-        let [sides, caps, filters] = part.lists.clone();
-        let pairs = part.places.len() * (sides.len() + caps.len() + filters.len());
-        if part.places.len() <= FEW || pairs <= FEW_PAIRS {
-            let [sides, caps, filters] = [(0, sides), (1, caps), (2, filters)].map(|(k, r)| &self.lists[k][r]);
-            for places in self.places[part.places].chunks(FEW) {
+    fn part(
+        &mut self,
+        level: Level,
+        lit: &Lit<'_>,
+        part: Part,
+        slack: f64,
+        found: &mut impl FnMut(usize, DVec3, i32, &[u32]),
+    ) {
+        let polygons: usize = part.lists.iter().map(ExactSizeIterator::len).sum();
+        if part.places.len() <= LANES || part.places.len() * polygons <= FEW_PAIRS {
+            let filters = &self.lists[2][part.lists[2].clone()];
+            for places in self.places[part.places.clone()].chunks(LANES) {
                 // Places that are not there repeat the last.
-                let path = |k: usize| Path::new(from, places[k.min(places.len() - 1)].1.extend(1.0), lit.light());
-                let paths: [Path; FEW] = std::array::from_fn(path);
-                let changes = lit.changes(&paths[..places.len()], sides, caps);
+                let to = std::array::from_fn(|k| places[k.min(places.len() - 1)].1);
+                let changes = dispatch!(level, simd => self.changes(simd, lit, &part, &to));
                 for (&(index, place), change) in places.iter().zip(changes) {
-                    found(index as usize, place, count + change, filters);
+                    found(index as usize, place, part.known.1 + change, filters);
                 }
             }
             return;
         }
-        // Cut at the median of the longest axis.
-        let places = &mut self.places[part.places.clone()];
-        let (_, half) = box_around(places.iter().map(|p| p.1), 0.0);
-        let axis = (1..3).fold(0, |k, other| if half[other] > half[k] { other } else { k });
-        let at = places.len() / 2;
-        places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
-        let Range { start, end } = part.places;
-        let ranges = [start..start + at, start + at..end];
-        let halves = [0, 1].map(|k: usize| {
-            let (middle, half) = box_around(self.places[ranges[k].clone()].iter().map(|p| p.1), slack);
-            let to = inner(middle, half);
-            Half { middle, half, path: Path::new(from, to.extend(1.0), lit.light()) }
-        });
+        let places = self.cut(part.places.clone());
+        let boxes = places.clone().map(|range| box_around(self.places[range].iter().map(|p| p.1), slack));
+        let (middle, half) = (boxes.map(|b| b.0), boxes.map(|b| b.1));
+        let to = boxes.map(|(middle, half)| inner(middle, half));
         let lengths = [0, 1, 2].map(|k: usize| self.lists[k].len());
-        let (changes, lists) = self.narrow(lit, &part.lists, &halves);
-        for (((places, half), change), lists) in ranges.into_iter().zip(&halves).zip(changes).zip(lists) {
-            self.part(lit, Part { places, known: (half.path.to, count + change), lists }, slack, found);
+        let changes = dispatch!(level, simd => self.changes(simd, lit, &part, &to));
+        let lists = dispatch!(level, simd => self.narrow(simd, lit, &part.lists, (&middle, &half)));
+        for (k, (places, lists)) in places.into_iter().zip(lists).enumerate() {
+            let known = (to[k], part.known.1 + changes[k]);
+            self.part(level, lit, Part { places, known, lists }, slack, found);
         }
         for (list, length) in self.lists.iter_mut().zip(lengths) {
             list.truncate(length);
         }
     }
 
-    /// Appends what of the lists touches the boxes of two halves, and gives what the lists add to the counts on the ways there.
-    fn narrow(
-        &mut self,
-        lit: &Lit<'_>,
-        lists: &[Range<usize>; 3],
-        halves: &[Half; 2],
-    ) -> ([i32; 2], [[Range<usize>; 3]; 2]) {
-        let opaque = lit.casters.triangles();
-        let least = near(lit.light(), lit.casters.extent());
-        let (mut changes, from) = ([0; 2], halves[0].path.from);
-        let paths = || halves.iter().map(|half| &half.path);
-        let sides = self.halve(0, lists[0].clone(), |s| {
-            let side = lit.side(s);
-            add_crossings(side.plane, from, paths(), &mut changes, |path, along| path.side(side, along));
-            let touches = |half: &Half| side.touches(half.middle, half.half);
-            [touches(&halves[0]), touches(&halves[1])]
-        });
-        let caps = self.halve(1, lists[1].clone(), |t| {
-            let plane = lit.planes[t as usize];
-            add_crossings(plane, from, paths(), &mut changes, |path, along| lit.cap(path, t, along));
-            let [a, b, c] = wide(&opaque.corners[t as usize]);
-            let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-            let touches = |half: &Half| {
-                // Room for the rounding of a height.
-                let reach = plane.truncate().abs().dot(half.half) * (1.0 + 1e-9);
-                height(plane, half.middle).abs() <= reach
-                    && !(min.cmpgt(half.middle + half.half) | max.cmplt(half.middle - half.half)).any()
-            };
-            [touches(&halves[0]), touches(&halves[1])]
-        });
-        let filters = self.halve(2, lists[2].clone(), |t| {
-            let solid = Solid::new(&lit.casters.filter(t), lit.light(), least);
-            let touches = |half: &Half| solid.is_some_and(|s| s.touches(half.middle, half.half));
-            [touches(&halves[0]), touches(&halves[1])]
-        });
-        (changes, [0, 1].map(|k: usize| [sides[k].clone(), caps[k].clone(), filters[k].clone()]))
-    }
-
-    /// Appends to a list those of its range that `keep` keeps for the first half, then those for the second.
-    fn halve(&mut self, list: usize, range: Range<usize>, mut keep: impl FnMut(u32) -> [bool; 2]) -> [Range<usize>; 2] {
-        let list = &mut self.lists[list];
-        let start = list.len();
-        self.second.clear();
-        for i in range {
-            let number = list[i];
-            let [first, second] = keep(number);
-            if first {
-                list.push(number);
-            }
-            if second {
-                self.second.push(number);
+    /// Cuts more than eight places into eight parts: each at the median of its longest axis, three times.
+    fn cut(&mut self, all: Range<usize>) -> [Range<usize>; LANES] {
+        let mut parts = [const { 0..0 }; LANES];
+        parts[0] = all;
+        for count in [1, 2, 4] {
+            for k in (0..count).rev() {
+                let Range { start, end } = parts[k].clone();
+                let places = &mut self.places[start..end];
+                let (_, half) = box_around(places.iter().map(|p| p.1), 0.0);
+                let axis = (1..3).fold(0, |k, other| if half[other] > half[k] { other } else { k });
+                let at = places.len() / 2;
+                places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
+                (parts[2 * k], parts[2 * k + 1]) = (start..start + at, start + at..end);
             }
         }
-        let middle = list.len();
-        list.extend_from_slice(&self.second);
-        [start..middle, middle..list.len()]
+        parts
+    }
+
+    /// What a part's lists add to the count on the ways from its known place to eight others.
+    #[inline(always)]
+    fn changes<S: Simd>(&self, simd: S, lit: &Lit<'_>, part: &Part, to: &[DVec3; LANES]) -> [i32; LANES] {
+        let mut paths = Paths::new(simd, part.known.0, to, lit.light());
+        for &s in &self.lists[0][part.lists[0].clone()] {
+            paths.meet_side(lit.side(s));
+        }
+        for &t in &self.lists[1][part.lists[1].clone()] {
+            let t = t as usize;
+            paths.meet_cap(lit.planes[t], &lit.casters.triangles().corners[t], lit.volumes.turned[t]);
+        }
+        paths.changes
+    }
+
+    /// Appends what of the lists touches each of eight boxes, given by their middles and half their sides.
+    #[inline(always)]
+    fn narrow<S: Simd>(
+        &mut self,
+        simd: S,
+        lit: &Lit<'_>,
+        lists: &Lists,
+        (middle, half): (&[DVec3; LANES], &[DVec3; LANES]),
+    ) -> [Lists; LANES] {
+        let boxes = Boxes::new(simd, middle, half);
+        let least = near(lit.light(), lit.casters.extent());
+        let sides = self.deal(
+            (0, lists[0].clone()),
+            #[inline(always)]
+            |s| boxes.touched_by_side(lit.side(s)),
+        );
+        let caps = self.deal(
+            (1, lists[1].clone()),
+            #[inline(always)]
+            |t| boxes.touched_by_triangle(lit.planes[t as usize], &lit.casters.triangles().corners[t as usize]),
+        );
+        let filters = self.deal((2, lists[2].clone()), |t| {
+            let solid = Solid::new(&lit.casters.filter(t), lit.light(), least);
+            let touched = |k: &usize| solid.as_ref().is_some_and(|s| s.touches(middle[*k], half[*k]));
+            (0..LANES).filter(touched).fold(0, |bits, k| bits | 1 << k)
+        });
+        std::array::from_fn(|k| [sides[k].clone(), caps[k].clone(), filters[k].clone()])
+    }
+
+    /// Appends to a list those of its range that `touched` gives to the first part, one bit for each, then those of the second, and so
+    /// on.
+    #[inline(always)]
+    fn deal(&mut self, (list, range): (usize, Range<usize>), touched: impl Fn(u32) -> u32) -> [Range<usize>; LANES] {
+        let list = &mut self.lists[list];
+        self.dealt.iter_mut().for_each(Vec::clear);
+        for &number in &list[range] {
+            let mut parts = touched(number);
+            while parts != 0 {
+                self.dealt[parts.trailing_zeros() as usize % LANES].push(number);
+                parts &= parts - 1;
+            }
+        }
+        self.dealt.each_ref().map(|dealt| {
+            let start = list.len();
+            list.extend_from_slice(dealt);
+            start..list.len()
+        })
     }
 }
 

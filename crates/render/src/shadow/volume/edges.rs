@@ -1,7 +1,6 @@
 //! Which triangles meet at an edge, and the sides of volumes that a light makes of the edges.
 
 use super::super::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
-use super::count::height;
 use crate::Execution;
 use crate::raytrace::triangles::Triangles;
 use vitral_exec::{Limit, Workers};
@@ -149,7 +148,7 @@ impl Surface {
 }
 
 impl Side {
-    fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
+    pub(super) fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
         let normal = side_normal(a, b, light);
         let inwards = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };
         let [out_a, out_b] = [a, b].map(|p| away(light, p));
@@ -159,17 +158,5 @@ impl Side {
             inwards(normal.cross(out_b), a - b),
         ];
         Self { a, b, plane: normal.extend(-normal.dot(a)), multiplicity, borders }
-    }
-
-    /// Whether it may reach into a box, given by its middle and half its sides.
-    #[inline(always)]
-    pub(super) fn touches(&self, middle: DVec3, half: DVec3) -> bool {
-        let from_a = middle - self.a;
-        let reach = |n: DVec3| n.abs().dot(half) * (1.0 + 1e-12);
-        // Room for the rounding of a height.
-        height(self.plane, middle).abs() <= reach(self.plane.truncate()) * (1.0 + 1e-9)
-            && self.borders[0].dot(from_a) >= -reach(self.borders[0])
-            && self.borders[1].dot(from_a) >= -reach(self.borders[1])
-            && self.borders[2].dot(middle - self.b) >= -reach(self.borders[2])
     }
 }

@@ -67,6 +67,9 @@ const PATIENCE: u32 = 48;
 /// So many lookups in a tile of few go through boxes before it has an index.
 const SHORT_PATIENCE: u32 = 24;
 
+/// As many tiles are known only where a large picture asks: then it pays to know any tile at the first lookup.
+const MANY: u32 = 32;
+
 /// Tiles that a thread looks at in one go when a pass is left.
 const PIECE: usize = 256;
 
@@ -85,6 +88,8 @@ pub(crate) struct PendingDepth {
     bounds: Vec<f32>,
     /// Numbers of jobs, tile by tile.
     touching: Vec<u32>,
+    /// How many tiles are known.
+    known: AtomicU32,
     viewport: Viewport,
 }
 
@@ -184,7 +189,7 @@ impl PendingDepth {
             touching.extend(piece_touching);
         }
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, bounds, touching, viewport }
+        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, bounds, touching, known: AtomicU32::new(0), viewport }
     }
 
     /// The primitives, to use their memory again.
@@ -383,7 +388,13 @@ impl PendingDepth {
         pending.known.get().or_else(
             #[inline(always)]
             || {
-                let patience = if pending.count as usize > tile_index::MOST { PATIENCE } else { SHORT_PATIENCE };
+                let patience = if self.known.load(Ordering::Relaxed) >= MANY {
+                    0
+                } else if pending.count as usize > tile_index::MOST {
+                    PATIENCE
+                } else {
+                    SHORT_PATIENCE
+                };
                 let patient = pending.asked.fetch_add(count, Ordering::Relaxed) < patience;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
             },
@@ -393,6 +404,7 @@ impl PendingDepth {
     #[inline(never)]
     fn know(&self, tile: usize) -> Known {
         let pending = &self.tiles[tile];
+        self.known.fetch_add(1, Ordering::Relaxed);
         if pending.count as usize > tile_index::MOST {
             return Known::Drawn(self.draw(tile));
         }

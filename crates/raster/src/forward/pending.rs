@@ -189,7 +189,18 @@ impl PendingDepth {
             touching.extend(piece_touching);
         }
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
-        Self { sign, clear, scale, margin: margin(scale), jobs, tiles, bounds, touching, known: AtomicU32::new(0), viewport }
+        Self {
+            sign,
+            clear,
+            scale,
+            margin: margin(scale),
+            jobs,
+            tiles,
+            bounds,
+            touching,
+            known: AtomicU32::new(0),
+            viewport,
+        }
     }
 
     /// The primitives, to use their memory again.

@@ -9,13 +9,13 @@ use crate::setup::{CornerPosition, DepthPlane};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derived {
     /// Its slot.
-    slot: u32,
-    /// Slots of its parents.
-    parents: [u32; 3],
+    pub slot: u32,
+    /// Slots of its parents, which may be derived themselves, earlier.
+    pub parents: [u32; 3],
     /// Their weights, sum 1.
-    weights: [f32; 3],
+    pub weights: [f32; 3],
     /// `1 / w`.
-    inverse_w: f32,
+    pub inverse_w: f32,
 }
 
 /// A corner of a polygon that is being clipped.

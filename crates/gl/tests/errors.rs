@@ -96,3 +96,37 @@ fn begin_in_a_list_needs_a_complete_framebuffer() {
     c.end();
     assert_eq!(c.get_error(), gl::INVALID_OPERATION);
 }
+
+#[test]
+fn stencil_values_are_copied_between_equal_formats() {
+    const BOTH: &[u32] = &[gl::DEPTH_ATTACHMENT, gl::STENCIL_ATTACHMENT];
+    let formats: [(u32, &[u32]); 3] =
+        [(gl::DEPTH24_STENCIL8, BOTH), (gl::DEPTH32F_STENCIL8, BOTH), (gl::STENCIL_INDEX8, &[gl::STENCIL_ATTACHMENT])];
+    let mut c = Stage::new(4, 4);
+    let made = formats.map(|(format, points)| {
+        let framebuffer = framebuffer(&mut c);
+        attach(&mut c, format, points);
+        assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_COMPLETE);
+        framebuffer
+    });
+    for from in 0..3 {
+        for to in 0..3 {
+            c.bind_framebuffer(gl::FRAMEBUFFER, made[from]);
+            c.clear_stencil(5);
+            c.clear(gl::STENCIL_BUFFER_BIT);
+            if from != to {
+                c.bind_framebuffer(gl::FRAMEBUFFER, made[to]);
+                c.clear_stencil(0);
+                c.clear(gl::STENCIL_BUFFER_BIT);
+            }
+            c.bind_framebuffer(gl::READ_FRAMEBUFFER, made[from]);
+            c.blit_framebuffer(0, 0, 4, 4, 0, 0, 4, 4, gl::STENCIL_BUFFER_BIT, gl::NEAREST);
+            // Where one side has no depths, there is nothing but stencil values to compare.
+            let fits = from == to || from == 2 || to == 2;
+            let error = if fits { gl::NO_ERROR } else { gl::INVALID_OPERATION };
+            assert_eq!(c.get_error(), error, "{from} to {to}");
+            c.bind_framebuffer(gl::FRAMEBUFFER, made[to]);
+            assert_eq!(c.stencils()[5], if fits { 5 } else { 0 }, "{from} to {to}");
+        }
+    }
+}

@@ -130,3 +130,54 @@ fn stencil_values_are_copied_between_equal_formats() {
         }
     }
 }
+
+#[test]
+fn names_on_the_attribute_stack_whose_texture_is_gone() {
+    let mut c = Stage::new(4, 4);
+    let name = c.put(&[7u32]);
+    let texels = c.put(&[[255u8; 4]; 4]);
+    for reused in [false, true] {
+        c.bind_texture(gl::TEXTURE_2D, 7);
+        c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+        c.push_attrib(gl::TEXTURE_BIT);
+        c.delete_textures(1, name);
+        if reused {
+            c.bind_texture(gl::TEXTURE_CUBE_MAP, 7);
+        }
+        c.pop_attrib();
+        c.no_error();
+        // Deletion put the default texture in its place, and the stack does not know better.
+        assert_eq!(c.get::<1>(gl::TEXTURE_BINDING_2D), [0.0], "reused: {reused}");
+        assert_eq!(c.is_texture(7), u8::from(reused));
+        // It can be given an image, and drawn with.
+        c.texture(&[(2, vec![[0, 255, 0, 255]; 4])]);
+        c.tex_sub_image_2d(gl::TEXTURE_2D, 0, 0, 0, 1, 1, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+        c.fill([1.0; 4], 0.0);
+        assert_eq!((c.pixel(0, 0), c.pixel(3, 3)), ([255; 4], [0, 255, 0, 255]));
+        c.no_error();
+    }
+}
+
+#[test]
+fn buffers_on_the_client_stack_that_are_gone() {
+    let mut c = Stage::new(4, 4);
+    let name = c.put(&[9u32]);
+    let positions = c.put(&[-1.0f32, -1.0, 3.0, -1.0, -1.0, 3.0]);
+    c.bind_buffer(gl::ARRAY_BUFFER, 9);
+    c.buffer_data(gl::ARRAY_BUFFER, 24, positions, gl::STATIC_DRAW);
+    c.vertex_pointer(2, gl::FLOAT, 0, 0);
+    c.enable_client_state(gl::VERTEX_ARRAY);
+    c.push_client_attrib(gl::CLIENT_VERTEX_ARRAY_BIT);
+    c.delete_buffers(1, name);
+    c.pop_client_attrib();
+    c.no_error();
+    assert_eq!(c.get::<1>(gl::ARRAY_BUFFER_BINDING), [0.0]);
+    // The array has nothing to read, which harms nobody.
+    c.draw_arrays(gl::TRIANGLES, 0, 3);
+    let _ = c.get_error();
+    assert_eq!(c.pixel(1, 1), [0; 4]);
+    c.vertex_pointer(2, gl::FLOAT, 0, positions);
+    c.draw_arrays(gl::TRIANGLES, 0, 3);
+    c.no_error();
+    assert_eq!(c.pixel(1, 1), [255; 4]);
+}

@@ -181,3 +181,23 @@ fn buffers_on_the_client_stack_that_are_gone() {
     c.no_error();
     assert_eq!(c.pixel(1, 1), [255; 4]);
 }
+
+#[test]
+fn sixteen_bits_are_kept_where_they_are_reported() {
+    let mut c = Stage::new(4, 4);
+    framebuffer(&mut c);
+    attach(&mut c, gl::RGBA16, &[gl::COLOR_ATTACHMENT0]);
+    attach(&mut c, gl::DEPTH_COMPONENT16, &[gl::DEPTH_ATTACHMENT]);
+    c.draw_buffer(gl::COLOR_ATTACHMENT0);
+    c.read_buffer(gl::COLOR_ATTACHMENT0);
+    assert_eq!(c.get::<1>(gl::RED_BITS), [16.0]);
+    assert_eq!(c.get::<1>(gl::DEPTH_BITS), [16.0]);
+    let color = [0.3, 0.50001, 0.123_456, 2.0];
+    c.clear_color(color[0], color[1], color[2], color[3]);
+    c.clear_depth(0.300_001);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    let found = c.floats()[0];
+    assert!((0..4).all(|k| (found[k] - color[k].min(1.0)).abs() <= 0.5 / 65535.0), "{found:?}");
+    // Depths are whole steps of 16 bits.
+    assert!((c.depths()[0] * 65535.0 - 19661.0).abs() < 0.01, "{}", c.depths()[0] * 65535.0);
+}

@@ -142,7 +142,9 @@ impl Assembler<'_> {
         for d in &self.derived {
             for k in 1..stride {
                 let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
-                let value = parent(0) * d.weights[0] + parent(1) * d.weights[1] + parent(2) * d.weights[2];
+                // By differences, so that what is equal at all parents stays so.
+                let first = parent(0);
+                let value = first + ((parent(1) - first) * d.weights[1] + (parent(2) - first) * d.weights[2]);
                 self.out.records[d.slot as usize + k] = value;
             }
             self.out.records[d.slot as usize] = d.inverse_w;

@@ -261,7 +261,8 @@ fn polygon_offset_edges(gl: &mut Stage<'_>) {
     camera(gl);
     gl.glEnable(DEPTH_TEST);
     gl.glDepthFunc(ALWAYS);
-    gl.glPointSize(4.0);
+    gl.glPointSize(16.0);
+    gl.glLineWidth(5.0);
     let modes = [(FILL, POLYGON_OFFSET_FILL), (LINE, POLYGON_OFFSET_LINE), (POINT, POLYGON_OFFSET_POINT)];
     for (i, (mode, enable)) in modes.into_iter().enumerate() {
         gl.glPolygonMode(FRONT_AND_BACK, mode);

@@ -78,6 +78,15 @@ impl DepthPlane {
             z_max: a.z.max(b.z).max(c.z),
         }
     }
+
+    /// Adds to all depths.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn move_by(&mut self, offset: f32) {
+        self.z += offset;
+        self.z_min = (self.z_min + offset).clamp(0.0, 1.0);
+        self.z_max = (self.z_max + offset).clamp(0.0, 1.0);
+    }
 }
 
 impl Setup {

@@ -42,6 +42,11 @@ impl Context {
         self.textures.defaults[slot].clone()
     }
 
+    /// Whether there is a texture of that name that belongs to a slot.
+    pub(crate) fn is_texture_of(&self, name: u32, slot: usize) -> bool {
+        lock(&self.shared.textures).get(&name).is_some_and(|t| t.as_ref().is_some_and(|t| lock(t).slot == slot))
+    }
+
     /// The texture bound to the active unit that an image call names.
     pub(crate) fn target_texture(&self, target: ImageTarget) -> TextureHandle {
         self.bound_texture(self.state.active_unit, target.slot)

@@ -40,11 +40,18 @@ impl Blit {
         if (read.samples > 0 || draw.samples > 0) && size(self.from) != size(self.to) {
             return Err((INVALID_OPERATION, "multisampled rectangles must have the same size"));
         }
-        if let (Some(from), Some(to)) = (&read.depth, &draw.depth)
-            && self.mask & DEPTH_BUFFER_BIT != 0
-            && from.format.storage != to.format.storage
+        // Stencil values are alike, but where depths lie with them on both sides these count as part of the format.
+        for (bit, from, to) in
+            [(DEPTH_BUFFER_BIT, &read.depth, &draw.depth), (STENCIL_BUFFER_BIT, &read.stencil, &draw.stencil)]
         {
-            return Err((INVALID_OPERATION, "the depth formats differ"));
+            if let (Some(from), Some(to)) = (from, to)
+                && self.mask & bit != 0
+                && from.format.has_depth()
+                && to.format.has_depth()
+                && from.format.storage != to.format.storage
+            {
+                return Err((INVALID_OPERATION, "the depth or stencil formats differ"));
+            }
         }
         Ok(())
     }

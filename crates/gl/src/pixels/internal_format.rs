@@ -82,8 +82,7 @@ impl InternalFormat {
         }
         let format = Self::of_texture(token).filter(|f| f.token == token)?;
         let storage = match format.storage {
-            // Samples that blending writes are not rounded to 16 bits; 8 are kept and reported.
-            Storage::Unorm16 => Storage::Unorm8,
+            // Samples of 16 bits are floats that nobody rounds: they resolve no less, and half floats are whole ones.
             Storage::Half => Storage::Float,
             other => other,
         };
@@ -311,7 +310,7 @@ mod tests {
         assert_eq!(InternalFormat::of_texture(COMPRESSED_SRGB_EXT).unwrap().storage, Storage::Srgb8);
         assert_eq!(InternalFormat::of_renderbuffer(LUMINANCE8).unwrap().bits().luminance, 8);
         assert!(InternalFormat::of_renderbuffer(COMPRESSED_RGB).is_none());
-        assert_eq!(InternalFormat::of_renderbuffer(RGBA16).unwrap().bits().rgba, [8; 4]);
+        assert_eq!(InternalFormat::of_renderbuffer(RGBA16).unwrap().bits().rgba, [16; 4]);
     }
 
     #[test]

@@ -269,10 +269,10 @@ impl DrawGeometry {
             match primitive.mode {
                 gl::POINTS => (0..n).for_each(|i| assembler.point(vertex(i))),
                 gl::LINES => (0..n / 2).for_each(|i| {
-                    assembler.line([vertex(2 * i), vertex(2 * i + 1)], vertex(2 * i + 1), 0.0);
+                    assembler.line([vertex(2 * i), vertex(2 * i + 1)], vertex(2 * i + 1), 0);
                 }),
                 gl::LINE_STRIP | gl::LINE_LOOP => {
-                    let mut stipple = 0.0;
+                    let mut stipple = 0;
                     for i in 1..n {
                         stipple = assembler.line([vertex(i - 1), vertex(i)], vertex(i), stipple);
                     }

@@ -60,6 +60,15 @@ pub(crate) struct Compiler {
     changed: u32,
     /// The open primitive is written out call by call.
     single: bool,
+    /// A primitive without vertices ended, which draws nothing but may be an error.
+    empty: bool,
+}
+
+/// What is left of a draw of nothing: called between Begin and End, or with an incomplete framebuffer, even that is an error.
+pub(super) fn drawing_nothing(call: &'static str) -> Call {
+    Box::new(move |c| {
+        let _ = c.refused_inside_begin(call) || c.refused_by_framebuffer(call);
+    })
 }
 
 impl Compiler {
@@ -80,6 +89,7 @@ impl Compiler {
     pub(crate) fn end(&mut self) {
         if self.builder.is_open() {
             self.builder.close();
+            self.empty |= self.builder.batch.primitives.is_empty();
             return;
         }
         if !self.single {
@@ -166,9 +176,12 @@ impl Compiler {
     /// Makes items of the complete primitives and of what was set since.
     fn flush(&mut self) {
         let mut batch = self.builder.take();
+        let empty = std::mem::take(&mut self.empty);
         if !batch.primitives.is_empty() {
             merge_equal(&mut batch);
             self.items.push(Item::Batch(Arc::new(batch)));
+        } else if empty {
+            self.items.push(Item::Call(drawing_nothing("glBegin")));
         }
         for which in each(std::mem::take(&mut self.changed)) {
             self.items.push(Item::Attribute(which, self.values.get(which)));

@@ -10,6 +10,7 @@
 mod clipped;
 mod eight;
 mod lines;
+mod outlined;
 
 use self::clipped::Derived;
 use super::boxes::Boxes;
@@ -55,7 +56,7 @@ pub struct Facet {
 /// Local geometry of lines and points, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {
-    /// From one end to the other; `stipple` is the distance along the strip at the start, `width` the line's.
+    /// From one end to the other.
     Line {
         /// Start.
         from: [f32; 2],
@@ -63,8 +64,10 @@ pub enum Shape {
         to: [f32; 2],
         /// Width.
         width: f32,
+        /// Along the longer axis, the centre of the pixel where an aliased line starts; others are rectangles.
+        first: Option<f32>,
         /// Stipple count at the start.
-        stipple: f32,
+        stipple: u32,
     },
     /// A triangle of a smooth polygon, whose setup is wider by a border.
     Polygon {
@@ -323,18 +326,21 @@ impl<'a> Assembler<'a> {
 
     #[inline(always)]
     fn offset(&self, mut plane: DepthPlane, offset: usize) -> DepthPlane {
-        let [factor, units] = self.state.offset[offset];
-        if factor != 0.0 || units != 0.0 {
-            let slope = plane.dz_dx.abs().max(plane.dz_dy.abs());
-            // A step of floating-point depth: 2^(exponent - 23).
-            let float_step = f32::from_bits(plane.z_max.to_bits() & 0x7f80_0000) * (1.0 / 8_388_608.0);
-            let step = if self.state.depth_step > 0.0 { self.state.depth_step } else { float_step };
-            let offset = slope * factor + step * units;
-            plane.z += offset;
-            plane.z_min = (plane.z_min + offset).clamp(0.0, 1.0);
-            plane.z_max = (plane.z_max + offset).clamp(0.0, 1.0);
+        if self.state.offset[offset] != [0.0; 2] {
+            plane.move_by(self.offset_of(&plane, offset));
         }
         plane
+    }
+
+    /// What polygon offset adds to the depths of a polygon in this plane.
+    #[inline(always)]
+    fn offset_of(&self, plane: &DepthPlane, offset: usize) -> f32 {
+        let [factor, units] = self.state.offset[offset];
+        let slope = plane.dz_dx.abs().max(plane.dz_dy.abs());
+        // A step of floating-point depth: 2^(exponent - 23).
+        let float_step = f32::from_bits(plane.z_max.to_bits() & 0x7f80_0000) * (1.0 / 8_388_608.0);
+        let step = if self.state.depth_step > 0.0 { self.state.depth_step } else { float_step };
+        slope * factor + step * units
     }
 
     #[inline(always)]
@@ -358,61 +364,6 @@ impl<'a> Assembler<'a> {
             self.out.facets.push(Facet { corners, provoking, draw, kind, back, shape, grid });
         }
         self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
-    }
-
-    /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
-    pub fn polygon(&mut self, corners: &[u32], edges: &[bool], provoking: u32) {
-        let (mut area, mut outside) = (0.0f64, true);
-        let s = self.vertices.screen;
-        if corners.iter().any(|&v| s[v as usize].flags & flag::NOT_FINITE != 0) {
-            return;
-        }
-        // The sign of the area in homogeneous coordinates needs no clipping.
-        for i in 1..corners.len() - 1 {
-            let [a, b, c] =
-                [corners[0], corners[i], corners[i + 1]].map(|v| self.vertices.clip[v as usize].map(f64::from));
-            area += a[3] * (b[0] * c[1] - b[1] * c[0]) - b[3] * (a[0] * c[1] - a[1] * c[0])
-                + c[3] * (a[0] * b[1] - a[1] * b[0]);
-            outside &= a[3] <= 0.0 && b[3] <= 0.0 && c[3] <= 0.0;
-        }
-        if outside || area == 0.0 {
-            return;
-        }
-        let back = (area > 0.0) != self.state.counter_clockwise;
-        if self.state.cull[usize::from(back)] {
-            return;
-        }
-        match self.state.polygon_mode[usize::from(back)] {
-            0 => {
-                for (i, &v) in corners.iter().enumerate() {
-                    if edges[i] {
-                        self.point_of(v, provoking, back, 0);
-                    }
-                }
-            }
-            1 => {
-                let mut stipple = 0.0;
-                for i in 0..corners.len() {
-                    if edges[i] {
-                        let pair = [corners[i], corners[(i + 1) % corners.len()]];
-                        stipple = self.line_of(pair, provoking, stipple, back, 1);
-                    }
-                }
-            }
-            _ => {
-                // Cut from the corner that provokes, as filled polygons are.
-                let (n, first) = (corners.len(), corners.iter().position(|&v| v == provoking).unwrap_or(0));
-                let corner = |i: usize| corners[(first + i) % n];
-                for i in 1..n - 1 {
-                    let piece = [corner(0), corner(i), corner(i + 1)];
-                    if self.state.polygon_smooth {
-                        self.smooth_triangle(piece, [i == 1, true, i + 2 == n], provoking, back);
-                    } else {
-                        self.triangle(piece, provoking);
-                    }
-                }
-            }
-        }
     }
 
     /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the

@@ -13,7 +13,7 @@ use super::environment::fog::{color_sum, fog};
 use super::fragment_ops::compare::{alpha_test, holds};
 use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
-use super::soft::{disc_coverage, overlap, polygon_coverage};
+use super::soft::{disc_coverage, overlap, pieces, polygon_coverage, stipples};
 use super::wide::{Rgba, bits_of, clamp, every, every_rgba, saturate_rgba, splat};
 use crate::{BLOCK, SUBPIXEL, Setup};
 use vitral_math::lanes::prelude::*;
@@ -614,33 +614,34 @@ impl<'a> Shader<'a> {
                         color[3] *= coverage;
                         pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
-                    Some(Shape::Line { from, to, width, stipple }) => {
+                    Some(Shape::Line { from, to, width, first, stipple }) => {
                         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
                         let length = (dx * dx + dy * dy).sqrt();
                         let (ux, uy) = (dx / length, dy / length);
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
-                        if self.draw.layout.smooth[1] {
+                        let smooth = self.draw.layout.smooth[1];
+                        if smooth {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
-                            let side = overlap(across, -width * 0.5, width * 0.5);
-                            let ends = overlap(along, 0.0, length);
-                            color[3] *= side * ends;
+                            color[3] *= overlap(across, -width * 0.5, width * 0.5);
                         }
-                        if let Some((factor, pattern)) = self.draw.layout.line_stipple {
-                            // Aliased lines count pixels along the major axis, and exactly.
-                            let along = if self.draw.layout.smooth[1] {
-                                along
-                            } else if dx.abs() >= dy.abs() {
-                                (x - from[0]) * dx.signum()
-                            } else {
-                                (y - from[1]) * dy.signum()
-                            };
-                            let count = (along + stipple).to_array();
-                            for lane in 0..8 {
-                                let bit = ((count[lane].max(0.0) as u32) / factor.max(1) as u32) % 16;
-                                if pattern >> bit & 1 == 0 {
-                                    pass &= !(1 << lane);
+                        match self.draw.layout.line_stipple {
+                            Some(stippling) if smooth => {
+                                let pieces = along.to_array().map(|at| pieces(at, length, stipple, stippling));
+                                color[3] *= F32x8::from_slice(simd, &pieces);
+                            }
+                            Some(stippling) => {
+                                let steps = match first {
+                                    None => along,
+                                    Some(first) if dx.abs() >= dy.abs() => (x - first) * dx.signum(),
+                                    Some(first) => (y - first) * dy.signum(),
+                                };
+                                for (lane, step) in steps.to_array().into_iter().enumerate() {
+                                    let on = stipples(stippling, stipple.wrapping_add(step.max(0.0) as u32));
+                                    pass &= !(u32::from(!on) << lane);
                                 }
                             }
+                            None if smooth => color[3] *= overlap(along, 0.0, length),
+                            None => {}
                         }
                     }
                     Some(Shape::Point { center, size, fade }) => {

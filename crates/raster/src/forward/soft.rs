@@ -52,3 +52,23 @@ pub(super) fn polygon_coverage<S: Simd>(
     }
     sum * (1.0 / CHORDS as f32)
 }
+
+/// Whether a line's stipple, a factor and a pattern, lets the fragment with this number pass.
+pub(super) fn stipples((factor, pattern): (i32, u16), count: u32) -> bool {
+    pattern >> (count / factor.max(1) as u32 % 16) & 1 == 1
+}
+
+/// How much of a pixel, `at` its centre along a smooth line, lies in those pieces of the line that its stipple lets pass.
+pub(super) fn pieces(at: f32, length: f32, count: u32, stippling: (i32, u16)) -> f32 {
+    let (low, high) = ((at - 0.5).max(0.0), (at + 0.5).min(length));
+    let mut sum = 0.0;
+    let mut start = low;
+    while start < high {
+        let end = (start.floor() + 1.0).min(high);
+        if stipples(stippling, count.wrapping_add(start as u32)) {
+            sum += end - start;
+        }
+        start = end;
+    }
+    sum
+}

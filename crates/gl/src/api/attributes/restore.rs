@@ -121,11 +121,12 @@ impl Context {
         s.sample_coverage_value = saved.coverage_value;
     }
 
-    /// Textures deleted since are replaced by the default one.
+    /// Textures deleted since are replaced by the default one, as in the binding when they were deleted; so is a name that
+    /// has become another target's texture.
     fn restore_texture_group(&mut self, saved: TextureGroup) {
         for (i, mut unit) in saved.units.into_iter().enumerate() {
-            for name in &mut unit.bindings {
-                if *name != 0 && !self.object_exists(gl::TEXTURE, *name) {
+            for (slot, name) in unit.bindings.iter_mut().enumerate() {
+                if *name != 0 && !self.is_texture_of(*name, slot) {
                     *name = 0;
                 }
             }

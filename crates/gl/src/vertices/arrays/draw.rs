@@ -7,7 +7,7 @@ use crate::state::ArrayPointer;
 use crate::vertex::{Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
-use crate::vertices::compile::Call;
+use crate::vertices::compile::drawing_nothing;
 use crate::{Context, enums};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ impl Context {
     fn draw_range(&mut self, call: &'static str, mode: u32, first: i32, count: i32) {
         match (usize::try_from(first), usize::try_from(count)) {
             (Ok(first), Ok(count)) => self.draw_vertices(call, mode, Vertices::Range { first, count }),
-            _ => self.record_error(enums::INVALID_VALUE, call, &format!("first {first}, count {count} is negative")),
+            _ => self.draw_error(enums::INVALID_VALUE, call, format!("first {first}, count {count} is negative")),
         }
     }
 
@@ -51,8 +51,7 @@ impl Context {
         base: i32,
     ) {
         if end < start {
-            let why = format!("end {end} lies before start {start}");
-            self.record_error(enums::INVALID_VALUE, call, &why);
+            self.draw_error(enums::INVALID_VALUE, call, format!("end {end} lies before start {start}"));
             return;
         }
         self.draw_indexed(call, mode, count, kind, pointer, base);
@@ -79,11 +78,11 @@ impl Context {
 
     fn draw_indexed(&mut self, call: &'static str, mode: u32, count: i32, kind: u32, pointer: usize, base: i32) {
         let Ok(count) = usize::try_from(count) else {
-            self.record_error(enums::INVALID_VALUE, call, &format!("count {count} is negative"));
+            self.draw_error(enums::INVALID_VALUE, call, format!("count {count} is negative"));
             return;
         };
         if !matches!(kind, enums::UNSIGNED_BYTE | enums::UNSIGNED_SHORT | enums::UNSIGNED_INT) {
-            self.record_error(enums::INVALID_ENUM, call, &format!("type {kind:#x} is not one of indices"));
+            self.draw_error(enums::INVALID_ENUM, call, format!("type {kind:#x} is not one of indices"));
             return;
         }
         let buffer = self.client.element_buffer;
@@ -97,11 +96,11 @@ impl Context {
         let firsts = client::values::<i32>(&*self.memory, first, n);
         let counts = client::values::<i32>(&*self.memory, count, n);
         let (Some(firsts), Some(counts)) = (firsts, counts) else {
-            self.record_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory");
+            self.draw_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory".to_owned());
             return;
         };
         if firsts.iter().chain(&counts).any(|v| *v < 0) {
-            self.record_error(enums::INVALID_VALUE, CALL, "a first or count is negative");
+            self.draw_error(enums::INVALID_VALUE, CALL, "a first or count is negative".to_owned());
             return;
         }
         for (first, count) in firsts.into_iter().zip(counts) {
@@ -143,11 +142,11 @@ impl Context {
         let pointers = client::values::<usize>(&*self.memory, indices, n);
         let bases = bases.map_or_else(|| Some(vec![0; n]), |bases| client::values::<i32>(&*self.memory, bases, n));
         let (Some(counts), Some(pointers), Some(bases)) = (counts, pointers, bases) else {
-            self.record_error(enums::INVALID_VALUE, call, "its ranges are not in the client's memory");
+            self.draw_error(enums::INVALID_VALUE, call, "its ranges are not in the client's memory".to_owned());
             return;
         };
         if counts.iter().any(|v| *v < 0) {
-            self.record_error(enums::INVALID_VALUE, call, "a count is negative");
+            self.draw_error(enums::INVALID_VALUE, call, "a count is negative".to_owned());
             return;
         }
         for ((count, pointer), base) in counts.into_iter().zip(pointers).zip(bases) {
@@ -161,14 +160,14 @@ impl Context {
             return None;
         }
         if mode > enums::POLYGON {
-            self.record_error(enums::INVALID_ENUM, call, &format!("mode {mode:#x} is not a primitive"));
+            self.draw_error(enums::INVALID_ENUM, call, format!("mode {mode:#x} is not a primitive"));
             return None;
         }
         match usize::try_from(n) {
             Ok(0) => self.draw_nothing(call),
             Ok(n) => return Some(n),
             Err(_) => {
-                self.record_error(enums::INVALID_VALUE, call, &format!("the number of draws {n} is negative"));
+                self.draw_error(enums::INVALID_VALUE, call, format!("the number of draws {n} is negative"));
             }
         }
         None
@@ -180,7 +179,7 @@ impl Context {
             return;
         }
         if mode > enums::POLYGON {
-            self.record_error(enums::INVALID_ENUM, call, &format!("mode {mode:#x} is not a primitive"));
+            self.draw_error(enums::INVALID_ENUM, call, format!("mode {mode:#x} is not a primitive"));
             return;
         }
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = vertices;
@@ -195,7 +194,7 @@ impl Context {
         let batch = match self.array_batch(mode, vertices) {
             Ok(batch) => batch,
             Err(why) => {
-                self.record_error(enums::INVALID_OPERATION, call, why);
+                self.draw_error(enums::INVALID_OPERATION, call, why.to_owned());
                 return;
             }
         };
@@ -210,6 +209,16 @@ impl Context {
     /// Whether draws happen now, be they compiled or not.
     fn executes(&self) -> bool {
         !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE
+    }
+
+    /// A draw's error: a list that is being compiled has it, and raises it when it is executed.
+    #[cold]
+    fn draw_error(&mut self, error: u32, call: &'static str, why: String) {
+        self.listable(move |c| {
+            if !c.refused_inside_begin(call) {
+                c.record_error(error, call, &why);
+            }
+        });
     }
 
     /// Whether an open Begin stands against a draw that happens now.
@@ -229,13 +238,10 @@ impl Context {
         self.compile_refusal(call);
     }
 
-    /// A list gets a draw of nothing: called between Begin and End, or with an incomplete framebuffer, even that is an error.
+    /// A list gets a draw of nothing.
     fn compile_refusal(&mut self, call: &'static str) {
         if self.lists.recording {
-            let check: Call = Box::new(move |c| {
-                let _ = c.refused_inside_begin(call) || c.refused_by_framebuffer(call);
-            });
-            self.compile(|compiler| compiler.call(check));
+            self.compile(|compiler| compiler.call(drawing_nothing(call)));
         }
     }
 
@@ -282,7 +288,7 @@ impl Context {
     pub fn array_element(&mut self, i: i32) {
         const CALL: &str = "glArrayElement";
         let Ok(i) = usize::try_from(i) else {
-            self.record_error(enums::INVALID_VALUE, CALL, &format!("index {i} is negative"));
+            self.listable(move |c| c.record_error(enums::INVALID_VALUE, CALL, &format!("index {i} is negative")));
             return;
         };
         let arrays = self.enabled_arrays();
@@ -294,7 +300,7 @@ impl Context {
             arrays.iter().map(one).collect()
         };
         match self.array_reader(&arrays, 0).and_then(read) {
-            Err(why) => self.record_error(enums::INVALID_OPERATION, CALL, why),
+            Err(why) => self.listable(move |c| c.record_error(enums::INVALID_OPERATION, CALL, why)),
             // The position is the last.
             Ok(values) => {
                 for ((which, _), value) in arrays.iter().zip(values) {

@@ -8,6 +8,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("fbo-renderbuffer", Close, to_renderbuffer),
     scene("fbo-blit", Rounded, blit),
     scene("fbo-blit-depth", Close, blit_depth),
+    scene("fbo-blit-formats", Exact, blit_formats),
     scene("fbo-multisample", Close, multisample),
     scene("fbo-sample-coverage", Close, sample_coverage),
     scene("fbo-packed-depth-stencil", Rounded, packed),
@@ -143,6 +144,34 @@ fn resolve(gl: &Gl, object: u32) {
 }
 
 /// Where samples lie is free: shapes are big, and their edges lie on pixels' borders or are few.
+/// Which formats of depths and stencil values fit.
+fn blit_formats(gl: &mut Stage<'_>) {
+    let formats = [
+        (DEPTH24_STENCIL8, DEPTH_STENCIL_ATTACHMENT),
+        (DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT),
+        (STENCIL_INDEX8, STENCIL_ATTACHMENT),
+        (DEPTH_COMPONENT24, DEPTH_ATTACHMENT),
+        (DEPTH_COMPONENT16, DEPTH_ATTACHMENT),
+    ];
+    let objects = formats.map(|(format, attachment)| {
+        let object = framebuffer(gl);
+        gl.glDrawBuffer(NONE);
+        gl.glReadBuffer(NONE);
+        renderbuffer(gl, attachment, format, 0, 8);
+        object
+    });
+    for from in objects {
+        for to in objects.into_iter().filter(|to| *to != from) {
+            gl.glBindFramebuffer(READ_FRAMEBUFFER, from);
+            gl.glBindFramebuffer(DRAW_FRAMEBUFFER, to);
+            for mask in [DEPTH_BUFFER_BIT, STENCIL_BUFFER_BIT, DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT] {
+                gl.glBlitFramebuffer(0, 0, 8, 8, 0, 0, 8, 8, mask, NEAREST);
+                gl.note(gl.glGetError());
+            }
+        }
+    }
+}
+
 fn multisample(gl: &mut Stage<'_>) {
     let object = framebuffer(gl);
     renderbuffer(gl, COLOR_ATTACHMENT0, RGBA8, 4, 64);

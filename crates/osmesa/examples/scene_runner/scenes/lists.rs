@@ -13,6 +13,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("list-images", Rounded, images),
     scene("list-textures", Close, textures),
     scene("list-arrays", Close, arrays),
+    scene("list-array-errors", Exact, array_errors),
     scene("list-redefined", Exact, redefined),
     scene("attribute-stack", Close, attribute_stack),
     scene("evaluator-1d", Close, evaluator_1d),
@@ -201,6 +202,32 @@ fn arrays(gl: &mut Stage<'_>) {
     gl.glEndList();
     points.fill([0.0, 0.0]);
     gl.glCallList(6);
+}
+
+/// Wrong draws: what GetError says while they are compiled, and when they are executed.
+fn array_errors(gl: &mut Stage<'_>) {
+    let positions = [1.0_f32, 1.0, 20.0, 1.0, 1.0, 20.0];
+    let indices = [0_u32, 1, 2];
+    // Small numbers, which have to be equal.
+    let error = |gl: &Gl| gl.glGetError() % (INVALID_ENUM - 1);
+    gl.glVertexPointer(2, FLOAT, 0, at(&positions));
+    gl.glEnableClientState(VERTEX_ARRAY);
+    for (list, mode) in [(1, COMPILE), (2, COMPILE_AND_EXECUTE)] {
+        for draw in 0..5 {
+            gl.glNewList(list, mode);
+            match draw {
+                0 => gl.glDrawArrays(99, 0, 3),
+                1 => gl.glDrawArrays(TRIANGLES, 0, -1),
+                2 => gl.glDrawElements(77, 3, UNSIGNED_INT, at(&indices)),
+                3 => gl.glDrawElements(TRIANGLES, -3, UNSIGNED_INT, at(&indices)),
+                _ => gl.glDrawRangeElements(TRIANGLES, 2, 1, 3, UNSIGNED_INT, at(&indices)),
+            }
+            gl.note(error(gl));
+            gl.glEndList();
+            gl.glCallList(list);
+            gl.note(error(gl));
+        }
+    }
 }
 
 fn redefined(gl: &mut Stage<'_>) {

@@ -13,8 +13,10 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("cull", Rounded, cull),
     scene("polygon-mode", Close, polygon_mode),
     scene("polygon-mode-faces", Close, polygon_mode_faces),
+    scene("polygon-mode-clip-planes", Rounded, polygon_mode_clip_planes),
     scene("edge-flags", Close, edge_flags),
     scene("polygon-offset", Close, polygon_offset),
+    scene("polygon-offset-edges", Close, polygon_offset_edges),
     scene("polygon-stipple", Rounded, polygon_stipple),
     scene("clip-planes", Close, clip_planes),
     scene("near-far-clip", Close, near_far_clip),
@@ -198,6 +200,23 @@ fn polygon_mode_faces(gl: &mut Stage<'_>) {
     gl.glEnd();
 }
 
+/// Edges along the planes of the user show. (Those along the view volume do, too, but not with Mesa.)
+fn polygon_mode_clip_planes(gl: &mut Stage<'_>) {
+    pixels(gl);
+    gl.glPolygonMode(FRONT_AND_BACK, LINE);
+    for (plane, equation) in [(CLIP_PLANE0, [-1.0, -0.3, 0.0, 50.0]), (CLIP_PLANE0 + 3, [0.2, -1.0, 0.0, 45.0])] {
+        gl.glClipPlane(plane, &equation);
+        gl.glEnable(plane);
+    }
+    gl.glBegin(POLYGON);
+    for (x, y, edge) in [(3.5, 3.5, 1), (60.5, 6.5, 0), (62.5, 50.5, 1), (30.5, 60.5, 1), (5.5, 40.5, 1)] {
+        gl.glEdgeFlag(edge);
+        gl.glColor3f(1.0, x / 64.0, y / 64.0);
+        gl.glVertex2f(x, y);
+    }
+    gl.glEnd();
+}
+
 fn edge_flags(gl: &mut Stage<'_>) {
     pixels(gl);
     gl.glPolygonMode(FRONT_AND_BACK, LINE);
@@ -235,6 +254,28 @@ fn polygon_offset(gl: &mut Stage<'_>) {
     gl.glDepthMask(0);
     gl.glColor3f(1.0, 0.0, 0.0);
     gl.glRectf(-0.3, -0.3, 0.3, 0.3);
+}
+
+/// Lines and points move by the slope of the polygon, not by their own.
+fn polygon_offset_edges(gl: &mut Stage<'_>) {
+    camera(gl);
+    gl.glEnable(DEPTH_TEST);
+    gl.glDepthFunc(ALWAYS);
+    gl.glPointSize(16.0);
+    gl.glLineWidth(5.0);
+    let modes = [(FILL, POLYGON_OFFSET_FILL), (LINE, POLYGON_OFFSET_LINE), (POINT, POLYGON_OFFSET_POINT)];
+    for (i, (mode, enable)) in modes.into_iter().enumerate() {
+        gl.glPolygonMode(FRONT_AND_BACK, mode);
+        gl.glEnable(enable);
+        gl.glPolygonOffset(1.5, 0.0);
+        gl.glColor3f(0.3 + 0.3 * i as f32, 1.0, 0.0);
+        let x = 1.3 * i as f32;
+        gl.glBegin(TRIANGLES);
+        for (dx, y, z) in [(-2.0, -2.0, 0.0), (-1.0, -2.0, 0.0), (-1.5, 2.0, -3.0)] {
+            gl.glVertex3f(x + dx, y, z);
+        }
+        gl.glEnd();
+    }
 }
 
 fn polygon_stipple(gl: &mut Stage<'_>) {

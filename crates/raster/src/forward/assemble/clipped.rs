@@ -9,13 +9,13 @@ use crate::setup::{CornerPosition, DepthPlane};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derived {
     /// Its slot.
-    slot: u32,
-    /// Slots of its parents.
-    parents: [u32; 3],
+    pub slot: u32,
+    /// Slots of its parents, which may be derived themselves, earlier.
+    pub parents: [u32; 3],
     /// Their weights, sum 1.
-    weights: [f32; 3],
+    pub weights: [f32; 3],
     /// `1 / w`.
-    inverse_w: f32,
+    pub inverse_w: f32,
 }
 
 /// A corner of a polygon that is being clipped.
@@ -142,7 +142,9 @@ impl Assembler<'_> {
         for d in &self.derived {
             for k in 1..stride {
                 let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
-                let value = parent(0) * d.weights[0] + parent(1) * d.weights[1] + parent(2) * d.weights[2];
+                // By differences, so that what is equal at all parents stays so.
+                let first = parent(0);
+                let value = first + ((parent(1) - first) * d.weights[1] + (parent(2) - first) * d.weights[2]);
                 self.out.records[d.slot as usize + k] = value;
             }
             self.out.records[d.slot as usize] = d.inverse_w;

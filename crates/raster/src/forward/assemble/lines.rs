@@ -3,20 +3,20 @@
 use super::clipped::{Corner, between};
 use super::*;
 
-impl Assembler<'_> {
-    /// A line; gives the stipple count at its end. The offset is that of `LINE` polygons if `offset` is 1.
-    pub fn line(&mut self, corners: [u32; 2], provoking: u32, stipple: f32) -> f32 {
-        self.line_of(corners, provoking, stipple, false, usize::MAX)
-    }
+/// What the edges and corners of a polygon are drawn with, or a line or a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    /// Slot of the vertex that provokes.
+    pub provoking: u32,
+    /// Of a back-facing polygon.
+    pub back: bool,
+    /// What polygon offset adds to its depths.
+    pub offset: f32,
+}
 
-    pub(super) fn line_of(
-        &mut self,
-        [from, to]: [u32; 2],
-        provoking: u32,
-        stipple: f32,
-        back: bool,
-        offset: usize,
-    ) -> f32 {
+impl Assembler<'_> {
+    /// A line; `stipple` counts the fragments before it, which comes back with its own added.
+    pub fn line(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: u32) -> u32 {
         let s = self.vertices.screen;
         let (a, b) = (s[from as usize], s[to as usize]);
         if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.outside() != 0 {
@@ -30,9 +30,14 @@ impl Assembler<'_> {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
             ends = clipped;
         }
-        let at = ends.map(|e| self.project(e.clip));
         let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
-        let provoking = self.slot(provoking);
+        let stroke = Stroke { provoking: self.slot(provoking), back: false, offset: 0.0 };
+        self.segment(ends.map(|end| end.clip), slots, stroke, stipple)
+    }
+
+    /// What clipping left of a line, or of a polygon's edge.
+    pub(super) fn segment(&mut self, ends: [[f32; 4]; 2], slots: [u32; 2], stroke: Stroke, stipple: u32) -> u32 {
+        let at = ends.map(|end| self.project(end));
         let width = self.state.line_width;
         let (dx, dy) = (at[1][0] - at[0][0], at[1][1] - at[0][1]);
         let length = (dx * dx + dy * dy).sqrt();
@@ -40,37 +45,40 @@ impl Assembler<'_> {
             return stipple;
         }
         let true_rectangle = self.state.line_smooth || self.state.multisample;
-        let quad = if true_rectangle {
+        let (quad, first, count) = if true_rectangle {
             // Smooth lines get half a pixel more on all sides for the soft border.
             let border = if self.state.line_smooth { 0.5 } else { 0.0 };
             let (ux, uy) = (dx / length, dy / length);
             let (nx, ny) = (-uy * (width * 0.5 + border), ux * (width * 0.5 + border));
             let (ex, ey) = (ux * border, uy * border);
-            [
+            let quad = [
                 [at[0][0] - ex - nx, at[0][1] - ey - ny],
                 [at[1][0] + ex - nx, at[1][1] + ey - ny],
                 [at[1][0] + ex + nx, at[1][1] + ey + ny],
                 [at[0][0] - ex + nx, at[0][1] - ey + ny],
-            ]
+            ];
+            // They are stippled by pieces of a pixel's length, of which the last may be shorter.
+            (quad, None, length.ceil() as u32)
         } else {
             // Aliased lines are widened along the minor axis, to the nearest whole number of pixels.
             let half = (width + 0.5).floor().max(1.0) * 0.5;
-            let (nx, ny) = if dx.abs() >= dy.abs() { (0.0, half) } else { (half, 0.0) };
-            let [[x0, y0], [x1, y1]] = diamond_exit(at);
-            [[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]]
+            let major = usize::from(dx.abs() < dy.abs());
+            let (nx, ny) = if major == 0 { (0.0, half) } else { (half, 0.0) };
+            let [from, to] = diamond_exit(at);
+            let (first, count) = centers(from[major], to[major]);
+            let ([x0, y0], [x1, y1]) = (from, to);
+            ([[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]], Some(first), count)
         };
-        let span = if true_rectangle { length } else { dx.abs().max(dy.abs()) };
         let shape = self.out.shapes.len() as u32;
         let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
-        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, stipple });
+        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, first, stipple });
         let plane = line_plane([[x0, y0, z0], [x1, y1, z1]], true_rectangle);
-        let quad_slots = [slots[0], slots[1], slots[1], slots[0]];
-        self.quad(quad, plane, quad_slots, provoking, FacetKind::Line, back, shape, offset);
-        stipple + span
+        self.quad(quad, plane, [slots[0], slots[1], slots[1], slots[0]], stroke, FacetKind::Line, shape);
+        stipple.wrapping_add(count)
     }
 
     /// Window coordinates of a line's end or a point.
-    fn project(&self, clip: [f32; 4]) -> [f32; 3] {
+    pub(super) fn project(&self, clip: [f32; 4]) -> [f32; 3] {
         let window = &self.state.window;
         if self.state.depth_clamp {
             let [x, y, z] = window.project_beyond(clip);
@@ -80,26 +88,37 @@ impl Assembler<'_> {
         }
     }
 
-    pub(super) fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
-        let planes = self.state.user_planes;
-        let user = |plane: usize, c: &Corner| {
-            let d = corners.map(|v| self.vertices.user[v as usize * planes + plane]);
-            d[0] * c.weights[0] + d[1] * c.weights[1]
-        };
+    /// Planes that cut lines and outlines: the user's, the eye's, near, far and the sides.
+    pub(super) fn cutting_planes(&self) -> usize {
+        self.state.user_planes + 7
+    }
+
+    /// How far inside one of the cutting planes a point lies; `user` knows the distance to one of the user's.
+    pub(super) fn distance(&self, plane: usize, clip: [f32; 4], user: impl FnOnce(usize) -> f32) -> f32 {
         let (near, guard) = (self.state.window.near, self.state.window.guard);
-        let clamp = self.state.depth_clamp;
+        match plane.checked_sub(self.state.user_planes) {
+            None => user(plane),
+            // Nothing at or behind the eye survives, whatever the depth range.
+            Some(0) => clip[3] - 1e-30,
+            Some(1 | 2) if self.state.depth_clamp => 1.0,
+            Some(1) => clip[2] - near * clip[3],
+            Some(2) => clip[3] - clip[2],
+            Some(k @ (3 | 4)) => guard[k - 3][1].min(1.0) * clip[3] - clip[k - 3],
+            Some(k) => clip[k - 5] - guard[k - 5][0].max(-1.0) * clip[3],
+        }
+    }
+
+    fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
+        let planes = self.state.user_planes;
         let mut line = ends;
-        for plane in 0..planes + 7 {
-            let distance = |c: &Corner| match plane.checked_sub(planes) {
-                None => user(plane, c),
-                Some(0) => c.clip[3] - 1e-30,
-                Some(1 | 2) if clamp => 1.0,
-                Some(1) => c.clip[2] - near * c.clip[3],
-                Some(2) => c.clip[3] - c.clip[2],
-                Some(k @ (3 | 4)) => guard[k - 3][1].min(1.0) * c.clip[3] - c.clip[k - 3],
-                Some(k) => c.clip[k - 5] - guard[k - 5][0].max(-1.0) * c.clip[3],
-            };
-            let d = [distance(&line[0]), distance(&line[1])];
+        for plane in 0..self.cutting_planes() {
+            let d = [0, 1].map(|end: usize| {
+                let Corner { clip, weights, .. } = line[end];
+                self.distance(plane, clip, |plane| {
+                    let d = corners.map(|v| self.vertices.user[v as usize * planes + plane]);
+                    d[0] * weights[0] + d[1] * weights[1]
+                })
+            });
             match (d[0] >= 0.0, d[1] >= 0.0) {
                 (false, false) => return None,
                 (true, true) => {}
@@ -112,10 +131,6 @@ impl Assembler<'_> {
 
     /// A point.
     pub fn point(&mut self, vertex: u32) {
-        self.point_of(vertex, vertex, false, usize::MAX);
-    }
-
-    pub(super) fn point_of(&mut self, vertex: u32, provoking: u32, back: bool, offset: usize) {
         let v = self.vertices.screen[vertex as usize];
         let clip = self.vertices.clip[vertex as usize];
         // The band's flag also tells of near and far, which clamping ignores.
@@ -123,11 +138,19 @@ impl Assembler<'_> {
         if v.flags & (flag::NOT_FINITE | outside) != 0 || clip[3].is_nan() || clip[3] <= 1e-30 {
             return;
         }
+        let (size, slot) = (self.size(vertex), self.slot(vertex));
+        self.dot(clip, size, slot, Stroke { provoking: slot, back: false, offset: 0.0 });
+    }
+
+    /// A vertex's point size and fade factor.
+    pub(super) fn size(&self, vertex: u32) -> [f32; 2] {
+        self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0])
+    }
+
+    /// A point, or a polygon's corner, that is inside.
+    pub(super) fn dot(&mut self, clip: [f32; 4], [size, fade]: [f32; 2], slot: u32, stroke: Stroke) {
         let [x, y, z] = self.project(clip);
         let z = z.clamp(0.0, 1.0);
-        let [size, fade] = self.vertices.sizes.get(vertex as usize).copied().unwrap_or([1.0, 1.0]);
-        let slot = self.slot(vertex);
-        let provoking = self.slot(provoking);
         let (center, half) = if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
             ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
         } else {
@@ -142,22 +165,22 @@ impl Assembler<'_> {
             .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
         let origin = center.map(snapped);
         let plane = DepthPlane { z, dz_dx: 0.0, dz_dy: 0.0, origin, z_min: z, z_max: z };
-        self.quad(quad, plane, [slot; 4], provoking, FacetKind::Point, back, shape, offset);
+        self.quad(quad, plane, [slot; 4], stroke, FacetKind::Point, shape);
     }
 
     /// Two triangles that share the diagonal and the depth plane.
-    pub(super) fn quad(
+    fn quad(
         &mut self,
         quad: [[f32; 2]; 4],
-        plane: DepthPlane,
+        mut plane: DepthPlane,
         slots: [u32; 4],
-        provoking: u32,
+        Stroke { provoking, back, offset }: Stroke,
         kind: FacetKind,
-        back: bool,
         shape: u32,
-        offset: usize,
     ) {
-        let mut plane = if offset < 3 { self.offset(plane, offset) } else { plane };
+        if offset != 0.0 {
+            plane.move_by(offset);
+        }
         if self.state.depth_clamp {
             let [low, high] = self.state.window.depth_range();
             plane.z_min = plane.z_min.clamp(low, high);
@@ -198,6 +221,15 @@ fn diamond_exit(at: [[f32; 3]; 2]) -> [[f32; 2]; 2] {
         moved[minor] += (back + step) * slope;
         moved
     })
+}
+
+/// The pixel centres between an aliased line's ends as [`diamond_exit`] moved them: the first on its way, and how many.
+fn centers(from: f32, to: f32) -> (f32, u32) {
+    // The number of the lowest pixel whose centre is not below.
+    let above = |v: f32| (snapped(v) + SUBPIXEL / 2 - 1).div_euclid(SUBPIXEL);
+    let (start, end) = (above(from), above(to));
+    let first = if start <= end { start } else { start - 1 };
+    (first as f32 + 0.5, start.abs_diff(end))
 }
 
 /// The depth plane of a line: depth changes along it (along the longer axis if it is widened along the other one) and not
@@ -241,6 +273,11 @@ mod tests {
         assert_eq!(columns(0.9, 3.9, 0.1), [1, 2, 3]);
         assert_eq!(columns(0.1, 3.1, 0.1), [0, 1, 2]);
         assert_eq!(columns(0.4, 0.6, 0.5), []);
+        for (x0, x1, first, count) in [(0.7, 3.7, 0.5, 3), (3.7, 0.7, 3.5, 3), (0.9, 3.9, 0.5, 3), (0.4, 0.6, 0.5, 0)] {
+            let [[a, _], [b, _]] = diamond_exit([[x0, 0.5, 0.0], [x1, 0.5, 0.0]]);
+            let (found, number) = centers(a, b);
+            assert!(number == count && (count == 0 || found == first), "{x0} to {x1}: {number} from {found}");
+        }
     }
 
     #[test]

@@ -418,6 +418,53 @@ fn stats_are_json() {
 }
 
 #[test]
+fn standard_output_takes_state_statistics_and_trace() {
+    let folder = Folder::new("dash");
+    let printed = |option: &str| {
+        let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--samples", "1", option, "-"]);
+        assert_eq!(code(&output), 0, "{option}: {}", errors(&output));
+        assert!(!folder.has("-"), "{option} makes no file of that name");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let state: serde_json::Value = serde_json::from_str(&printed("--save-state")).unwrap();
+    assert_eq!((&state["models"], &state["settings"]["width"]), (&serde_json::json!(["builtin:cubs"]), &64.into()));
+    let stats: serde_json::Value = serde_json::from_str(&printed("--stats-file")).unwrap();
+    assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0, "{stats}");
+    let steps = printed("--trace");
+    assert!(steps.lines().count() > 0);
+    for line in steps.lines() {
+        let step: serde_json::Value = serde_json::from_str(line).unwrap();
+        assert!(step["step"].is_string(), "{step}");
+    }
+    let both = render(&folder, &["builtin:cubs", "-o", "a.png", "--save-state", "-", "--stats-file", "-"]);
+    assert_eq!(code(&both), 2);
+    assert!(errors(&both).contains("--save-state - and --stats-file - both want standard output"), "{}", errors(&both));
+}
+
+#[test]
+fn statistics_are_told_apart_from_the_result_and_in_it() {
+    let folder = Folder::new("stats-json");
+    let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--json", "--stats", "--progress", "never"]);
+    let result = json(&output);
+    let stats: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!(result["stats"], stats);
+    assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0, "{stats}");
+    let without = json(&render(&folder, &["builtin:cubs", "-o", "a.png", "--json"]));
+    assert!(without.get("stats").is_none(), "{without}");
+}
+
+#[test]
+fn a_pixel_outside_the_picture_is_refused() {
+    let folder = Folder::new("pixel-outside");
+    for (pixel, fits) in [("63,47", true), ("64,0", false), ("0,48", false), ("4294967295,4294967295", false)] {
+        let output = render(&folder, &["builtin:cubs", "--pixel", pixel]);
+        assert_eq!(code(&output), if fits { 0 } else { 2 }, "{pixel}: {}", errors(&output));
+        let told = format!("--pixel {pixel}: the picture has 64x48 pixels");
+        assert_eq!(errors(&output).contains(&told), !fits, "{}", errors(&output));
+    }
+}
+
+#[test]
 fn textures_outside_the_folder_need_permission() {
     let folder = Folder::new("external");
     std::fs::create_dir_all(folder.0.join("in")).unwrap();

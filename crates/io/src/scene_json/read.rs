@@ -186,7 +186,8 @@ fn add_meshes(
         let path = format!("meshes[{i}]");
         let materials = scene.materials.len();
         let parts = form.parts.iter().flatten().filter_map(|p| p.material);
-        for material in parts.chain(form.material).chain(form.line_material) {
+        let free = [&form.line_parts, &form.point_parts].into_iter().flatten().flatten().filter_map(|p| p.material);
+        for material in parts.chain(free).chain(form.material).chain(form.line_material) {
             report.index(path.as_str(), "material", material, materials)?;
         }
         let inline =
@@ -338,7 +339,8 @@ fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Ve
         for mesh in &mut scene.meshes[first_mesh..] {
             let mesh = Arc::make_mut(mesh);
             mesh.parts.iter_mut().for_each(|p| p.material = Some(material));
-            mesh.line_material = mesh.line_material.map(|_| material);
+            let free = mesh.line_parts.iter_mut().chain(&mut mesh.point_parts);
+            free.for_each(|p| p.material = p.material.map(|_| material));
         }
     }
     let roots = scene.roots.split_off(first_root);

@@ -119,14 +119,16 @@ fn add_textures(
         .collect::<Result<Vec<_>, _>>()?;
     let loaded = origin.workers.map(forms.len(), |i| {
         let (source, bytes) = &sources[i];
-        let plane = image::decode(bytes.as_ref().map_err(String::clone)?, source).map_err(|e| e.to_string())?;
+        let bytes = bytes.as_ref().map_err(String::clone)?;
+        let (plane, odd) = image::decode_texture(bytes, source).map_err(|e| e.to_string())?;
         let name = forms[i].name.clone().unwrap_or_else(|| source.clone());
-        Ok::<_, String>(Texture::new(name, plane, forms[i].encoding))
+        Ok::<_, String>((Texture::new(name, plane, forms[i].encoding), odd))
     });
     let mut places = Vec::with_capacity(loaded.len());
     for (i, texture) in loaded.into_iter().enumerate() {
         match texture {
-            Ok(texture) => {
+            Ok((texture, odd)) => {
+                scene.warnings.extend(odd.map(|what| format!("{}: textures[{i}]: {what}", report.file)));
                 places.push(Some(scene.textures.len() as u32));
                 scene.textures.push(Arc::new(texture));
             }

@@ -300,6 +300,33 @@ fn state_and_configuration() {
 }
 
 #[test]
+fn paths_in_a_state_file_begin_in_its_folder() {
+    let folder = Folder::new("state-paths");
+    for name in ["models", "states", "other"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    std::fs::write(folder.0.join("models/a.obj"), TRIANGLE).unwrap();
+    assert_eq!(code(&render(&folder, &["models/a.obj", "-o", "a.png", "--save-state", "states/s.json"])), 0);
+    let state: serde_json::Value = serde_json::from_slice(&folder.read("states/s.json")).unwrap();
+    assert_eq!(state["models"], serde_json::json!(["../models/a.obj"]));
+    let mut elsewhere = folder.command(&["render", "--load-state", "../states/s.json", "-o", "b.png"]);
+    let output = elsewhere.current_dir(folder.0.join("other")).output().unwrap();
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert_eq!(folder.read("a.png"), folder.read("other/b.png"));
+    // Paths of the command line begin where it runs, and standard output is in no folder.
+    let output =
+        render(&folder, &["models/a.obj", "--load-state", "states/s.json", "-o", "c.png", "--save-state", "-"]);
+    let state: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(state["models"], serde_json::json!(["models/a.obj"]));
+    for option in ["--load-state", "--config"] {
+        let output = render(&folder, &["builtin:cubs", "-o", "x.png", option, "none.json"]);
+        let told = errors(&output);
+        assert_eq!(code(&output), 3, "{told}");
+        assert!(told.contains("none.json: ") && told.contains("--save-state") && !told.contains("builtin:"), "{told}");
+    }
+}
+
+#[test]
 fn comparing_pictures() {
     let folder = Folder::new("compare");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.png"])), 0);

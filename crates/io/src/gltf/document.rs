@@ -12,10 +12,11 @@ use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 7] = [
+const SUPPORTED: [&str; 8] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",

@@ -167,15 +167,16 @@ impl<'a> Reader<'a> {
         let rest = ahead.rest_of_line();
         let has_facet = rest.windows(5).any(|w| w.eq_ignore_ascii_case(b"facet"));
         let mut name = Vec::new();
-        while has_facet {
-            let here = self.cursor;
-            let mut after = here;
-            if words.iter().all(|word| after.word().eq_ignore_ascii_case(word)) {
-                return String::from_utf8_lossy(&name.join(&b' ')).into_owned();
-            }
-            match self.cursor.word() {
-                b"" => break,
-                word => name.push(word),
+        if has_facet {
+            loop {
+                let mut after = self.cursor;
+                if words.iter().all(|word| after.word().eq_ignore_ascii_case(word)) {
+                    return String::from_utf8_lossy(&name.join(&b' ')).into_owned();
+                }
+                match self.cursor.word() {
+                    b"" => break,
+                    word => name.push(word),
+                }
             }
         }
         self.cursor = start;

@@ -248,7 +248,7 @@ pub(crate) struct ProcessArgs {
     /// No configuration file
     #[arg(long)]
     pub(crate) no_config: bool,
-    /// Write all choices to this file
+    /// Write all choices to this file; relative paths of models in it begin in its folder
     #[arg(long, value_name = "FILE")]
     pub(crate) save_state: Option<PathBuf>,
     /// Take all choices from this file; options override it

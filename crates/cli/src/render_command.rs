@@ -34,7 +34,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let plan = resolve(args)?;
     if let Some(file) = &args.process.save_state {
-        report::write(file, plan.state.to_json().as_bytes())?;
+        let mut state = plan.state.clone();
+        if let Some(folder) = file.parent().filter(|_| !report::is_standard(file)) {
+            state.leave_for(folder);
+        }
+        report::write(file, state.to_json().as_bytes())?;
     }
     let mut execution = execution(args.process.threads)?;
     execution.budget =

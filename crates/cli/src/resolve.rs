@@ -4,6 +4,7 @@ use crate::outputs::Output;
 use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::{self, Failure};
 use crate::values;
+use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::render::{Background, Channels, Global, Lines, registry};
@@ -29,10 +30,10 @@ pub(crate) struct Plan {
 pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let mut state = State::default();
     if let Some(config) = config_file(&args.process)? {
-        overlay(&mut state, &config)?;
+        overlay(&mut state, &config, "--config")?;
     }
     if let Some(file) = &args.process.load_state {
-        overlay(&mut state, file)?;
+        overlay(&mut state, file, "--load-state")?;
     }
     if !args.models.is_empty() {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
@@ -144,15 +145,27 @@ fn config_file(args: &ProcessArgs) -> Result<Option<PathBuf>, Failure> {
     Ok(base.map(|b| b.join("vitral").join("config.json")).filter(|f| f.is_file()))
 }
 
-fn overlay(state: &mut State, file: &Path) -> Result<(), Failure> {
-    let bytes = vitral::read(file, MAX_STATE_BYTES)?;
+/// Lays a file over the state; `option` names it.
+fn overlay(state: &mut State, file: &Path, option: &str) -> Result<(), Failure> {
+    let bytes = vitral::read(file, MAX_STATE_BYTES).map_err(|e| {
+        let is_missing = matches!(&e, vitral::Error::Read { source, .. } if source.kind() == ErrorKind::NotFound);
+        let failure = Failure::from(e);
+        if is_missing { failure.with_hint(format!("{option} takes a file that --save-state wrote")) } else { failure }
+    })?;
     let name = file.to_string_lossy();
     let text = String::from_utf8(bytes).map_err(|_| vitral::Error::State {
         file: name.clone().into_owned(),
         place: String::new(),
         what: "not UTF-8 text".to_owned(),
     })?;
-    Ok(state.overlay(&text, &name)?)
+    let before = std::mem::take(&mut state.models);
+    state.overlay(&text, &name)?;
+    if state.models.is_empty() {
+        state.models = before;
+    } else {
+        state.enter(file.parent().unwrap_or(Path::new("")));
+    }
+    Ok(())
 }
 
 fn set_picture(state: &mut State, args: &PictureArgs) {

@@ -300,6 +300,33 @@ fn state_and_configuration() {
 }
 
 #[test]
+fn paths_in_a_state_file_begin_in_its_folder() {
+    let folder = Folder::new("state-paths");
+    for name in ["models", "states", "other"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    std::fs::write(folder.0.join("models/a.obj"), TRIANGLE).unwrap();
+    assert_eq!(code(&render(&folder, &["models/a.obj", "-o", "a.png", "--save-state", "states/s.json"])), 0);
+    let state: serde_json::Value = serde_json::from_slice(&folder.read("states/s.json")).unwrap();
+    assert_eq!(state["models"], serde_json::json!(["../models/a.obj"]));
+    let mut elsewhere = folder.command(&["render", "--load-state", "../states/s.json", "-o", "b.png"]);
+    let output = elsewhere.current_dir(folder.0.join("other")).output().unwrap();
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert_eq!(folder.read("a.png"), folder.read("other/b.png"));
+    // Paths of the command line begin where it runs, and standard output is in no folder.
+    let output =
+        render(&folder, &["models/a.obj", "--load-state", "states/s.json", "-o", "c.png", "--save-state", "-"]);
+    let state: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(state["models"], serde_json::json!(["models/a.obj"]));
+    for option in ["--load-state", "--config"] {
+        let output = render(&folder, &["builtin:cubs", "-o", "x.png", option, "none.json"]);
+        let told = errors(&output);
+        assert_eq!(code(&output), 3, "{told}");
+        assert!(told.contains("none.json: ") && told.contains("--save-state") && !told.contains("builtin:"), "{told}");
+    }
+}
+
+#[test]
 fn comparing_pictures() {
     let folder = Folder::new("compare");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.png"])), 0);
@@ -414,6 +441,53 @@ fn stats_are_json() {
     assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0);
     for stage in ["prepare", "geometry", "tiles", "total"] {
         assert!(stats["frames"][0]["seconds"][stage].as_f64().unwrap() > 0.0, "{stage}: {stats}");
+    }
+}
+
+#[test]
+fn standard_output_takes_state_statistics_and_trace() {
+    let folder = Folder::new("dash");
+    let printed = |option: &str| {
+        let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--samples", "1", option, "-"]);
+        assert_eq!(code(&output), 0, "{option}: {}", errors(&output));
+        assert!(!folder.has("-"), "{option} makes no file of that name");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let state: serde_json::Value = serde_json::from_str(&printed("--save-state")).unwrap();
+    assert_eq!((&state["models"], &state["settings"]["width"]), (&serde_json::json!(["builtin:cubs"]), &64.into()));
+    let stats: serde_json::Value = serde_json::from_str(&printed("--stats-file")).unwrap();
+    assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0, "{stats}");
+    let steps = printed("--trace");
+    assert!(steps.lines().count() > 0);
+    for line in steps.lines() {
+        let step: serde_json::Value = serde_json::from_str(line).unwrap();
+        assert!(step["step"].is_string(), "{step}");
+    }
+    let both = render(&folder, &["builtin:cubs", "-o", "a.png", "--save-state", "-", "--stats-file", "-"]);
+    assert_eq!(code(&both), 2);
+    assert!(errors(&both).contains("--save-state - and --stats-file - both want standard output"), "{}", errors(&both));
+}
+
+#[test]
+fn statistics_are_told_apart_from_the_result_and_in_it() {
+    let folder = Folder::new("stats-json");
+    let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--json", "--stats", "--progress", "never"]);
+    let result = json(&output);
+    let stats: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!(result["stats"], stats);
+    assert!(stats["frames"][0]["geometry"]["triangles"].as_u64().unwrap() > 0, "{stats}");
+    let without = json(&render(&folder, &["builtin:cubs", "-o", "a.png", "--json"]));
+    assert!(without.get("stats").is_none(), "{without}");
+}
+
+#[test]
+fn a_pixel_outside_the_picture_is_refused() {
+    let folder = Folder::new("pixel-outside");
+    for (pixel, fits) in [("63,47", true), ("64,0", false), ("0,48", false), ("4294967295,4294967295", false)] {
+        let output = render(&folder, &["builtin:cubs", "--pixel", pixel]);
+        assert_eq!(code(&output), if fits { 0 } else { 2 }, "{pixel}: {}", errors(&output));
+        let told = format!("--pixel {pixel}: the picture has 64x48 pixels");
+        assert_eq!(errors(&output).contains(&told), !fits, "{}", errors(&output));
     }
 }
 

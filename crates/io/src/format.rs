@@ -153,7 +153,11 @@ fn by_magic(bytes: &[u8]) -> Option<Format> {
 
 /// The name of a format that is known by its first bytes and not read.
 fn foreign_content(bytes: &[u8]) -> Option<&'static str> {
-    const MAGIC: [(&[u8], &str); 14] = [
+    const MAGIC: [(&[u8], &str); 18] = [
+        (b"\x1f\x8b", "a gzip file (unpack it first)"),
+        (b"\x28\xb5\x2f\xfd", "a Zstandard file (unpack it first)"),
+        (b"BZh", "a bzip2 file (unpack it first)"),
+        (b"\xfd7zXZ", "an xz file (unpack it first)"),
         (b"PK\x03\x04", "a zip container (3MF, USDZ)"),
         (b"Kaydara FBX", "FBX"),
         (b"BLENDER", "a Blender file"),
@@ -260,7 +264,13 @@ pub fn formats() -> Vec<FormatRow> {
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
     rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
     rows.push(picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", true));
-    rows.push(picture("PPM", &["ppm"], "Portable pixmap, plain pixels", false));
+    rows.push(picture(
+        "PPM",
+        &["ppm"],
+        "Portable pixmap, plain pixels; no textures, but `vitral compare` reads it",
+        false,
+    ));
+    rows.push(picture("NPY", &["npy"], "numpy array: depth, ids and normals without loss", false));
     rows
 }
 
@@ -293,6 +303,7 @@ mod tests {
             refuse(b"<?xml?><COLLADA>", "m").starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), ")
         );
         assert!(refuse(b"PK\x03\x04", "m.3mf").contains("3MF"));
+        assert!(refuse(b"\x1f\x8b\x08\0", "m.obj").starts_with("m.obj: a gzip file (unpack it first) is not read; "));
         assert!(refuse(b"?", "m.blend").contains("Blender"));
         assert!(refuse(b"hello", "m.txt").starts_with("m.txt: this format is not read"));
     }

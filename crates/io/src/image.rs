@@ -22,7 +22,45 @@ const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
 ///
 /// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    whole(bytes, file)?;
     decode_else(bytes, file, "PNG and JPEG are")
+}
+
+/// [`decode`] for textures: a JPEG that is cut off is shown as far as it goes; the message says so.
+pub(crate) fn decode_texture(bytes: &[u8], file: &str) -> Result<(Plane<[u8; 4]>, Option<String>), Error> {
+    let plane = decode_else(bytes, file, "PNG and JPEG are")?;
+    Ok((plane, whole(bytes, file).err().map(|e| e.to_string())))
+}
+
+/// Refuses a JPEG without its end, which decoders fill up with grey.
+pub(crate) fn whole(bytes: &[u8], file: &str) -> Result<(), Error> {
+    if bytes.starts_with(&[0xff, 0xd8, 0xff]) && !has_jpeg_end(bytes) {
+        let place = Place::Byte(bytes.len() as u64);
+        return Err(Error::malformed(file, place, "JPEG: the file ends before the image does"));
+    }
+    Ok(())
+}
+
+/// Whether a JPEG's markers lead to the end of an image: segments by their lengths, the data of scans byte by byte.
+fn has_jpeg_end(bytes: &[u8]) -> bool {
+    let mut at = 2;
+    while let Some(found) = bytes.get(at..).and_then(|rest| rest.windows(2).position(is_jpeg_marker)) {
+        at += found + 2;
+        match bytes[at - 1] {
+            0xd9 => return true,
+            0x01 | 0xd8 => {}
+            _ => match bytes.get(at..at + 2) {
+                Some(length) => at += usize::from(u16::from_be_bytes([length[0], length[1]])).max(2),
+                None => return false,
+            },
+        }
+    }
+    false
+}
+
+/// A marker, and neither a stuffed byte, nor filling, nor a restart within a scan.
+fn is_jpeg_marker(pair: &[u8]) -> bool {
+    pair[0] == 0xff && !matches!(pair[1], 0x00 | 0xd0..=0xd7 | 0xff)
 }
 
 /// [`decode`]; `readable` is what the message about another format says in its place.
@@ -208,6 +246,18 @@ mod tests {
         bytes[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
         let error = decode(&bytes, "a.jpg").unwrap_err().to_string();
         assert!(error.contains("16384 x 16384 pixels are announced"), "{error}");
+    }
+
+    #[test]
+    fn a_jpeg_that_is_cut_off_is_told() {
+        let picture = Plane::from_rows(16, 16, (0..256).map(|i| [(i * 37) as u8, i as u8, 9, 255]).collect()).unwrap();
+        let bytes = crate::encode::jpeg(&picture, 90).unwrap();
+        assert!(decode_texture(&bytes, "a.jpg").unwrap().1.is_none());
+        assert!(decode_texture(&[&bytes[..], &[0; 9]].concat(), "a.jpg").unwrap().1.is_none(), "padding is harmless");
+        let cut = &bytes[..bytes.len() - 20];
+        let message = format!("a.jpg: byte {}: JPEG: the file ends before the image does", cut.len());
+        assert_eq!(decode_texture(cut, "a.jpg").unwrap().1.as_ref(), Some(&message));
+        assert_eq!(decode(cut, "a.jpg").unwrap_err().to_string(), message);
     }
 
     #[test]

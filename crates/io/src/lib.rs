@@ -46,7 +46,7 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
         Format::Obj => obj::load(bytes, file, resolver, workers),
         Format::Stl => stl::load(bytes, file, workers),
-        Format::Ply => ply::load(bytes, file, workers),
+        Format::Ply => ply::load(bytes, file, resolver, workers),
         Format::Off => off::load(bytes, file, workers),
         Format::SceneJson => return scene_json::load(bytes, file, resolver, workers),
     }?;

@@ -395,6 +395,19 @@ mod tests {
     }
 
     #[test]
+    fn maps_without_a_coefficient_show_as_they_are() {
+        let kd = |text: &str| match one(text).0.reflectance {
+            Reflectance::Phong { kd, ks, .. } => (kd, ks),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(kd("newmtl a\nmap_Kd a.png"), ([1.0; 3], [0.0; 3]));
+        assert_eq!(kd("newmtl a\nmap_Kd a.png\nmap_Ks b.png"), ([1.0; 3], [1.0; 3]));
+        assert_eq!(kd("newmtl a\nKd .5 .5 .5\nmap_Kd a.png").0, [0.5; 3]);
+        assert_eq!(kd("newmtl a").0, [0.8; 3]);
+        assert_eq!(one("newmtl a\nmap_Ke a.png").0.emission, [1.0; 3]);
+    }
+
+    #[test]
     fn nonsense_is_told_and_passed_over() {
         let (m, _, warnings) = one("Kd 1 1 1\nnewmtl a\nKd red\nillum 99\nfoo\nmap_Kd\nKa nan 1 1");
         assert!(m.base_texture.is_none());

@@ -12,7 +12,7 @@
 //!   value exceeds 1). `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
 //! * `f`, `fo`: any number of corners, `v`, `v/vt`, `v//vn`, `v/vt/vn`. Fewer than three corners: warning, left out.
 //!   Corners without texture coordinates get `(0, 0)`; corners without a normal, in a file that has some, the face's.
-//! * `l`, `p`: free lines and points; all take the material of the first. A file of vertices alone is a point cloud.
+//! * `l`, `p`: free lines and points, with the material in force. A file of vertices alone is a point cloud.
 //! * `o`, `g`, `s`, `usemtl`, `mtllib`. An unknown material is the default one, with a warning.
 //! * A number with something glued to it (`3.1+e2`) counts up to there, with a warning; a word that is no number, and
 //!   an index that leads nowhere, is an error that names the line.

@@ -1,9 +1,11 @@
 //! OFF, Geomview's object file format: vertices, then polygons.
 //!
 //! The first word says what a vertex line holds, in this order: `[ST][C][N][4]OFF`: position (four homogeneous
-//! coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with `ST`. A line with the numbers of
-//! vertices, faces and edges follows (all three are required; the last is not used), then one line for each vertex and
-//! one for each face: the corner count, the corners, and possibly a colour. `#` begins a comment.
+//! coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with `ST`. Prefixes in another order and lower
+//! case, which exist, mean the same. A line with the numbers of
+//! vertices, faces and edges follows (all three are required; the last is not used), then each vertex and each face: the
+//! corner count, the corners, and possibly a colour. Both begin a line and may go on over several, but a colour that may be left
+//! out is on the line of what is before it. `#` begins a comment.
 //!
 //! Colours are sRGB, `0..=255` if any of the file exceeds 1, else `0..=1`; those of faces count if vertices have none.
 //! Texture coordinates run upwards and are turned to `1 - v`. Faces with fewer than three corners are left out with a
@@ -33,20 +35,30 @@ pub(crate) struct Header {
 impl Header {
     /// Understands `OFF` and its prefixes; `None` for any other word.
     pub(crate) fn parse(word: &[u8]) -> Option<Self> {
-        let mut rest = word.strip_suffix(b"OFF")?;
-        let mut take = |prefix: &[u8]| {
-            let stripped = rest.strip_prefix(prefix);
-            rest = stripped.unwrap_or(rest);
-            stripped.is_some()
-        };
-        let header = Self {
-            texture: take(b"ST"),
-            color: take(b"C"),
-            normal: take(b"N"),
-            homogeneous: take(b"4"),
-            dimensions: take(b"n"),
-        };
-        rest.is_empty().then_some(header)
+        let (prefixes, name) = word.split_at_checked(word.len().checked_sub(3)?)?;
+        if !name.eq_ignore_ascii_case(b"OFF") {
+            return None;
+        }
+        // `N` says that there are normals, `n` how many dimensions: only in lower case throughout they cannot be told apart.
+        let is_lower = name == b"off";
+        let mut header = Self { texture: false, color: false, normal: false, homogeneous: false, dimensions: false };
+        let mut rest = prefixes;
+        while !rest.is_empty() {
+            let (flag, length) = match rest {
+                [b'S' | b's', b'T' | b't', ..] => (&mut header.texture, 2),
+                [b'C' | b'c', ..] => (&mut header.color, 1),
+                [b'N', ..] => (&mut header.normal, 1),
+                [b'n', ..] if is_lower => (&mut header.normal, 1),
+                [b'n', ..] => (&mut header.dimensions, 1),
+                [b'4', ..] => (&mut header.homogeneous, 1),
+                _ => return None,
+            };
+            if std::mem::replace(flag, true) {
+                return None;
+            }
+            rest = &rest[length..];
+        }
+        Some(header)
     }
 }
 
@@ -161,12 +173,17 @@ impl Reader<'_> {
         }
     }
 
+    /// Numbers that belong together, on one line or several.
     fn floats<const N: usize>(&mut self, what: &str) -> Result<[f32; N], Error> {
         let mut values = [0.0; N];
         for (k, value) in values.iter_mut().enumerate() {
-            *value = match self.cursor.float() {
+            let mut read = self.cursor.float();
+            if read.is_none() && self.cursor.at_line_end() && self.cursor.next_content() {
+                read = self.cursor.float();
+            }
+            *value = match read {
                 Some(value) => value,
-                None => return Err(self.error(format!("{k} numbers, a {what} has {N}"))),
+                None => return Err(self.no_number(k, what, N)),
             };
         }
         if self.cursor.take_ill_formed() {
@@ -174,6 +191,18 @@ impl Reader<'_> {
             self.warnings.note("number", place, || "ill-formed number; only its beginning counts".to_owned());
         }
         Ok(values)
+    }
+
+    /// A word, or the end of the file, where the number `k` of `count` is due.
+    #[cold]
+    fn no_number(&mut self, k: usize, what: &str, count: usize) -> Error {
+        match self.cursor.word() {
+            b"" => self.error(format!("the file ends here: {k} numbers, a {what} has {count}")),
+            word => {
+                let seen = String::from_utf8_lossy(&word[..word.len().min(40)]).into_owned();
+                self.error(format!("`{seen}` is not a number, a {what} has {count}"))
+            }
+        }
     }
 
     fn vertex(&mut self, header: Header, lists: &mut Lists) -> Result<(), Error> {
@@ -215,7 +244,11 @@ impl Reader<'_> {
         };
         let start = lists.corners.len();
         for k in 0..size {
-            match self.cursor.integer() {
+            let mut read = self.cursor.integer();
+            if read.is_none() && self.cursor.at_line_end() && self.cursor.next_content() {
+                read = self.cursor.integer();
+            }
+            match read {
                 Some(index) if (0..lists.positions.len() as i64).contains(&index) => lists.corners.push(index as u32),
                 Some(index) => {
                     return Err(self.error(format!("index {index}, the file has {} vertices", lists.positions.len())));
@@ -275,6 +308,7 @@ impl Lists {
             faces: built.faces,
             normals: header.normal.then_some(Attribute::per_vertex(self.normals)),
             uvs: if header.texture { vec![Attribute::per_vertex(self.uvs)] } else { Vec::new() },
+            colors_from_srgb: colors.is_some(),
             colors,
             // Vertices without faces are a point cloud.
             points: if self.sizes.is_empty() { (0..self.positions.len() as u32).collect() } else { Vec::new() },
@@ -330,6 +364,42 @@ mod tests {
     }
 
     #[test]
+    fn headers_in_every_order_and_case() {
+        let parse = |word: &str| Header::parse(word.as_bytes());
+        for (word, usual) in [
+            ("off", "OFF"),
+            ("Off", "OFF"),
+            ("NCOFF", "CNOFF"),
+            ("cnoff", "CNOFF"),
+            ("CSTOFF", "STCOFF"),
+            ("NSTCOFF", "STCNOFF"),
+            ("4NCSTOFF", "STCN4OFF"),
+        ] {
+            assert!(parse(word).is_some());
+            assert_eq!(parse(word), parse(usual), "{word}");
+        }
+        assert!(parse("nOFF").unwrap().dimensions && parse("4nOFF").unwrap().dimensions);
+        assert_eq!([parse("CCOFF"), parse("SOFF"), parse("OF"), parse("F"), parse("OFFS")], [None; 5]);
+        let normals = "0 0 1  255 0 0 255";
+        let s = read(&format!("NCOFF 3 1 0\n0 0 0 {normals}\n1 0 0 {normals}\n0 1 0 {normals}\n3 0 1 2\n")).unwrap();
+        let m = &s.meshes[0];
+        assert_eq!(
+            (m.normals.as_ref().unwrap().values[2], m.colors.as_ref().unwrap().values[2][0]),
+            ([0.0, 0.0, 1.0], 1.0)
+        );
+    }
+
+    #[test]
+    fn vertices_and_faces_may_go_over_lines() {
+        let s = read(
+            "off\r\n# c\r\n4\t1 0\r\n0 0\r\n\t0 # first\r\n1\r\n\r\n0 0\r\n1 1 0\r\n0 1 0\r\n4 0 1 # more\r\n 2 3",
+        )
+        .unwrap();
+        let m = &s.meshes[0];
+        assert_eq!((m.positions[1], m.face_corners(0), s.warnings.len()), ([1.0, 0.0, 0.0], &[0, 1, 2, 3][..], 0));
+    }
+
+    #[test]
     fn faces_may_have_colours() {
         let s = read("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 1 2\n3 0 1 2 7").unwrap();
         let colors = s.meshes[0].colors.as_ref().unwrap();
@@ -352,7 +422,8 @@ mod tests {
         assert_eq!(refusal("OFF\n1 2 0\n0 0 0\n3 0 0 1"), "t.off: line 4: index 1, the file has 1 vertices");
         assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n3 0 0"), "t.off: line 4: 2 indices, the face has 3 corners");
         assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n"), "t.off: line 4: the file ends here, a face is required");
-        assert_eq!(refusal("OFF\n1 0 0\n0 zero 0\n"), "t.off: line 3: 1 numbers, a vertex has 3");
+        assert_eq!(refusal("OFF\n1 0 0\n0 zero 0\n"), "t.off: line 3: `zero` is not a number, a vertex has 3");
+        assert_eq!(refusal("OFF\n1 0 0\n0 00000\n"), "t.off: line 4: the file ends here: 2 numbers, a vertex has 3");
         assert_eq!(refusal("OFF BINARY\n"), "t.off: binary OFF is not read");
     }
 }

@@ -9,6 +9,9 @@
 //!   `s t`, `u v`, `texture_u texture_v` (upwards, turned to `1 - v`).
 //! * `face`: `vertex_indices` or `vertex_index`; its colours count where vertices have none. Fewer than three corners:
 //!   warning, left out.
+//! * Textures as MeshLab writes them: `comment TextureFile NAME` in the header names images in order; a face has `texcoord`,
+//!   a list of `u v` for each corner, and `texnumber`, the image's number (0 if not given). Files with texture coordinates of
+//!   vertices show the first image.
 //! * `tristrips`: `vertex_indices`, restarted by a negative index; triangles with two equal corners only steer the strip
 //!   and are left out. `edge`: `vertex1 vertex2`, free lines.
 //! * Without faces, strips and edges the vertices are a point cloud. Other elements and properties are passed over; a
@@ -21,19 +24,21 @@
 mod ascii;
 mod binary;
 mod header;
+mod textured;
 
 use crate::warnings::Warnings;
-use crate::{Error, Place};
+use crate::{Error, Place, Resolver};
 use header::{Element, Encoding, Header, Kind, Property};
 use vitral_exec::Workers;
 use vitral_math::color::linear_from_srgb;
 use vitral_scene::{Attribute, Faces, Mesh, Part, Scene};
 
-/// Reads a PLY file of any of the three encodings.
+/// Reads a PLY file of any of the three encodings. `resolver` gives its textures; missing ones are warnings.
 ///
 /// # Errors
 /// [`Error::Malformed`] with the line (header, text) or byte (binary data) at which the file breaks its announcements.
-pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
+pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut warnings = Warnings::default();
     let header = Header::parse(bytes, file, &mut warnings)?;
     let layouts: Vec<Layout> = header.elements.iter().map(Layout::new).collect();
@@ -44,8 +49,11 @@ pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error>
         Encoding::Ascii => ascii::read(bytes, &mut reading, &mut content)?,
         Encoding::LittleEndian | Encoding::BigEndian => binary::read(bytes, &mut reading, &mut content, workers)?,
     }
-    let mesh = content.into_mesh(file, workers)?;
-    Ok(crate::finish(mesh, Scene { warnings: warnings.into_messages(file), ..Scene::default() }, file))
+    let runs = content.texture_runs();
+    let mut mesh = content.into_mesh(file, workers)?;
+    let mut scene = Scene { warnings: warnings.into_messages(file), ..Scene::default() };
+    textured::add(&mut mesh, &mut scene, &runs, &header.textures, file, resolver, workers);
+    Ok(crate::finish(mesh, scene, file))
 }
 
 /// What the encodings share while they read.
@@ -73,7 +81,8 @@ mod slot {
     pub(super) const COLOR: usize = 6;
     pub(super) const UV: usize = 10;
     pub(super) const ENDS: usize = 12;
-    pub(super) const COUNT: usize = 14;
+    pub(super) const IMAGE: usize = 14;
+    pub(super) const COUNT: usize = 15;
 }
 
 /// Where an element's properties go.
@@ -85,12 +94,15 @@ struct Layout {
     has_normals: bool,
     has_colors: bool,
     has_uvs: bool,
+    /// Whether it has texture coordinates for the corners of faces.
+    has_corner_uvs: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Target {
     Slot(usize),
     Corners,
+    CornerUvs,
     Nothing,
 }
 
@@ -109,6 +121,7 @@ impl Layout {
             has_normals: has(slot::NORMAL..slot::NORMAL + 3),
             has_colors: has(slot::COLOR..slot::COLOR + 3),
             has_uvs: has(slot::UV..slot::UV + 2),
+            has_corner_uvs: targets.contains(&Target::CornerUvs),
             role,
             targets,
         }
@@ -123,7 +136,9 @@ fn target(role: Role, property: &Property) -> Target {
     let is_list = matches!(property.kind, Kind::List { .. });
     match (role, property.name.as_str()) {
         (Role::Face | Role::Strips, "vertex_indices" | "vertex_index") if is_list => Target::Corners,
+        (Role::Face, "texcoord") if is_list => Target::CornerUvs,
         (Role::Unknown, _) | (_, _) if is_list => Target::Nothing,
+        (Role::Face, "texnumber") => Target::Slot(slot::IMAGE),
         (Role::Vertex, "x") => Target::Slot(slot::POSITION),
         (Role::Vertex, "y") => Target::Slot(slot::POSITION + 1),
         (Role::Vertex, "z") => Target::Slot(slot::POSITION + 2),
@@ -163,6 +178,8 @@ fn note_unused(header: &Header, layouts: &[Layout], warnings: &mut Warnings) {
 struct Row {
     slots: [f64; slot::COUNT],
     corners: Vec<i64>,
+    /// Texture coordinates of the corners, `u v u v …`.
+    corner_uvs: Vec<f32>,
 }
 
 /// Everything read so far.
@@ -178,6 +195,10 @@ struct Content {
     sizes: Vec<u32>,
     corners: Vec<u32>,
     face_colors: Option<Vec<[f32; 4]>>,
+    /// Texture coordinates of `corners`, with `v` downwards.
+    corner_uvs: Option<Vec<[f32; 2]>>,
+    /// The image of each face.
+    images: Option<Vec<i64>>,
     lines: Vec<[u32; 2]>,
 }
 
@@ -200,11 +221,15 @@ impl Content {
             return Err(Error::malformed(file, place, what));
         };
         let face_colors = layouts.iter().any(|l| l.role == Role::Face && l.has_colors) && !layout.has_colors;
+        let corner_uvs = layouts.iter().any(|l| l.has_corner_uvs);
+        let images = layouts.iter().any(|l| l.targets.contains(&Target::Slot(slot::IMAGE)));
         Ok(Self {
             vertex_count,
             normals: layout.has_normals.then(Vec::new),
             colors: layout.has_colors.then(Vec::new),
-            uvs: layout.has_uvs.then(Vec::new),
+            uvs: (layout.has_uvs && !corner_uvs).then(Vec::new),
+            corner_uvs: corner_uvs.then(Vec::new),
+            images: images.then(Vec::new),
             face_colors: face_colors.then(Vec::new),
             ..Self::default()
         })
@@ -235,6 +260,10 @@ impl Content {
                 if let Some(colors) = &mut self.face_colors {
                     colors.push(color_of(row));
                 }
+                if let Some(images) = &mut self.images {
+                    images.push(row.slots[slot::IMAGE] as i64);
+                }
+                self.push_corner_uvs(row, place, warnings);
             }
             Role::Strips => self.push_strips(&row.corners)?,
             Role::Edge => {
@@ -269,6 +298,24 @@ impl Content {
         }
     }
 
+    /// Texture coordinates for the face that was pushed last.
+    fn push_corner_uvs(&mut self, row: &Row, place: impl Fn() -> Place, warnings: &mut Warnings) {
+        let Some(uvs) = &mut self.corner_uvs else { return };
+        let (pairs, rest) = row.corner_uvs.as_chunks::<2>();
+        if pairs.len() == row.corners.len() && rest.is_empty() {
+            uvs.extend(pairs.iter().map(|&[u, v]| [u, 1.0 - v]));
+            return;
+        }
+        // Without coordinates is one thing, with some of them another.
+        if !row.corner_uvs.is_empty() {
+            let (seen, corners) = (row.corner_uvs.len(), row.corners.len());
+            warnings.note("texcoord", place(), || {
+                format!("{seen} texture coordinates, a face with {corners} corners needs {}; left out", 2 * corners)
+            });
+        }
+        uvs.resize(self.corners.len(), [0.0; 2]);
+    }
+
     /// Cuts strips into triangles; every second one is turned, so that all have the strip's orientation.
     fn push_strips(&mut self, indices: &[i64]) -> Result<(), String> {
         for strip in indices.split(|&i| i < 0) {
@@ -280,22 +327,49 @@ impl Content {
                     if let Some(colors) = &mut self.face_colors {
                         colors.push([1.0; 4]);
                     }
+                    if let Some(images) = &mut self.images {
+                        images.push(0);
+                    }
+                    if let Some(uvs) = &mut self.corner_uvs {
+                        uvs.resize(self.corners.len(), [0.0; 2]);
+                    }
                 }
             }
         }
         Ok(())
     }
 
+    /// Runs of triangles with one image: the end of each, and the image's number.
+    fn texture_runs(&self) -> Vec<(u32, i64)> {
+        let Some(images) = &self.images else { return Vec::new() };
+        let (mut runs, mut end): (Vec<(u32, i64)>, u32) = (Vec::new(), self.triangles.len() as u32);
+        for (&image, &size) in images.iter().zip(&self.sizes) {
+            end += size - 2;
+            match runs.last_mut() {
+                Some(last) if last.1 == image => last.0 = end,
+                _ => runs.push((end, image)),
+            }
+        }
+        runs
+    }
+
     fn into_mesh(mut self, file: &str, workers: &Workers) -> Result<Mesh, Error> {
         if self.corners.len() > u32::MAX as usize {
             return Err(Error::malformed(file, Place::File, "more than 4294967295 face corners"));
         }
+        let mut corner_uvs = None;
         // Triangles that came in blocks go before the rows' polygons only if there are none of these.
         let (triangles, faces, face_corners) = if self.sizes.is_empty() {
             let corners = self.face_colors.as_ref().map(|_| (0..self.triangles.len() as u32).map(|t| [t; 3]).collect());
             (self.triangles, Faces::Triangles, corners)
         } else {
             self.add_block_triangles();
+            if let Some(uvs) = &mut self.corner_uvs {
+                // Those that came in blocks have none.
+                uvs.splice(0..0, std::iter::repeat_n([0.0; 2], self.corners.len() - uvs.len()));
+                let places = crate::polygons::places(&self.positions, &self.sizes, &self.corners);
+                corner_uvs = Some(Attribute { values: std::mem::take(uvs), corners: Some(places) });
+            }
             let built = crate::polygons::build(&self.positions, &self.sizes, self.corners, workers);
             let corners = self.face_colors.as_ref().map(|_| built.per_face(&self.sizes));
             (built.triangles, built.faces, corners)
@@ -311,7 +385,8 @@ impl Content {
             triangles,
             faces,
             normals: self.normals.map(Attribute::per_vertex),
-            uvs: self.uvs.into_iter().map(Attribute::per_vertex).collect(),
+            uvs: corner_uvs.into_iter().chain(self.uvs.map(Attribute::per_vertex)).collect(),
+            colors_from_srgb: colors.is_some(),
             colors,
             lines: self.lines,
             points: if is_cloud { (0..self.positions.len() as u32).collect() } else { Vec::new() },

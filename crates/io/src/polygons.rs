@@ -53,6 +53,19 @@ pub(crate) fn build(positions: &[[f32; 3]], sizes: &[u32], corners: Vec<u32>, wo
     Polygons { triangles, faces: Faces::Polygons { starts, corners } }
 }
 
+/// For each triangle that [`build`] makes, which of `corners` its corners are.
+pub(crate) fn places(positions: &[[f32; 3]], sizes: &[u32], corners: &[u32]) -> Vec<Corners> {
+    let mut places = Vec::with_capacity(corners.len() - 2 * sizes.len());
+    let (mut cut, mut start) = (Vec::new(), 0);
+    for &size in sizes {
+        cut.clear();
+        triangulate(positions, &corners[start as usize..(start + size) as usize], &mut cut);
+        places.extend(cut.iter().map(|local| local.map(|k| start + k)));
+        start += size;
+    }
+    places
+}
+
 impl Polygons {
     /// For each triangle, three times the number of its face: the corners of an attribute with one value a face.
     pub(crate) fn per_face(&self, sizes: &[u32]) -> Vec<Corners> {
@@ -74,6 +87,9 @@ mod tests {
             [[0, 0], [2, 0], [3, 1], [1, 3], [-1, 1]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
         let built = build(&positions, &[5, 3], vec![0, 1, 2, 3, 4, 0, 2, 4], &Workers::single());
         assert_eq!(built.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 2, 4]]);
+        let corners = [0, 1, 2, 3, 4, 0, 2, 4];
+        let named = places(&positions, &[5, 3], &corners).into_iter().map(|t| t.map(|k| corners[k as usize]));
+        assert!(named.eq(built.triangles.iter().copied()));
         assert_eq!(built.per_face(&[5, 3]), [[0; 3], [0; 3], [0; 3], [1; 3]]);
     }
 }

@@ -109,7 +109,8 @@ fn ascii(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     Ok(crate::finish(mesh, Scene { warnings: warnings.into_messages(file), ..Scene::default() }, file))
 }
 
-/// Reads ASCII STL word by word: line breaks mean nothing but the end of a solid's name.
+/// Reads ASCII STL word by word: line breaks mean nothing but the end of a solid's name, and not even that where a facet
+/// follows on the line.
 struct Reader<'a> {
     cursor: Cursor<'a>,
     file: &'a str,
@@ -127,12 +128,12 @@ impl<'a> Reader<'a> {
             match word.to_ascii_lowercase().as_slice() {
                 b"" => break,
                 b"solid" => {
-                    let name = String::from_utf8_lossy(self.cursor.rest_of_line()).into_owned();
+                    let name = self.name_before(&[b"facet", b"normal"]);
                     self.solids.push((name, self.soup.len() as u32));
                     open = true;
                 }
                 b"endsolid" => {
-                    self.cursor.rest_of_line();
+                    self.name_before(&[b"solid"]);
                     open = false;
                 }
                 b"facet" if open => self.facet(warnings)?,
@@ -160,6 +161,28 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The rest of the line up to these words in a row, if facets follow there.
+    fn name_before(&mut self, words: &[&[u8]]) -> String {
+        let (start, mut ahead) = (self.cursor, self.cursor);
+        let rest = ahead.rest_of_line();
+        let has_facet = rest.windows(5).any(|w| w.eq_ignore_ascii_case(b"facet"));
+        let mut name = Vec::new();
+        if has_facet {
+            loop {
+                let mut after = self.cursor;
+                if words.iter().all(|word| after.word().eq_ignore_ascii_case(word)) {
+                    return String::from_utf8_lossy(&name.join(&b' ')).into_owned();
+                }
+                match self.cursor.word() {
+                    b"" => break,
+                    word => name.push(word),
+                }
+            }
+        }
+        self.cursor = start;
+        String::from_utf8_lossy(self.cursor.rest_of_line()).into_owned()
+    }
+
     fn unexpected(&self, word: &[u8], wanted: &str) -> Error {
         let seen = match word {
             b"" => "the file ends here".to_owned(),
@@ -176,11 +199,20 @@ impl<'a> Reader<'a> {
         Err(self.unexpected(word, &format!("`{wanted}`")))
     }
 
+    /// Goes behind `outer`, over what stands for a normal.
+    fn skip_normal(&mut self) -> Result<(), Error> {
+        for _ in 0..3 {
+            if self.word().eq_ignore_ascii_case(b"outer") {
+                return Ok(());
+            }
+        }
+        self.expect("outer")
+    }
+
     /// What follows `facet`: a normal, which is passed over, and a loop of three vertices.
     fn facet(&mut self, warnings: &mut Warnings) -> Result<(), Error> {
         self.expect("normal")?;
-        self.cursor.rest_of_line();
-        self.expect("outer")?;
+        self.skip_normal()?;
         self.expect("loop")?;
         let mut triangle = [[0.0; 3]; 3];
         for corner in &mut triangle {
@@ -244,6 +276,22 @@ mod tests {
         assert_eq!((a.positions.len(), &a.triangles), (4, &vec![[0, 1, 2], [1, 3, 2]]));
         assert_eq!(b.parts[0].name, "a b");
         assert!(from_binary.warnings.is_empty() && from_text.warnings.is_empty());
+    }
+
+    #[test]
+    fn one_line_is_enough() {
+        let text = format!("solid a b {}endsolid a b solid c {}endsolid c", facet(&TWO[0]), facet(&TWO[1]));
+        for end in ["", "\n", "\r\n"] {
+            let scene = read(format!("{}{end}", text.replace(['\r', '\n'], " ")).as_bytes()).unwrap();
+            let parts = &scene.meshes[0].parts;
+            let parts: Vec<_> = parts.iter().map(|p| (p.name.as_str(), p.triangles.clone())).collect();
+            assert_eq!((parts, scene.warnings), (vec![("a b", 0..1), ("c", 1..2)], vec![]));
+        }
+        // A name is a name, whatever it says.
+        let named = format!("solid my facet\n{}endsolid my solid facet\n", facet(&TWO[0]));
+        assert_eq!(read(named.as_bytes()).unwrap().meshes[0].parts[0].name, "my facet");
+        let bare = format!("solid\n{}endsolid", facet(&TWO[0]).replace("0 0 nan", ""));
+        assert_eq!(read(bare.as_bytes()).unwrap().meshes[0].triangles.len(), 1);
     }
 
     #[test]

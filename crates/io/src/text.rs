@@ -205,6 +205,11 @@ impl<'a> Cursor<'a> {
         &self.bytes[start..self.at]
     }
 
+    /// The first word from byte `at` on, which was passed already.
+    pub(crate) fn word_at(&self, at: usize) -> &'a [u8] {
+        Self { at, ..*self }.word()
+    }
+
     /// What is left of the line, without blanks round it.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();

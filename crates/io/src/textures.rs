@@ -94,19 +94,27 @@ impl Requests {
         let images = workers.map(self.images.len(), |i| self.images[i].read(resolver));
         let textures = workers.map(self.uses.len(), |u| {
             let (image, usage) = self.uses[u];
-            let plane = images[image].as_ref().ok()?;
+            let plane = images[image].plane.as_ref()?;
             let (pixels, encoding) = prepare(plane, usage);
             Some(Arc::new(Texture::new(self.images[image].path.clone(), pixels, encoding)))
         });
 
         // Close the gaps that missing images leave.
-        let mut loaded = Loaded { warnings: images.into_iter().filter_map(Result::err).collect(), ..Loaded::default() };
+        let mut loaded =
+            Loaded { warnings: images.into_iter().filter_map(|i| i.warning).collect(), ..Loaded::default() };
         for texture in textures {
             loaded.index.push(texture.is_some().then_some(loaded.textures.len() as u32));
             loaded.textures.extend(texture);
         }
         loaded
     }
+}
+
+/// What became of an image.
+#[derive(Debug, Default)]
+struct Read {
+    plane: Option<Plane<[u8; 4]>>,
+    warning: Option<String>,
 }
 
 /// The folder of a path, with its slash; empty if there is none.
@@ -117,7 +125,7 @@ fn folder_of(path: &str) -> &str {
 impl Image {
     /// Tries the name beside the library, then as it stands, then its last part alone: exporters like to write the
     /// paths of the machine they ran on.
-    fn read(&self, resolver: &dyn Resolver) -> Result<Plane<[u8; 4]>, String> {
+    fn read(&self, resolver: &dyn Resolver) -> Read {
         let bare = self.path.rsplit('/').next().unwrap_or(&self.path);
         let folder = folder_of(&self.library);
         let mut names = vec![format!("{folder}{}", self.path), self.path.clone(), format!("{folder}{bare}")];
@@ -126,16 +134,23 @@ impl Image {
         for name in &names {
             match resolver.read(name) {
                 Ok(bytes) => {
-                    return crate::image::decode(&bytes, name).map_err(|e| self.warning(&e.to_string()));
+                    return match crate::image::decode_texture(&bytes, name) {
+                        Ok((plane, odd)) => Read { plane: Some(plane), warning: odd.map(|what| self.told(&what)) },
+                        Err(e) => self.left_out(&e.to_string()),
+                    };
                 }
                 Err(e) => why = why.or(Some(e)),
             }
         }
-        Err(self.warning(&why.map_or(String::new(), |e| e.to_string())))
+        self.left_out(&why.map_or(String::new(), |e| e.to_string()))
     }
 
-    fn warning(&self, why: &str) -> String {
-        format!("{}: line {}: texture `{}` is left out: {why}", self.library, self.line, self.path)
+    fn left_out(&self, why: &str) -> Read {
+        Read { plane: None, warning: Some(self.told(&format!("texture `{}` is left out: {why}", self.path))) }
+    }
+
+    fn told(&self, what: &str) -> String {
+        format!("{}: line {}: {what}", self.library, self.line)
     }
 }
 

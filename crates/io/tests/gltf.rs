@@ -7,7 +7,7 @@ use vitral_exec::Workers;
 use vitral_io::{Error, NoFiles, ResolveError, Resolver, gltf};
 use vitral_light::{AlphaMode, Attenuation, LightKind, Reflectance};
 use vitral_math::{Aabb, DVec3, DVec4};
-use vitral_scene::{Faces, NodeTransform, Projection, Scene, World};
+use vitral_scene::{Faces, FreePart, NodeTransform, Projection, Scene, World};
 
 const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/models");
 
@@ -59,7 +59,7 @@ fn check(scene: &Scene) {
     }
     let materials = scene.materials.len() as u32;
     for mesh in &scene.meshes {
-        assert!(mesh.parts.iter().filter_map(|p| p.material).chain(mesh.line_material).all(|m| m < materials));
+        assert!(mesh.materials().all(|m| m < materials));
     }
 }
 
@@ -337,7 +337,10 @@ fn primitives_share_vertices_and_read_only_what_they_use() {
         mesh.parts.iter().map(|p| (p.triangles.clone(), p.material)).collect::<Vec<_>>(),
         [(0..1, Some(1)), (1..2, None)]
     );
-    assert_eq!((&mesh.faces, mesh.line_material, mesh.normals.is_none()), (&Faces::Triangles, Some(0), true));
+    assert_eq!(
+        (&mesh.faces, FreePart::material_of(&mesh.line_parts, 0), mesh.normals.is_none()),
+        (&Faces::Triangles, Some(0), true)
+    );
 }
 
 #[test]

@@ -10,7 +10,7 @@ use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef, Transmission,
 };
 use vitral_math::{DMat4, DQuat, DVec3, func};
-use vitral_scene::{Attribute, Camera, Faces, Mesh, Node, NodeTransform, Part, Projection, Scene, World};
+use vitral_scene::{Attribute, Camera, Faces, FreePart, Mesh, Node, NodeTransform, Part, Projection, Scene, World};
 
 /// Files in memory.
 #[derive(Default)]
@@ -60,9 +60,11 @@ fn full_mesh() -> Mesh {
             Attribute { values: vec![[0.3; 2]], corners: Some(vec![[0; 3]; 3]) },
         ],
         colors: Some(Attribute::per_vertex(vec![[0.1, 0.2, 0.3, 0.4]; 5])),
+        colors_from_srgb: true,
         lines: vec![[0, 4]],
         points: vec![2],
-        line_material: Some(0),
+        line_parts: vec![FreePart { elements: 0..1, material: Some(0) }],
+        point_parts: vec![FreePart { elements: 0..1, material: Some(1) }],
         smoothing_groups: Some(vec![1, 0]),
         // Found out again where it is needed, not written.
         solidity: None,

@@ -292,6 +292,26 @@ mod tests {
     }
 
     #[test]
+    fn p40_rounding_gives_the_light_in_a_lit_point_no_direction() {
+        let at = dvec3(0.1, 7.3, -2.9);
+        let spot = LightKind::Spot { position: at, direction: DVec3::X, cutoff: 0.5, inner: 0.5, exponent: 2.0 };
+        for kind in [LightKind::Point { position: at }, spot] {
+            for attenuation in [Attenuation::None, Attenuation::InverseSquare, Attenuation::Range { range: 1.0 }] {
+                let light = PreparedLight::new(&light(kind.clone(), attenuation), &DMat4::IDENTITY).unwrap();
+                let [x, y, z] = at.as_vec3().to_array();
+                // The place itself, and what a step of single precision makes of it.
+                for p in [[x, y, z], [x, y.next_up(), z], [x.next_down(), y.next_down(), z.next_up()]] {
+                    let here = light.incident(V3::splat(0.0f32, p));
+                    assert_eq!((here.l.x, here.l.y, here.l.z), (0.0, 0.0, 0.0), "{p:?}");
+                    assert!(here.intensity.is_finite() && here.ambient_intensity.is_finite(), "{here:?}");
+                }
+                let beside = light.incident(V3::splat(0.0f32, [x - 1e-3, y, z]));
+                assert!((beside.l.x - 1.0).abs() < 1e-3, "{beside:?}");
+            }
+        }
+    }
+
+    #[test]
     fn p32_a_directional_light_is_constant_and_ambient_light_has_no_direction() {
         let sun = light(LightKind::Directional { direction: dvec3(0.0, -2.0, 0.0) }, Attenuation::InverseSquare);
         let sun = PreparedLight::new(&sun, &DMat4::IDENTITY).unwrap();

@@ -4,17 +4,20 @@
 //! projected, and widened on the screen into two triangles each. They lie a little nearer to the viewer than where
 //! they are, so that an edge is not hidden by the faces that meet in it.
 //!
+//! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
+//! Of a material count its diffuse or base colour and its opacity, not its textures; lines are not lit.
+//!
 //! In:   visible instances, model space. Out: a [`Batch`] on the screen, and the colour of each mark.
 //! Cost: linear in lines and points.
 //! Source: the polygon offset is that of the GL specification in spirit; here it is a fixed number of pixels in depth.
 
-use crate::{Background, Execution, Lines, PreparedView, Settings};
-use vitral_light::Reflectance;
-use vitral_math::color::linear_from_srgb;
+use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings, Transparency};
+use vitral_light::{AlphaMode, Reflectance};
+use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::{Mat4, Vec2, Vec4};
 use vitral_raster::geometry::transform_point;
 use vitral_raster::{Batch, CornerPosition, snap};
-use vitral_scene::Instance;
+use vitral_scene::{FreePart, Instance};
 
 /// Width of strokes in pixels.
 const STROKE: f32 = 1.3;
@@ -25,11 +28,40 @@ const LIFT: f64 = 2.5;
 /// Colour of faces' edges, display encoding.
 const EDGE: [f32; 3] = [0.11, 0.12, 0.14];
 
+/// Colour of lines and points that have none of their own, linear.
+const PLAIN: [f32; 3] = [0.02, 0.02, 0.03];
+
 /// The colours of marks. Their ids follow the facets'.
 #[derive(Debug, Default)]
 pub struct MarkColors {
     first: u32,
+    /// Premultiplied; of a line with two colours the first.
     colors: Vec<[f32; 4]>,
+    /// The others, in the order of their marks.
+    gradients: Vec<(u32, Gradient)>,
+}
+
+/// How the colour of a line goes over from its first end to its second.
+#[derive(Clone, Copy, Debug)]
+struct Gradient {
+    /// The first end on the screen, pixels.
+    origin: Vec2,
+    /// From there to the second, divided by the square of the length.
+    along: Vec2,
+    /// `1 / w` at the ends; 1 where the interpolation is that of the screen.
+    weights: [f32; 2],
+    /// Premultiplied colour at the second end.
+    end: [f32; 4],
+}
+
+impl Gradient {
+    /// The colour at a place on the screen, of a line that begins with `start`.
+    fn at(&self, start: [f32; 4], place: Vec2) -> [f32; 4] {
+        let t = (place - self.origin).dot(self.along).clamp(0.0, 1.0);
+        let [a, b] = [self.weights[0] * (1.0 - t), self.weights[1] * t];
+        let share = b / (a + b);
+        std::array::from_fn(|k| start[k] + (self.end[k] - start[k]) * share)
+    }
 }
 
 impl MarkColors {
@@ -38,9 +70,13 @@ impl MarkColors {
         (!self.colors.is_empty() && id >= self.first).then(|| id - self.first)
     }
 
-    /// Premultiplied colour in the space of composition.
-    pub fn color(&self, mark: usize) -> [f32; 4] {
-        self.colors[mark]
+    /// Premultiplied colour in the space of composition, at a place on the screen, in pixels.
+    pub fn color(&self, mark: usize, place: Vec2) -> [f32; 4] {
+        let color = self.colors[mark];
+        match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
+            Ok(found) => self.gradients[found].1.at(color, place),
+            Err(_) => color,
+        }
     }
 
     /// How many there are.
@@ -64,7 +100,7 @@ impl MarkColors {
 /// Places all marks of a view on the screen.
 pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution) -> (Batch, MarkColors) {
     let world = &view.session.world;
-    let mut marks = MarkColors { first: world.facet_count, colors: Vec::new() };
+    let mut marks = MarkColors { first: world.facet_count, ..MarkColors::default() };
     let mut pen = Pen { view, batch: Batch::default(), clip_from_model: Mat4::IDENTITY, lift: Lift::new(view) };
     let raw = settings.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
@@ -78,14 +114,24 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
                 pen.stroke(edge.ends.map(|i| instance.mesh.positions[i as usize]), id);
             }
         }
-        let color = |vertex: u32| mark_color(view, instance, vertex);
-        for line in &instance.mesh.lines {
-            let Some(id) = marks.next(color(line[0])) else { break };
-            pen.stroke(line.map(|i| instance.mesh.positions[i as usize]), id);
+        let mesh = &instance.mesh;
+        let paint = Paint { view, instance, settings };
+        for (i, line) in mesh.lines.iter().enumerate() {
+            let material = FreePart::material_of(&mesh.line_parts, i);
+            let [start, end] = line.map(|vertex| paint.color(material, vertex));
+            let Some(id) = marks.next(start) else { break };
+            let Some(drawn) = pen.stroke(line.map(|i| mesh.positions[i as usize]), id) else { continue };
+            if start != end {
+                let mark = marks.colors.len() - 1;
+                let gradient = drawn.gradient([start, end], settings.interpolation);
+                marks.colors[mark] = gradient.0;
+                marks.gradients.push((mark as u32, gradient.1));
+            }
         }
-        for &point in &instance.mesh.points {
-            let Some(id) = marks.next(color(point)) else { break };
-            pen.dot(instance.mesh.positions[point as usize], id);
+        for (i, &point) in mesh.points.iter().enumerate() {
+            let material = FreePart::material_of(&mesh.point_parts, i);
+            let Some(id) = marks.next(paint.color(material, point)) else { break };
+            pen.dot(mesh.positions[point as usize], id);
         }
     }
     pen.batch.finish(&view.screen);
@@ -102,19 +148,67 @@ fn edge_color(background: &Background) -> [f32; 3] {
     if ground[0] * 0.3 + ground[1] * 0.6 + ground[2] * 0.1 > 0.35 { EDGE } else { EDGE.map(|c| 1.0 - c) }
 }
 
-/// The vertex's colour, else the line material's.
-fn mark_color(view: &PreparedView<'_>, instance: &Instance, vertex: u32) -> [f32; 4] {
-    let mesh = &instance.mesh;
-    let material = mesh.line_material.and_then(|m| view.session.scene.materials.get(m as usize));
-    let base = material.map_or([0.02, 0.02, 0.03], |m| match m.reflectance {
-        Reflectance::Phong { kd, .. } => kd,
-        Reflectance::MetallicRoughness { base_color, .. } => base_color,
-    });
-    let vertex = mesh.colors.as_ref().filter(|c| c.corners.is_none()).and_then(|c| c.values.get(vertex as usize));
-    match (vertex, material) {
-        (Some(c), Some(_)) => [base[0] * c[0], base[1] * c[1], base[2] * c[2], 1.0],
-        (Some(c), None) => [c[0], c[1], c[2], 1.0],
-        (None, _) => [base[0], base[1], base[2], 1.0],
+/// What the lines and points of an instance are drawn with.
+struct Paint<'p, 'a> {
+    view: &'p PreparedView<'a>,
+    instance: &'p Instance,
+    settings: &'p Settings,
+}
+
+impl Paint<'_, '_> {
+    /// Premultiplied colour at a vertex: the material's times the vertex's, or the one that is there.
+    fn color(&self, material: Option<u32>, vertex: u32) -> [f32; 4] {
+        let mesh = &self.instance.mesh;
+        let colors = mesh.colors.as_ref().filter(|c| c.corners.is_none());
+        let own = colors.and_then(|c| c.values.get(vertex as usize)).map(|&[r, g, b, a]| {
+            let raw = self.settings.color_space == crate::ColorSpace::Raw && mesh.colors_from_srgb;
+            let [r, g, b] = if raw { [r, g, b].map(srgb_from_linear) } else { [r, g, b] };
+            [r, g, b, a]
+        });
+        let material = material.and_then(|m| self.view.session.scene.materials.get(m as usize));
+        let Some(material) = material else {
+            // Without a material nothing says that colours have an opacity.
+            return own.map_or([PLAIN[0], PLAIN[1], PLAIN[2], 1.0], |[r, g, b, _]| [r, g, b, 1.0]);
+        };
+        let base = match material.reflectance {
+            Reflectance::Phong { kd, .. } => kd,
+            Reflectance::MetallicRoughness { base_color, .. } => base_color,
+        };
+        let own = own.unwrap_or([1.0; 4]);
+        let alpha = (material.opacity * own[3]).clamp(0.0, 1.0);
+        let alpha = match material.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= cutoff)),
+            AlphaMode::Blend if self.settings.transparency == Transparency::None => 1.0,
+            AlphaMode::Blend => alpha,
+        };
+        [base[0] * own[0] * alpha, base[1] * own[1] * alpha, base[2] * own[2] * alpha, alpha]
+    }
+}
+
+/// The part of a line that is on the screen.
+struct Drawn {
+    /// Its ends, pixels.
+    ends: [Vec2; 2],
+    /// Where they are between the ends of the whole line, 0 to 1, in space.
+    shares: [f32; 2],
+    /// `w` there.
+    w: [f32; 2],
+}
+
+impl Drawn {
+    /// The colour where it begins and how it goes on, for a line with these colours at the ends of the whole.
+    fn gradient(&self, colors: [[f32; 4]; 2], interpolation: Interpolation) -> ([f32; 4], Gradient) {
+        let [from, to] = colors;
+        let [start, end] = self.shares.map(|t| std::array::from_fn(|k| from[k] + (to[k] - from[k]) * t));
+        let along = self.ends[1] - self.ends[0];
+        // A line that is seen as a point shows its first colour.
+        let along = along * along.length_squared().recip().min(1e12);
+        let weights = match interpolation {
+            Interpolation::Perspective => self.w.map(f32::recip),
+            Interpolation::Linear => [1.0; 2],
+        };
+        (start, Gradient { origin: self.ends[0], along, weights, end })
     }
 }
 
@@ -157,14 +251,14 @@ struct Pen<'v, 'a> {
 }
 
 impl Pen<'_, '_> {
-    /// A line segment between two points in model space.
-    fn stroke(&mut self, ends: [[f32; 3]; 2], id: u32) {
+    /// A line segment between two points in model space; `None` if nothing of it is on the screen.
+    fn stroke(&mut self, ends: [[f32; 3]; 2], id: u32) -> Option<Drawn> {
         let [a, b] = ends.map(|p| transform_point(&self.clip_from_model, p));
         if !(a.is_finite() && b.is_finite()) {
             self.batch.counters.not_finite += 1;
-            return;
+            return None;
         }
-        let Some([a, b]) = clip_segment([a, b], self.view.screen.transform().guard()) else { return };
+        let (shares, [a, b]) = clip_segment([a, b], self.view.screen.transform().guard())?;
         let ([pa, za], [pb, zb]) = (self.place(a), self.place(b));
         let along = (pb - pa).normalize_or(Vec2::X) * (STROKE * 0.5);
         let across = Vec2::new(-along.y, along.x);
@@ -173,6 +267,7 @@ impl Pen<'_, '_> {
             [za, za, zb, zb],
             id,
         );
+        Some(Drawn { ends: [pa, pb], shares, w: [a.w, b.w] })
     }
 
     /// A square round a point in model space.
@@ -205,8 +300,9 @@ impl Pen<'_, '_> {
     }
 }
 
-/// The part of a segment inside near, far and half the guard band (marks have a width).
-fn clip_segment([a, b]: [Vec4; 2], guard: Vec2) -> Option<[Vec4; 2]> {
+/// The part of a segment inside near, far and half the guard band (marks have a width): its ends as shares of the whole, and
+/// themselves.
+fn clip_segment([a, b]: [Vec4; 2], guard: Vec2) -> Option<([f32; 2], [Vec4; 2])> {
     let g = guard * 0.5;
     let planes = [
         |p: Vec4, _: Vec2| p.w - p.z,
@@ -230,5 +326,6 @@ fn clip_segment([a, b]: [Vec4; 2], guard: Vec2) -> Option<[Vec4; 2]> {
         }
     }
     let at = |t: f32| a + (b - a) * t;
-    (enter <= leave).then(|| [at(enter), at(leave)]).filter(|ends| ends.iter().all(|p| p.w > 0.0))
+    let part = (enter <= leave).then(|| ([enter, leave], [at(enter), at(leave)]));
+    part.filter(|(_, ends)| ends.iter().all(|p| p.w > 0.0))
 }

@@ -150,8 +150,7 @@ impl Session {
         for mesh in &scene.meshes {
             mesh.check_with(workers).map_err(Error::Scene)?;
             let materials = scene.materials.len();
-            let used = mesh.parts.iter().filter_map(|p| p.material).chain(mesh.line_material);
-            if let Some(bad) = used.into_iter().find(|&m| m as usize >= materials) {
+            if let Some(bad) = mesh.materials().find(|&m| m as usize >= materials) {
                 return Err(Error::Scene(format!("mesh `{}`: material {bad}, there are {materials}", mesh.name)));
             }
         }

@@ -201,7 +201,8 @@ pub enum ColorSpace {
     /// Light is computed linearly and encoded as sRGB.
     #[default]
     Srgb,
-    /// Intensities go straight to bytes, as in the course's arithmetic; textures are taken as they are.
+    /// Intensities go straight to bytes, as in the course's arithmetic. Textures, coefficients and colours of vertices are
+    /// taken as the file has them: sRGB in OBJ, PLY and OFF files, linear factors and `COLOR_0` in glTF.
     Raw,
 }
 

@@ -104,11 +104,12 @@ impl Camera {
     fn fitted_clip(&self, (nearest, farthest): (f64, f64)) -> (f64, f64) {
         let usable = nearest.is_finite() && farthest.is_finite() && nearest <= farthest;
         let (nearest, farthest) = if usable { (nearest, farthest) } else { (0.1, 100.0) };
-        let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4).max(1e-9);
+        let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4);
+        let margin = if margin > 0.0 { margin } else { 1e-9 };
         match self.projection {
             Projection::Parallel { .. } => (nearest - margin, farthest + margin),
             Projection::Perspective { .. } => {
-                let far = (farthest + margin).max(1e-6);
+                let far = if farthest + margin > 0.0 { farthest + margin } else { 1e-6 };
                 ((nearest - margin).max(far * 1e-4), far)
             }
         }
@@ -147,6 +148,21 @@ mod tests {
             let right = clip * DVec4::new(1.0, 0.0, 0.0, 1.0);
             let up = clip * DVec4::new(0.0, 1.0, 0.0, 1.0);
             assert!(right.x > 0.0 && up.y > 0.0);
+        }
+    }
+
+    #[test]
+    fn clipping_planes_fit_scenes_of_any_size() {
+        for projection in [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }] {
+            let fitted = |depths| Camera { clip: None, ..camera(projection) }.fitted_clip(depths);
+            for size in [1e-30, 1e-12, 1.0, 1e12] {
+                let (near, far) = fitted((3.0 * size, 5.0 * size));
+                assert!(2.9 * size < near && near < 3.0 * size && 5.0 * size < far && far < 5.1 * size, "{near} {far}");
+            }
+            for depths in [(0.0, 0.0), (-5.0, -3.0), (f64::NAN, 1.0)] {
+                let (near, far) = fitted(depths);
+                assert!(near < far && (1.0 / (far - near)).is_finite(), "{depths:?}: {near} {far}");
+            }
         }
     }
 

@@ -28,7 +28,7 @@ pub use default_lights::default_lights;
 pub use edges::{Edge, EdgeKind};
 pub use extent::{Extent1, Extent2};
 pub use framing::{Axis, Lens, View, depth_range, frame};
-pub use mesh::{Attribute, Corners, Faces, Mesh, Part, TRIANGLES_A_RUN};
+pub use mesh::{Attribute, Corners, Faces, FreePart, Mesh, Part, TRIANGLES_A_RUN};
 pub use scene::{Node, NodeTransform, Scene};
 pub use solidity::{KnownSolidity, Solidity};
 pub use topology::{Topology, is_closed};

@@ -37,12 +37,17 @@ pub struct Mesh {
     pub uvs: Vec<Attribute<[f32; 2]>>,
     /// Linear RGBA that multiplies the material's diffuse or base colour.
     pub colors: Option<Attribute<[f32; 4]>>,
+    /// Whether the file had `colors` in sRGB. They are linear here all the same; the raw colour space shows them as the
+    /// file had them.
+    pub colors_from_srgb: bool,
     /// Free line segments, as pairs of indices into `positions`.
     pub lines: Vec<[u32; 2]>,
     /// Free points, as indices into `positions`.
     pub points: Vec<u32>,
-    /// Material of lines and points (index into the scene's materials).
-    pub line_material: Option<u32>,
+    /// Runs of `lines` with one material each, in order, from the first; lines behind the last run have none.
+    pub line_parts: Vec<FreePart>,
+    /// The same for `points`.
+    pub point_parts: Vec<FreePart>,
     /// Smoothing group of each face (OBJ; 0 = none), if the file has any: faces of one group are smooth together.
     pub smoothing_groups: Option<Vec<u32>>,
     /// What was found out about the surface while normals were made; counts as long as positions and triangles stay as
@@ -99,7 +104,54 @@ pub struct Part {
     pub material: Option<u32>,
 }
 
+/// Free lines or points with one material, one after the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FreePart {
+    /// Which lines or points.
+    pub elements: Range<u32>,
+    /// Index into the scene's materials; `None`: they have none.
+    pub material: Option<u32>,
+}
+
+impl FreePart {
+    /// Gives the lines or points `elements`, behind all that have a part, a material.
+    pub fn extend(parts: &mut Vec<Self>, elements: Range<usize>, material: Option<u32>) {
+        let (start, end) = (elements.start as u32, elements.end as u32);
+        if material.is_none() || start == end {
+            return;
+        }
+        let reached = parts.last().map_or(0, |p| p.elements.end);
+        match parts.last_mut() {
+            Some(last) if last.material == material && reached == start => last.elements.end = end,
+            _ => {
+                if reached < start {
+                    parts.push(Self { elements: reached..start, material: None });
+                }
+                parts.push(Self { elements: start..end, material });
+            }
+        }
+    }
+
+    /// The material of line or point `i`.
+    pub fn material_of(parts: &[Self], i: usize) -> Option<u32> {
+        let part = parts.partition_point(|p| p.elements.end as usize <= i);
+        parts.get(part).and_then(|p| p.material)
+    }
+}
+
 impl Mesh {
+    /// The materials that parts, lines and points name.
+    pub fn materials(&self) -> impl Iterator<Item = u32> + '_ {
+        let free = self.line_parts.iter().chain(&self.point_parts).filter_map(|p| p.material);
+        self.parts.iter().filter_map(|p| p.material).chain(free)
+    }
+
+    /// The materials of parts, lines and points, to be changed.
+    pub fn materials_mut(&mut self) -> impl Iterator<Item = &mut Option<u32>> + '_ {
+        let free = self.line_parts.iter_mut().chain(&mut self.point_parts).map(|p| &mut p.material);
+        self.parts.iter_mut().map(|p| &mut p.material).chain(free)
+    }
+
     /// Number of faces.
     pub fn face_count(&self) -> usize {
         match &self.faces {
@@ -235,6 +287,20 @@ impl Mesh {
         if next as usize != self.triangles.len() {
             return Err(format!("mesh `{}`: parts end at {next} of {} triangles", self.name, self.triangles.len()));
         }
+        for (what, parts, count) in
+            [("line", &self.line_parts, self.lines.len()), ("point", &self.point_parts, self.points.len())]
+        {
+            let mut next = 0;
+            for part in parts {
+                if part.elements.start != next || part.elements.end < next {
+                    return Err(format!("mesh `{}`: {what} parts leave a gap at {what} {next}", self.name));
+                }
+                next = part.elements.end;
+            }
+            if next as usize > count {
+                return Err(format!("mesh `{}`: {what} parts end at {next} of {count} {what}s", self.name));
+            }
+        }
         let attribute = |what: &str, count: usize, corners: Option<&[Corners]>| match corners {
             Some(c) if c.len() != self.triangles.len() => {
                 Err(format!("mesh `{}`: {what} for {} of {} triangles", self.name, c.len(), self.triangles.len()))
@@ -290,6 +356,25 @@ mod tests {
         mesh.positions[5] = [1.0, 2.0, 3.0];
         mesh.positions.push([9.0; 3]);
         assert_eq!(mesh.bounds().max, DVec3::new(1.0, 2.0, 3.0));
+    }
+
+    #[test]
+    fn lines_have_materials_run_by_run() {
+        let mut parts = Vec::new();
+        for (elements, material) in [(0..2, None), (2..3, Some(4)), (3..5, Some(4)), (5..5, Some(1)), (6..7, Some(0))] {
+            FreePart::extend(&mut parts, elements, material);
+        }
+        let runs: Vec<_> = parts.iter().map(|p| (p.elements.clone(), p.material)).collect();
+        assert_eq!(runs, [(0..2, None), (2..5, Some(4)), (5..6, None), (6..7, Some(0))]);
+        let of = |i| FreePart::material_of(&parts, i);
+        assert_eq!([of(1), of(2), of(4), of(5), of(6), of(7)], [None, Some(4), Some(4), None, Some(0), None]);
+        let mut mesh = strip();
+        (mesh.lines, mesh.line_parts) = (vec![[0, 1]; 6], parts);
+        assert!(mesh.check().unwrap_err().contains("line parts end at 7 of 6"));
+        mesh.lines.push([1, 2]);
+        mesh.check().unwrap();
+        mesh.line_parts.remove(1);
+        assert!(mesh.check().unwrap_err().contains("leave a gap at line 2"));
     }
 
     #[test]

@@ -122,10 +122,9 @@ impl Scene {
         self.meshes.extend(other.meshes.into_iter().map(|mut mesh| {
             if materials > 0 {
                 let mesh = Arc::make_mut(&mut mesh);
-                for part in &mut mesh.parts {
-                    part.material = part.material.map(|m| m + materials);
+                for material in mesh.materials_mut().flatten() {
+                    *material += materials;
                 }
-                mesh.line_material = mesh.line_material.map(|m| m + materials);
             }
             mesh
         }));

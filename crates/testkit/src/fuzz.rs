@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use vitral_exec::Workers;
 use vitral_frame::Plane;
 use vitral_io::encode::{self, PngOptions};
-use vitral_io::{Error, ResolveError, Resolver, gltf, off, ply, scene_json, stl};
+use vitral_io::{Error, NoFiles, ResolveError, Resolver, gltf, off, ply, scene_json, stl};
 use vitral_scene::{Scene, World};
 
 /// A reader to be fuzzed.
@@ -81,7 +81,7 @@ pub fn off(bytes: &[u8]) {
 
 /// PLY.
 pub fn ply(bytes: &[u8]) {
-    check(ply::load(bytes, "a.ply", &Workers::single()));
+    check(ply::load(bytes, "a.ply", &NoFiles, &Workers::single()));
 }
 
 /// Scene files; what is read can be written and read again.

@@ -7,6 +7,7 @@ use crate::load::{default_up, load};
 use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::path::{Component, Path, PathBuf};
 
 /// The version of the form.
 pub const VERSION: u32 = 1;
@@ -17,7 +18,8 @@ pub const VERSION: u32 = 1;
 pub struct State {
     /// The form's version, [`VERSION`].
     pub vitral: u32,
-    /// The models, together one scene: paths, or `builtin:NAME`.
+    /// The models, together one scene: paths, or `builtin:NAME`. In a file, relative paths begin in the file's folder
+    /// ([`State::enter`], [`State::leave_for`]).
     pub models: Vec<String>,
     /// How they are read.
     pub load: LoadOptions,
@@ -96,6 +98,32 @@ impl State {
         Ok(())
     }
 
+    /// Makes the relative paths of models that begin in `folder`, where the state was read, begin in the current folder.
+    pub fn enter(&mut self, folder: &Path) {
+        for model in self.models.iter_mut().filter(|m| is_relative(m)) {
+            *model = folder.join(&*model).to_string_lossy().into_owned();
+        }
+    }
+
+    /// Makes the relative paths of models that begin in the current folder begin in `folder`, where the state is to be
+    /// written. A path stays as it is where one of the folders is not there.
+    pub fn leave_for(&mut self, folder: &Path) {
+        let whole = |folder: &Path| {
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            std::fs::canonicalize(folder).ok()
+        };
+        let Some(target) = whole(folder) else { return };
+        for model in self.models.iter_mut().filter(|m| is_relative(m)) {
+            let path = Path::new(&*model);
+            let (parent, name) = (path.parent().and_then(whole), path.file_name());
+            if let (Some(parent), Some(name)) = (parent, name)
+                && let Some(way) = way(&target, &parent)
+            {
+                *model = way.join(name).to_string_lossy().into_owned();
+            }
+        }
+    }
+
     /// Reads the models into one scene and changes its materials.
     ///
     /// # Errors
@@ -123,6 +151,21 @@ impl State {
         let usual_up = self.models.first().map(default_up).unwrap_or_default();
         self.viewpoint.apply(renderer, usual_up)
     }
+}
+
+/// Whether a model is a file with a relative path.
+fn is_relative(model: &str) -> bool {
+    model != "-" && !model.starts_with("builtin:") && Path::new(model).is_relative()
+}
+
+/// The relative path from one absolute folder to another; `None` if there is none.
+fn way(from: &Path, to: &Path) -> Option<PathBuf> {
+    let common = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return None;
+    }
+    let up = from.components().skip(common).map(|_| Component::ParentDir);
+    Some(up.chain(to.components().skip(common)).collect())
 }
 
 /// An error with its place in the text; serde_json says the place at the end of its message.
@@ -166,6 +209,22 @@ mod tests {
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
         assert_eq!(State::from_json(&state.to_json(), "s").unwrap(), state);
         assert_eq!(State::from_json("{}", "s").unwrap(), State::default());
+    }
+
+    #[test]
+    fn paths_of_models_go_with_the_file() {
+        let way = |from: &str, to: &str| way(Path::new(from), Path::new(to)).unwrap().to_string_lossy().into_owned();
+        assert_eq!([way("/a/b", "/a/b"), way("/a/b", "/a/c/d"), way("/a", "/")], ["", "../c/d", ".."]);
+        let models = ["m.obj", "sub/m.obj", "../m.obj", "/abs/m.obj", "builtin:cubs", "-"];
+        let mut state = State { models: models.map(str::to_owned).to_vec(), ..State::default() };
+        state.enter(Path::new(""));
+        assert_eq!(state.models, models);
+        state.enter(Path::new("states"));
+        let entered = ["states/m.obj", "states/sub/m.obj", "states/../m.obj", "/abs/m.obj", "builtin:cubs", "-"]
+            .map(str::to_owned);
+        assert_eq!(state.models, entered);
+        state.leave_for(Path::new("no/such/folder"));
+        assert_eq!(state.models, entered);
     }
 
     #[test]

@@ -28,7 +28,10 @@ use vitral_math::color;
 pub fn decode_picture(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     match bytes {
         [b'P', b'5' | b'6', ..] => ppm::decode(bytes, file),
-        _ => crate::image::decode_else(bytes, file, "PNG, JPEG and PPM are"),
+        _ => {
+            crate::image::whole(bytes, file)?;
+            crate::image::decode_else(bytes, file, "PNG, JPEG and PPM are")
+        }
     }
 }
 

@@ -12,10 +12,11 @@ use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 7] = [
+const SUPPORTED: [&str; 8] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
@@ -41,9 +42,19 @@ pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Err
         let what = format!("glTF version {}; version 2.x is read", root.asset.version);
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
+    if let Some(least) = root.asset.min_version.as_ref().filter(|v| is_above_2_0(v)) {
+        let what = format!("needs a reader of glTF version {least}; version 2.0 is read");
+        return Err(Error::Unsupported { file: file.to_owned(), what });
+    }
     let warnings = check_extensions(&root, file)?;
     check_indices(&root, file)?;
     Ok(Document { root, binary, warnings })
+}
+
+/// Whether a version `MAJOR.MINOR` is above 2.0, or none at all.
+fn is_above_2_0(version: &str) -> bool {
+    let numbers = version.split_once('.').and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
+    numbers.is_none_or(|numbers: (u32, u32)| numbers > (2, 0))
 }
 
 /// Takes a GLB apart into its JSON and binary chunks. Chunks of other kinds are passed over, as the format demands.
@@ -76,8 +87,10 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
             break;
         }
     }
-    let json = json.ok_or_else(|| bad(12, "a GLB needs a JSON chunk".to_owned()))?;
-    Ok((json, binary))
+    let json: &[u8] = json.ok_or_else(|| bad(12, "a GLB needs a JSON chunk".to_owned()))?;
+    // The format fills up with blanks; some writers take zeros.
+    let length = json.iter().rposition(|&b| b != 0).map_or(0, |last| last + 1);
+    Ok((&json[..length], binary))
 }
 
 /// Reads the JSON. What is only untidy (a scene without a list of nodes) is mended; a value of the wrong type is
@@ -171,9 +184,30 @@ fn is_harmless(root: &Root, path: &str, error: validation::Error) -> bool {
     }
 }
 
-/// `attributes["POSITION"]` as `attributes.POSITION`.
+/// The `gltf` crate's names of extensions, where they are not the file's.
+const EXTENSION_FIELDS: [(&str, &str); 10] = [
+    ("emissiveStrength", "KHR_materials_emissive_strength"),
+    ("ior", "KHR_materials_ior"),
+    ("khrLightsPunctual", "KHR_lights_punctual"),
+    ("khrMaterialsVariants", "KHR_materials_variants"),
+    ("pbrSpecularGlossiness", "KHR_materials_pbrSpecularGlossiness"),
+    ("specular", "KHR_materials_specular"),
+    ("textureTransform", "KHR_texture_transform"),
+    ("transmission", "KHR_materials_transmission"),
+    ("unlit", "KHR_materials_unlit"),
+    ("volume", "KHR_materials_volume"),
+];
+
+/// The path as in the file: `attributes["POSITION"]` as `attributes.POSITION`, extensions by their names.
 fn dotted(path: &str) -> String {
-    path.replace("[\"", ".").replace("\"]", "")
+    let path = path.replace("[\"", ".").replace("\"]", "");
+    let mut before = "";
+    let parts = path.split('.').map(|part| {
+        let known = EXTENSION_FIELDS.iter().find(|(field, _)| before == "extensions" && *field == part);
+        before = part;
+        known.map_or(part, |(_, name)| name)
+    });
+    parts.collect::<Vec<_>>().join(".")
 }
 
 /// The name that a glTF object carries, or its kind and number.
@@ -204,6 +238,15 @@ mod tests {
         assert!(error("{\n\"asset\": }").starts_with("a.gltf: line 2: column "));
         assert!(error(r#"{"asset":{"version":"1.0"}}"#).contains("version 1.0"));
         assert_eq!(
+            error(r#"{"asset":{"version":"2.1","minVersion":"2.1"}}"#),
+            "a.gltf: needs a reader of glTF version 2.1; version 2.0 is read"
+        );
+        assert!(parse(br#"{"asset":{"version":"2.1","minVersion":"2.0"}}"#, "a.gltf").is_ok());
+        assert_eq!(
+            error(&format!("{head},\"nodes\":[{{\"extensions\":{{\"KHR_lights_punctual\":{{\"light\":0}}}}}}]}}")),
+            "a.gltf: nodes[0].extensions.KHR_lights_punctual.light: the index points at nothing"
+        );
+        assert_eq!(
             error(&format!("{head},\"nodes\":[{{\"mesh\":7}}]}}")),
             "a.gltf: nodes[0].mesh: the index points at nothing"
         );
@@ -232,5 +275,7 @@ mod tests {
         for cut in 4..glb.len() {
             assert!(parse(&glb[..cut], "a.glb").is_err(), "cut at {cut}");
         }
+        glb[20 + json.len() - 5..20 + json.len()].fill(0);
+        assert!(parse(&glb, "a.glb").is_ok(), "filled up with zeros");
     }
 }

@@ -1,10 +1,12 @@
 //! Materials: metallic-roughness with the extensions that change what is seen.
 //!
-//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit.
+//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
+//! `specular_glossiness.rs`.
 //! Departs from it: transmission textures are left out (with a warning). A transmissive surface becomes
 //! a blended one whose opacity is what transmission leaves.
 
 use super::accessor::Source;
+use super::specular_glossiness::SpecularGlossiness;
 use super::texture::{Reference, Wanted, transform_in};
 use crate::Error;
 use gltf::json::Material as JsonMaterial;
@@ -24,7 +26,9 @@ pub(crate) fn read(
     let json = &source.root.materials[index];
     let path = format!("materials[{index}]");
     let pbr = &json.pbr_metallic_roughness;
-    let [r, g, b, alpha] = pbr.base_color_factor.0.map(|v| unit(v, 1.0));
+    let older = SpecularGlossiness::find(source, json, &path)?;
+    let color = older.as_ref().map_or(pbr.base_color_factor.0, |o| o.diffuse_factor);
+    let [r, g, b, alpha] = color.map(|v| unit(v, 1.0));
     let mut material = Material {
         name: json.name.clone().unwrap_or_default(),
         reflectance: Reflectance::MetallicRoughness {
@@ -44,7 +48,13 @@ pub(crate) fn read(
     };
     apply_extensions(source, json, &path, &mut material, warnings);
 
-    ask_textures(source, json, &path, &mut material, wanted, warnings)?;
+    ask_textures(source, json, older.as_ref(), &path, &mut material, wanted, warnings)?;
+    if let Some(older) = older {
+        material.reflectance = older.reflectance();
+        if older.specular_glossiness_texture.is_some() {
+            warnings.push(format!("{}: {path}: the specularGlossinessTexture is not used", source.file));
+        }
+    }
     Ok(material)
 }
 
@@ -52,6 +62,7 @@ pub(crate) fn read(
 fn ask_textures(
     source: &Source<'_>,
     json: &JsonMaterial,
+    older: Option<&SpecularGlossiness>,
     path: &str,
     material: &mut Material,
     wanted: &mut Wanted,
@@ -64,9 +75,18 @@ fn ask_textures(
         let reference = Reference { texture: info.index.value(), uv_set: info.tex_coord, transform, path: &path };
         wanted.ask(source, &reference, encoding, warnings)
     };
-    material.base_texture = ask(&pbr.base_color_texture, Encoding::Srgb, "pbrMetallicRoughness.baseColorTexture");
-    let name = "pbrMetallicRoughness.metallicRoughnessTexture";
-    material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Encoding::Linear, name);
+    match older {
+        // The older form takes the place of the other.
+        Some(older) => {
+            material.base_texture = ask(&older.diffuse_texture, Encoding::Srgb, "diffuseTexture");
+        }
+        None => {
+            let name = "pbrMetallicRoughness.baseColorTexture";
+            material.base_texture = ask(&pbr.base_color_texture, Encoding::Srgb, name);
+            let name = "pbrMetallicRoughness.metallicRoughnessTexture";
+            material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Encoding::Linear, name);
+        }
+    }
     material.emission_texture = ask(&json.emissive_texture, Encoding::Srgb, "emissiveTexture");
     if let Some(normal) = &json.normal_texture {
         let path = format!("{path}.normalTexture");

@@ -18,7 +18,7 @@ use super::normals;
 use crate::Error;
 use std::ops::Range;
 use vitral_math::DMat4;
-use vitral_scene::{Attribute, Faces, Mesh, Part};
+use vitral_scene::{Attribute, Faces, FreePart, Mesh, Part};
 
 /// A glTF mesh in one pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +106,7 @@ impl Plan {
     ) -> Result<(Mesh, Vec<String>), Error> {
         let mut mesh = Mesh { name: self.name.clone(), faces: Faces::Triangles, ..Mesh::default() };
         let mut warnings = Vec::new();
-        self.add_topology(source, &mut mesh, &mut warnings);
+        self.add_topology(&mut mesh);
 
         // Read the vertices, in the pose.
         let mut block_normals = Vec::with_capacity(self.blocks.len());
@@ -128,22 +128,18 @@ impl Plan {
     }
 
     /// Adds triangles, lines and points, part by part.
-    fn add_topology(&self, source: &Source<'_>, mesh: &mut Mesh, warnings: &mut Vec<String>) {
-        let mut line_material = None;
+    fn add_topology(&self, mesh: &mut Mesh) {
         for (outline, block, material) in &self.outlines {
             let (block, first) = (&self.blocks[*block], mesh.triangles.len() as u32);
+            let (lines, points) = (mesh.lines.len(), mesh.points.len());
             outline.add_to(mesh, block.base, block.range.start as u32);
             if outline.is_surface() {
                 let triangles = first..mesh.triangles.len() as u32;
                 mesh.parts.push(Part { name: String::new(), triangles, material: *material });
-            } else if line_material.is_none() {
-                line_material = Some(*material);
-            } else if line_material != Some(*material) {
-                let what = "lines and points of one mesh have several materials, the first is used";
-                warnings.push(format!("{}: {}: {what}", source.file, block.path));
             }
+            FreePart::extend(&mut mesh.line_parts, lines..mesh.lines.len(), *material);
+            FreePart::extend(&mut mesh.point_parts, points..mesh.points.len(), *material);
         }
-        mesh.line_material = line_material.flatten();
     }
 
     /// Adds vertex colours and texture coordinates; blocks without them get white and the origin.

@@ -17,6 +17,7 @@ mod material;
 mod mesh;
 mod node;
 mod normals;
+mod specular_glossiness;
 mod texture;
 
 pub(crate) use document::plain_message;

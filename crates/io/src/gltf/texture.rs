@@ -25,6 +25,9 @@ pub(crate) struct Wanted {
     images: Vec<(usize, Encoding)>,
 }
 
+/// A texture, and what is odd about its image.
+pub(crate) type Loaded = (Texture, Option<String>);
+
 /// How a material's property refers to a texture.
 pub(crate) struct Reference<'a> {
     pub(crate) texture: usize,
@@ -75,7 +78,7 @@ impl Wanted {
         source: &Source<'_>,
         resolver: &dyn Resolver,
         workers: &Workers,
-    ) -> Vec<Result<Texture, String>> {
+    ) -> Vec<Result<Loaded, String>> {
         workers.map(self.images.len(), |i| {
             let (image, encoding) = self.images[i];
             load_image(source, image, encoding, resolver).map_err(|e| format!("{e}; the texture is left out"))
@@ -86,14 +89,15 @@ impl Wanted {
 /// Replaces the numbers of [`Wanted::ask`] by indices into the textures that were loaded.
 pub(crate) fn settle(
     materials: &mut [vitral_light::Material],
-    loaded: Vec<Result<Texture, String>>,
+    loaded: Vec<Result<Loaded, String>>,
     warnings: &mut Vec<String>,
 ) -> Vec<Arc<Texture>> {
     let mut textures = Vec::new();
     let places: Vec<Option<u32>> = loaded
         .into_iter()
         .map(|result| match result {
-            Ok(texture) => {
+            Ok((texture, odd)) => {
+                warnings.extend(odd);
                 textures.push(Arc::new(texture));
                 Some(textures.len() as u32 - 1)
             }
@@ -111,30 +115,25 @@ pub(crate) fn settle(
     textures
 }
 
-fn load_image(
-    source: &Source<'_>,
-    index: usize,
-    encoding: Encoding,
-    resolver: &dyn Resolver,
-) -> Result<Texture, Error> {
+fn load_image(source: &Source<'_>, index: usize, encoding: Encoding, resolver: &dyn Resolver) -> Result<Loaded, Error> {
     let entry = &source.root.images[index];
     let path = format!("images[{index}]");
     let mut name = name_or(&entry.name, "image", index);
-    let plane = match (&entry.uri, entry.buffer_view) {
+    let (plane, odd) = match (&entry.uri, entry.buffer_view) {
         (Some(text), _) => {
             let target = uri::resolve(text).map_err(|what| source.error(path, what))?;
             if let Target::File(file) = &target {
                 name.clone_from(file);
             }
-            image::decode(&read_target(target, source.file, resolver)?, &format!("{}: {name}", source.file))?
+            image::decode_texture(&read_target(target, source.file, resolver)?, &format!("{}: {name}", source.file))?
         }
         (None, Some(view)) => {
             let bytes = source.buffers.view(source.root, view.value(), source.file)?;
-            image::decode(bytes, &format!("{}: {path}", source.file))?
+            image::decode_texture(bytes, &format!("{}: {path}", source.file))?
         }
         (None, None) => return Err(source.error(path, "neither a uri nor a bufferView")),
     };
-    Ok(Texture::new(name, plane, encoding))
+    Ok((Texture::new(name, plane, encoding), odd))
 }
 
 /// Our sampler for one of glTF's. Filters that are not given are linear and trilinear.

@@ -81,6 +81,10 @@ pub(super) struct Event {
     pub(super) face: u32,
     /// Their triangles.
     pub(super) triangle: u32,
+    /// Free line segments before it.
+    pub(super) free_line: u32,
+    /// Free points before it.
+    pub(super) free_point: u32,
     /// Line within the piece, from 1.
     pub(super) line: u64,
     pub(super) change: Change,
@@ -97,8 +101,6 @@ pub(super) enum Change {
     Smoothing(u32),
     /// `mtllib`.
     Library(Range<usize>),
-    /// The first free line or point of the piece.
-    FreeElement,
 }
 
 /// The corners of faces, one index list a kind. Empty lists of texture coordinates and normals: no corner has any.
@@ -233,7 +235,7 @@ impl Chunk {
         let mut values = [0.0f32; 8];
         let count = floats(cursor, &mut values);
         if count < 3 {
-            return Err(format!("a vertex has {count} coordinates, three are required"));
+            return Err(too_few(cursor, count, "vertex"));
         }
         if count >= 6 {
             self.colors.resize(self.positions.len(), [1.0; 3]);
@@ -246,7 +248,10 @@ impl Chunk {
     fn texture_coordinate(&mut self, cursor: &mut Cursor) -> Result<(), String> {
         let mut values = [0.0f32; 3];
         if floats(cursor, &mut values) == 0 {
-            return Err("a texture coordinate without a number".to_owned());
+            return Err(match cursor.word() {
+                b"" => "a texture coordinate without a number".to_owned(),
+                word => format!("`{}` is not a number, a texture coordinate needs one", show(word)),
+            });
         }
         self.uvs.push([values[0], 1.0 - values[1]]);
         Ok(())
@@ -256,7 +261,7 @@ impl Chunk {
         let mut values = [0.0f32; 3];
         let count = floats(cursor, &mut values);
         if count < 3 {
-            return Err(format!("a normal has {count} coordinates, three are required"));
+            return Err(too_few(cursor, count, "normal"));
         }
         self.normals.push(values);
         Ok(())
@@ -346,16 +351,16 @@ impl Chunk {
 
     #[inline]
     fn index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
+        let start = cursor.offset();
         let Some(index) = cursor.integer() else {
             return Err(format!("`{}` is not a {what} index", show(cursor.word())));
         };
         self.has_relative |= index < 0;
-        pack(index, count).ok_or_else(|| format!("{what} index {index}: indices begin with 1, or count back from -1"))
+        pack(index, count).ok_or_else(|| no_index(index, cursor.word_at(start), what))
     }
 
     fn line(&mut self, cursor: &mut Cursor) -> Result<(), String> {
         let line = cursor.line();
-        self.free_element(line);
         let mut previous = None;
         let before = self.lines.len();
         while !cursor.at_line_end() {
@@ -372,18 +377,11 @@ impl Chunk {
 
     fn points(&mut self, cursor: &mut Cursor) -> Result<(), String> {
         let line = cursor.line();
-        self.free_element(line);
         while !cursor.at_line_end() {
             let [point, ..] = self.corner(cursor)?;
             self.points.push((point, line));
         }
         Ok(())
-    }
-
-    fn free_element(&mut self, line: u64) {
-        if self.lines.is_empty() && self.points.is_empty() {
-            self.push_event(line, Change::FreeElement);
-        }
     }
 
     fn smoothing(&mut self, cursor: &mut Cursor) -> Result<(), String> {
@@ -416,7 +414,8 @@ impl Chunk {
 
     fn push_event(&mut self, line: u64, change: Change) {
         let (face, triangle) = (self.faces.count as u32, self.faces.triangles() as u32);
-        self.events.push(Event { face, triangle, line, change });
+        let (free_line, free_point) = (self.lines.len() as u32, self.points.len() as u32);
+        self.events.push(Event { face, triangle, free_line, free_point, line, change });
     }
 }
 
@@ -430,6 +429,25 @@ fn floats(cursor: &mut Cursor, values: &mut [f32]) -> usize {
         }
     }
     values.len()
+}
+
+/// What is wrong where three coordinates were due and `count` were read.
+#[cold]
+fn too_few(cursor: &mut Cursor, count: usize, what: &str) -> String {
+    match cursor.word() {
+        [] | [b'#', ..] => format!("a {what} has {count} coordinates, three are required"),
+        word => format!("`{}` is not a number, a {what} needs three", show(word)),
+    }
+}
+
+/// What is wrong with an index that no file can have, in `word`.
+#[cold]
+fn no_index(index: i64, word: &[u8], what: &str) -> String {
+    if index == 0 {
+        return format!("{what} index 0: indices begin with 1, or count back from -1");
+    }
+    let number = word.split(|&b| b == b'/').next().unwrap_or(word);
+    format!("{what} index {}: a file has at most {RELATIVE} of a kind", show(number))
 }
 
 fn show(word: &[u8]) -> String {

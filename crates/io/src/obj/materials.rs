@@ -10,7 +10,7 @@ use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_frame::Texture;
 use vitral_light::Material;
-use vitral_scene::{Mesh, Part};
+use vitral_scene::{FreePart, Mesh, Part};
 
 /// A stretch of triangles with one name and one material.
 #[derive(Debug)]
@@ -31,8 +31,10 @@ pub(super) struct Events<'a> {
     libraries: Vec<(u64, &'a [u8])>,
     /// Materials in order of their first use, with its line.
     used: Vec<(u64, &'a [u8])>,
-    /// The material of the first free line or point.
-    line_material: Option<usize>,
+    /// The first free line and the first free point with a material (index into `used`).
+    free: Vec<([usize; 2], usize)>,
+    /// How many lines and points the file names.
+    free_count: [usize; 2],
 }
 
 impl<'a> Events<'a> {
@@ -40,7 +42,7 @@ impl<'a> Events<'a> {
     pub(super) fn new(chunks: &[Chunk], pieces: &[&'a [u8]], first_lines: &[u64]) -> Self {
         let mut events = Self::default();
         let mut number: HashMap<&[u8], usize> = HashMap::new();
-        let (mut faces, mut triangles, mut has_free) = (0, 0, false);
+        let (mut faces, mut triangles, mut free) = (0, 0, [0, 0]);
         let mut name: &[u8] = b"";
         let mut material = None;
         events.start_run(name, material, 0);
@@ -51,24 +53,24 @@ impl<'a> Events<'a> {
                     Change::Name(range) => name = &text[range.clone()],
                     Change::Material(range) => {
                         let wanted = &text[range.clone()];
-                        material = Some(*number.entry(wanted).or_insert_with(|| {
+                        let chosen = *number.entry(wanted).or_insert_with(|| {
                             events.used.push((line, wanted));
                             events.used.len() - 1
-                        }));
+                        });
+                        material = Some(chosen);
+                        let first = [free[0] + event.free_line as usize, free[1] + event.free_point as usize];
+                        events.free.push((first, chosen));
                     }
                     Change::Smoothing(group) => events.smoothing.push((faces + event.face, *group)),
                     Change::Library(range) => events.libraries.push((line, &text[range.clone()])),
-                    Change::FreeElement if !has_free => {
-                        has_free = true;
-                        events.line_material = material;
-                    }
-                    Change::FreeElement => {}
                 }
                 events.start_run(name, material, triangles + event.triangle);
             }
             faces += chunk.faces.count as u32;
             triangles += chunk.faces.triangles() as u32;
+            free = [free[0] + chunk.lines.len(), free[1] + chunk.points.len()];
         }
+        events.free_count = free;
         events
     }
 
@@ -93,7 +95,11 @@ impl<'a> Events<'a> {
             material: material(run.material),
         });
         mesh.parts = parts.filter(|p| !p.triangles.is_empty()).collect();
-        mesh.line_material = material(self.line_material);
+        let ends = self.free.iter().skip(1).map(|f| f.0).chain([self.free_count]);
+        for (&(first, chosen), end) in self.free.iter().zip(ends) {
+            FreePart::extend(&mut mesh.line_parts, first[0]..end[0], index[chosen]);
+            FreePart::extend(&mut mesh.point_parts, first[1]..end[1], index[chosen]);
+        }
 
         // Each group reaches to the next statement.
         if !self.smoothing.is_empty() {
@@ -174,7 +180,8 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
     }
 }
 
-/// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words.
+/// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words, else what is called as
+/// the last part of the path, which may be that of another machine.
 fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
     let text = String::from_utf8_lossy(names).replace('\\', "/");
     let whole = text.trim_matches('"');
@@ -195,6 +202,13 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
                 Err(why) => failures.push((word.to_owned(), why)),
             }
         }
+    }
+
+    if found.is_empty()
+        && let Some((_, bare)) = whole.rsplit_once('/')
+        && let Ok(bytes) = resolver.read(bare)
+    {
+        return vec![(bare.to_owned(), bytes)];
     }
 
     // Tell what is missing: the words, where some of them were found, else the whole.

@@ -183,6 +183,7 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
         normals: (totals.has_normals || cloud_normals)
             .then_some(Attribute { values: normals, corners: normal_corners }),
         colors: colors.map(Attribute::per_vertex),
+        colors_from_srgb: totals.has_colors,
         lines,
         points: if no_elements { (0..sum.v as u32).collect() } else { points },
         positions,

@@ -64,6 +64,29 @@ fn lines_and_points_stand_free() {
 }
 
 #[test]
+fn lines_and_points_have_the_material_in_force() {
+    let folder = Folder(&[("m.mtl", "newmtl a\nnewmtl b\n")]);
+    let text = format!(
+        "mtllib m.mtl\n{SQUARE}l 1 2\nusemtl a\nl 2 3 4\np 1\nusemtl b\nf 1 2 3\nl 4 1\nl 1 3\nusemtl none\nl 2 4\np 2 3\n\
+        usemtl a\np 4\n"
+    );
+    for piece in [1, 40, PIECE] {
+        let s = load_in_pieces(text.as_bytes(), "t.obj", &folder, &Workers::single(), piece).unwrap();
+        let m = &s.meshes[0];
+        m.check().unwrap();
+        let names = |parts: &[vitral_scene::FreePart], count: usize| -> Vec<Option<String>> {
+            let of = |i| vitral_scene::FreePart::material_of(parts, i);
+            (0..count).map(|i| of(i).map(|m| s.materials[m as usize].name.clone())).collect()
+        };
+        let [a, b] = ["a", "b"].map(|n| Some(n.to_owned()));
+        assert_eq!(names(&m.line_parts, m.lines.len()), [None, a.clone(), a.clone(), b.clone(), b, None]);
+        assert_eq!(names(&m.point_parts, m.points.len()), [a.clone(), None, None, a]);
+        assert_eq!(m.parts[0].material, Some(1));
+        assert_eq!(s.warnings, ["t.obj: line 14: unknown material `none`; the default one is used"]);
+    }
+}
+
+#[test]
 fn vertex_colours_are_linear() {
     let m = mesh("v 0 0 0 1 0 0.5\nv 1 0 0\nv 0 1 0 0 1 0 1\nf 1 2 3");
     let colors = m.colors.unwrap().values;
@@ -106,6 +129,17 @@ fn indices_that_lead_nowhere_are_errors() {
     assert_eq!(refusal(&format!("{SQUARE}f 1 x 2\nf 1 2 9")), "t.obj: line 5: `x` is not a vertex index");
     assert_eq!(refusal(&format!("{SQUARE}l 1 2\n l 3 7")), "t.obj: line 6: index 7, the file has 4 vertices");
     assert_eq!(refusal("v 1 2"), "t.obj: line 1: a vertex has 2 coordinates, three are required");
+    assert_eq!(refusal("v 1 2 # 3"), "t.obj: line 1: a vertex has 2 coordinates, three are required");
+    assert_eq!(refusal("v a b c"), "t.obj: line 1: `a` is not a number, a vertex needs three");
+    assert_eq!(refusal("v 1 2 c"), "t.obj: line 1: `c` is not a number, a vertex needs three");
+    assert_eq!(refusal("vn 1 x 2"), "t.obj: line 1: `x` is not a number, a normal needs three");
+    assert_eq!(refusal("vt x"), "t.obj: line 1: `x` is not a number, a texture coordinate needs one");
+    for huge in ["99999999999", "-99999999999999999999999"] {
+        assert_eq!(
+            refusal(&format!("{SQUARE}f 1 2 {huge}/4")),
+            format!("t.obj: line 5: vertex index {huge}: a file has at most 2147483648 of a kind")
+        );
+    }
     assert_eq!(refusal("# c\nhello world"), "t.obj: line 2: no statement of an OBJ file");
 }
 
@@ -116,6 +150,14 @@ fn text_may_come_in_many_ways() {
     assert_eq!(mesh(&format!("{SQUARE}f 1 2 \\\n 3 \\\r\n 4 # end")), plain);
     let wide: Vec<u8> = format!("\u{feff}{SQUARE}f 1 2 3 4").encode_utf16().flat_map(u16::to_be_bytes).collect();
     assert_eq!(*load(&wide, "t.obj", &NoFiles, &Workers::single()).unwrap().meshes[0], plain);
+}
+
+#[test]
+fn libraries_with_paths_of_other_machines_lie_beside_the_file() {
+    let folder = Folder(&[("my lib.mtl", "newmtl a\nKd 1 0 0")]);
+    let text = format!("mtllib C:\\models\\my lib.mtl\n{SQUARE}usemtl a\nf 1 2 3");
+    let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+    assert_eq!((s.materials.len(), s.warnings.len()), (1, 0), "{:?}", s.warnings);
 }
 
 /// Files by name.

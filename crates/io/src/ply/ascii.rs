@@ -1,6 +1,7 @@
-//! The data of a text PLY file: one line an element.
+//! The data of a text PLY file: one line an element. An element whose line ends too early goes on on the next, with a
+//! warning.
 
-use super::header::{Element, Kind, Type};
+use super::header::{Element, Kind, Property, Type};
 use super::{Content, Layout, Reading, Role, Row, Target, slot};
 use crate::text::{Cursor, is_blank, to_utf8};
 use crate::warnings::Warnings;
@@ -77,10 +78,11 @@ fn read_row(
     row.slots = [0.0; slot::COUNT];
     row.slots[slot::COLOR + 3] = 1.0;
     row.corners.clear();
+    row.corner_uvs.clear();
     for (property, &target) in element.properties.iter().zip(&layout.targets) {
         match property.kind {
             Kind::Scalar(kind) => {
-                let value = number(cursor, kind).ok_or_else(|| missing(cursor, &property.name))?;
+                let value = next_number(cursor, kind, property, warnings)?;
                 if let Target::Slot(slot) = target {
                     let is_color = (slot::COLOR..slot::UV).contains(&slot);
                     row.slots[slot] = if is_color { value / kind.full_scale() } else { value };
@@ -99,9 +101,11 @@ fn read_row(
                     return Err(missing(cursor, &property.name));
                 };
                 for _ in 0..count {
-                    let value = number(cursor, item).ok_or_else(|| missing(cursor, &property.name))?;
-                    if target == Target::Corners {
-                        row.corners.push(whole(value)?);
+                    let value = next_number(cursor, item, property, warnings)?;
+                    match target {
+                        Target::Corners => row.corners.push(whole(value)?),
+                        Target::CornerUvs => row.corner_uvs.push(value as f32),
+                        Target::Slot(_) | Target::Nothing => {}
                     }
                 }
             }
@@ -115,10 +119,36 @@ fn read_row(
     Ok(())
 }
 
+/// A number of the wanted type, on this line or, if it is at its end, on the next.
+#[inline]
+fn next_number(cursor: &mut Cursor, kind: Type, property: &Property, warnings: &mut Warnings) -> Result<f64, String> {
+    match number(cursor, kind) {
+        Some(value) => Ok(value),
+        None => number_on_next_line(cursor, kind, property, warnings),
+    }
+}
+
+#[cold]
+fn number_on_next_line(
+    cursor: &mut Cursor,
+    kind: Type,
+    property: &Property,
+    warnings: &mut Warnings,
+) -> Result<f64, String> {
+    cursor.skip_blanks();
+    let line = cursor.line();
+    if cursor.peek() == b'\n' && next_row(cursor) {
+        warnings.note("split", Place::Line(line), || {
+            format!("the line ends before `{}`; the element goes on on the next", property.name)
+        });
+    }
+    number(cursor, kind).ok_or_else(|| missing(cursor, &property.name))
+}
+
 #[cold]
 fn missing(cursor: &mut Cursor, property: &str) -> String {
     match cursor.word() {
-        b"" => format!("the line ends before `{property}`"),
+        b"" => format!("the file ends before `{property}`"),
         word => {
             let seen = String::from_utf8_lossy(&word[..word.len().min(40)]).into_owned();
             format!("`{seen}` is no number, `{property}` is required")

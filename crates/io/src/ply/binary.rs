@@ -196,7 +196,8 @@ fn read_uniform(
     let Some(shape) = Shape::of(&bytes[at..], element, layout, big) else { return Ok(None) };
     let Some(size) = element.count.checked_mul(shape.stride as u64) else { return Ok(None) };
     let is_new = content.triangles.is_empty() && content.sizes.is_empty();
-    if size > (bytes.len() - at) as u64 || !is_new || content.face_colors.is_some() {
+    let is_plain = content.face_colors.is_none() && content.corner_uvs.is_none() && content.images.is_none();
+    if size > (bytes.len() - at) as u64 || !is_new || !is_plain {
         return Ok(None);
     }
     let rows = &bytes[at..at + size as usize];
@@ -313,6 +314,7 @@ fn read_rows(
         row.slots = [0.0; slot::COUNT];
         row.slots[slot::COLOR + 3] = 1.0;
         row.corners.clear();
+        row.corner_uvs.clear();
         let place = || Place::Byte(start as u64);
         let wrong = |what: String| {
             Error::malformed(reading.file, place(), format!("element {n} of `{}`: {what}", element.name))
@@ -347,12 +349,18 @@ fn read_rows(
                     if size > (bytes.len() - at) as f64 {
                         return Err(ended());
                     }
-                    if target == Target::Corners {
-                        for _ in 0..length as usize {
-                            row.corners.push(whole(take(&mut at, item)?).map_err(wrong)?);
+                    match target {
+                        Target::Corners => {
+                            for _ in 0..length as usize {
+                                row.corners.push(whole(take(&mut at, item)?).map_err(wrong)?);
+                            }
                         }
-                    } else {
-                        at += size as usize;
+                        Target::CornerUvs => {
+                            for _ in 0..length as usize {
+                                row.corner_uvs.push(take(&mut at, item)? as f32);
+                            }
+                        }
+                        Target::Slot(_) | Target::Nothing => at += size as usize,
                     }
                 }
             }

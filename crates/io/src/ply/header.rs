@@ -104,6 +104,16 @@ pub(super) struct Header {
     pub(super) data: usize,
     /// The line on which they begin, for text.
     pub(super) data_line: u64,
+    /// Images that comments name as textures, with their lines.
+    pub(super) textures: Vec<(u64, String)>,
+}
+
+/// The name in a comment `TextureFile NAME`, as MeshLab writes it.
+fn texture_file(line: &str) -> Option<&str> {
+    let comment = line.trim_start().strip_prefix("comment")?;
+    let (keyword, name) = comment.trim_start().split_once(|c: char| c.is_ascii_whitespace())?;
+    let name = name.trim().trim_matches('"');
+    (keyword.eq_ignore_ascii_case("TextureFile") && !name.is_empty()).then_some(name)
 }
 
 impl Header {
@@ -114,7 +124,7 @@ impl Header {
         let old_mac = bytes[first_end..].first() == Some(&b'\r') && bytes.get(first_end + 1) != Some(&b'\n');
         let end = if old_mac { b'\r' } else { b'\n' };
 
-        let (mut encoding, mut elements) = (None, Vec::new());
+        let (mut encoding, mut elements, mut textures) = (None, Vec::new(), Vec::new());
         let (mut at, mut line) = (0, 0);
         loop {
             line += 1;
@@ -144,7 +154,8 @@ impl Header {
                     element.properties.push(property);
                 }
                 ["end_header", ..] => break,
-                ["comment" | "obj_info", ..] | [] => {}
+                ["comment", ..] => textures.extend(texture_file(&text).map(|name| (line, name.replace('\\', "/")))),
+                ["obj_info", ..] | [] => {}
                 _ => warnings.note("ply header", Place::Line(line), || {
                     format!("header line `{}` is not understood", text.trim().chars().take(40).collect::<String>())
                 }),
@@ -153,7 +164,7 @@ impl Header {
         let Some(encoding) = encoding else {
             return Err(Error::malformed(file, Place::Line(line), "the header has no `format` line"));
         };
-        Ok(Self { encoding, elements, data: at, data_line: line + 1 })
+        Ok(Self { encoding, elements, data: at, data_line: line + 1, textures })
     }
 }
 

@@ -1,8 +1,9 @@
 use super::*;
+use crate::{NoFiles, ResolveError};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> Result<Scene, Error> {
-    let scene = load(bytes, "t.ply", &Workers::single())?;
+    let scene = load(bytes, "t.ply", &NoFiles, &Workers::single())?;
     scene.meshes.iter().for_each(|m| m.check().unwrap());
     Ok(scene)
 }
@@ -77,7 +78,7 @@ fn false_announcements_are_refused() {
         refusal(&text(&vertex("3"), "0 0 0\n1 1 1\n")),
         "t.ply: line 11: the file ends here: 3 elements `vertex` are announced, 2 are there"
     );
-    assert_eq!(refusal(&text(&vertex("1"), "0 0\n")), "t.ply: line 9: the line ends before `z`");
+    assert_eq!(refusal(&text(&vertex("1"), "0 0\n")), "t.ply: line 9: the file ends before `z`");
     assert_eq!(refusal(&text(&vertex("1"), "0 a 0\n")), "t.ply: line 9: `a` is no number, `y` is required");
     let faces = format!("{}element face 1\n{LIST}", vertex("1"));
     assert_eq!(refusal(&text(&faces, "0 0 0\n3 0 0 1\n")), "t.ply: line 12: index 1, the file has 1 vertices");
@@ -87,6 +88,79 @@ fn false_announcements_are_refused() {
     let huge =
         b"ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n";
     assert!(refusal(huge).contains("`vertex` must have the properties"));
+}
+
+#[test]
+fn elements_may_go_over_lines() {
+    let faces = format!("element vertex 3\n{XYZ}element face 1\n{LIST}");
+    for data in ["0 0 0\n1 0\n0\n0 1 0\n3 0\n1 2\n", "0\n0\n0\n1\n0\n0\n\n0\r\n1\r\n0\n3\n0\n1\n2"] {
+        let s = read(&text(&faces, data)).unwrap();
+        assert_eq!((&s.meshes[0].triangles, s.meshes[0].positions[1]), (&vec![[0, 1, 2]], [1.0, 0.0, 0.0]));
+        assert!(s.warnings[0].contains("the element goes on on the next"), "{:?}", s.warnings);
+    }
+}
+
+/// A folder with one image of one pixel.
+struct Images;
+
+impl Resolver for Images {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        let pixel = vitral_frame::Plane::filled(1, 1, [9, 8, 7, 255]);
+        match path {
+            "my wood.png" => Ok(crate::encode::png(&pixel, crate::encode::PngOptions { srgb: true }).unwrap()),
+            path if path.starts_with("..") => Err(ResolveError::Outside),
+            _ => Err(ResolveError::NotFound),
+        }
+    }
+}
+
+#[test]
+fn faces_have_the_texture_coordinates_that_meshlab_writes() {
+    let header = format!(
+        "comment TextureFile ../out.png\ncomment TextureFile my wood.png\nelement vertex 4\n{XYZ}element face 4\n{LIST}\
+        property list uchar float texcoord\nproperty int texnumber\n"
+    );
+    let data = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1 1\n3 2 1 0 6 1 1 1 0 0 0 1\n\
+        3 0 1 2 6 0 0 1 0 1 1 0\n3 0 1 2 2 0 0 -1\n";
+    let s = load(&text(&header, data), "folder/t.ply", &Images, &Workers::single()).unwrap();
+    let m = &s.meshes[0];
+    m.check().unwrap();
+    assert_eq!(m.uvs[0].at(1, &m.triangles), [[0.0, 1.0], [1.0, 0.0], [0.0, 0.0]]);
+    assert_eq!(m.uvs[0].at(2, &m.triangles), [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    assert_eq!(m.uvs[0].at(4, &m.triangles), [[0.0; 2]; 3]);
+    let parts: Vec<_> = m.parts.iter().map(|p| (p.triangles.clone(), p.material)).collect();
+    assert_eq!(parts, [(0..3, Some(0)), (3..4, None), (4..5, None)]);
+    assert_eq!((s.materials[0].name.as_str(), s.textures[0].name.as_str()), ("my wood", "my wood.png"));
+    assert_eq!(
+        s.warnings,
+        [
+            "folder/t.ply: line 22: 2 texture coordinates, a face with 3 corners needs 6; left out",
+            "folder/t.ply: line 4: texture `../out.png` is left out: it lies outside the model's folder (--allow-external \
+             permits that)",
+        ]
+    );
+
+    // Binary rows are the same.
+    let mut binary = format!(
+        "ply\nformat binary_little_endian 1.0\ncomment TextureFile my wood.png\nelement vertex 3\n{XYZ}element face 1\n{LIST}\
+        property list uchar float texcoord\nend_header\n"
+    )
+    .into_bytes();
+    let floats = |out: &mut Vec<u8>, values: &[f32]| values.iter().for_each(|v| out.extend(v.to_le_bytes()));
+    floats(&mut binary, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    binary.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 6]);
+    floats(&mut binary, &[0.0, 0.0, 1.0, 0.0, 0.25, 1.0]);
+    let s = load(&binary, "t.ply", &Images, &Workers::single()).unwrap();
+    let m = &s.meshes[0];
+    assert_eq!((m.uvs[0].at(0, &m.triangles), m.parts[0].material), ([[0.0, 1.0], [1.0, 1.0], [0.25, 0.0]], Some(0)));
+
+    // Coordinates of vertices show the first image.
+    let vertex =
+        format!("comment TextureFile my wood.png\nelement vertex 3\n{XYZ}property float s\nproperty float t\n");
+    let data = "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    let s =
+        load(&text(&format!("{vertex}element face 1\n{LIST}"), data), "t.ply", &Images, &Workers::single()).unwrap();
+    assert_eq!((s.meshes[0].parts[0].material, s.warnings.len()), (Some(0), 0));
 }
 
 /// A binary file of polygons; `wide` makes the layout unusual.

@@ -54,12 +54,18 @@ pub(super) struct MeshForm {
     pub(super) uvs: Vec<AttributeForm<[f32; 2]>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) colors: Option<AttributeForm<[f32; 4]>>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(super) colors_from_srgb: bool,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) lines: Vec<[u32; 2]>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) points: Vec<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) line_material: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) line_parts: Option<Vec<FreePartForm>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) point_parts: Option<Vec<FreePartForm>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) smoothing_groups: Option<Vec<u32>>,
 }
@@ -91,6 +97,15 @@ pub(super) struct PartForm {
     pub(super) faces: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) triangles: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) material: Option<u32>,
+}
+
+/// A run of lines or points with one material.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct FreePartForm {
+    pub(super) count: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) material: Option<u32>,
 }

@@ -3,10 +3,10 @@
 //! `triangles` alone are triangular faces. `faces` alone are polygons, cut as everywhere else. Both together say how
 //! the polygons are cut, so that any mesh can be written down and read back equal.
 
-use super::form::{AttributeForm, Coordinate, MeshForm, PartForm};
+use super::form::{AttributeForm, Coordinate, FreePartForm, MeshForm, PartForm};
 use crate::polygons;
 use vitral_exec::Workers;
-use vitral_scene::{Attribute, Corners, Faces, Mesh, Part};
+use vitral_scene::{Attribute, Corners, Faces, FreePart, Mesh, Part};
 
 /// Makes a mesh of its form; the error says what does not fit.
 pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, String> {
@@ -20,9 +20,9 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
         normals: form.normals.map(attribute),
         uvs: form.uvs.into_iter().map(attribute).collect(),
         colors: form.colors.map(attribute),
+        colors_from_srgb: form.colors_from_srgb,
         lines: form.lines,
         points: form.points,
-        line_material: form.line_material,
         smoothing_groups: form.smoothing_groups,
         ..Mesh::default()
     };
@@ -32,6 +32,13 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
         None if mesh.triangles.is_empty() => Vec::new(),
         None => vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() as u32, material: form.material }],
     };
+    if form.line_material.is_some() && (form.line_parts.is_some() || form.point_parts.is_some()) {
+        return Err("either `line-material` or `line-parts` and `point-parts`".to_owned());
+    }
+    FreePart::extend(&mut mesh.line_parts, 0..mesh.lines.len(), form.line_material);
+    FreePart::extend(&mut mesh.point_parts, 0..mesh.points.len(), form.line_material);
+    free_parts(&mut mesh.line_parts, form.line_parts);
+    free_parts(&mut mesh.point_parts, form.point_parts);
     if mesh.uvs.len() > 2 {
         return Err(format!("{} sets of texture coordinates, at most 2 are possible", mesh.uvs.len()));
     }
@@ -99,6 +106,17 @@ fn parts_of(mesh: &Mesh, forms: Vec<PartForm>) -> Result<Vec<Part>, String> {
     Ok(parts)
 }
 
+/// Runs of lines or points, one after the other.
+fn free_parts(parts: &mut Vec<FreePart>, forms: Option<Vec<FreePartForm>>) {
+    let mut next = 0usize;
+    for form in forms.into_iter().flatten() {
+        // An end that no mesh can reach is refused when the mesh is checked.
+        let end = next.saturating_add(form.count as usize).min(u32::MAX as usize);
+        FreePart::extend(parts, next..end, form.material);
+        next = end;
+    }
+}
+
 fn attribute<T>(form: AttributeForm<T>) -> Attribute<T> {
     Attribute { values: form.values, corners: form.corners }
 }
@@ -124,12 +142,19 @@ pub(super) fn to_form(mesh: &Mesh) -> MeshForm {
         normals: mesh.normals.as_ref().map(attribute_form),
         uvs: mesh.uvs.iter().map(attribute_form).collect(),
         colors: mesh.colors.as_ref().map(attribute_form),
+        colors_from_srgb: mesh.colors_from_srgb,
         lines: mesh.lines.clone(),
         points: mesh.points.clone(),
-        line_material: mesh.line_material,
+        line_parts: free_part_forms(&mesh.line_parts),
+        point_parts: free_part_forms(&mesh.point_parts),
         smoothing_groups: mesh.smoothing_groups.clone(),
         ..MeshForm::default()
     }
+}
+
+fn free_part_forms(parts: &[FreePart]) -> Option<Vec<FreePartForm>> {
+    let form = |p: &FreePart| FreePartForm { count: p.elements.end - p.elements.start, material: p.material };
+    (!parts.is_empty()).then(|| parts.iter().map(form).collect())
 }
 
 /// Values that JSON cannot say become 0.
@@ -172,6 +197,8 @@ mod tests {
             (r#""normals":{"values":[[1e39,0,0]]}"#, "number out of range"),
             (r#""normals":{"values":[[0,0,1]]}"#, "1 normals for 4 vertices"),
             (r#""points":[7]"#, "point 0: index 7"),
+            (r#""lines":[[0,1]],"line-parts":[{"count":2,"material":0}]"#, "line parts end at 2 of 1"),
+            (r#""points":[0],"line-material":0,"point-parts":[{"count":1}]"#, "either `line-material` or"),
         ] {
             let message = read(&format!("{{{positions},{rest}}}")).unwrap_err();
             assert!(message.contains(part), "{rest}: {message}");

@@ -119,14 +119,16 @@ fn add_textures(
         .collect::<Result<Vec<_>, _>>()?;
     let loaded = origin.workers.map(forms.len(), |i| {
         let (source, bytes) = &sources[i];
-        let plane = image::decode(bytes.as_ref().map_err(String::clone)?, source).map_err(|e| e.to_string())?;
+        let bytes = bytes.as_ref().map_err(String::clone)?;
+        let (plane, odd) = image::decode_texture(bytes, source).map_err(|e| e.to_string())?;
         let name = forms[i].name.clone().unwrap_or_else(|| source.clone());
-        Ok::<_, String>(Texture::new(name, plane, forms[i].encoding))
+        Ok::<_, String>((Texture::new(name, plane, forms[i].encoding), odd))
     });
     let mut places = Vec::with_capacity(loaded.len());
     for (i, texture) in loaded.into_iter().enumerate() {
         match texture {
-            Ok(texture) => {
+            Ok((texture, odd)) => {
+                scene.warnings.extend(odd.map(|what| format!("{}: textures[{i}]: {what}", report.file)));
                 places.push(Some(scene.textures.len() as u32));
                 scene.textures.push(Arc::new(texture));
             }
@@ -186,7 +188,8 @@ fn add_meshes(
         let path = format!("meshes[{i}]");
         let materials = scene.materials.len();
         let parts = form.parts.iter().flatten().filter_map(|p| p.material);
-        for material in parts.chain(form.material).chain(form.line_material) {
+        let free = [&form.line_parts, &form.point_parts].into_iter().flatten().flatten().filter_map(|p| p.material);
+        for material in parts.chain(free).chain(form.material).chain(form.line_material) {
             report.index(path.as_str(), "material", material, materials)?;
         }
         let inline =
@@ -338,7 +341,8 @@ fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Ve
         for mesh in &mut scene.meshes[first_mesh..] {
             let mesh = Arc::make_mut(mesh);
             mesh.parts.iter_mut().for_each(|p| p.material = Some(material));
-            mesh.line_material = mesh.line_material.map(|_| material);
+            let free = mesh.line_parts.iter_mut().chain(&mut mesh.point_parts);
+            free.for_each(|p| p.material = p.material.map(|_| material));
         }
     }
     let roots = scene.roots.split_off(first_root);

@@ -11,6 +11,7 @@ use super::group::Lit;
 use super::points::{FragmentPoint, NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
 use crate::transparency::{Fragment, MOST_SAMPLES};
+use vitral_math::Vec2;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
 use vitral_raster::{TILE, Tile};
@@ -116,7 +117,7 @@ impl Composer {
                     }
                     if !mine.is_empty() {
                         fragments.clear();
-                        fragments.extend(mine.iter().map(|f| fragment(f, points, lit, marks)));
+                        fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, marks)));
                         if let Some((deep, index)) = deep {
                             let behind = mine.iter().map(|f| deep.behind(index, f, mine));
                             fragments.iter_mut().zip(behind).for_each(|(f, behind)| f.behind = behind);
@@ -142,10 +143,21 @@ fn mean(samples: &[[f32; 4]]) -> [f32; 4] {
     sum.map(|c| c / samples.len() as f32)
 }
 
-/// A fragment with its colour.
-pub(super) fn fragment<'a>(f: &FragmentPoint, points: &'a Points, lit: &Lit, marks: &MarkColors) -> Fragment<'a> {
+/// A fragment of a tile with its colour.
+pub(super) fn fragment<'a>(
+    f: &FragmentPoint,
+    tile: &Tile,
+    points: &'a Points,
+    lit: &Lit,
+    marks: &MarkColors,
+) -> Fragment<'a> {
     let (start, source) = (f.start as usize, f.source as usize);
-    let color = if f.is_mark { marks.color(source) } else { lit.colors[source] };
+    let color = if f.is_mark {
+        let (x, y) = (tile.x + f.pixel % TILE as u32, tile.y + f.pixel / TILE as u32);
+        marks.color(source, Vec2::new(x as f32 + 0.5, y as f32 + 0.5))
+    } else {
+        lit.colors[source]
+    };
     let passes = match lit.passes.get(source) {
         Some(passes) if !f.is_mark => *passes,
         _ => [1.0 - color[3]; 3],

@@ -62,14 +62,15 @@ impl<S: Simd> Looks<S> {
             },
         );
 
-        // Vertex colours are kept linear; the raw colour space wants them as they were in the file.
+        // Vertex colours are kept linear; the raw colour space wants them as they were in the file: glTF's are linear
+        // there, as its factors are.
         let (mut corner_colors, mut vertex_color, mut alpha) = ([white; 3], white, one);
         if let Some(attribute) = &mesh.colors {
             let corners = gather_attribute(simd, attribute, mesh, slots);
             for c in 0..3 {
                 let [r, g, b, _] = corners[c];
                 corner_colors[c] = V3::new(r, g, b);
-                if raw {
+                if raw && mesh.colors_from_srgb {
                     let encode = lanes::Lanes::srgb_from_linear;
                     corner_colors[c] = V3::new(encode(r), encode(g), encode(b));
                 }

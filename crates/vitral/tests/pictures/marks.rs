@@ -2,7 +2,8 @@
 
 use crate::common::{colors, exact, one};
 use vitral::math::DVec3;
-use vitral::render::Lines;
+use vitral::render::{Interpolation, Lines};
+use vitral::scene::FreePart;
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection};
 
@@ -50,6 +51,99 @@ fn edges_of_the_nearest_face_are_seen_at_every_size() {
     }
 }
 
+/// A line across the picture at height `y`, in the colours of two corners.
+fn colored_line(y: f32, z: [f32; 2], colors: [[f32; 4]; 2]) -> Mesh {
+    Mesh {
+        positions: vec![[-1.0, y, z[0]], [1.0, y, z[1]]],
+        lines: vec![[0, 1]],
+        colors: Some(vitral::scene::Attribute::per_vertex(colors.to_vec())),
+        ..Mesh::default()
+    }
+}
+
+/// The colours of the row of pixels in the middle of a picture.
+fn middle_row(mut renderer: vitral::Renderer, camera: Camera) -> Vec<[u8; 4]> {
+    renderer.camera = Some(camera);
+    let (width, height) = (renderer.settings.width as usize, renderer.settings.height as usize);
+    colors(&mut renderer)[height / 2 * width..][..width].to_vec()
+}
+
+#[test]
+fn colours_go_over_from_one_end_of_a_line_to_the_other() {
+    let ends = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
+    let row = |mesh: Mesh, perspective, interpolation| {
+        let mut scene = vitral::Scene::default();
+        scene.add_mesh(mesh, vitral::math::DMat4::IDENTITY);
+        let mut renderer = exact(scene, 81, 81);
+        renderer.settings.interpolation = interpolation;
+        middle_row(renderer, camera(4.0, perspective))
+    };
+    // Across the picture of height 3, from pixel 13.5 to 67.5.
+    let flat = row(colored_line(0.0, [0.0; 2], ends), false, Interpolation::Perspective);
+    for (x, pixel) in flat.iter().enumerate().take(66).skip(15) {
+        let t = (x as f32 + 0.5 - 13.5) / 54.0;
+        let near = |seen: u8, expected: f32| (f32::from(seen) - 255.0 * expected).abs() < 4.0;
+        assert!(near(pixel[0], 1.0 - t) && near(pixel[2], t) && pixel[1] == 0, "pixel {x}: {pixel:?}, {t}");
+    }
+    // One end four times as far away: in the middle of the line on the screen a fifth of its length is passed.
+    let mut deep = colored_line(0.0, [2.0, -4.0], ends);
+    (deep.positions[0][0], deep.positions[1][0]) = (-0.4, 1.6);
+    let middle = |interpolation| {
+        let row = row(deep.clone(), true, interpolation);
+        let seen: Vec<usize> = (0..row.len()).filter(|&x| row[x][0] > 0 || row[x][2] > 0).collect();
+        let at = row[(seen[0] + seen[seen.len() - 1]) / 2];
+        f32::from(at[2]) / 255.0
+    };
+    let (space, screen) = (middle(Interpolation::Perspective), middle(Interpolation::Linear));
+    assert!((screen - 0.5).abs() < 0.05 && space < screen - 0.2, "{space} {screen}");
+}
+
+#[test]
+fn lines_of_blended_materials_let_light_through() {
+    let material = |alpha_mode| Material {
+        reflectance: vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        opacity: 0.5,
+        alpha_mode,
+        ..Material::default()
+    };
+    let seen = |alpha_mode, alpha: f32, transparency| {
+        let mut mesh = colored_line(0.0, [0.0; 2], [[1.0, 1.0, 1.0, alpha]; 2]);
+        FreePart::extend(&mut mesh.line_parts, 0..1, Some(0));
+        let mut renderer = exact(one(mesh, material(alpha_mode)), 81, 81);
+        renderer.settings.background = vitral::render::Background::Color { color: [0.2, 0.0, 0.0] };
+        renderer.settings.transparency = transparency;
+        middle_row(renderer, camera(4.0, false))[40]
+    };
+    use vitral::light::AlphaMode;
+    use vitral::render::Transparency;
+    let linear = Transparency::Linear;
+    assert_eq!(seen(AlphaMode::Opaque, 0.5, linear), [255; 4]);
+    assert_eq!(seen(AlphaMode::Blend, 1.0, linear), [153, 128, 128, 255]);
+    assert_eq!(seen(AlphaMode::Blend, 0.5, linear), [102, 64, 64, 255]);
+    assert_eq!(seen(AlphaMode::Blend, 0.5, Transparency::None), [255; 4]);
+    assert_eq!(seen(AlphaMode::Mask { cutoff: 0.4 }, 1.0, linear), [255; 4]);
+    assert_eq!(seen(AlphaMode::Mask { cutoff: 0.6 }, 1.0, linear), [51, 0, 0, 255]);
+}
+
+#[test]
+fn raw_colours_of_lines_and_faces_are_those_of_the_file() {
+    for (from_srgb, byte) in [(true, 188), (false, 128)] {
+        let mut line = colored_line(0.0, [0.0; 2], [[0.5, 0.5, 0.5, 1.0]; 2]);
+        line.colors_from_srgb = from_srgb;
+        let mut face = line.clone();
+        face.positions = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+        face.colors = Some(vitral::scene::Attribute::per_vertex(vec![[0.5, 0.5, 0.5, 1.0]; 3]));
+        (face.triangles, face.lines) = (vec![[0, 1, 2]], Vec::new());
+        face.parts = vec![vitral::scene::Part { name: String::new(), triangles: 0..1, material: None }];
+        let white = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let unlit = Material { reflectance: white, unlit: true, ..Material::default() };
+        for mesh in [line, face] {
+            let row = middle_row(exact(one(mesh, unlit.clone()), 81, 81), camera(4.0, false));
+            assert!(row[40][..3].iter().all(|&c| c.abs_diff(byte) <= 1), "{from_srgb}: {:?}", row[40]);
+        }
+    }
+}
+
 #[test]
 fn flat_models_of_lines_and_points_alone_are_seen() {
     let positions = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
@@ -58,7 +152,9 @@ fn flat_models_of_lines_and_points_alone_are_seen() {
     for perspective in [true, false] {
         for side in [60, 200, 700] {
             for (mesh, least) in [(&lines, side as usize), (&points, 4 * 4)] {
-                let white = Mesh { line_material: Some(0), ..mesh.clone() };
+                let mut white = mesh.clone();
+                FreePart::extend(&mut white.line_parts, 0..white.lines.len(), Some(0));
+                FreePart::extend(&mut white.point_parts, 0..white.points.len(), Some(0));
                 let count = light_pixels(white, Lines::None, (side, 1), camera(5.0, perspective));
                 assert!(count >= least, "{side} pixels: {count} of {least}");
             }

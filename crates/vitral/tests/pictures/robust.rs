@@ -51,6 +51,24 @@ fn a_camera_inside_a_model_sees_it_or_nothing_but_never_fails() {
 }
 
 #[test]
+fn models_of_any_size_fill_the_picture() {
+    let covered = |size: f64, parallel: bool| {
+        let mut scene = Scene::default();
+        scene.add_mesh(solids::cuboid(DVec3::splat(1.0)), DMat4::from_scale(DVec3::splat(size)));
+        let mut renderer = exact(scene, 64, 48);
+        Viewpoint { orthographic: parallel, ..Viewpoint::default() }.apply(&mut renderer, Default::default()).unwrap();
+        renderer.render().unwrap().stats.picture.covered_pixels
+    };
+    for parallel in [false, true] {
+        let usual = covered(1.0, parallel);
+        assert!(usual > 500, "{usual}");
+        for size in [1e-7, 1e-11, 1e-15, 1e9] {
+            assert!(covered(size, parallel).abs_diff(usual) < 20, "{size}: {} {usual}", covered(size, parallel));
+        }
+    }
+}
+
+#[test]
 fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
     let mut mesh = solids::plane(2.0, 2.0, 4, 4);
     mesh.positions[0][0] = f32::NAN;

@@ -54,29 +54,31 @@ fn edges_along_a_clip_plane_are_drawn() {
 }
 
 #[test]
-fn edges_along_the_view_volume_are_drawn() {
-    let mut c = paper(8, 8);
-    c.polygon_mode(gl::FRONT_AND_BACK, gl::LINE);
-    draw(&mut c, gl::TRIANGLES, &[[-8.0, 2.5], [5.5, 2.5], [5.5, 20.0]]);
-    // What is left of it reaches the left and the upper side. A line between two columns or rows belongs to the lower one:
-    // the left side's lies beyond the window.
-    let found = rows(&mut c);
-    assert_eq!(&found[2], "######..");
-    for row in &found[3..7] {
-        assert_eq!(row, ".....#..");
+fn the_view_volume_makes_neither_edges_nor_points() {
+    let picture = |mode: u32| {
+        let mut c = paper(8, 8);
+        c.polygon_mode(gl::FRONT_AND_BACK, mode);
+        draw(&mut c, gl::TRIANGLES, &[[-8.0, 2.5], [5.5, 2.5], [5.5, 20.0]]);
+        rows(&mut c)
+    };
+    // What is left of it reaches the left and the upper side.
+    let upright = ".....#..";
+    assert_eq!(picture(gl::LINE), ["........", "........", "######..", upright, upright, upright, upright, upright]);
+    assert_eq!(
+        picture(gl::POINT),
+        ["........", "........", upright, "........", "........", "........", "........", "........"]
+    );
+    // At the far plane the cut runs across the window, just above the fifth row.
+    for (mode, cut) in [(gl::LINE, ".#....#."), (gl::POINT, "........")] {
+        let mut c = paper(8, 8);
+        c.polygon_mode(gl::FRONT_AND_BACK, mode);
+        c.begin(gl::QUADS);
+        for [x, y, z] in [[1.5, 1.5, 0.5], [6.5, 1.5, 0.5], [6.5, 6.5, -1.6], [1.5, 6.5, -1.6]] {
+            c.vertex_3f(x, y, z);
+        }
+        c.end();
+        assert_eq!(rows(&mut c)[4], cut);
     }
-    assert_eq!(&found[7], "######..");
-    // At the far plane the cut runs across the window.
-    let mut c = paper(8, 8);
-    c.polygon_mode(gl::FRONT_AND_BACK, gl::LINE);
-    c.begin(gl::QUADS);
-    for [x, y, z] in [[1.5, 1.5, 0.5], [6.5, 1.5, 0.5], [6.5, 6.5, -2.0], [1.5, 6.5, -2.0]] {
-        c.vertex_3f(x, y, z);
-    }
-    c.end();
-    let found = rows(&mut c);
-    assert_eq!(&found[4], ".######.");
-    assert_eq!(&found[5], "........");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Polygons in their polygon mode: the edges or corners of what clipping leaves of them, or their interior.
 //!
-//! Edges that clipping makes are boundary edges, and corners that it makes begin edges (OpenGL 1.5, section 2.11).
+//! Edges and corners that planes of the user make are drawn (OpenGL 1.5, section 2.11). Those that the view volume makes are not,
+//! though the section speaks of them, too: nobody else draws them, and half of them would frame the picture.
 
 use super::clipped::Derived;
 use super::lines::Stroke;
@@ -59,7 +60,8 @@ impl Assembler<'_> {
             return self.interior(corners, provoking, back);
         }
         let outline: Vec<Corner> = corners.iter().zip(edges).map(|(&v, &edge)| self.corner(v, edge)).collect();
-        let outline = if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline) };
+        let outline =
+            if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline, usize::from(mode)) };
         let offset = self.outline_offset(largest.1, &outline, usize::from(mode));
         let stroke = Stroke { provoking: self.slot(provoking), back, offset };
         let mut stipple = 0;
@@ -95,11 +97,18 @@ impl Assembler<'_> {
         Corner { clip, user, size, slot: self.slot(vertex), boundary }
     }
 
-    /// The part of an outline that is inside; the edges along the planes are boundary edges.
-    fn cut_outline(&mut self, mut outline: Vec<Corner>) -> Vec<Corner> {
+    /// The part of an outline that is inside, for lines (1) or for its corners alone (0); the edges along planes of the user
+    /// are boundary edges.
+    fn cut_outline(&mut self, mut outline: Vec<Corner>, mode: usize) -> Vec<Corner> {
         for plane in 0..self.cutting_planes() {
             let d: Vec<f32> = outline.iter().map(|c| self.distance(plane, c.clip, |k| c.user[k])).collect();
             if d.iter().all(|&d| d >= 0.0) {
+                continue;
+            }
+            let by_user = plane < self.state.user_planes;
+            if mode == 0 && !by_user {
+                let mut d = d.into_iter();
+                outline.retain(|_| d.next().is_some_and(|d| d >= 0.0));
                 continue;
             }
             let mut kept = Vec::with_capacity(outline.len() + 1);
@@ -109,7 +118,7 @@ impl Assembler<'_> {
                 if d[i] >= 0.0 {
                     kept.push(*corner);
                     if d[j].is_nan() || d[j] < 0.0 {
-                        kept.push(self.on_edge(corner, &outline[j], d[i] / (d[i] - d[j]), true));
+                        kept.push(self.on_edge(corner, &outline[j], d[i] / (d[i] - d[j]), by_user));
                     }
                 } else if d[j] >= 0.0 {
                     kept.push(self.on_edge(&outline[j], corner, d[j] / (d[j] - d[i]), corner.boundary));

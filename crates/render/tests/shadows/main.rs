@@ -7,7 +7,7 @@ mod exact;
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Frame;
-use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material};
+use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
@@ -40,12 +40,22 @@ fn settings(shadows: &str) -> Settings {
 /// Where shadows are looked at from, where that is not what a test is about.
 const VIEWER: DVec4 = DVec4::new(1.7, 5.3, 9.1, 1.0);
 
-/// Asks the algorithm `shadows` about the first of `lights`.
+/// Asks the algorithm `shadows` about red light of the first of `lights`.
 fn with_shadows<R>(
     scene: &Scene,
     lights: &[Light],
     settings: &Settings,
     ask: impl FnOnce(&dyn Fn(Place) -> f32) -> R,
+) -> R {
+    with_colored_shadows(scene, lights, settings, |arriving| ask(&|place| arriving(place)[0]))
+}
+
+/// Asks the algorithm `shadows` about the first of `lights`.
+fn with_colored_shadows<R>(
+    scene: &Scene,
+    lights: &[Light],
+    settings: &Settings,
+    ask: impl FnOnce(&dyn Fn(Place) -> Rgb) -> R,
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
@@ -56,7 +66,7 @@ fn with_shadows<R>(
         let mut part = [[f32::NAN; 3]];
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
         ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part, &mut 0);
-        part[0][0]
+        part[0]
     })
 }
 
@@ -237,6 +247,27 @@ fn transparent_things_take_their_part() {
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
         let opaque = Settings { transparency: vitral_render::Transparency::None, ..filtering };
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
+    }
+}
+
+#[test]
+fn filtered_glass_colours_the_light_that_passes() {
+    let glass =
+        Material { opacity: 0.25, alpha_mode: AlphaMode::Blend, filter: [1.0, 0.5, 0.0], ..Material::default() };
+    let scene = above_floor(solids::plane(2.0, 2.0, 1, 1), glass, dvec3(0.0, 1.0, 0.0));
+    for algorithm in names() {
+        for (transparency, expected) in [
+            (vitral_render::Transparency::Filtered, [0.75, 0.375, 0.0]),
+            (vitral_render::Transparency::Linear, [0.75; 3]),
+        ] {
+            let settings = Settings { transparency, ..settings(algorithm) };
+            for light in [sun(DVec3::NEG_Y), lamp(dvec3(0.0, 4.0, 0.0))] {
+                let part = with_colored_shadows(&scene, &[light], &settings, |arriving| {
+                    arriving(place(dvec3(0.3, 0.0, 0.1), DVec3::Y))
+                });
+                assert_eq!(part, expected, "{algorithm}, {transparency:?}");
+            }
+        }
     }
 }
 

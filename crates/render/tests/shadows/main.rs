@@ -271,6 +271,70 @@ fn filtered_glass_colours_the_light_that_passes() {
     }
 }
 
+/// The inside of a cube of side 10.
+fn hollow() -> Scene {
+    let mut mesh = solids::cuboid(DVec3::splat(10.0));
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    mesh.normals = None;
+    Scene::from_mesh(Mesh { faces: Default::default(), ..mesh })
+}
+
+#[test]
+fn what_a_lamp_is_fixed_to_does_not_hide_it_at_grazing_angles() {
+    let (scene, lamp) = (hollow(), lamp(dvec3(0.3, 5.0, 0.2)));
+    for algorithm in names().filter(|&name| name != "map") {
+        with_shadows(&scene, std::slice::from_ref(&lamp), &settings(algorithm), |arriving| {
+            for i in 0..4000 {
+                let (x, below) = (f64::from(i % 200) * 0.0199 - 1.97, f64::from(i / 200 + 1) * 0.003);
+                let p = dvec3(x, 5.0 - below, -5.0);
+                assert_eq!(arriving(place(p, DVec3::Z)), 1.0, "{algorithm}: {p}");
+            }
+        });
+    }
+}
+
+#[test]
+fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
+    let channels =
+        Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let camera = Camera {
+        position: dvec3(1.1, -0.3, 3.7),
+        focal_point: dvec3(0.4, 5.0, -1.3),
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 1.0 },
+        clip: None,
+    };
+    let mut session = Session::new(Arc::new(hollow())).unwrap();
+    let shot = Shot { camera, lights: &[lamp(dvec3(0.3, 5.0, 0.2))], ambient: [0.0; 3] };
+    let settings = Settings { channels, ..settings("ray") };
+    let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
+    let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
+    let ceiling: Vec<_> = (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
+    assert!(ceiling.len() > 5000, "{}", ceiling.len());
+    let rounding = ceiling.iter().filter(|&&i| (attached.data()[i], cast.data()[i]) != (1.0, 0.0)).count();
+    assert_eq!(rounding, 0, "of {}", ceiling.len());
+}
+
+#[test]
+fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let cast = |algorithm: &str, direction: DVec3| {
+        let (cutoff, position) = (0.15, dvec3(0.0, 5.0, 0.0));
+        let spot = light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
+        let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+        let settings = Settings { channels, shadow_map_size: 512, ..settings(algorithm) };
+        let frame = picture(&scene, &[spot], &settings, &Execution::default());
+        frame.cast_shadow.unwrap().data().iter().filter(|&&part| part > 0.5).count() as f64
+    };
+    let rays = cast("ray", DVec3::NEG_Y);
+    assert!(rays > 50.0, "{rays} pixels of the floor are below the box");
+    for algorithm in names() {
+        assert_eq!(cast(algorithm, DVec3::Y), 0.0, "{algorithm}: it shines away");
+        let found = cast(algorithm, DVec3::NEG_Y);
+        assert!((found / rays - 1.0).abs() < 0.1, "{algorithm}: {found} pixels, by rays {rays}");
+    }
+}
+
 /// Width of the penumbra behind an edge, along a line across it: from where the first light is seen to where all of it is; and
 /// by the slope in its middle.
 fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {

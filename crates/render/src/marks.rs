@@ -71,21 +71,22 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
     let edge_color = encode(edge_color(&settings.background));
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
-        pen.clip_from_model = (view.view.clip_from_world() * instance.world_from_model).as_mat4();
+        let (positions, clip_from_model) = view.session.placed_positions(instance, &view.view.clip_from_world());
+        pen.clip_from_model = clip_from_model;
         if settings.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
-                pen.stroke(edge.ends.map(|i| instance.mesh.positions[i as usize]), id);
+                pen.stroke(edge.ends.map(|i| positions[i as usize]), id);
             }
         }
         let color = |vertex: u32| mark_color(view, instance, vertex);
         for line in &instance.mesh.lines {
             let Some(id) = marks.next(color(line[0])) else { break };
-            pen.stroke(line.map(|i| instance.mesh.positions[i as usize]), id);
+            pen.stroke(line.map(|i| positions[i as usize]), id);
         }
         for &point in &instance.mesh.points {
             let Some(id) = marks.next(color(point)) else { break };
-            pen.dot(instance.mesh.positions[point as usize], id);
+            pen.dot(positions[point as usize], id);
         }
     }
     pen.batch.finish(&view.screen);

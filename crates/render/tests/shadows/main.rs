@@ -335,6 +335,35 @@ fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
     }
 }
 
+#[test]
+fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
+    let far = 1e5;
+    let scene = |from: f32| {
+        let mut scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+        for mesh in &mut scene.meshes {
+            Arc::make_mut(mesh).positions.iter_mut().flatten().for_each(|k| *k += from);
+        }
+        scene
+    };
+    for light in [sun(dvec3(-0.4, -1.0, -0.3)), lamp(dvec3(0.3, 4.0, 1.0))] {
+        let moved = light.transformed(&DMat4::from_translation(DVec3::splat(far)));
+        let maps = Settings { shadow_map_size: 512, ..settings("map") };
+        let lit = |scene: &Scene, light: &Light, at: DVec3| {
+            with_shadows(scene, std::slice::from_ref(light), &maps, |arriving| {
+                let places =
+                    (0..2500).map(|i| dvec3(f64::from(i % 50) * 0.151 - 3.7, 0.0, f64::from(i / 50) * 0.149 - 3.7));
+                let part = |p: DVec3| arriving(Place { facet: 0, ..place(p + at, DVec3::Y) });
+                places.map(part).collect::<Vec<_>>()
+            })
+        };
+        let (near, far) = (lit(&scene(0.0), &light, DVec3::ZERO), lit(&scene(far as f32), &moved, DVec3::splat(far)));
+        // Positions of the box, too, are a whole number of 1/128 there.
+        let different = near.iter().zip(&far).filter(|(a, b)| (**a - **b).abs() > 0.1).count();
+        assert!(different <= 5, "{:?}: {different} of 2500 differ", light.kind);
+        assert!(near.iter().filter(|part| **part == 0.0).count() > 30, "something is in shadow");
+    }
+}
+
 /// Width of the penumbra behind an edge, along a line across it: from where the first light is seen to where all of it is; and
 /// by the slope in its middle.
 fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {

@@ -7,7 +7,7 @@ use vitral_math::{DMat4, DVec3, dvec3};
 use vitral_render::radiosity::enclosure::Enclosure;
 use vitral_render::radiosity::hemicube::Hemicube;
 use vitral_render::radiosity::patch::Trees;
-use vitral_render::radiosity::{Solution, form_factor, gather, progressive};
+use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progressive};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::{Background, ColorSpace, Execution, Global, Session, Settings, Shot, render};
 use vitral_scene::builtin::{self, solids};
@@ -140,6 +140,36 @@ fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     assert!((mean(&few) / mean(&all) - 1.0).abs() < 0.03, "{} {}", mean(&few), mean(&all));
 }
 
+/// A square of side 1 that shines down on another one at distance 1.
+fn parallel_squares() -> Scene {
+    let mut scene = Scene::default();
+    let turned = DMat4::from_rotation_x(std::f64::consts::PI);
+    for (kd, emission, at) in [(0.0, 3.0, DMat4::from_translation(DVec3::Y) * turned), (0.9, 0.0, DMat4::IDENTITY)] {
+        let material = Some(scene.add_material(Material {
+            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [kd; 3], ks: [0.0; 3], shininess: 1.0 },
+            emission: [emission; 3],
+            ..Material::default()
+        }));
+        let mut square = solids::plane(1.0, 1.0, 1, 1);
+        square.parts.iter_mut().for_each(|p| p.material = material);
+        scene.add_mesh(square, at);
+    }
+    scene
+}
+
+#[test]
+fn a_finished_solution_does_without_the_ambient_term() {
+    let open = enclosure(parallel_squares(), 0.2);
+    let solve = |most| progressive::solve(&open, &[hemicube()], 0.01, most, &Execution::default()).unwrap();
+    assert!(solve(4).ambient[0] > 0.0, "light is on its way");
+    let solution = solve(u64::MAX);
+    assert_eq!(solution.ambient, [0.0; 3]);
+    let receiving = || (0..open.elements.len()).filter(|&e| open.elements[e].center.y < 0.0);
+    let arriving: f64 = receiving().map(|e| solution.irradiance[2 * e][0] * open.elements[e].area).sum();
+    let expected = 3.0 * 0.199_824_895_7;
+    assert!((arriving / expected - 1.0).abs() < 0.01, "{arriving}, by the form factor {expected}");
+}
+
 /// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
 /// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
 /// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.
@@ -164,7 +194,7 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
     let hemicubes = [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
-    let progress = progressive::solve(&room, &hemicubes, 0.002, u64::MAX, &execution).unwrap();
+    let progress = progressive::solve(&room, &hemicubes, RESIDUAL, u64::MAX, &execution).unwrap();
     for (wall, expected) in PATH_TRACED.iter().enumerate() {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
         for (e, element) in room.elements.iter().enumerate() {
@@ -235,7 +265,11 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     let shot = |camera| Shot { camera, lights: &lights, ambient: [0.3; 3] };
     let execution = Execution::default();
     let first = render(&mut session, &shot(camera), &settings(), &execution).unwrap();
-    assert!(first.stats.radiosity.shots > 50 && first.stats.radiosity.residual <= 0.01, "{:?}", first.stats.radiosity);
+    assert!(
+        first.stats.radiosity.shots > 50 && first.stats.radiosity.residual <= RESIDUAL,
+        "{:?}",
+        first.stats.radiosity
+    );
     assert!(first.stats.radiosity.elements > first.stats.radiosity.patches, "some patches were cut");
     let other = Camera { position: camera.position + dvec3(0.1, 0.05, 0.0), ..camera };
     let second = render(&mut session, &shot(other), &settings(), &execution).unwrap();

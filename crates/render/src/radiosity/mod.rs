@@ -34,8 +34,8 @@ use vitral_light::Light;
 const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 /// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
-/// The part of the light that may be left.
-pub const RESIDUAL: f64 = 0.01;
+/// The part of the light that may be left: it is missing in the solution, where other errors are some tenths of a percent.
+pub const RESIDUAL: f64 = 0.002;
 /// The part that may be left before elements are cut again.
 const ROUGH: f64 = 0.2;
 /// How often elements are cut again.

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use vitral_exec::Workers;
-use vitral_light::{Light, LightKind, Material, Reflectance};
+use vitral_frame::{Encoding, Plane, Texture};
+use vitral_light::{AlphaMode, Light, LightKind, Material, Reflectance, TextureRef};
 use vitral_math::{DMat4, DVec3, dvec3};
 use vitral_render::radiosity::enclosure::Enclosure;
 use vitral_render::radiosity::hemicube::Hemicube;
@@ -11,7 +12,7 @@ use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progress
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::{Background, ColorSpace, Execution, Global, Session, Settings, Shot, render};
 use vitral_scene::builtin::{self, solids};
-use vitral_scene::{Camera, Mesh, Projection, Scene};
+use vitral_scene::{Attribute, Camera, Mesh, Projection, Scene};
 
 /// The inside of a box of this size, all of one material; `emission` of each wall.
 fn room(size: DVec3, reflectance: f32, emission: [f32; 6]) -> Scene {
@@ -292,6 +293,67 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     assert!(refused.unwrap_err().to_string().contains("other lights"));
     let (elsewhere, _) = look_in(&builtin::scene("scene0").unwrap());
     assert!(elsewhere.load_radiosity(&stored).unwrap_err().to_string().contains("another scene"));
+}
+
+#[test]
+fn stored_solutions_belong_to_textures_colours_and_settings_too() {
+    let textured = |texel: [u8; 4], change: &dyn Fn(&mut Scene)| {
+        let mut scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        scene.textures.push(Arc::new(Texture::new(
+            "wall".to_owned(),
+            Plane::from_rows(1, 1, vec![texel]).unwrap(),
+            Encoding::Srgb,
+        )));
+        scene.materials[0].base_texture = Some(TextureRef::new(0));
+        let mesh = Arc::make_mut(&mut scene.meshes[0]);
+        mesh.uvs = vec![Attribute::per_vertex(vec![[0.5; 2]; mesh.positions.len()])];
+        change(&mut scene);
+        Session::new(Arc::new(scene)).unwrap()
+    };
+    let camera = Camera {
+        position: dvec3(0.1, 0.0, 0.3),
+        focal_point: DVec3::ZERO,
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 0.8 },
+        clip: None,
+    };
+    let settings = Settings { width: 8, height: 8, patch_size: Some(0.8), ..settings() };
+    let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+    let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
+    let red = [255, 0, 0, 255];
+    let mut session = textured(red, &|_| ());
+    picture(&mut session, &settings).unwrap();
+    let stored = session.save_radiosity().unwrap();
+    let refused = |session: &Session| session.load_radiosity(&stored).is_err_and(|e| e.to_string().contains("other"));
+    assert!(refused(&textured([0, 0, 255, 255], &|_| ())), "another texture");
+    let change = |f: &dyn Fn(&mut Mesh)| textured(red, &|scene| f(Arc::make_mut(&mut scene.meshes[0])));
+    assert!(refused(&change(&|m| m.uvs[0].values[3] = [0.0; 2])), "other texture coordinates");
+    let colors = |m: &mut Mesh| m.colors = Some(Attribute::per_vertex(vec![[0.5; 4]; m.positions.len()]));
+    assert!(refused(&change(&colors)), "colours of vertices");
+    assert!(refused(&textured(red, &|scene| scene.materials[2].double_sided = true)), "it shines to both sides");
+    let mut same = textured(red, &|scene| scene.materials[2].ior = 1.7);
+    same.load_radiosity(&stored).unwrap();
+    assert_eq!(picture(&mut same, &settings).unwrap().stats.radiosity.shots, 0);
+    let raw = Settings { color_space: ColorSpace::Raw, ..settings };
+    assert!(picture(&mut same, &raw).unwrap_err().to_string().contains("another color space"));
+}
+
+#[test]
+fn glass_in_radiosity_is_warned_about_once() {
+    let mut scene = builtin::scene("cornell").unwrap();
+    let execution = Execution::default();
+    let warnings = |scene: &Scene| {
+        let (mut session, camera) = look_in(scene);
+        let settings = Settings { width: 8, height: 8, patch_size: Some(2.0), iterations: Some(1), ..settings() };
+        let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+        render(&mut session, &shot, &settings, &execution).unwrap().warnings
+    };
+    assert!(warnings(&scene).is_empty());
+    for material in &mut scene.materials[..2] {
+        (material.alpha_mode, material.opacity) = (AlphaMode::Blend, 0.7);
+    }
+    let warned = warnings(&scene);
+    assert!(warned.len() == 1 && warned[0].contains("radiosity takes glass"), "{warned:?}");
 }
 
 #[test]

@@ -206,7 +206,7 @@ impl packet::Visitor for Passing<'_> {
         if self.limits[lane] < 0.0 || facet == *own || t >= *far {
             return;
         }
-        // Nor does what the light lies in the plane of: at a grazing angle the hit is anywhere before the end.
+        // A facet in whose plane the light lies does not hide it: a ray that grazes it seems to meet it well before its end.
         if turned(&wide(corners), *light, near(*light, triangles.extent)) == 0 {
             return;
         }

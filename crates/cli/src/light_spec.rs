@@ -52,6 +52,7 @@ pub(crate) fn parse(text: &str) -> Result<Light, String> {
         light.shadow = shadow;
     }
     fields.finish()?;
+    light.check()?;
     Ok(light)
 }
 
@@ -119,7 +120,7 @@ impl<'a> Fields<'a> {
         Ok(AreaShape::Disc {
             center: self.need("center", vector)?,
             normal: self.need("normal", direction)?,
-            radius: self.need("radius", positive)?,
+            radius: self.need("radius", not_negative)?,
         })
     }
 
@@ -196,6 +197,7 @@ mod tests {
         let disc = parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0").unwrap();
         assert!(matches!(disc.kind, LightKind::Area { shape: AreaShape::Disc { radius: 2.0, .. } }));
         assert_eq!(disc.specular, [0.5, 0.25, 0.0], "specular follows diffuse");
+        assert!(parse("area:center=0,1,0,normal=0,-1,0,radius=0").is_ok(), "a point that shines to one side");
         let polygon = parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square").unwrap();
         let LightKind::Area { shape: AreaShape::Polygon { corners } } = polygon.kind else { panic!("a polygon") };
         assert_eq!(corners, [DVec3::ZERO, DVec3::X, DVec3::Y]);
@@ -221,6 +223,14 @@ mod tests {
             ("point:position=1,2,3,shadow=maybe", "shadow: `maybe` is not one of on, off"),
             ("point:position=1,2,3,diffuse=-1", "diffuse: intensities of at least 0 are required"),
             ("spot:position=0,0,0,direction=0,0,1,cutoff=91", "cutoff: a half angle from 0 to 90 degrees is required"),
+            (
+                "spot:position=0,0,0,direction=0,0,1,cutoff=0",
+                "cutoff: a half angle above 0, up to 90 degrees, is required",
+            ),
+            ("area:corners=0,5,0,1,5,0,2,5,0", "corners: a polygon with an area is required"),
+            ("area:corners=0,0,0,1,1,0,1,0,0,0,1,0", "corners: the outline must not cross itself"),
+            ("area:corners=0,0,0,1,0,0,1,1,1,0,1,0", "corners: they have to lie in one plane"),
+            ("area:center=0,0,0,normal=0,1,0,radius=-1", "radius: a number of at least 0 is required"),
             ("directional:direction=0,0,0", "direction: a direction of some length is required"),
             ("area:radius=1", "a light of kind `area` needs `center`, `normal`, `radius`, or `corners`"),
         ] {

@@ -392,7 +392,8 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         ),
         (&["--material", "glass.kt=1.5"], "a number from 0 to 1 is required", "kt: 1 - opacity"),
         (&["--material", "glass.opacity=-1"], "a number from 0 to 1 is required", "opacity: 1 opaque"),
-        (&["--material", "glass.ior=0"], "a number from 1 up is required", "ior: index of refraction"),
+        (&["--material", "glass.ior=0"], "a number above 0 is required", "ior: index of refraction"),
+        (&["--material", "glass.filter=1,2,1"], "from 0 to 1", "filter: colour of light that passes"),
         (&["--scatter-samples", "0"], "0 is not in 1..=4096", ""),
     ] {
         let all = [&["render", "builtin:lens", "-o", "a.png"], &SMALL[..], arguments].concat();

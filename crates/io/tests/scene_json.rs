@@ -297,6 +297,30 @@ fn circles_depth_and_floods_are_refused() {
 }
 
 #[test]
+fn lights_that_cannot_shine_are_refused() {
+    for (kind, part) in [
+        (r#""directional","direction":[0,0,0]"#, "direction: a direction of some length is required"),
+        (
+            r#""spot","position":[0,0,0],"direction":[0,1,0],"cutoff":0,"inner":0,"exponent":0"#,
+            "cutoff: a half angle above 0",
+        ),
+        (
+            r#""area","shape":{"shape":"polygon","corners":[[0,5,0],[1,5,0],[2,5,0]]}"#,
+            "corners: a polygon with an area is required",
+        ),
+    ] {
+        let light = format!(r#"{{"kind":{{"type":{kind}}}}}"#);
+        let error = load(&format!(r#"{{"vitral-scene":1,"lights":[{{}},{light}]}}"#)).unwrap_err().to_string();
+        assert!(error.contains("lights[1]") && error.contains(part), "{error}");
+        let error = load(&format!(r#"{{"vitral-scene":1,"nodes":[{{"light":{light}}}]}}"#)).unwrap_err().to_string();
+        assert!(error.contains("nodes[0].light") && error.contains(part), "{error}");
+    }
+    let point = r#"{"shape":"disc","center":[0,1,0],"normal":[0,-1,0],"radius":0}"#;
+    let text = format!(r#"{{"vitral-scene":1,"lights":[{{"kind":{{"type":"area","shape":{point}}}}}]}}"#);
+    assert!(load(&text).is_ok(), "a disc of radius 0 is a point");
+}
+
+#[test]
 fn materials_out_of_range_are_refused() {
     for (property, part) in [
         (r#""opacity":-0.5"#, "materials[1]: `glass`: opacity -0.5: 0 to 1 is required"),

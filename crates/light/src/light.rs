@@ -4,7 +4,7 @@
 
 use crate::Rgb;
 use serde::{Deserialize, Serialize};
-use vitral_math::{DMat3, DMat4, DVec3, func};
+use vitral_math::{DMat3, DMat4, DVec2, DVec3, func};
 
 /// A light source. Positions and directions are in world space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -135,7 +135,97 @@ pub enum Attenuation {
     },
 }
 
+/// Widest half angle of a cone: a right one, as it may be rounded.
+const WIDEST: f64 = std::f64::consts::FRAC_PI_2 + 1e-3;
+/// How far corners of a polygon may lie off its plane, as a part of its size: what a few digits of a file leave.
+const FLAT: f64 = 1e-3;
+/// A polygon whose area is a smaller part of the square round it has none.
+const AREA: f64 = 1e-9;
+/// Outlines of more corners are not searched for crossings, which takes the square of their number.
+const SEARCHED: usize = 1000;
+
+impl AreaShape {
+    /// What is wrong with the shape, for those who read it and can say so.
+    ///
+    /// # Errors
+    /// A sentence on what is required.
+    pub fn check(&self) -> Result<(), &'static str> {
+        match self {
+            Self::Disc { normal, radius, .. } => {
+                normal.try_normalize().ok_or("normal: a direction of some length is required")?;
+                if *radius >= 0.0 { Ok(()) } else { Err("radius: a number of at least 0 is required") }
+            }
+            Self::Polygon { corners } => check_polygon(corners),
+        }
+    }
+}
+
+fn check_polygon(corners: &[DVec3]) -> Result<(), &'static str> {
+    let &[first, _, _, ..] = corners else { return Err("corners: at least three are required") };
+    let from_first: Vec<DVec3> = corners.iter().map(|&c| c - first).collect();
+    let size = from_first.iter().map(|c| c.length()).fold(0.0, f64::max);
+    let twice: DVec3 = from_first.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
+    let flat = |normal: DVec3| from_first.iter().all(|c| c.dot(normal).abs() <= FLAT * size);
+    // Without an area, it may be that parts of an outline that crosses itself cancel each other.
+    let normal = if twice.length() > AREA * size * size { twice.normalize() } else { any_normal(&from_first) };
+    if normal == DVec3::ZERO {
+        return Err("corners: a polygon with an area is required");
+    }
+    if !flat(normal) {
+        return Err("corners: they have to lie in one plane");
+    }
+    let (x, y) = normal.any_orthonormal_pair();
+    let corners: Vec<DVec2> = from_first.iter().map(|c| DVec2::new(c.dot(x), c.dot(y))).collect();
+    if crosses_itself(&corners) {
+        return Err("corners: the outline must not cross itself");
+    }
+    if twice.length() > AREA * size * size { Ok(()) } else { Err("corners: a polygon with an area is required") }
+}
+
+/// The normal of the largest triangle with the first corner, the origin, and a side; zero if all are on one line.
+fn any_normal(corners: &[DVec3]) -> DVec3 {
+    let size = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
+    let crosses = corners.windows(2).map(|pair| pair[0].cross(pair[1]));
+    let largest = crosses.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or(DVec3::ZERO);
+    if largest.length() > AREA * size * size { largest.normalize() } else { DVec3::ZERO }
+}
+
+/// Whether two sides of a polygon cross at a point inside both.
+fn crosses_itself(corners: &[DVec2]) -> bool {
+    let count = corners.len();
+    let side = |i: usize| (corners[i], corners[(i + 1) % count]);
+    let left = |(a, b): (DVec2, DVec2), p: DVec2| (b - a).perp_dot(p - a);
+    let apart = |s: (DVec2, DVec2), t: (DVec2, DVec2)| left(s, t.0) * left(s, t.1) < 0.0;
+    let cross = |i: usize, j: usize| apart(side(i), side(j)) && apart(side(j), side(i));
+    count <= SEARCHED && (0..count).any(|i| (i + 2..count).any(|j| cross(i, j)))
+}
+
 impl Light {
+    /// What keeps the light from shining, or from being what it says, for those who read lights and can say so; in a
+    /// picture, lights that cannot shine are left out.
+    ///
+    /// # Errors
+    /// A sentence on what is required.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let directed = |direction: &DVec3| direction.try_normalize().is_some();
+        match &self.kind {
+            LightKind::Directional { direction } | LightKind::Spot { direction, .. } if !directed(direction) => {
+                return Err("direction: a direction of some length is required");
+            }
+            LightKind::Spot { cutoff, .. } if !(*cutoff > 0.0 && *cutoff <= WIDEST) => {
+                return Err("cutoff: a half angle above 0, up to 90 degrees, is required");
+            }
+            LightKind::Area { shape } => shape.check()?,
+            _ => {}
+        }
+        match self.attenuation {
+            Attenuation::Range { range } if range.is_nan() || range <= 0.0 => {
+                Err("attenuation: a range above 0 is required")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The light after an affine transform: positions as points, directions as vectors, normals as normals.
     #[must_use]
     pub fn transformed(&self, to_from_here: &DMat4) -> Self {
@@ -160,5 +250,62 @@ impl Light {
             }
         };
         Self { kind, ..self.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::dvec3;
+
+    fn polygon(corners: &[[f64; 3]]) -> Result<(), &'static str> {
+        AreaShape::Polygon { corners: corners.iter().map(|&c| DVec3::from_array(c)).collect() }.check()
+    }
+
+    #[test]
+    fn polygons_that_cannot_shine_are_told_apart() {
+        let area = Err("corners: a polygon with an area is required");
+        let crossing = Err("corners: the outline must not cross itself");
+        assert_eq!(polygon(&[[0.0; 3], [1.0, 0.0, 0.0]]), Err("corners: at least three are required"));
+        assert_eq!(polygon(&[[0.0, 5.0, 0.0], [1.0, 5.0, 0.0], [2.0, 5.0, 0.0]]), area, "on a line");
+        assert_eq!(polygon(&[[1.0, 5.0, 3.0]; 3]), area, "all one place");
+        assert_eq!(polygon(&[[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), crossing, "a bow-tie");
+        assert_eq!(polygon(&[[0.0; 3], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), crossing, "with an area");
+        let bent = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 0.0]];
+        assert_eq!(polygon(&bent), Err("corners: they have to lie in one plane"));
+    }
+
+    #[test]
+    fn sound_polygons_may_be_concave_rounded_small_and_have_corners_on_sides() {
+        let l = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        assert_eq!(polygon(&l), Ok(()));
+        let small = l.map(|c| c.map(|x| 1e5 + x * 1e-2));
+        assert_eq!(polygon(&small), Ok(()), "as files have them");
+        assert_eq!(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1e-4, 0.0]]), Ok(()));
+        let rounded = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 1e-4], [0.0, 1.0, 0.0]];
+        assert_eq!(polygon(&rounded), Ok(()));
+    }
+
+    #[test]
+    fn lights_that_cannot_shine_say_why() {
+        let check = |kind: LightKind| Light { kind, ..Light::default() }.check();
+        let spot = |direction, cutoff| {
+            check(LightKind::Spot { position: DVec3::ZERO, direction, cutoff, inner: 0.0, exponent: 0.0 })
+        };
+        let direction = Err("direction: a direction of some length is required");
+        assert_eq!(check(LightKind::Directional { direction: DVec3::ZERO }), direction);
+        assert_eq!(spot(DVec3::ZERO, 0.5), direction);
+        assert_eq!(spot(DVec3::Y, std::f64::consts::FRAC_PI_2), Ok(()));
+        assert_eq!(spot(DVec3::Y, 1.571), Ok(()), "rounded");
+        for cutoff in [0.0, -0.1, 1.6, f64::NAN] {
+            assert!(spot(DVec3::Y, cutoff).is_err_and(|why| why.starts_with("cutoff")), "{cutoff}");
+        }
+        let disc = |normal, radius| {
+            check(LightKind::Area { shape: AreaShape::Disc { center: dvec3(1.0, 2.0, 3.0), normal, radius } })
+        };
+        assert_eq!(disc(DVec3::Y, 0.0), Ok(()), "a point");
+        assert!(disc(DVec3::Y, -1.0).is_err() && disc(DVec3::ZERO, 1.0).is_err());
+        let ranged = |range| Light { attenuation: Attenuation::Range { range }, ..Light::default() }.check();
+        assert_eq!((ranged(1.0), ranged(0.0)), (Ok(()), Err("attenuation: a range above 0 is required")));
     }
 }

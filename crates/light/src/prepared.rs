@@ -19,6 +19,8 @@ const FARTHEST: f32 = 1e18;
 /// A light is in the very place of a point if it is nearer than this part of the point's distance from the origin, squared:
 /// four steps of single precision. What lies between is rounding, which has no direction.
 const SAME_PLACE2: f32 = 1.0 / (1u64 << 42) as f32;
+/// What is left of the rounding of places and normals, each a few times `2^-24`, in a cosine.
+const DIRECTION_ROUNDING: f32 = 1.0 / (1u32 << 20) as f32;
 /// Square of the least distance that the inverse square laws tell apart from zero.
 const LEAST_DISTANCE2: f64 = 1e-18;
 /// Brightest intensity of a channel.
@@ -135,6 +137,19 @@ impl PreparedLight {
                 Incident { l, intensity, ambient_intensity: intensity }
             }
         }
+    }
+
+    /// How wrong the direction from `position` to the light may be, and with it a cosine: what rounding does to both places.
+    pub fn direction_rounding(&self, position: V3<f32>) -> f32 {
+        let at = match &self.source {
+            Source::Everywhere => return 0.0,
+            Source::Infinity(_) => return DIRECTION_ROUNDING,
+            Source::Point(at) | Source::Spot { position: at, .. } => *at,
+            Source::Area(shape) => shape.centroid,
+        };
+        let (at, length) = (V3::splat(position.x, at), |v: V3<f32>| v.dot(v).sqrt());
+        let distance = length(at - position).max(f32::MIN_POSITIVE);
+        DIRECTION_ROUNDING * (1.0 + (length(position) + length(at)) / distance)
     }
 
     /// What a diffuse surface with unit normal `n` at `position` gets of an area light if nothing is in between, where a
@@ -256,6 +271,27 @@ mod tests {
     fn loss(attenuation: Attenuation, d: f32) -> f32 {
         let light = light(LightKind::Point { position: DVec3::ZERO }, attenuation);
         PreparedLight::new(&light, &DMat4::IDENTITY).unwrap().incident(V3::new(0.0, 0.0, -d)).intensity
+    }
+
+    #[test]
+    fn directions_to_near_lights_are_rounded_the_most() {
+        let light = |kind| PreparedLight::new(&light(kind, Attenuation::None), &DMat4::IDENTITY).unwrap();
+        let lamp = light(LightKind::Point { position: dvec3(0.3, 5.0, 0.2) });
+        // Places of a plane that the lamp lies in, turned so that no coordinate is exact.
+        let mut seen = 0;
+        for i in 0..1000u16 {
+            let (a, b) = (f32::from(i % 40) * 0.1 - 2.0, f32::from(i / 40) * 0.1 - 1.0);
+            let (u, n) = (V3::new(0.6f32, 0.48, 0.64), V3::new(0.0f32, 0.8, -0.6));
+            let v = V3::new(-0.8f32, 0.36, 0.48);
+            let p = V3::new(0.3f32, 5.0, 0.2) + u.scale(a) + v.scale(b);
+            let cosine = n.dot(lamp.incident(p).l);
+            assert!(cosine.abs() <= lamp.direction_rounding(p), "{a} {b}: {cosine}");
+            seen += u32::from(cosine != 0.0);
+        }
+        assert!(seen > 100, "{seen} are rounded");
+        let near = lamp.direction_rounding(V3::new(0.3, 5.0, 0.21));
+        let sun = light(LightKind::Directional { direction: DVec3::X });
+        assert!(near > 100.0 * sun.direction_rounding(V3::new(0.3, 5.0, 0.21)) && near < 0.01, "{near}");
     }
 
     #[test]

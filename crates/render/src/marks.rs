@@ -107,11 +107,12 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
     let edge_color = encode(edge_color(&settings.background));
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
-        pen.clip_from_model = (view.view.clip_from_world() * instance.world_from_model).as_mat4();
+        let (positions, clip_from_model) = view.session.placed_positions(instance, &view.view.clip_from_world());
+        pen.clip_from_model = clip_from_model;
         if settings.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
-                pen.stroke(edge.ends.map(|i| instance.mesh.positions[i as usize]), id);
+                pen.stroke(edge.ends.map(|i| positions[i as usize]), id);
             }
         }
         let mesh = &instance.mesh;
@@ -120,7 +121,7 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
             let material = FreePart::material_of(&mesh.line_parts, i);
             let [start, end] = line.map(|vertex| paint.color(material, vertex));
             let Some(id) = marks.next(start) else { break };
-            let Some(drawn) = pen.stroke(line.map(|i| mesh.positions[i as usize]), id) else { continue };
+            let Some(drawn) = pen.stroke(line.map(|i| positions[i as usize]), id) else { continue };
             if start != end {
                 let mark = marks.colors.len() - 1;
                 let gradient = drawn.gradient([start, end], settings.interpolation);
@@ -131,7 +132,7 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
         for (i, &point) in mesh.points.iter().enumerate() {
             let material = FreePart::material_of(&mesh.point_parts, i);
             let Some(id) = marks.next(paint.color(material, point)) else { break };
-            pen.dot(mesh.positions[point as usize], id);
+            pen.dot(positions[point as usize], id);
         }
     }
     pen.batch.finish(&view.screen);

@@ -2,7 +2,8 @@
 
 use crate::global::Whitted;
 use crate::marks;
-use crate::radiosity::{enclosure::direct_lights, solution};
+use crate::radiosity::enclosure::{direct_lights, partly_transparent};
+use crate::radiosity::solution;
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants, TileRows};
 use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
@@ -111,6 +112,10 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
             format!("rays pass straight through the surfaces of material `{name}` that are not closed, whatever its index of refraction")
         }));
+    }
+    if settings.global == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
+        let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
+        warnings.push(glass.to_owned());
     }
     if stats.picture.lost_layers > 0 {
         let allowed = settings.layer_memory >> 20;

@@ -145,8 +145,8 @@ impl<'a> PreparedView<'a> {
         let instance = &self.session.world.instances[self.session.world.instance_of_facet(facet)];
         let mesh = &instance.mesh;
         let triangle = (facet - instance.first_facet) as usize;
-        let corners = mesh.triangles[triangle].map(|i| mesh.positions[i as usize]);
-        let clip_from_model = (self.view.clip_from_world() * instance.world_from_model).as_mat4();
+        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.view.clip_from_world());
+        let corners = mesh.triangles[triangle].map(|i| positions[i as usize]);
         let mut vertices = [ScreenVertex::default(); 3];
         let level = vitral_math::lanes::Level::new();
         vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
@@ -211,6 +211,7 @@ fn draws<'a>(
     solid: impl Fn(bool) -> bool,
 ) -> Vec<(Class, Draw<'a>)> {
     let mesh = &*instance.mesh;
+    let (positions, clip_from_model) = session.placed_positions(instance, clip_from_world);
     let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
     for part in &mesh.parts {
         let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
@@ -224,10 +225,10 @@ fn draws<'a>(
                 Some(i) => &mut draws[i].1,
                 None => {
                     let draw = Draw {
-                        positions: &mesh.positions,
+                        positions,
                         triangles: &mesh.triangles,
                         ranges: Vec::new(),
-                        clip_from_model: (*clip_from_world * instance.world_from_model).as_mat4(),
+                        clip_from_model,
                         first_facet: instance.first_facet,
                         cull_back: solid(class.double_sided) && !class.layered,
                         mirrored: mirrors(&instance.world_from_model),

@@ -18,10 +18,11 @@ use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Frame;
 use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
+use vitral_math::{Aabb, DMat4, Mat4, Vec3};
 use vitral_raster::{Batch, ScreenVertex, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Scene, Solidity, World};
+use vitral_scene::{Instance, Scene, Solidity, World};
 
 /// Who computes, with which instructions, and how much is allowed.
 #[derive(Clone, Debug)]
@@ -124,6 +125,17 @@ struct MeshKnowledge {
     faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
     sides: OnceLock<Vec<Side>>,
+    centred: OnceLock<Vec<[f32; 3]>>,
+}
+
+/// Half sides of its box that a mesh lies away from the origin before its positions are moved there.
+const FAR: f64 = 64.0;
+
+/// The middle of a box far away from the origin, along the axes along which it is; `None` if it is along none.
+fn far_middle(bounds: &Aabb) -> Option<Vec3> {
+    let (middle, half) = (bounds.center(), bounds.size().max_element() * 0.5);
+    let far = middle.to_array().map(|m| if m.abs() > FAR * half { m as f32 } else { 0.0 });
+    (far != [0.0; 3] && middle.is_finite()).then(|| Vec3::from_array(far))
 }
 
 impl MeshKnowledge {
@@ -134,6 +146,7 @@ impl MeshKnowledge {
             self.faces.get().is_some(),
             self.edges.get().is_some(),
             self.sides.get().is_some(),
+            self.centred.get().is_some(),
         ];
         known.into_iter().filter(|known| *known).count()
     }
@@ -206,6 +219,24 @@ impl Session {
     /// The flattened scene.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// An instance's positions as they are brought to clip space, and by which matrix. A mesh far away from the origin of
+    /// its model is moved there first, which costs no digit; single precision would lose some as its products are added up.
+    pub(crate) fn placed_positions<'a>(
+        &'a self,
+        instance: &'a Instance,
+        clip_from_world: &DMat4,
+    ) -> (&'a [[f32; 3]], Mat4) {
+        let clip_from_model = *clip_from_world * instance.world_from_model;
+        let Some(middle) = far_middle(&instance.model_bounds) else {
+            return (&instance.mesh.positions, clip_from_model.as_mat4());
+        };
+        let centred = self.meshes[instance.mesh_index as usize].centred.get_or_init(|| {
+            let middle = middle.to_array();
+            instance.mesh.positions.iter().map(|p| [0, 1, 2].map(|k| p[k] - middle[k])).collect()
+        });
+        (centred, (clip_from_model * DMat4::from_translation(middle.as_dvec3())).as_mat4())
     }
 
     /// Whether a mesh is closed, consistently wound and wound outwards.

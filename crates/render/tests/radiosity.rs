@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 use vitral_exec::Workers;
-use vitral_light::{Light, LightKind, Material, Reflectance};
+use vitral_frame::{Encoding, Plane, Texture};
+use vitral_light::{AlphaMode, Light, LightKind, Material, Reflectance, TextureRef};
 use vitral_math::{DMat4, DVec3, dvec3};
 use vitral_render::radiosity::enclosure::Enclosure;
 use vitral_render::radiosity::hemicube::Hemicube;
 use vitral_render::radiosity::patch::Trees;
-use vitral_render::radiosity::{Solution, form_factor, gather, progressive};
+use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progressive};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::{Background, ColorSpace, Execution, Global, Session, Settings, Shot, render};
 use vitral_scene::builtin::{self, solids};
-use vitral_scene::{Camera, Mesh, Projection, Scene};
+use vitral_scene::{Attribute, Camera, Mesh, Projection, Scene};
 
 /// The inside of a box of this size, all of one material; `emission` of each wall.
 fn room(size: DVec3, reflectance: f32, emission: [f32; 6]) -> Scene {
@@ -140,6 +141,36 @@ fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     assert!((mean(&few) / mean(&all) - 1.0).abs() < 0.03, "{} {}", mean(&few), mean(&all));
 }
 
+/// A square of side 1 that shines down on another one at distance 1.
+fn parallel_squares() -> Scene {
+    let mut scene = Scene::default();
+    let turned = DMat4::from_rotation_x(std::f64::consts::PI);
+    for (kd, emission, at) in [(0.0, 3.0, DMat4::from_translation(DVec3::Y) * turned), (0.9, 0.0, DMat4::IDENTITY)] {
+        let material = Some(scene.add_material(Material {
+            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [kd; 3], ks: [0.0; 3], shininess: 1.0 },
+            emission: [emission; 3],
+            ..Material::default()
+        }));
+        let mut square = solids::plane(1.0, 1.0, 1, 1);
+        square.parts.iter_mut().for_each(|p| p.material = material);
+        scene.add_mesh(square, at);
+    }
+    scene
+}
+
+#[test]
+fn a_finished_solution_does_without_the_ambient_term() {
+    let open = enclosure(parallel_squares(), 0.2);
+    let solve = |most| progressive::solve(&open, &[hemicube()], 0.01, most, &Execution::default()).unwrap();
+    assert!(solve(4).ambient[0] > 0.0, "light is on its way");
+    let solution = solve(u64::MAX);
+    assert_eq!(solution.ambient, [0.0; 3]);
+    let receiving = || (0..open.elements.len()).filter(|&e| open.elements[e].center.y < 0.0);
+    let arriving: f64 = receiving().map(|e| solution.irradiance[2 * e][0] * open.elements[e].area).sum();
+    let expected = 3.0 * 0.199_824_895_7;
+    assert!((arriving / expected - 1.0).abs() < 0.01, "{arriving}, by the form factor {expected}");
+}
+
 /// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
 /// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
 /// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.
@@ -164,7 +195,7 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
     let hemicubes = [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
-    let progress = progressive::solve(&room, &hemicubes, 0.002, u64::MAX, &execution).unwrap();
+    let progress = progressive::solve(&room, &hemicubes, RESIDUAL, u64::MAX, &execution).unwrap();
     for (wall, expected) in PATH_TRACED.iter().enumerate() {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
         for (e, element) in room.elements.iter().enumerate() {
@@ -235,7 +266,11 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     let shot = |camera| Shot { camera, lights: &lights, ambient: [0.3; 3] };
     let execution = Execution::default();
     let first = render(&mut session, &shot(camera), &settings(), &execution).unwrap();
-    assert!(first.stats.radiosity.shots > 50 && first.stats.radiosity.residual <= 0.01, "{:?}", first.stats.radiosity);
+    assert!(
+        first.stats.radiosity.shots > 50 && first.stats.radiosity.residual <= RESIDUAL,
+        "{:?}",
+        first.stats.radiosity
+    );
     assert!(first.stats.radiosity.elements > first.stats.radiosity.patches, "some patches were cut");
     let other = Camera { position: camera.position + dvec3(0.1, 0.05, 0.0), ..camera };
     let second = render(&mut session, &shot(other), &settings(), &execution).unwrap();
@@ -258,6 +293,67 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     assert!(refused.unwrap_err().to_string().contains("other lights"));
     let (elsewhere, _) = look_in(&builtin::scene("scene0").unwrap());
     assert!(elsewhere.load_radiosity(&stored).unwrap_err().to_string().contains("another scene"));
+}
+
+#[test]
+fn stored_solutions_belong_to_textures_colours_and_settings_too() {
+    let textured = |texel: [u8; 4], change: &dyn Fn(&mut Scene)| {
+        let mut scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        scene.textures.push(Arc::new(Texture::new(
+            "wall".to_owned(),
+            Plane::from_rows(1, 1, vec![texel]).unwrap(),
+            Encoding::Srgb,
+        )));
+        scene.materials[0].base_texture = Some(TextureRef::new(0));
+        let mesh = Arc::make_mut(&mut scene.meshes[0]);
+        mesh.uvs = vec![Attribute::per_vertex(vec![[0.5; 2]; mesh.positions.len()])];
+        change(&mut scene);
+        Session::new(Arc::new(scene)).unwrap()
+    };
+    let camera = Camera {
+        position: dvec3(0.1, 0.0, 0.3),
+        focal_point: DVec3::ZERO,
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 0.8 },
+        clip: None,
+    };
+    let settings = Settings { width: 8, height: 8, patch_size: Some(0.8), ..settings() };
+    let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+    let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
+    let red = [255, 0, 0, 255];
+    let mut session = textured(red, &|_| ());
+    picture(&mut session, &settings).unwrap();
+    let stored = session.save_radiosity().unwrap();
+    let refused = |session: &Session| session.load_radiosity(&stored).is_err_and(|e| e.to_string().contains("other"));
+    assert!(refused(&textured([0, 0, 255, 255], &|_| ())), "another texture");
+    let change = |f: &dyn Fn(&mut Mesh)| textured(red, &|scene| f(Arc::make_mut(&mut scene.meshes[0])));
+    assert!(refused(&change(&|m| m.uvs[0].values[3] = [0.0; 2])), "other texture coordinates");
+    let colors = |m: &mut Mesh| m.colors = Some(Attribute::per_vertex(vec![[0.5; 4]; m.positions.len()]));
+    assert!(refused(&change(&colors)), "colours of vertices");
+    assert!(refused(&textured(red, &|scene| scene.materials[2].double_sided = true)), "it shines to both sides");
+    let mut same = textured(red, &|scene| scene.materials[2].ior = 1.7);
+    same.load_radiosity(&stored).unwrap();
+    assert_eq!(picture(&mut same, &settings).unwrap().stats.radiosity.shots, 0);
+    let raw = Settings { color_space: ColorSpace::Raw, ..settings };
+    assert!(picture(&mut same, &raw).unwrap_err().to_string().contains("another color space"));
+}
+
+#[test]
+fn glass_in_radiosity_is_warned_about_once() {
+    let mut scene = builtin::scene("cornell").unwrap();
+    let execution = Execution::default();
+    let warnings = |scene: &Scene| {
+        let (mut session, camera) = look_in(scene);
+        let settings = Settings { width: 8, height: 8, patch_size: Some(2.0), iterations: Some(1), ..settings() };
+        let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+        render(&mut session, &shot, &settings, &execution).unwrap().warnings
+    };
+    assert!(warnings(&scene).is_empty());
+    for material in &mut scene.materials[..2] {
+        (material.alpha_mode, material.opacity) = (AlphaMode::Blend, 0.7);
+    }
+    let warned = warnings(&scene);
+    assert!(warned.len() == 1 && warned[0].contains("radiosity takes glass"), "{warned:?}");
 }
 
 #[test]

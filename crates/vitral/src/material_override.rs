@@ -68,8 +68,8 @@ const PROPERTIES: [(&str, &str, Setter); 21] = [
     ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
     ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
     ("transmission", "transparent, translucent", set_transmission),
-    ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, color(v))),
-    ("ior", "index of refraction, 1 or more", set_ior),
+    ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, filter(v))),
+    ("ior", "index of refraction, above 0", set_ior),
     ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| put(&mut m.mirror, boolean(v))),
     ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
@@ -162,9 +162,12 @@ fn boolean(text: &str) -> Result<bool, Failure> {
     }
 }
 
+/// What is required of a colour.
+const COLOR: &str = "a colour, r,g,b from 0 to 1 or #rrggbb,";
+
 /// One number for all channels, three numbers, or `#rrggbb`.
 fn color(text: &str) -> Result<[f32; 3], Failure> {
-    const REQUIRED: Failure = Failure::Value("a colour, r,g,b from 0 to 1 or #rrggbb,");
+    const REQUIRED: Failure = Failure::Value(COLOR);
     if let Some(hex) = text.strip_prefix('#') {
         let value = u32::from_str_radix(hex, 16).ok().filter(|_| hex.len() == 6).ok_or(REQUIRED)?;
         return Ok([16, 8, 0].map(|shift| linear_from_srgb((value >> shift & 255) as f32 / 255.0)));
@@ -175,6 +178,12 @@ fn color(text: &str) -> Result<[f32; 3], Failure> {
         [r, g, b] if r >= 0.0 && g >= 0.0 && b >= 0.0 => Ok([r, g, b]),
         _ => Err(REQUIRED),
     }
+}
+
+/// A colour of which no channel exceeds 1.
+fn filter(text: &str) -> Result<[f32; 3], Failure> {
+    let color = color(text)?;
+    if color.iter().all(|c| *c <= 1.0) { Ok(color) } else { Err(Failure::Value(COLOR)) }
 }
 
 /// The coefficients of the empirical form: ka, kd, ks, shininess.
@@ -255,7 +264,7 @@ fn set_transmission(material: &mut Material, value: &str) -> Result<(), Failure>
 }
 
 fn set_ior(material: &mut Material, value: &str) -> Result<(), Failure> {
-    let ior = number(value).ok().filter(|n| *n >= 1.0).ok_or(Failure::Value("a number from 1 up"))?;
+    let ior = number(value).ok().filter(|n| *n > 0.0).ok_or(Failure::Value("a number above 0"))?;
     put(&mut material.ior, Ok(ior))
 }
 
@@ -308,7 +317,9 @@ mod tests {
         assert!(hint(&mut scene, "glass.ior=1.5").contains("ball"));
         assert!(hint(&mut scene, "ball.glow=1").contains("shininess"));
         assert!(hint(&mut scene, "ball.metallic=1").contains("ks"));
-        assert!(hint(&mut scene, "ball.ior=0.5").contains("refraction"));
+        assert!(hint(&mut scene, "ball.ior=0").contains("refraction"));
+        assert!(hint(&mut scene, "ball.filter=1,2,1").contains("passes"));
+        change(&mut scene, "ball.ior=0.7").expect("air seen from water");
         assert!(hint(&mut scene, "ball").contains("NAME.PROPERTY=VALUE"));
     }
 

@@ -50,7 +50,7 @@ impl Channel {
         (
             Self::CastShadow,
             "cast-shadow",
-            "share of lights that something hides from a surface that faces them, likewise",
+            "share of lights that something hides from a surface that faces them and that they shine towards, likewise",
         ),
     ];
 

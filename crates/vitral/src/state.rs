@@ -80,6 +80,12 @@ impl State {
             let what = format!("version {} is not known, only {VERSION}", state.vitral);
             return Err(Error::State { file: file.to_owned(), place: "vitral: ".to_owned(), what });
         }
+        for (i, light) in state.lights.iter().flatten().enumerate() {
+            light.check().map_err(|what| {
+                let (file, place) = (file.to_owned(), format!("lights[{i}]: "));
+                Error::State { file, place, what: what.to_owned() }
+            })?;
+        }
         Ok(state)
     }
 
@@ -238,6 +244,8 @@ mod tests {
         assert!(error.starts_with("s.json: line 2, column ") && error.contains("unknown field `widht`"), "{error}");
         assert!(tell("{\"viewpoint\": {\"view\": \"above\"}}").contains("viewpoint.view: there is no view `above`"));
         assert!(tell("{\"vitral\": 2}").contains("version 2"));
+        let dark = "{\"lights\": [{\"kind\": {\"type\": \"directional\", \"direction\": [0, 0, 0]}}]}";
+        assert!(tell(dark).contains("lights[0]: direction: a direction of some length"));
         assert!(tell("{} x").contains("line 1, column 4"));
         assert!(tell("{").contains("line 1"));
     }

@@ -55,6 +55,9 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     let form = form::parse(bytes, file)?;
     let report = Report { file };
     let mut scene = Scene { lights: form.lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
+    for (i, light) in scene.lights.iter().enumerate() {
+        light.check().map_err(|what| report.at(format!("lights[{i}]"), what))?;
+    }
     for (i, camera) in scene.cameras.iter().enumerate() {
         check_camera(camera, &format!("cameras[{i}]"), &report)?;
     }
@@ -239,6 +242,8 @@ fn add_nodes(
     for (i, form) in forms.into_iter().enumerate() {
         let path = format!("nodes[{i}]");
         let transform = transform(&form).map_err(|what| report.at(path.as_str(), what))?;
+        let unlit = form.light.as_ref().and_then(|light| light.check().err());
+        unlit.map_or(Ok(()), |what| Err(report.at(format!("{path}.light"), what)))?;
         let mut node =
             Node { name: form.name, transform, children: form.children, light: form.light, ..Node::default() };
         if let Some(camera) = form.camera {

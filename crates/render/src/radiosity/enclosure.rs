@@ -88,6 +88,11 @@ pub(crate) fn direct_lights(scene: &Scene, lights: &[Light]) -> Vec<Light> {
     direct.collect()
 }
 
+/// Whether a material lets a part of the light pass, for which radiosity knows only all or nothing.
+pub(crate) fn partly_transparent(material: &Material) -> bool {
+    material.alpha_mode == AlphaMode::Blend && material.opacity > 0.0 && material.opacity < 1.0
+}
+
 /// Whether a material's surfaces take part.
 fn takes_part(material: Option<&Material>) -> bool {
     material.is_none_or(|m| m.alpha_mode != AlphaMode::Blend || m.opacity >= 0.5)

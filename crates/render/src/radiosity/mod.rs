@@ -7,7 +7,7 @@
 //! pictures from other cameras only look it up.
 //!
 //! A picture adds what arrives from other surfaces to what the local model says about light sources, with their shadows.
-//! Ambient light, the local models' guess at all this, is left out.
+//! Ambient light, the local models' guess at all this, is left out. Glass counts all or nothing ([`enclosure`]).
 //!
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
@@ -23,19 +23,21 @@ pub mod targets;
 pub use solution::Solution;
 
 use crate::stats::RadiosityCounters;
-use crate::{ColorSpace, Execution, Session, Settings, session};
+use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
+use vitral_scene::Attribute;
 
 /// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
 const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 /// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
-/// The part of the light that may be left.
-pub const RESIDUAL: f64 = 0.01;
+/// The part of the light that may be left: it is missing in the solution, where other errors are some tenths of a percent.
+pub const RESIDUAL: f64 = 0.002;
 /// The part that may be left before elements are cut again.
 const ROUGH: f64 = 0.2;
 /// How often elements are cut again.
@@ -51,6 +53,9 @@ pub(crate) struct Key {
     iterations: Option<u64>,
     lighting: bool,
     color_space: ColorSpace,
+    /// Of these two depends what light sources bring.
+    transparency: Transparency,
+    light_samples: u32,
 }
 
 /// The solution for these lights: the one that was handed in, the one that is known, or a new one, whose making is
@@ -64,7 +69,8 @@ pub(crate) fn solution(
 ) -> Result<Arc<Solution>, crate::Error> {
     if let Some(loaded) = &*session.loaded_radiosity.lock().expect("it is only replaced") {
         if loaded.key() != fingerprint_of(lights, settings) {
-            return Err(crate::Error::Radiosity("the stored radiosity was found for other lights".to_owned()));
+            let found = "the stored radiosity was found for other lights, another color space or transparency";
+            return Err(crate::Error::Radiosity(found.to_owned()));
         }
         return Ok(Arc::clone(loaded));
     }
@@ -74,6 +80,8 @@ pub(crate) fn solution(
         iterations: settings.iterations,
         lighting: settings.lighting,
         color_space: settings.color_space,
+        transparency: settings.transparency,
+        light_samples: settings.light_samples,
     };
     Ok(session::keep_for(&session.radiosity, key, || solve(session, lights, settings, execution, counters))?)
 }
@@ -136,16 +144,28 @@ fn enclosed(
     Enclosure::new(trees, session, lights, settings, execution)
 }
 
-/// A number that tells these lights, and whether they are on, from others, for stored solutions.
+/// A number that tells these lights, whether they are on, and how light is computed with, from others, for stored solutions.
+/// How fine a solution is does not matter.
 fn fingerprint_of(lights: &[Light], settings: &Settings) -> u64 {
-    solution::mix(FINGERPRINT, format!("{lights:?} {}", settings.lighting).as_bytes())
+    let Settings { lighting, color_space, transparency, .. } = settings;
+    solution::mix(FINGERPRINT, format!("{lights:?} {lighting} {color_space:?} {transparency:?}").as_bytes())
 }
 
 /// Where fingerprints start.
 const FINGERPRINT: u64 = 0xcbf2_9ce4_8422_2325;
 
+/// Mixes in what the corners of triangles have.
+fn mix_attributes<const N: usize>(mut hash: u64, attributes: &[Attribute<[f32; N]>]) -> u64 {
+    for attribute in attributes {
+        attribute.values.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
+        let corners = attribute.corners.iter().flatten().flatten();
+        corners.for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
+    }
+    hash
+}
+
 impl Session {
-    /// A number that tells this scene's shapes and materials from others, for stored solutions.
+    /// A number that tells this scene's shapes and what of its materials light depends on from others, for stored solutions.
     fn fingerprint(&self) -> u64 {
         let mut hash = FINGERPRINT;
         for instance in &self.world.instances {
@@ -154,10 +174,25 @@ impl Session {
             let mesh = &instance.mesh;
             mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
             mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
+            hash = mix_attributes(hash, mesh.colors.as_slice());
+            hash = mix_attributes(hash, &mesh.uvs);
+            for part in &mesh.parts {
+                hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
+            }
         }
+        let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
-            let text = format!("{:?} {:?} {:?} {:?}", m.reflectance, m.emission, m.opacity, m.alpha_mode);
-            hash = solution::mix(hash, text.as_bytes());
+            let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);
+            let used = [m.base_texture, m.emission_texture, m.opacity_texture];
+            hash = solution::mix(hash, format!("{surface:?} {used:?}").as_bytes());
+            textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
+        }
+        for texture in textures.iter().filter_map(|&t| self.scene.textures.get(t as usize)) {
+            hash = solution::mix(hash, format!("{:?}", texture.encoding).as_bytes());
+            for level in &texture.levels {
+                hash = solution::mix(hash, format!("{} {}", level.width(), level.height()).as_bytes());
+                hash = solution::mix(hash, level.data().as_flattened());
+            }
         }
         hash
     }

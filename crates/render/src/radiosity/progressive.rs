@@ -3,8 +3,8 @@
 //! Every side of a patch has light that it has received, or sends out by itself, and has not yet sent on. The one with
 //! the most of it stands in the middle of a hemicube, which says what part arrives at each element; each element takes
 //! that, and has so much more to send in turn. After a few patches the picture is near the solution, and it only gets
-//! brighter. The light that is still on its way is guessed as an ambient term, the same everywhere:
-//! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance.
+//! brighter. As long as that goes on, the light that is still on its way is guessed as an ambient term, the same everywhere:
+//! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance. The end does without.
 //!
 //! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
 //! light is added in their order: so the result does not depend on threads. While it is added, those that shoot next look
@@ -40,7 +40,7 @@ const VOLLEY: [usize; 2] = [16, 256];
 pub struct Progress {
     /// Light that arrived at each side of each element from other surfaces, per area.
     pub irradiance: Vec<Color>,
-    /// The guess at what is still on its way, the same everywhere.
+    /// The guess at what is still on its way, the same everywhere; none once little enough is.
     pub ambient: Color,
     /// Shots so far.
     pub shots: u64,
@@ -122,7 +122,10 @@ pub fn solve(
         shooters.iter().zip(seen).for_each(|(&(side, _), seen)| known.keep(side, seen));
         (shooters, seen) = (next, next_seen?);
     }
-    progress.ambient = ambient(enclosure, &unsent);
+    // Nobody guesses at a finished solution: the guess is wrong wherever light does not get.
+    if progress.residual > residual {
+        progress.ambient = ambient(enclosure, &unsent);
+    }
     Ok(progress)
 }
 

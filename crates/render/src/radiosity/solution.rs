@@ -18,7 +18,7 @@ use vitral_light::Rgb;
 use vitral_math::DVec3;
 
 /// First bytes of a stored solution.
-const MAGIC: &[u8; 20] = b"vitral radiosity 3\n\0";
+const MAGIC: &[u8; 20] = b"vitral radiosity 4\n\0";
 /// Elements whose normals are apart by less than 30 degrees are one surface.
 const SAME_SURFACE: f64 = 0.866;
 
@@ -176,6 +176,9 @@ impl Solution {
         }
         let start = start + roots.len();
         let float = |i: usize| f32::from_le_bytes(words[start + i]);
+        if !(0..36 * leaves + 3).all(|i| float(i).is_finite()) {
+            return Err(bad("light that is not a finite number"));
+        }
         let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
         let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
         let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
@@ -260,6 +263,10 @@ mod tests {
         for cut in 0..bytes.len() {
             assert!(Solution::from_bytes(&bytes[..cut], 77).is_err());
         }
+        let mut damaged = bytes.clone();
+        let last = damaged.len() - 4;
+        damaged[last..].copy_from_slice(&f32::NAN.to_le_bytes());
+        assert!(Solution::from_bytes(&damaged, 77).unwrap_err().to_string().contains("finite"));
         let mut circle = bytes.clone();
         circle[MAGIC.len() + 8 + 16] = 0;
         assert!(Solution::from_bytes(&circle, 77).is_err(), "a node that is its own child");

@@ -130,7 +130,8 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 }
 
 /// Attached and cast shadow of eight points, the first the `first` of its group: shares of the lights that have a place
-/// or a direction.
+/// or a direction. Nothing hides a light where it does not shine: beside a spot's cone, behind an area light.
+/// A surface faces away from a light in its plane, wherever rounding puts it.
 #[inline(always)]
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
@@ -162,14 +163,16 @@ fn shares_at(
 ) -> [f32; 2] {
     let (mut attached, mut cast, mut count) = (0.0, 0.0, 0.0);
     for (number, light) in constants.lights.iter().enumerate() {
-        let l = light.incident(position).l;
+        let incident = light.incident(position);
+        let l = incident.l;
         if l.dot(l) == 0.0 {
             continue;
         }
         count += 1.0;
-        if normals.iter().any(|n| n.dot(l) <= 0.0) {
+        let rounding = light.direction_rounding(position);
+        if normals.iter().any(|n| n.dot(l) <= rounding) {
             attached += 1.0;
-        } else {
+        } else if incident.intensity > 0.0 {
             cast += 1.0 - part(number);
         }
     }

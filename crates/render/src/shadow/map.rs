@@ -13,7 +13,7 @@
 //!
 //! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
 //! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its
-//! places. Transparent things are kept as lists at their texels, with the part of the light that passes. In large scenes, one
+//! places. Transparent things are kept as lists at their texels, with the part of each colour of light that passes. In large scenes, one
 //! map may be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as `shadow_cascades` says.
 //!
 //! In:   lights, scene. Out: the part of a light that arrives at a place.
@@ -123,8 +123,8 @@ struct Layer {
     /// Within the tile.
     texel: u32,
     depth: f32,
-    /// The part of light that passes.
-    passing: f32,
+    /// The part of each colour of light that passes.
+    passing: Rgb,
 }
 
 impl ShadowAlgorithm for MapShadows {
@@ -273,8 +273,7 @@ impl Shadows for Prepared {
                 let questions: Vec<_> = places.iter().filter(|p| faces(p)).map(|p| (0, p)).collect();
                 let mut answers = self.answers(light, &[map], &questions).into_iter();
                 for (place, part) in places.iter().zip(parts) {
-                    let lit = if faces(place) { answers.next().unwrap_or(1.0) } else { 0.0 };
-                    *part = [lit; 3];
+                    *part = if faces(place) { answers.next().unwrap_or([1.0; 3]) } else { [0.0; 3] };
                 }
             }
             LightMaps::Places(emitters) => {
@@ -288,7 +287,7 @@ impl Shadows for Prepared {
                     let questions: Vec<_> = asking.map(|(place, _)| (seeing(place), place)).collect();
                     let mut answers = self.answers(light, &maps, &questions).into_iter();
                     for (share, &weight) in shares.iter_mut().zip(&weights) {
-                        share.add(weight, || [answers.next().unwrap_or(1.0); 3]);
+                        share.add(weight, || answers.next().unwrap_or([1.0; 3]));
                     }
                 }
                 for (part, share) in parts.iter_mut().zip(&shares) {
@@ -301,7 +300,7 @@ impl Shadows for Prepared {
 
 impl Prepared {
     /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
-    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
+    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
         match &self.cascades {
             Some(cascades) => cascades.answers(self.level, light, maps, questions),
             None => lookup::answers(self.level, maps, questions),
@@ -312,9 +311,10 @@ impl Prepared {
 impl MapTile {
     /// What the transparent things at a texel let through to this depth.
     #[inline(never)]
-    fn filtered(&self, texel: usize, depth: f64) -> f32 {
+    fn filtered(&self, texel: usize, depth: f64) -> Rgb {
         let first = self.layers.partition_point(|l| (l.texel as usize) < texel);
         let here = self.layers[first..].iter().take_while(|l| l.texel as usize == texel);
-        here.filter(|l| f64::from(l.depth) < depth).map(|l| l.passing).product()
+        let before = here.filter(|l| f64::from(l.depth) < depth);
+        before.fold([1.0; 3], |left, l| [0, 1, 2].map(|k| left[k] * l.passing[k]))
     }
 }

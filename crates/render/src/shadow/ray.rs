@@ -16,6 +16,7 @@
 //! Cost: a ray for each point and light (or cell of an area light), about `O(log n)` each.
 //! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without bending it.
 
+use super::casters::{near, turned, wide};
 use super::occluders::Occluders;
 use super::sources::{Shares, Source, hash};
 use super::{Place, ShadowAlgorithm, Shadows};
@@ -110,6 +111,8 @@ struct Feeler {
     ray: Ray,
     /// Parameter of the light.
     far: f32,
+    /// Where the light is, homogeneous.
+    light: DVec4,
     /// The facet that the ray leaves.
     own: u32,
     /// The number of the place.
@@ -129,7 +132,10 @@ impl Prepared<'_> {
         feelers.clear();
         for (of, (place, way)) in ways.enumerate() {
             match self.feeler(place, way, ends) {
-                Ok((ray, far)) => feelers.push(Feeler { ray, far, own: place.facet, of }),
+                Ok((ray, far)) => {
+                    let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
+                    feelers.push(Feeler { ray, far, light, own: place.facet, of });
+                }
                 Err(part) => parts[of] = part,
             }
         }
@@ -196,8 +202,12 @@ impl packet::Visitor for Passing<'_> {
     fn hit(&mut self, lane: usize, place: usize, t: f32) {
         let triangles = self.prepared.tree.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
-        let Feeler { ray, far, own, .. } = &self.feelers[lane];
+        let Feeler { ray, far, light, own, .. } = &self.feelers[lane];
         if self.limits[lane] < 0.0 || facet == *own || t >= *far {
+            return;
+        }
+        // A facet in whose plane the light lies does not hide it: a ray that grazes it seems to meet it well before its end.
+        if turned(&wide(corners), *light, near(*light, triangles.extent)) == 0 {
             return;
         }
         let point = || (ray.origin + ray.direction * t).as_dvec3();

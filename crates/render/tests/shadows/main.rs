@@ -7,7 +7,7 @@ mod exact;
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Frame;
-use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material};
+use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
@@ -40,12 +40,22 @@ fn settings(shadows: &str) -> Settings {
 /// Where shadows are looked at from, where that is not what a test is about.
 const VIEWER: DVec4 = DVec4::new(1.7, 5.3, 9.1, 1.0);
 
-/// Asks the algorithm `shadows` about the first of `lights`.
+/// Asks the algorithm `shadows` about red light of the first of `lights`.
 fn with_shadows<R>(
     scene: &Scene,
     lights: &[Light],
     settings: &Settings,
     ask: impl FnOnce(&dyn Fn(Place) -> f32) -> R,
+) -> R {
+    with_colored_shadows(scene, lights, settings, |arriving| ask(&|place| arriving(place)[0]))
+}
+
+/// Asks the algorithm `shadows` about the first of `lights`.
+fn with_colored_shadows<R>(
+    scene: &Scene,
+    lights: &[Light],
+    settings: &Settings,
+    ask: impl FnOnce(&dyn Fn(Place) -> Rgb) -> R,
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
@@ -56,7 +66,7 @@ fn with_shadows<R>(
         let mut part = [[f32::NAN; 3]];
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
         ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part, &mut 0);
-        part[0][0]
+        part[0]
     })
 }
 
@@ -237,6 +247,120 @@ fn transparent_things_take_their_part() {
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
         let opaque = Settings { transparency: vitral_render::Transparency::None, ..filtering };
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
+    }
+}
+
+#[test]
+fn filtered_glass_colours_the_light_that_passes() {
+    let glass =
+        Material { opacity: 0.25, alpha_mode: AlphaMode::Blend, filter: [1.0, 0.5, 0.0], ..Material::default() };
+    let scene = above_floor(solids::plane(2.0, 2.0, 1, 1), glass, dvec3(0.0, 1.0, 0.0));
+    for algorithm in names() {
+        for (transparency, expected) in [
+            (vitral_render::Transparency::Filtered, [0.75, 0.375, 0.0]),
+            (vitral_render::Transparency::Linear, [0.75; 3]),
+        ] {
+            let settings = Settings { transparency, ..settings(algorithm) };
+            for light in [sun(DVec3::NEG_Y), lamp(dvec3(0.0, 4.0, 0.0))] {
+                let part = with_colored_shadows(&scene, &[light], &settings, |arriving| {
+                    arriving(place(dvec3(0.3, 0.0, 0.1), DVec3::Y))
+                });
+                assert_eq!(part, expected, "{algorithm}, {transparency:?}");
+            }
+        }
+    }
+}
+
+/// The inside of a cube of side 10.
+fn hollow() -> Scene {
+    let mut mesh = solids::cuboid(DVec3::splat(10.0));
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    mesh.normals = None;
+    Scene::from_mesh(Mesh { faces: Default::default(), ..mesh })
+}
+
+#[test]
+fn what_a_lamp_is_fixed_to_does_not_hide_it_at_grazing_angles() {
+    let (scene, lamp) = (hollow(), lamp(dvec3(0.3, 5.0, 0.2)));
+    for algorithm in names().filter(|&name| name != "map") {
+        with_shadows(&scene, std::slice::from_ref(&lamp), &settings(algorithm), |arriving| {
+            for i in 0..4000 {
+                let (x, below) = (f64::from(i % 200) * 0.0199 - 1.97, f64::from(i / 200 + 1) * 0.003);
+                let p = dvec3(x, 5.0 - below, -5.0);
+                assert_eq!(arriving(place(p, DVec3::Z)), 1.0, "{algorithm}: {p}");
+            }
+        });
+    }
+}
+
+#[test]
+fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
+    let channels =
+        Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let camera = Camera {
+        position: dvec3(1.1, -0.3, 3.7),
+        focal_point: dvec3(0.4, 5.0, -1.3),
+        view_up: DVec3::Y,
+        projection: Projection::Perspective { view_angle: 1.0 },
+        clip: None,
+    };
+    let mut session = Session::new(Arc::new(hollow())).unwrap();
+    let shot = Shot { camera, lights: &[lamp(dvec3(0.3, 5.0, 0.2))], ambient: [0.0; 3] };
+    let settings = Settings { channels, ..settings("ray") };
+    let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
+    let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
+    let ceiling: Vec<_> = (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
+    assert!(ceiling.len() > 5000, "{}", ceiling.len());
+    let rounding = ceiling.iter().filter(|&&i| (attached.data()[i], cast.data()[i]) != (1.0, 0.0)).count();
+    assert_eq!(rounding, 0, "of {}", ceiling.len());
+}
+
+#[test]
+fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
+    let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+    let cast = |algorithm: &str, direction: DVec3| {
+        let (cutoff, position) = (0.15, dvec3(0.0, 5.0, 0.0));
+        let spot = light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
+        let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+        let settings = Settings { channels, shadow_map_size: 512, ..settings(algorithm) };
+        let frame = picture(&scene, &[spot], &settings, &Execution::default());
+        frame.cast_shadow.unwrap().data().iter().filter(|&&part| part > 0.5).count() as f64
+    };
+    let rays = cast("ray", DVec3::NEG_Y);
+    assert!(rays > 50.0, "{rays} pixels of the floor are below the box");
+    for algorithm in names() {
+        assert_eq!(cast(algorithm, DVec3::Y), 0.0, "{algorithm}: it shines away");
+        let found = cast(algorithm, DVec3::NEG_Y);
+        assert!((found / rays - 1.0).abs() < 0.1, "{algorithm}: {found} pixels, by rays {rays}");
+    }
+}
+
+#[test]
+fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
+    let far = 1e5;
+    let scene = |from: f32| {
+        let mut scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+        for mesh in &mut scene.meshes {
+            Arc::make_mut(mesh).positions.iter_mut().flatten().for_each(|k| *k += from);
+        }
+        scene
+    };
+    for light in [sun(dvec3(-0.4, -1.0, -0.3)), lamp(dvec3(0.3, 4.0, 1.0))] {
+        let moved = light.transformed(&DMat4::from_translation(DVec3::splat(far)));
+        let maps = Settings { shadow_map_size: 512, ..settings("map") };
+        let lit = |scene: &Scene, light: &Light, at: DVec3| {
+            with_shadows(scene, std::slice::from_ref(light), &maps, |arriving| {
+                let places =
+                    (0..2500).map(|i| dvec3(f64::from(i % 50) * 0.151 - 3.7, 0.0, f64::from(i / 50) * 0.149 - 3.7));
+                let part = |p: DVec3| arriving(Place { facet: 0, ..place(p + at, DVec3::Y) });
+                places.map(part).collect::<Vec<_>>()
+            })
+        };
+        let (near, far) = (lit(&scene(0.0), &light, DVec3::ZERO), lit(&scene(far as f32), &moved, DVec3::splat(far)));
+        // Positions of the box, too, are a whole number of 1/128 there.
+        let different = near.iter().zip(&far).filter(|(a, b)| (**a - **b).abs() > 0.1).count();
+        assert!(different <= 5, "{:?}: {different} of 2500 differ", light.kind);
+        assert!(near.iter().filter(|part| **part == 0.0).count() > 30, "something is in shadow");
     }
 }
 

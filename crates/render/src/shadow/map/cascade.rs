@@ -23,6 +23,7 @@ use super::{LightMaps, Map, Maps, lookup, slice};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::Place;
 use vitral_exec::Limit;
+use vitral_light::Rgb;
 use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4, func};
 use vitral_scene::{ViewTransform, World};
@@ -76,7 +77,7 @@ impl Cascades {
 
     /// What the maps of a light answer to questions, which of those of the whole scene (`maps`) and about which place; sharper
     /// ones where they hold it.
-    pub(super) fn answers(&self, level: Level, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
+    pub(super) fn answers(&self, level: Level, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
         // The slices' maps are numbered from the end of the others on.
         let slices = &self.maps[light];
         let all: Vec<&Map> = maps.iter().copied().chain(slices.iter().flatten()).collect();
@@ -104,10 +105,12 @@ impl Cascades {
             fades.push(fades_out.then_some(fade.min(1.0) as f32));
         }
         let mut found = lookup::answers(level, &all, &asked).into_iter();
-        let mut next = || found.next().unwrap_or(1.0);
+        let mut next = || found.next().unwrap_or([1.0; 3]);
         let mut blend = |fade: Option<f32>| {
             let here = next();
-            fade.map_or(here, |fade| here + (next() - here) * fade)
+            let Some(fade) = fade else { return here };
+            let there = next();
+            [0, 1, 2].map(|k| here[k] + (there[k] - here[k]) * fade)
         };
         fades.into_iter().map(&mut blend).collect()
     }

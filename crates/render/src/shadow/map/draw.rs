@@ -6,7 +6,6 @@
 //! Much of what the light sees is hidden from the viewer. A tile with opaque things alone is drawn when it is first asked
 //! about; until then the map keeps its triangles.
 
-use super::super::grey;
 use super::super::occluders::Occluders;
 use super::{Layer, Lens, Map, MapTile, Pending};
 use crate::stats::CullCounters;
@@ -15,6 +14,7 @@ use crate::visible::zbuffer::{all_batches, resolve_in_passing, tile_place, touch
 use crate::{Background, Execution, Lines, PreparedView, Session, Settings};
 use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
+use vitral_light::Rgb;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_math::{DVec3, dvec3};
 use vitral_raster::{Batch, LayerList, NO_FACET, NearestDepths, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
@@ -198,7 +198,7 @@ impl DepthSink<'_> {
     }
 
     /// What passes a facet in the middle of a texel.
-    fn passing(&self, facet: u32, texel: [u32; 2], depth: f32) -> f32 {
+    fn passing(&self, facet: u32, texel: [u32; 2], depth: f32) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
@@ -208,8 +208,7 @@ impl DepthSink<'_> {
         });
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
         let world_from_view = self.lens.view_from_world.inverse();
-        // A map knows one number for all colours.
-        grey(self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point)))
+        self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
     }
 }
 

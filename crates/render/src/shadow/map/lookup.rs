@@ -26,8 +26,8 @@ struct Eight {
 }
 
 /// What maps answer to questions: the number of a map, and the place that is asked about, which faces its light.
-pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<f32> {
-    let mut parts = vec![1.0; questions.len()];
+pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
+    let mut parts = vec![[1.0; 3]; questions.len()];
     let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
         own.clear();
@@ -53,14 +53,14 @@ impl Map {
             // The last are asked again to fill up.
             let eight = std::array::from_fn(|lane| &places[asked[lane.min(asked.len() - 1)] as usize]);
             for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
-                parts[question as usize] = [part; 3];
+                parts[question as usize] = part;
             }
         }
     }
 
     /// Answers the questions of these numbers.
     #[inline(always)]
-    fn answer<S: Simd>(&self, simd: S, own: &[u32], questions: &[(usize, &Place)], parts: &mut [f32]) {
+    fn answer<S: Simd>(&self, simd: S, own: &[u32], questions: &[(usize, &Place)], parts: &mut [Rgb]) {
         for asked in own.chunks(LANES) {
             let eight = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)] as usize].1);
             for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
@@ -71,7 +71,7 @@ impl Map {
 
     /// The part of light that arrives at each of eight places that face it.
     #[inline(always)]
-    fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [f32; LANES] {
+    fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [Rgb; LANES] {
         let eight = self.locate(simd, places);
         let mut texels = [[f64::INFINITY; LANES]; 4];
         let (mut told, mut apart) = ([false; LANES], [false; LANES]);
@@ -110,12 +110,12 @@ impl Map {
             }
         }
         let [right, bottom] = [F32x8::from_slice(simd, &shares[0]), F32x8::from_slice(simd, &shares[1])];
-        let mut parts = blended(lit, right, bottom).to_array();
+        let mut parts = blended(lit, right, bottom).to_array().map(|part| [part; 3]);
         for lane in 0..LANES {
             if apart[lane] {
                 let [left, top] = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
                 let depths = std::array::from_fn(|k| eight.depths[k][lane]);
-                parts[lane] = blended(self.four_apart(left, top, depths), shares[0][lane], shares[1][lane]);
+                parts[lane] = self.four_apart([left, top], depths, [shares[0][lane], shares[1][lane]]);
             }
         }
         parts
@@ -222,25 +222,26 @@ impl Map {
 
     /// What passes four texels, across tiles, at the map's border and behind transparent things.
     #[inline(never)]
-    fn four_apart(&self, left: i32, top: i32, depths: [f64; 4]) -> [f32; 4] {
+    fn four_apart(&self, [left, top]: [i32; 2], depths: [f64; 4], [right, bottom]: [f32; 2]) -> Rgb {
         let at = |dx: i32, dy: i32| self.passing_at([left + dx, top + dy], depths[(2 * dy + dx) as usize]);
-        [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
+        let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+        [0, 1, 2].map(|k| blended(four.map(|color| color[k]), right, bottom))
     }
 
     /// What passes one texel to this depth.
-    fn passing_at(&self, [column, row]: [i32; 2], depth: f64) -> f32 {
+    fn passing_at(&self, [column, row]: [i32; 2], depth: f64) -> Rgb {
         let outside = |k: i32, side: u32| k < 0 || k >= side as i32;
         if outside(column, self.lens.width) || outside(row, self.lens.height) {
-            return 1.0;
+            return [1.0; 3];
         }
         let (column, row) = (column as usize, row as usize);
         let tile = self.tile(row / TILE * self.columns + column / TILE);
         let texel = row % TILE * TILE + column % TILE;
         let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
         if f64::from(nearest) < depth {
-            0.0
+            [0.0; 3]
         } else if tile.layers.is_empty() {
-            1.0
+            [1.0; 3]
         } else {
             tile.filtered(texel, depth)
         }

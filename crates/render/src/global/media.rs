@@ -64,6 +64,21 @@ impl Media {
         })
     }
 
+    /// The media round a place, to which a ray from outside of everything came through these crossings. Where rounding has put
+    /// what leaves a body before what enters it, they cancel each other.
+    pub fn around(crossings: impl Iterator<Item = (u32, bool)>) -> Self {
+        let (mut media, mut owed) = (Self::default(), Vec::new());
+        for (material, entering) in crossings {
+            let debt = owed.iter().position(|&m| m == material);
+            match (entering, debt) {
+                (true, Some(debt)) => _ = owed.swap_remove(debt),
+                (false, _) if !media.stack[..usize::from(media.count)].contains(&material) => owed.push(material),
+                _ => media = media.cross(material, entering).then,
+            }
+        }
+        media
+    }
+
     /// The ray leaves a body of `material`. If it never entered it, the viewer is in the body.
     pub fn leave(self, material: u32) -> Border {
         let count = usize::from(self.count);
@@ -119,5 +134,13 @@ mod tests {
         let border = glass.cross_all([(1, false), (1, true)].into_iter()).unwrap();
         assert_eq!((border.before, border.behind, border.then), (Some(1), Some(1), glass));
         assert_eq!(glass.cross_all(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn the_viewer_is_in_what_was_entered_and_not_left() {
+        let media = Media::around([(1, true), (2, true), (3, true), (2, false)].into_iter());
+        assert_eq!(media, Media::default().enter(1).then.enter(3).then);
+        // Of a thin body the far wall comes first.
+        assert_eq!(Media::around([(4, false), (4, true)].into_iter()), Media::default());
     }
 }

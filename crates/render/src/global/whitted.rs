@@ -31,10 +31,11 @@ use super::coincident::{Pile, Piles};
 use super::media::{Border, Media};
 use crate::marks::MarkColors;
 use crate::prepare::mirrors;
+use crate::raytrace::beam::Beam;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
-use crate::raytrace::{Counters, Structure};
+use crate::raytrace::{Counters, Structure, Visitor};
 use crate::shading::hits::Hit;
 use crate::shading::{Bounce, FrameConstants, Lit, Points, shade_hits};
 use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
@@ -53,6 +54,8 @@ use vitral_scene::bodies::Side;
 
 /// A branch whose light counts less is not followed: the steps of a byte are twice as large.
 const LEAST_WEIGHT: f32 = 1.0 / 512.0;
+/// A direction that is in no simple ratio to the axes.
+const ASKEW: Vec3 = Vec3::new(0.531_7, 0.681_9, 0.502_3);
 /// Depths that differ by less may be those of faces that coincide.
 const SAME_DEPTH: f32 = 1.0 / (1 << 18) as f32;
 /// Samples whose trees are followed together.
@@ -63,6 +66,8 @@ pub(crate) struct Whitted<'a> {
     constants: &'a FrameConstants<'a>,
     execution: &'a Execution,
     tree: Arc<Bvh>,
+    /// What the eye is in.
+    surroundings: Media,
     max_depth: u32,
     /// The directions in which each sample sees through the first translucent surface.
     strata: Strata,
@@ -173,10 +178,11 @@ impl<'a> Whitted<'a> {
         let tree = view.session.bvh(execution).inspect_err(|_| execution.budget.release(charged))?;
         let view_from_world = DMat3::from_mat4(view.view.view_from_world);
         let stretch = view.view.clip_from_view.col(1).y;
-        Ok(Self {
+        let mut whitted = Self {
             constants,
             execution,
             tree,
+            surroundings: Media::default(),
             max_depth: settings.max_depth,
             strata: Strata::new(settings.scatter_samples.div_ceil(settings.samples)),
             sky: Sky { stretch, perspective: view.view.perspective },
@@ -186,7 +192,26 @@ impl<'a> Whitted<'a> {
             tiles,
             tiles_done: AtomicU64::new(0),
             outcome: Mutex::new(Ok(TracingCounters::default())),
-        })
+        };
+        whitted.surroundings = whitted.surroundings();
+        Ok(whitted)
+    }
+
+    /// What the eye is in: what a ray to it from afar enters and does not leave. In a parallel view it is far away.
+    fn surroundings(&self) -> Media {
+        let (eye, perspective) = self.constants.view.eye();
+        let eye = (eye - self.tree.triangles().center).as_vec3();
+        if !perspective || eye.abs().max_element() > self.tree.triangles().extent {
+            return Media::default();
+        }
+        // Backwards, in a direction that no model has edges in.
+        let ray = Ray::new(eye, ASKEW);
+        let mut hits = Hits { tree: &self.tree, ray: &ray, hits: Vec::new() };
+        self.tree.traverse(&Beam::around(&ray, self.tree.triangles().extent), &mut hits);
+        hits.hits.sort_unstable_by(|a, b| b.partial_cmp(a).expect("parameters are numbers"));
+        let towards = -ASKEW.as_dvec3();
+        let crossing = |&(_, facet): &(f32, u32)| self.crossing(facet, self.seen(towards, facet).1);
+        Media::around(hits.hits.iter().filter_map(crossing))
     }
 
     /// What was done, or why it ended early.
@@ -237,7 +262,7 @@ impl<'a> Whitted<'a> {
                     origin: position - direction * travelled,
                     direction,
                     own: u32::MAX,
-                    media: Media::default(),
+                    media: self.surroundings,
                     pile: touches.then(pile).flatten(),
                     layer: 1,
                     depth: 0,
@@ -607,6 +632,29 @@ impl<'a> Whitted<'a> {
             None => self.sky.row(self.view_from_world * ray.direction, rows.len()),
         };
         rows[row.min(rows.len() - 1)]
+    }
+}
+
+/// Collects all hits of a ray: parameters and facets.
+struct Hits<'a> {
+    tree: &'a Bvh,
+    ray: &'a Ray,
+    hits: Vec<(f32, u32)>,
+}
+
+impl Visitor for Hits<'_> {
+    fn skips(&self, _: usize, _: f32) -> bool {
+        false
+    }
+
+    fn done(&self, _: f32) -> bool {
+        false
+    }
+
+    fn triangle(&mut self, place: usize) {
+        let triangles = self.tree.triangles();
+        let hit = self.ray.hit(&triangles.corners[place]);
+        self.hits.extend(hit.map(|t| (t, triangles.facets[place])));
     }
 }
 

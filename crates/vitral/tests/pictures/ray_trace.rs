@@ -400,3 +400,28 @@ fn limits_stop_the_rays() {
     (r.lights, r.execution_mut().budget) = (Some(vec![light]), r.execution().budget.renewed().with_time_limit(None));
     assert!(r.render().is_ok());
 }
+
+#[test]
+fn the_eye_is_in_what_stands_round_it() {
+    // In a tank of water, a ball of water is not seen: nothing bends light.
+    let picture = |ball: f32, inside: bool| {
+        let mut scene = Scene::default();
+        for k in 0..8 {
+            let center = DVec3::new(-3.5 + k as f64, 0.0, -4.0);
+            cuboid(&mut scene, DVec3::new(0.5, 8.0, 0.1), center, poster([1.0, 0.1 * k as f32, 0.1]));
+        }
+        if inside {
+            cuboid(&mut scene, DVec3::splat(11.0), DVec3::ZERO, glass(1.0, 1.33));
+        }
+        add(&mut scene, solids::sphere(1.0, 48, 24), glass(1.0, ball), DMat4::IDENTITY);
+        let mut r = traced(exact(scene, 80, 60));
+        r.camera = Some(on_z(4.0, 0.9));
+        colors(&mut r)
+    };
+    let seen = |a: &[[u8; 4]], b: &[[u8; 4]]| differing(a, b, 1);
+    let straight = picture(1.0, false);
+    assert!(seen(&picture(1.33, false), &straight) > 300, "in air the ball bends what is behind it");
+    let found = seen(&picture(1.33, true), &straight);
+    assert!(found <= 4, "in water it does not: {found}");
+    assert!(seen(&picture(1.001, true), &straight) > 300, "a bubble does");
+}

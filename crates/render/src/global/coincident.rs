@@ -17,7 +17,7 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::{Structure, Visitor};
 use crate::shadow::clearance;
 use std::ops::Range;
-use vitral_math::{DVec3, Vec3};
+use vitral_math::DVec3;
 
 /// Cosine of the largest angle between surfaces that go together.
 const PARALLEL: f64 = 0.99;
@@ -52,7 +52,7 @@ impl Piles {
     pub(super) fn add(
         &mut self,
         tree: &Bvh,
-        (facet, corners): (u32, &[Vec3; 3]),
+        (facet, corners): (u32, [DVec3; 3]),
         (position, normal): (DVec3, DVec3),
         is_first: bool,
     ) -> Option<u32> {
@@ -61,7 +61,6 @@ impl Piles {
         let height = clearance(position, extent);
 
         // Look from above, a little within the facet.
-        let corners = corners.map(|c| c.as_dvec3());
         let inner = (0..3).fold(DVec3::ZERO, |sum, k| sum + corners[k] * WITHIN[k]);
         let way = inner - position;
         let share = (4.0 * height / way.length()).min(0.5);

@@ -255,7 +255,7 @@ impl<'a> Whitted<'a> {
                 let (direction, travelled) = self.eye_ray(position);
                 let (corners, from_behind) = self.seen(direction, number);
                 let touches = front.touching.binary_search(&number).is_ok();
-                let pile = || self.pile_at(&mut forest.piles, (number, &corners), position, direction, true);
+                let pile = || self.pile_at(&mut forest.piles, (number, corners), position, direction, true);
                 let eye_ray = Branch {
                     target,
                     weight: [1.0; 4],
@@ -327,8 +327,9 @@ impl<'a> Whitted<'a> {
                 };
                 let position = ray.origin + ray.direction * f64::from(t);
                 let (triangles, mut place) = (self.tree.triangles(), place);
-                let facet = (triangles.facets[place], &triangles.corners[place]);
-                let pile = || self.pile_at(piles, facet, position, ray.direction, false);
+                let facet = triangles.facets[place];
+                let corners = || triangles.corners[place].map(|c| c.as_dvec3());
+                let pile = || self.pile_at(piles, (facet, corners()), position, ray.direction, false);
                 let pile = crowded.then(pile).flatten();
                 if let Some(pile) = pile {
                     place = piles.get(pile).1[0] as usize;
@@ -374,12 +375,13 @@ impl<'a> Whitted<'a> {
 
     /// The corners of a facet, and whether a ray in this direction comes from the side from which they run clockwise, in the
     /// world.
-    fn seen(&self, direction: DVec3, number: u32) -> ([Vec3; 3], bool) {
+    #[inline]
+    fn seen(&self, direction: DVec3, number: u32) -> ([DVec3; 3], bool) {
         let world = &self.constants.view.session.world;
         let instance = &world.instances[world.instance_of_facet(number)];
         let (corners, outward) = facet(instance, number - instance.first_facet, self.tree.triangles().center);
         let from_behind = (outward.dot(direction) > 0.0) != mirrors(&instance.world_from_model);
-        (corners.map(|c| c.as_vec3()), from_behind)
+        (corners, from_behind)
     }
 
     /// The pile that a ray in this direction meets at a position on a facet, see [`Piles::add`].
@@ -387,12 +389,12 @@ impl<'a> Whitted<'a> {
     fn pile_at(
         &self,
         piles: &mut Piles,
-        (number, corners): (u32, &[Vec3; 3]),
+        (number, corners): (u32, [DVec3; 3]),
         position: DVec3,
         direction: DVec3,
         is_first: bool,
     ) -> Option<u32> {
-        let [a, b, c] = corners.map(|c| c.as_dvec3());
+        let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
         piles.add(&self.tree, (number, corners), (position, normal), is_first)
@@ -611,6 +613,7 @@ impl<'a> Whitted<'a> {
     }
 
     /// The material of the body that a ray enters (or leaves) where it meets a facet, if it is the skin of one.
+    #[inline]
     fn crossing(&self, number: u32, from_behind: bool) -> Option<(u32, bool)> {
         let session = self.constants.view.session;
         let instance = &session.world.instances[session.world.instance_of_facet(number)];

@@ -220,7 +220,7 @@ fn coincident_panes_are_layers_in_the_order_of_the_scene() {
 #[test]
 fn what_glass_touches_is_seen_through_it() {
     // Two boxes on the floor that share a wall, and one on top of both. Or they are `apart`: what is met first at one place, as it
-    // comes first in the scene, is moved towards the viewer.
+    // comes first in the scene, stands before the other.
     let scene = |ior: f32, turn: f64, apart: f64| {
         let mut scene = Scene::default();
         let mut stand = |min: [f64; 3], max: [f64; 3], material| {
@@ -238,10 +238,10 @@ fn what_glass_touches_is_seen_through_it() {
         r
     };
     for turn in [0.0, 0.37] {
-        // Where nothing bends, rays find the layers of the picture.
-        let expected = colors(&mut scene(1.0, turn, 1e-4));
+        // Where nothing bends, rays find the layers of the picture, but for where the boxes' outlines are moved.
+        let expected = colors(&mut scene(1.0, turn, 1e-3));
         let found = differing(&colors(&mut traced(scene(1.0, turn, 0.0))), &expected, 1);
-        assert!(found <= 20, "turned by {turn}: {found}");
+        assert!(found <= 40, "turned by {turn}: {found}");
         // Where light bends, no background shines through the floor.
         let background = |p: &&[u8; 4]| p[0] > 150 && p[1] < 60 && p[2] > 150;
         let visible = |r: Renderer| colors(&mut traced(r)).iter().filter(background).count();

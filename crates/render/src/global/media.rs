@@ -87,6 +87,8 @@ impl Media {
         };
         let mut then = self;
         then.stack.copy_within(at + 1..count, at);
+        // Equal stacks are equal bytes.
+        then.stack[count - 1] = 0;
         then.count -= 1;
         Border { before: self.innermost(), behind: then.innermost(), then }
     }

@@ -47,6 +47,38 @@ impl Media {
         Border { before: self.innermost(), behind: Some(material), then }
     }
 
+    /// The ray enters or leaves a body of `material`.
+    pub fn cross(self, material: u32, entering: bool) -> Border {
+        if entering { self.enter(material) } else { self.leave(material) }
+    }
+
+    /// The ray enters and leaves several bodies at one place, in any order; `None` if there are none. It enters first: so a body
+    /// without thickness, or another of the same material behind, leaves nothing.
+    pub fn cross_all(self, crossings: impl Iterator<Item = (u32, bool)> + Clone) -> Option<Border> {
+        let entered = crossings.clone().filter(|(_, entering)| *entering);
+        let left = crossings.filter(|(_, entering)| !entering);
+        entered.chain(left).fold(None, |border: Option<Border>, (material, entering)| {
+            let media = border.map_or(self, |b| b.then);
+            let Border { before, behind, then } = media.cross(material, entering);
+            Some(Border { before: border.map_or(before, |b| b.before), behind, then })
+        })
+    }
+
+    /// The media round a place, to which a ray from outside of everything came through these crossings. Where rounding has put
+    /// what leaves a body before what enters it, they cancel each other.
+    pub fn around(crossings: impl Iterator<Item = (u32, bool)>) -> Self {
+        let (mut media, mut owed) = (Self::default(), Vec::new());
+        for (material, entering) in crossings {
+            let debt = owed.iter().position(|&m| m == material);
+            match (entering, debt) {
+                (true, Some(debt)) => _ = owed.swap_remove(debt),
+                (false, _) if !media.stack[..usize::from(media.count)].contains(&material) => owed.push(material),
+                _ => media = media.cross(material, entering).then,
+            }
+        }
+        media
+    }
+
     /// The ray leaves a body of `material`. If it never entered it, the viewer is in the body.
     pub fn leave(self, material: u32) -> Border {
         let count = usize::from(self.count);
@@ -55,6 +87,8 @@ impl Media {
         };
         let mut then = self;
         then.stack.copy_within(at + 1..count, at);
+        // Equal stacks are equal bytes.
+        then.stack[count - 1] = 0;
         then.count -= 1;
         Border { before: self.innermost(), behind: then.innermost(), then }
     }
@@ -86,5 +120,29 @@ mod tests {
         assert_eq!(Media::default().leave(3), Border { before: Some(3), behind: None, then: Media::default() });
         let deep = (0..20).fold(Media::default(), |media, m| media.enter(m).then);
         assert_eq!((deep.innermost(), deep.leave(19).behind), (Some(19), Some(18)));
+    }
+
+    #[test]
+    fn what_is_crossed_at_one_place_is_one_border() {
+        let glass = Media::default().enter(1).then;
+        // From glass to water, in either order.
+        for crossings in [[(1, false), (2, true)], [(2, true), (1, false)]] {
+            let border = glass.cross_all(crossings.into_iter()).unwrap();
+            assert_eq!((border.before, border.behind), (Some(1), Some(2)));
+            assert_eq!(border.then, Media::default().enter(2).then);
+        }
+        // A body without thickness, and another block of the same glass.
+        assert_eq!(Media::default().cross_all([(1, false), (1, true)].into_iter()).unwrap().then, Media::default());
+        let border = glass.cross_all([(1, false), (1, true)].into_iter()).unwrap();
+        assert_eq!((border.before, border.behind, border.then), (Some(1), Some(1), glass));
+        assert_eq!(glass.cross_all(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn the_viewer_is_in_what_was_entered_and_not_left() {
+        let media = Media::around([(1, true), (2, true), (3, true), (2, false)].into_iter());
+        assert_eq!(media, Media::default().enter(1).then.enter(3).then);
+        // Of a thin body the far wall comes first.
+        assert_eq!(Media::around([(4, false), (4, true)].into_iter()), Media::default());
     }
 }

@@ -4,6 +4,7 @@
 //! rays on where they are mirrored and bent. They take what a visibility algorithm found and add to how it is coloured,
 //! so each works with every visibility algorithm and every local model. [`crate::registry::GLOBALS`] lists them.
 
+mod coincident;
 pub mod media;
 pub(crate) mod whitted;
 

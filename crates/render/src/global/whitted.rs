@@ -14,6 +14,9 @@
 //! A translucent surface scatters what passes it: the ray goes on as many, in directions round that of clear glass; those
 //! are scattered in one direction each where they meet another such surface.
 //!
+//! Faces that coincide are met one after the other (see `coincident`), and are one border between media: light bends behind the
+//! last of them.
+//!
 //! The first generation comes from the visibility algorithm: it knows what each sample sees first. Only samples on mirrors
 //! and on transparent surfaces are followed, each with a ray of its own (stratified, as samples are); all others are shaded
 //! as without ray tracing, byte for byte.
@@ -24,13 +27,15 @@
 //! \[Cook, Porter & Carpenter 1984\]. Departs from them: opacity says what is transmitted, the
 //! material's flag `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
 
+use super::coincident::{Pile, Piles};
 use super::media::{Border, Media};
 use crate::marks::MarkColors;
 use crate::prepare::mirrors;
+use crate::raytrace::beam::Beam;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
-use crate::raytrace::{Counters, Structure};
+use crate::raytrace::{Counters, Structure, Visitor};
 use crate::shading::hits::Hit;
 use crate::shading::{Bounce, FrameConstants, Lit, Points, shade_hits};
 use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
@@ -49,6 +54,10 @@ use vitral_scene::bodies::Side;
 
 /// A branch whose light counts less is not followed: the steps of a byte are twice as large.
 const LEAST_WEIGHT: f32 = 1.0 / 512.0;
+/// A direction that is in no simple ratio to the axes.
+const ASKEW: Vec3 = Vec3::new(0.531_7, 0.681_9, 0.502_3);
+/// Depths that differ by less may be those of faces that coincide.
+const SAME_DEPTH: f32 = 1.0 / (1 << 18) as f32;
 /// Samples whose trees are followed together.
 const TOGETHER: usize = 2048;
 
@@ -57,6 +66,8 @@ pub(crate) struct Whitted<'a> {
     constants: &'a FrameConstants<'a>,
     execution: &'a Execution,
     tree: Arc<Bvh>,
+    /// What the eye is in.
+    surroundings: Media,
     max_depth: u32,
     /// The directions in which each sample sees through the first translucent surface.
     strata: Strata,
@@ -85,6 +96,9 @@ struct Branch {
     /// The facet that it leaves.
     own: u32,
     media: Media,
+    /// The pile in which it is, and the next of its triangles: the ray meets that without looking for it.
+    pile: Option<u32>,
+    layer: u32,
     /// Turns that it took.
     depth: u32,
     /// It is one of many that a translucent surface scattered.
@@ -106,11 +120,42 @@ struct Met<'a> {
     from_behind: bool,
 }
 
+/// Rays of one generation.
+#[derive(Default)]
+struct Rays {
+    /// Those that look for what they meet.
+    free: Vec<Branch>,
+    /// Those within a pile.
+    piled: Vec<Branch>,
+}
+
+impl Rays {
+    fn is_empty(&self) -> bool {
+        self.free.is_empty() && self.piled.is_empty()
+    }
+
+    fn clear(&mut self) {
+        self.free.clear();
+        self.piled.clear();
+    }
+}
+
+/// The first surfaces of a tile.
+pub(crate) struct Front {
+    /// Them, transparent or not.
+    pub(crate) tile: Tile,
+    /// Lines and points in front of them.
+    pub(crate) marked: Vec<Layer>,
+    /// Facets, in order, at some samples of which another is as deep.
+    touching: Vec<u32>,
+}
+
 /// Memory of one tile's work, used again for the next.
 #[derive(Default)]
 pub(crate) struct Forest {
-    rays: Vec<Branch>,
-    next: Vec<Branch>,
+    rays: Rays,
+    next: Rays,
+    piles: Piles,
     /// Rays that hit, and whether they came from behind the facet.
     hitting: Vec<(Branch, bool)>,
     hits: Vec<Hit>,
@@ -133,10 +178,11 @@ impl<'a> Whitted<'a> {
         let tree = view.session.bvh(execution).inspect_err(|_| execution.budget.release(charged))?;
         let view_from_world = DMat3::from_mat4(view.view.view_from_world);
         let stretch = view.view.clip_from_view.col(1).y;
-        Ok(Self {
+        let mut whitted = Self {
             constants,
             execution,
             tree,
+            surroundings: Media::default(),
             max_depth: settings.max_depth,
             strata: Strata::new(settings.scatter_samples.div_ceil(settings.samples)),
             sky: Sky { stretch, perspective: view.view.perspective },
@@ -146,7 +192,26 @@ impl<'a> Whitted<'a> {
             tiles,
             tiles_done: AtomicU64::new(0),
             outcome: Mutex::new(Ok(TracingCounters::default())),
-        })
+        };
+        whitted.surroundings = whitted.surroundings();
+        Ok(whitted)
+    }
+
+    /// What the eye is in: what a ray to it from afar enters and does not leave. In a parallel view it is far away.
+    fn surroundings(&self) -> Media {
+        let (eye, perspective) = self.constants.view.eye();
+        let eye = (eye - self.tree.triangles().center).as_vec3();
+        if !perspective || eye.abs().max_element() > self.tree.triangles().extent {
+            return Media::default();
+        }
+        // Backwards, in a direction that no model has edges in.
+        let ray = Ray::new(eye, ASKEW);
+        let mut hits = Hits { tree: &self.tree, ray: &ray, hits: Vec::new() };
+        self.tree.traverse(&Beam::around(&ray, self.tree.triangles().extent), &mut hits);
+        hits.hits.sort_unstable_by(|a, b| b.partial_cmp(a).expect("parameters are numbers"));
+        let towards = -ASKEW.as_dvec3();
+        let crossing = |&(_, facet): &(f32, u32)| self.crossing(facet, self.seen(towards, facet).1);
+        Media::around(hits.hits.iter().filter_map(crossing))
     }
 
     /// What was done, or why it ended early.
@@ -155,12 +220,14 @@ impl<'a> Whitted<'a> {
         self.outcome.into_inner().expect("no thread panics while it counts")
     }
 
-    /// The tile with the first surface at each sample, transparent or not, and the lines and points in front of it. What
-    /// lies behind is for rays to find.
-    pub(crate) fn frontmost(&self, tile: &Tile, layers: &[Layer], marks: &MarkColors) -> (Tile, Vec<Layer>) {
-        let mut front = tile.clone();
+    /// The first surface at each sample of a tile. What lies behind is for rays to find.
+    pub(crate) fn frontmost(&self, tile: &Tile, layers: &[Layer], marks: &MarkColors) -> Front {
+        let (mut front, mut touching) = (tile.clone(), Vec::new());
         for layer in layers.iter().filter(|l| marks.index(l.facet).is_none()) {
             let (at, candidate) = (layer.at as usize, (layer.depth, layer.facet));
+            if (layer.depth - front.depth[at]).abs() < SAME_DEPTH {
+                touching.extend([layer.facet, front.facet[at]]);
+            }
             if nearer(candidate, (front.depth[at], front.facet[at])) {
                 (front.depth[at], front.facet[at]) = candidate;
                 front.touched = true;
@@ -171,34 +238,42 @@ impl<'a> Whitted<'a> {
             marks.index(l.facet).is_some() && nearer((l.depth, l.facet), (front.depth[at], front.facet[at]))
         };
         let marked = layers.iter().filter(before).copied().collect();
-        (front, marked)
+        touching.sort_unstable();
+        touching.dedup();
+        Front { tile: front, marked, touching }
     }
 
     /// Adds to the points of a tile what mirrors and glass show there.
-    pub(crate) fn follow(&self, points: &Points, lit: &mut Lit, forest: &mut Forest) {
+    pub(crate) fn follow(&self, front: &Front, points: &Points, lit: &mut Lit, forest: &mut Forest) {
         let mut counters = TracingCounters { shadow_rays: lit.shadow_rays, ..TracingCounters::default() };
         for together in points.followed.chunks(TOGETHER) {
             forest.rays.clear();
+            forest.piles.clear();
             for &target in together {
                 let bounce = lit.bounces[target as usize];
-                let (direction, travelled) = self.eye_ray(bounce.place.position);
+                let Place { position, facet: number, .. } = bounce.place;
+                let (direction, travelled) = self.eye_ray(position);
+                let (corners, from_behind) = self.seen(direction, number);
+                let touches = front.touching.binary_search(&number).is_ok();
+                let pile = || self.pile_at(&mut forest.piles, (number, corners), position, direction, true);
                 let eye_ray = Branch {
                     target,
                     weight: [1.0; 4],
-                    origin: bounce.place.position,
+                    origin: position - direction * travelled,
                     direction,
                     own: u32::MAX,
-                    media: Media::default(),
+                    media: self.surroundings,
+                    pile: touches.then(pile).flatten(),
+                    layer: 1,
                     depth: 0,
                     scattered: false,
                     least: LEAST_WEIGHT,
-                    travelled,
+                    travelled: 0.0,
                     row: Some(points.place[target as usize][1] as u32),
                     seed: bounce.place.seed,
                 };
-                let met =
-                    Met { lit, at: target as usize, from_behind: self.comes_from_behind(&eye_ray, bounce.place.facet) };
-                self.branch(&eye_ray, travelled, &met, &mut forest.rays, &mut counters);
+                let met = Met { lit, at: target as usize, from_behind };
+                self.branch(&eye_ray, travelled, &met, &forest.piles, &mut forest.rays, &mut counters);
             }
             while !forest.rays.is_empty() {
                 if !self.may_go_on() {
@@ -226,29 +301,45 @@ impl<'a> Whitted<'a> {
     /// Follows all rays to what they meet, adds its light, and leaves the rays that go on from there.
     #[inline(always)]
     fn generation<S: Simd>(&self, simd: S, forest: &mut Forest, lit: &mut Lit, counters: &mut TracingCounters) {
-        let Forest { rays, next, hitting, hits, points, lit: met } = forest;
+        let Forest { rays, next, piles, hitting, hits, points, lit: met } = forest;
         hitting.clear();
         hits.clear();
+        for ray in &rays.piled {
+            let (Pile { position, .. }, places) = piles.get(ray.pile.expect("it is in one"));
+            let place = places[ray.layer as usize] as usize;
+            let (hit, from_behind) = self.meet(ray, place, *position);
+            hitting.push((Branch { layer: ray.layer + 1, ..*ray }, from_behind));
+            hits.push(hit);
+        }
         let mut searched = Counters::default();
-        for eight in rays.chunks(LANES) {
+        for eight in rays.free.chunks(LANES) {
             let mut straight = [Ray::new(Vec3::ZERO, Vec3::Z); LANES];
             let mut own = [u32::MAX; LANES];
             for (lane, branch) in eight.iter().enumerate() {
                 straight[lane] = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
                 own[lane] = branch.own;
             }
-            let met = self.tree.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
-            for (ray, met) in eight.iter().zip(met) {
+            let (met, crowded) = self.tree.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
+            for ((ray, met), crowded) in eight.iter().zip(met).zip(crowded) {
                 let Some((place, t)) = met else {
                     add(&mut lit.colors[ray.target as usize], ray.weight, self.background(ray));
                     continue;
                 };
-                let (hit, from_behind) = self.meet(ray, place, t);
-                hitting.push((*ray, from_behind));
+                let position = ray.origin + ray.direction * f64::from(t);
+                let (triangles, mut place) = (self.tree.triangles(), place);
+                let facet = triangles.facets[place];
+                let corners = || triangles.corners[place].map(|c| c.as_dvec3());
+                let pile = || self.pile_at(piles, (facet, corners()), position, ray.direction, false);
+                let pile = crowded.then(pile).flatten();
+                if let Some(pile) = pile {
+                    place = piles.get(pile).1[0] as usize;
+                }
+                let (hit, from_behind) = self.meet(ray, place, position);
+                hitting.push((Branch { pile, layer: 1, ..*ray }, from_behind));
                 hits.push(hit);
             }
         }
-        counters.rays += rays.len() as u64;
+        counters.rays += rays.free.len() as u64;
         counters.box_tests += searched.boxes;
         counters.triangle_tests += searched.triangles;
 
@@ -265,7 +356,7 @@ impl<'a> Whitted<'a> {
             if self.constants.follows(hit.place.facet) {
                 let travelled = ray.travelled + ray.origin.distance(hit.place.position);
                 let met = Met { lit: met, at: i, from_behind: *from_behind };
-                self.branch(ray, travelled, &met, next, counters);
+                self.branch(ray, travelled, &met, piles, next, counters);
             }
         }
         std::mem::swap(rays, next);
@@ -282,22 +373,41 @@ impl<'a> Whitted<'a> {
         (way / distance, distance)
     }
 
-    /// Whether a ray comes from the side from which the facet's corners run clockwise, in the world.
-    fn comes_from_behind(&self, ray: &Branch, number: u32) -> bool {
+    /// The corners of a facet, and whether a ray in this direction comes from the side from which they run clockwise, in the
+    /// world.
+    #[inline]
+    fn seen(&self, direction: DVec3, number: u32) -> ([DVec3; 3], bool) {
         let world = &self.constants.view.session.world;
         let instance = &world.instances[world.instance_of_facet(number)];
-        let (_, outward) = facet(instance, number - instance.first_facet, self.tree.triangles().center);
-        (outward.dot(ray.direction) > 0.0) != mirrors(&instance.world_from_model)
+        let (corners, outward) = facet(instance, number - instance.first_facet, self.tree.triangles().center);
+        let from_behind = (outward.dot(direction) > 0.0) != mirrors(&instance.world_from_model);
+        (corners, from_behind)
     }
 
-    /// Where a ray meets the triangle at this place of the tree's triangles, at `t`, and whether it comes from behind.
+    /// The pile that a ray in this direction meets at a position on a facet, see [`Piles::add`].
+    #[cold]
+    fn pile_at(
+        &self,
+        piles: &mut Piles,
+        (number, corners): (u32, [DVec3; 3]),
+        position: DVec3,
+        direction: DVec3,
+        is_first: bool,
+    ) -> Option<u32> {
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
+        piles.add(&self.tree, (number, corners), (position, normal), is_first)
+    }
+
+    /// A ray that meets the triangle at this place of the tree's triangles, at `position`, and whether it comes from behind.
     #[inline]
-    fn meet(&self, branch: &Branch, place: usize, t: f32) -> (Hit, bool) {
+    fn meet(&self, branch: &Branch, place: usize, position: DVec3) -> (Hit, bool) {
         let triangles = self.tree.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
 
         // The weights of the corners where the ray meets the facet; then the place anew, which lies in its plane.
-        let weights = weights(corners, branch.origin + branch.direction * f64::from(t)).map(|w| w.clamp(0.0, 1.0));
+        let weights = weights(corners, position).map(|w| w.clamp(0.0, 1.0));
         let sum: f32 = weights.iter().sum();
         let weights = weights.map(|w| w / sum);
         let corners = corners.map(|c| c.as_dvec3());
@@ -333,7 +443,8 @@ impl<'a> Whitted<'a> {
         ray: &Branch,
         travelled: f64,
         met: &Met<'_>,
-        rays: &mut Vec<Branch>,
+        piles: &Piles,
+        rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {
         let Met { lit, at, from_behind } = *met;
@@ -344,36 +455,18 @@ impl<'a> Whitted<'a> {
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
         let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0]);
         let surface = self.surface(ray, normal, &place);
-        let go_on = Branch { own: place.facet, travelled, seed: place.seed, ..*ray };
+        let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.clearance(place.position);
 
         if counts(passing, ray.least) {
-            let way = self.through(ray, &surface, place.facet, from_behind);
-            let exponent = self.material(place.facet).and_then(|m| self.constants.material(Some(m)).scatters);
-            match (exponent, way) {
-                (Some(exponent), Way::Straight(media)) => {
-                    let branch = Branch { weight: passing, origin: next(-surface.facet), media, ..go_on };
-                    self.scatter(&branch, ray.direction, &surface, exponent, rays, counters);
-                }
-                (Some(exponent), Way::Bent(direction, media)) => {
-                    let branch = Branch { weight: passing, origin: next(-surface.facet), media, ..go_on };
-                    self.scatter(&branch, direction, &surface, exponent, rays, counters);
-                }
-                (None, Way::Straight(media)) => {
-                    counters.passed += 1;
-                    rays.push(Branch { weight: passing, origin: next(-surface.facet), media, ..go_on });
-                }
-                (None, Way::Bent(direction, media)) if ray.depth < self.max_depth => {
-                    counters.refracted += 1;
-                    let origin = next(-surface.facet);
-                    let depth = ray.depth + 1;
-                    rays.push(Branch { weight: passing, origin, direction, media, depth, row: None, ..go_on });
-                }
-                (None, Way::Bent(..)) => counters.stopped_by_depth += 1,
-                (_, Way::None) => {
-                    counters.total_reflections += 1;
-                    mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
-                }
+            let branch = Branch { weight: passing, origin: next(-surface.facet), ..go_on };
+            let pile = ray.pile.map(|pile| piles.get(pile).1).unwrap_or_default();
+            if pile.len() > ray.layer as usize {
+                let branch = Branch { weight: passing, seed: place.seed, ..*ray };
+                self.pass_to_next(&branch, &surface, &place, rays, counters);
+            } else if !self.pass(ray, &branch, &surface, from_behind, pile, rays, counters) {
+                counters.total_reflections += 1;
+                mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
             }
         } else if passing != [0.0; 4] {
             counters.stopped_by_weight += 1;
@@ -383,12 +476,67 @@ impl<'a> Whitted<'a> {
                 counters.mirrored += 1;
                 let (origin, depth) = (next(surface.facet), ray.depth + 1);
                 let direction = surface.mirrored(ray.direction);
-                rays.push(Branch { weight: mirrored, origin, direction, depth, row: None, ..go_on });
+                rays.free.push(Branch { weight: mirrored, origin, direction, depth, row: None, ..go_on });
             } else {
                 counters.stopped_by_depth += 1;
             }
         } else if mirrored != [0.0; 4] {
             counters.stopped_by_weight += 1;
+        }
+    }
+
+    /// The rays that go on as `branch` behind a surface, or all of a pile, that `ray` meets. None do if all light is reflected:
+    /// says so.
+    fn pass(
+        &self,
+        ray: &Branch,
+        branch: &Branch,
+        surface: &Surface,
+        from_behind: bool,
+        pile: &[u32],
+        rays: &mut Rays,
+        counters: &mut TracingCounters,
+    ) -> bool {
+        let (direction, media, bent) = match self.through(ray, surface, (branch.own, from_behind), pile) {
+            Way::Straight(media) => (ray.direction, media, false),
+            Way::Bent(direction, media) => (direction, media, true),
+            Way::None => return false,
+        };
+        let branch = Branch { media, ..*branch };
+        if let Some(exponent) = self.scatters(branch.own) {
+            self.scatter(&branch, direction, surface, exponent, &mut rays.free, counters);
+        } else if !bent {
+            counters.passed += 1;
+            rays.free.push(branch);
+        } else if ray.depth < self.max_depth {
+            counters.refracted += 1;
+            rays.free.push(Branch { direction, depth: ray.depth + 1, row: None, ..branch });
+        } else {
+            counters.stopped_by_depth += 1;
+        }
+        true
+    }
+
+    /// The rays that go on as `branch` to the next surface of a pile, at the same place.
+    fn pass_to_next(
+        &self,
+        branch: &Branch,
+        surface: &Surface,
+        place: &Place,
+        rays: &mut Rays,
+        counters: &mut TracingCounters,
+    ) {
+        let Some(exponent) = self.scatters(place.facet) else {
+            counters.passed += 1;
+            rays.piled.push(*branch);
+            return;
+        };
+        let first = rays.piled.len();
+        self.scatter(branch, branch.direction, surface, exponent, &mut rays.piled, counters);
+        // They come to the place from where they would have come without the surface.
+        let distance = branch.origin.distance(place.position);
+        for ray in &mut rays.piled[first..] {
+            ray.origin = place.position - ray.direction * distance;
         }
     }
 
@@ -417,6 +565,11 @@ impl<'a> Whitted<'a> {
         }
     }
 
+    /// The exponent with which a facet scatters what passes it, if it does.
+    fn scatters(&self, number: u32) -> Option<f32> {
+        self.material(number).and_then(|m| self.constants.material(Some(m)).scatters)
+    }
+
     /// The material of a facet.
     fn material(&self, number: u32) -> Option<u32> {
         let world = &self.constants.view.session.world;
@@ -439,24 +592,16 @@ impl<'a> Whitted<'a> {
         Surface { n, facet }
     }
 
-    /// How the ray goes on behind the surface.
-    fn through(&self, ray: &Branch, surface: &Surface, number: u32, from_behind: bool) -> Way {
-        let session = self.constants.view.session;
-        let instance = &session.world.instances[session.world.instance_of_facet(number)];
-        let triangle = number - instance.first_facet;
-        let Some(material) = instance.mesh.material_of_triangle(triangle as usize) else {
-            return Way::Straight(ray.media);
+    /// How the ray goes on behind the surface, or behind all those of a pile.
+    fn through(&self, ray: &Branch, surface: &Surface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
+        let border = if pile.is_empty() {
+            self.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
+        } else {
+            let facet = |&place: &u32| self.tree.triangles().facets[place as usize];
+            let crossings = pile.iter().map(facet).map(|f| self.crossing(f, self.seen(ray.direction, f).1));
+            ray.media.cross_all(crossings.flatten())
         };
-        let side = session.sides(instance.mesh_index, &self.execution.workers)[triangle as usize];
-        if side == Side::None || self.constants.material(Some(material)).cutoff.is_some() {
-            return Way::Straight(ray.media);
-        }
-
-        // Which media meet here?
-        let from_outside = from_behind == mirrors(&instance.world_from_model);
-        let entering = from_outside == (side == Side::Behind);
-        let Border { before, behind, then } =
-            if entering { ray.media.enter(material) } else { ray.media.leave(material) };
+        let Some(Border { before, behind, then }) = border else { return Way::Straight(ray.media) };
         let index = |m: Option<u32>| m.map_or(1.0, |m| f64::from(self.constants.material(Some(m)).material.ior));
         let eta = index(before) / index(behind);
         if (eta - 1.0).abs() < 1e-6 {
@@ -467,6 +612,21 @@ impl<'a> Whitted<'a> {
         bent.map_or(Way::None, |direction| Way::Bent(direction.normalize(), then))
     }
 
+    /// The material of the body that a ray enters (or leaves) where it meets a facet, if it is the skin of one.
+    #[inline]
+    fn crossing(&self, number: u32, from_behind: bool) -> Option<(u32, bool)> {
+        let session = self.constants.view.session;
+        let instance = &session.world.instances[session.world.instance_of_facet(number)];
+        let triangle = (number - instance.first_facet) as usize;
+        let material = instance.mesh.material_of_triangle(triangle)?;
+        let side = session.sides(instance.mesh_index, &self.execution.workers)[triangle];
+        if side == Side::None || self.constants.material(Some(material)).cutoff.is_some() {
+            return None;
+        }
+        let from_outside = from_behind == mirrors(&instance.world_from_model);
+        Some((material, from_outside == (side == Side::Behind)))
+    }
+
     /// What a ray sees that meets nothing.
     fn background(&self, ray: &Branch) -> [f32; 4] {
         let rows = &self.constants.background.colors;
@@ -475,6 +635,29 @@ impl<'a> Whitted<'a> {
             None => self.sky.row(self.view_from_world * ray.direction, rows.len()),
         };
         rows[row.min(rows.len() - 1)]
+    }
+}
+
+/// Collects all hits of a ray: parameters and facets.
+struct Hits<'a> {
+    tree: &'a Bvh,
+    ray: &'a Ray,
+    hits: Vec<(f32, u32)>,
+}
+
+impl Visitor for Hits<'_> {
+    fn skips(&self, _: usize, _: f32) -> bool {
+        false
+    }
+
+    fn done(&self, _: f32) -> bool {
+        false
+    }
+
+    fn triangle(&mut self, place: usize) {
+        let triangles = self.tree.triangles();
+        let hit = self.ray.hit(&triangles.corners[place]);
+        self.hits.extend(hit.map(|t| (t, triangles.facets[place])));
     }
 }
 

@@ -41,7 +41,7 @@ impl Ray {
     }
 
     /// What rounding may do to the parameter of a hit in a space of half-width `extent`.
-    pub(super) fn rounding(&self, extent: f32) -> f32 {
+    pub(crate) fn rounding(&self, extent: f32) -> f32 {
         let reach = self.origin.abs().max_element() + extent;
         reach / self.direction.abs().max_element() * (1.0 / (1 << 19) as f32)
     }

@@ -151,6 +151,8 @@ struct Closest<'a> {
     slack: [f32; LANES],
     limits: [f32; LANES],
     best: [Option<(usize, f32)>; LANES],
+    /// Whether something else was hit at about the same parameter.
+    crowded: [bool; LANES],
 }
 
 impl Visitor for Closest<'_> {
@@ -163,15 +165,20 @@ impl Visitor for Closest<'_> {
 
     #[inline(always)]
     fn hit(&mut self, lane: usize, place: usize, t: f32) {
-        if self.triangles.replaces(self.best[lane], (place, t), self.own[lane]) {
+        let best = self.best[lane];
+        if self.triangles.replaces(best, (place, t), self.own[lane]) {
+            self.crowded[lane] = best.is_some_and(|(_, farther)| farther <= t + self.slack[lane]);
             self.best[lane] = Some((place, t));
             self.limits[lane] = t + self.slack[lane];
+        } else if t <= self.limits[lane] && self.triangles.facets[place] != self.own[lane] {
+            self.crowded[lane] = true;
         }
     }
 }
 
 impl Bvh {
-    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`.
+    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`; and whether they hit something
+    /// else at the same place, as far as rounding tells.
     #[inline(never)]
     pub(crate) fn closest_hits<S: Simd>(
         &self,
@@ -179,15 +186,16 @@ impl Bvh {
         rays: &[Ray],
         own: &[u32],
         counters: &mut Counters,
-    ) -> [Option<(usize, f32)>; LANES] {
+    ) -> ([Option<(usize, f32)>; LANES], [bool; LANES]) {
         let triangles = self.triangles();
         let mut slack = [0.0; LANES];
         for (slack, ray) in slack.iter_mut().zip(rays) {
             *slack = ray.rounding(triangles.extent);
         }
-        let mut closest = Closest { triangles, own, slack, limits: [f32::MAX; LANES], best: [None; LANES] };
+        let (limits, best, crowded) = ([f32::MAX; LANES], [None; LANES], [false; LANES]);
+        let mut closest = Closest { triangles, own, slack, limits, best, crowded };
         self.follow(simd, rays, &mut closest, counters);
-        closest.best
+        (closest.best, closest.crowded)
     }
 }
 
@@ -233,8 +241,8 @@ mod tests {
                 let mut together = Counters::default();
                 let nobody = [u32::MAX; LANES];
                 let (a, b) = dispatch!(level, simd => (
-                    bvh.closest_hits(simd, &rays, &nobody, &mut together),
-                    bvh.closest_hits(simd, &rays, &own, &mut together)
+                    bvh.closest_hits(simd, &rays, &nobody, &mut together).0,
+                    bvh.closest_hits(simd, &rays, &own, &mut together).0
                 ));
                 assert_eq!((&a[..rays.len()], &b[..rays.len()]), (&first[..], &second[..]), "packet {packet}");
             }

@@ -31,6 +31,8 @@ pub(crate) struct Viewing {
     pub perspective: bool,
     /// The material shows both sides.
     pub double_sided: bool,
+    /// The material has holes or lets light through: what it covers is seen, the inner side of its own body, too.
+    pub layered: bool,
 }
 
 /// An object and a way to look at it.
@@ -49,6 +51,11 @@ pub(crate) struct Subject<'a> {
 impl Subject<'_> {
     /// Whether both sides are seen, so that normals are turned to the viewer.
     pub(crate) fn turns(&self) -> bool {
+        self.is_sheet() || self.viewing.layered
+    }
+
+    /// Whether it is not the skin of a body, which has a side on which nobody stands.
+    pub(crate) fn is_sheet(&self) -> bool {
         self.instance.two_sided || self.viewing.double_sided
     }
 }

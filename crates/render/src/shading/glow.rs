@@ -38,9 +38,8 @@ pub(super) fn glow<S: Simd>(
                     .unwrap_or_else(|| phong::interpolated_normal(surface)),
             };
 
-            // Normals of a sheet are turned to the viewer, those of a solid body outwards, but for rays.
-            let is_sheet = subject.turns();
-            let parts = if is_sheet || eight.along.is_some() { eight.arriving_behind } else { eight.arriving };
+            // Normals are turned to the viewer, light comes from the other side.
+            let parts = eight.arriving_behind;
             let (v, zero) =
                 (towards_viewer(simd, &position, eight.along, subject.viewing.perspective), constant(simd, 0.0));
             let away = lanes::Lanes::lt(surface.facet_normal.dot(v), zero);
@@ -53,7 +52,7 @@ pub(super) fn glow<S: Simd>(
                 },
             );
             let mut light = transmitted_light(&constants.lights, position, normal, arriving);
-            if !is_sheet {
+            if !subject.is_sheet() {
                 let [a, b, c] = surface.positions;
                 let winding = (b - a).cross(c - a).dot(v);
                 let outward = if subject.instance.mirrored { -winding } else { winding };

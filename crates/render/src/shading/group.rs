@@ -283,6 +283,7 @@ pub(crate) fn subject<'a>(
         interpolation: constants.interpolation,
         perspective: constants.view.view.perspective,
         double_sided: material.material.double_sided,
+        layered: material.cutoff.is_some() || material.blend,
     };
     let instance = &constants.instances[group.instance as usize];
     let subject = Subject {

@@ -230,7 +230,7 @@ impl TileSink for ColorSink<'_> {
         let layer_samples = layers.sample_count() as u64;
         let front = self.tracer.map(|tracer| tracer.frontmost(tile, layers, self.marks));
         let (tile, seen) = match &front {
-            Some((tile, marked)) => (tile, InFront::Samples(marked)),
+            Some(front) => (&front.tile, InFront::Samples(&front.marked)),
             None if layers.gathers() => {
                 let depths = layers.take_depths();
                 (tile, InFront::Fragments(layers.fragments(), depths))
@@ -240,8 +240,8 @@ impl TileSink for ColorSink<'_> {
         points.collect(tile, seen, constants, self.marks);
         lit.reset(points.len(), constants);
         dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
-        if let Some(tracer) = self.tracer {
-            tracer.follow(points, lit, forest);
+        if let (Some(tracer), Some(front)) = (self.tracer, &front) {
+            tracer.follow(front, points, lit, forest);
         }
         let counters = PictureCounters {
             pixels: 0,

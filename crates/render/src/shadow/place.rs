@@ -2,8 +2,11 @@
 //!
 //! A point is a facet and weights of its corners. The same weights of the corners in the world, as rays see them, give a
 //! place that lies in the facet's plane but for the last bit of a double: much nearer than the way back from the screen.
+//!
+//! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
+//! plane of a wall that begins there, and rounding would say on which side.
 
-use super::Place;
+use super::{Place, clearance};
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
@@ -12,12 +15,36 @@ use vitral_math::lanes::{self, F64x8, LANES, Simd};
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
-/// Corners and unit normal of a facet.
-pub(crate) type Facet = ([DVec3; 3], DVec3);
+/// Corners and unit normal of a facet, and the least weight of each corner with which a place keeps from the edge opposite.
+pub(crate) type Facet = ([DVec3; 3], DVec3, [f64; 3]);
+
+/// How far places keep from edges, in heights to which they are lifted: enough between walls that meet at 15 degrees.
+const MARGIN: f64 = 4.0;
+/// No least weight is larger: facets may be smaller than the margin.
+const MOST: f64 = 0.1;
+
+/// The margin in a world of this half-width.
+fn margin(extent: f64) -> f64 {
+    MARGIN * clearance(DVec3::splat(extent), extent)
+}
+
+/// The least weights of a triangle's corners for a margin, one by one.
+#[cfg(test)]
+fn least_weights([a, b, c]: &[DVec3; 3], margin: f64) -> [f64; 3] {
+    let (to_b, to_c) = (*b - *a, *c - *a);
+    let scale = margin / to_b.cross(to_c).length();
+    [to_c - to_b, to_c, to_b].map(|edge| least_weight(edge.length() * scale))
+}
+
+/// NaN, where there is no area, becomes a number.
+#[inline(always)]
+fn least_weight(weight: f64) -> f64 {
+    if weight < MOST { weight } else { MOST }
+}
 
 /// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
 /// on the side from which they run counter-clockwise in the model; zero without area.
-pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet {
+pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
     let mirrored = mirrors(&instance.world_from_model);
     let mesh = &instance.mesh;
     let corner = |i: u32| {
@@ -33,14 +60,17 @@ pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> Facet 
 
 /// The point with these weights of the corners.
 pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
-    let (point, sum) = weighed(corners, weights);
+    let (point, sum) = weighed(corners, weights, [f64::NEG_INFINITY; 3]);
     point / sum
 }
 
-/// The same times the sum of the weights, and this sum.
+/// The same times the sum of the weights, and this sum; no weight is less than its least part of the sum.
 #[inline(always)]
-fn weighed(corners: &[DVec3; 3], weights: [f32; 3]) -> (DVec3, f64) {
+fn weighed(corners: &[DVec3; 3], weights: [f32; 3], least: [f64; 3]) -> (DVec3, f64) {
     let w = [f64::from(weights[0]), f64::from(weights[1]), f64::from(weights[2])];
+    let sum = w[0] + w[1] + w[2];
+    // Weights may have the other sign, all of them.
+    let w = [0, 1, 2].map(|k| if w[k] * sum < least[k] * sum * sum { least[k] * sum } else { w[k] });
     (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2], w[0] + w[1] + w[2])
 }
 
@@ -52,13 +82,17 @@ pub(crate) struct Placing<'a> {
     /// Normals turn to the viewer.
     turns: bool,
     center: DVec3,
+    margin: f64,
 }
 
 impl<'a> Placing<'a> {
     /// For points of an instance, both sides of which are seen if it `turns`.
     pub(crate) fn new(view: &'a PreparedView<'a>, instance: &'a Instance, turns: bool) -> Self {
-        let center = Triangles::center_of(&view.session.world);
-        Self { view, instance, mirrored: mirrors(&instance.world_from_model), turns, center }
+        let world = &view.session.world;
+        let center = Triangles::center_of(world);
+        let half = (world.bounds.max - center).max_element();
+        let margin = margin(if half.is_finite() { half } else { 0.0 });
+        Self { view, instance, mirrored: mirrors(&instance.world_from_model), turns, center, margin }
     }
 
     /// Triangles of its mesh.
@@ -122,9 +156,16 @@ impl<'a> Placing<'a> {
             let unit = usable.select(value * inverse, zero);
             (if self.mirrored { -unit } else { unit }).store_slice(stored);
         }
+        let scale = F64x8::splat(simd, self.margin) / length;
+        let mut least = [[0.0; LANES]; 3];
+        for (stored, edge) in least.iter_mut().zip([[b[0] - a[0], b[1] - a[1], b[2] - a[2]], b, a]) {
+            let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
+            (length * scale).store_slice(stored);
+        }
         std::array::from_fn(|lane| {
             let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
-            ([at(&corners[0]), at(&corners[1]), at(&corners[2])], at(&normals))
+            let least = [least[0][lane], least[1][lane], least[2][lane]].map(least_weight);
+            ([at(&corners[0]), at(&corners[1]), at(&corners[2])], at(&normals), least)
         })
     }
 
@@ -139,8 +180,8 @@ impl<'a> Placing<'a> {
     ) -> impl Fn(usize) -> Place {
         // Divisions are what takes long.
         let (mut sums, mut positions) = ([1.0; LANES], [[0.0; LANES]; 3]);
-        for (lane, (corners, _)) in facets.iter().enumerate() {
-            let (point, sum) = weighed(corners, [weights[0][lane], weights[1][lane], weights[2][lane]]);
+        for (lane, (corners, _, least)) in facets.iter().enumerate() {
+            let (point, sum) = weighed(corners, [weights[0][lane], weights[1][lane], weights[2][lane]], *least);
             (positions[0][lane], positions[1][lane], positions[2][lane]) = (point.x, point.y, point.z);
             sums[lane] = sum;
         }
@@ -206,7 +247,11 @@ mod tests {
         let placing = Placing::new(&view, instance, false);
         assert!(placing.mirrored);
         let triangles: Vec<_> = (0..instance.mesh.triangles.len() as u32).collect();
-        let expected: Vec<_> = triangles.iter().map(|&t| facet(instance, t, placing.center)).collect();
+        let expected = triangles.iter().map(|&t| {
+            let (corners, normal) = facet(instance, t, placing.center);
+            (corners, normal, least_weights(&corners, placing.margin))
+        });
+        let expected: Vec<_> = expected.collect();
         for (name, level) in available_levels() {
             let found = dispatch!(level, simd => placing.facets(simd, &triangles));
             assert!(found == expected, "{name}");

@@ -1,11 +1,14 @@
 //! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
 
-use crate::common::{all_channels, colors, exact, exact_builtin, on_z};
+use crate::common::{all_channels, colors, exact, exact_builtin, on_z, one};
 use std::sync::Arc;
 use vitral::exec::{Budget, Limit};
+use vitral::light::{Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
+use vitral::render::registry::SHADOWS;
+use vitral::scene::Faces;
 use vitral::scene::builtin::solids;
-use vitral::{Camera, Error, Frame, Renderer, Scene, SystemClock, Viewpoint, load_builtin};
+use vitral::{Camera, Error, Frame, Material, Renderer, Scene, SystemClock, Viewpoint, load_builtin};
 
 #[test]
 fn zero_lights_leave_ambient_light_alone() {
@@ -33,7 +36,7 @@ fn an_empty_scene_is_all_background() {
 fn a_camera_inside_a_model_sees_it_or_nothing_but_never_fails() {
     // Inside a closed ball back faces are culled by right; inside an open dome they are seen.
     let mut dome = solids::sphere(1.0, 48, 24);
-    dome.faces = vitral::scene::Faces::Triangles;
+    dome.faces = Faces::Triangles;
     dome.triangles.pop();
     (dome.normals, dome.uvs) = (None, Vec::new());
     dome.parts[0].triangles.end -= 1;
@@ -170,4 +173,25 @@ fn unsound_scenes_are_errors() {
     let mut renderer = exact_builtin("cubs", 8, 8);
     let bad = Viewpoint { camera_index: Some(3), ..Viewpoint::default() };
     assert_eq!(bad.apply(&mut renderer, vitral::Axis::PlusY).unwrap_err().exit_code(), 2);
+}
+
+#[test]
+fn no_light_leaks_in_where_walls_meet() {
+    // A closed room whose edges run through the middles of pixels, and a lamp outside.
+    let mut room = solids::cuboid(DVec3::splat(10.0));
+    room.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    (room.faces, room.normals, room.uvs) = (Faces::Triangles, None, Vec::new());
+    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.9; 3], ks: [0.0; 3], shininess: 1.0 };
+    let walls = Material { reflectance, double_sided: true, ..Material::default() };
+    let mut r = exact(one(room, walls), 320, 240);
+    r.camera = Some(on_z(2.5, 80f64.to_radians()));
+    let kind = LightKind::Point { position: DVec3::new(7.0, 8.0, 9.0) };
+    r.lights = Some(vec![Light { kind, ..Light::default() }]);
+    assert!(colors(&mut r).iter().any(|c| c[0] > 50), "without shadows it shines in");
+    // Maps see no better than a texel.
+    for shadows in SHADOWS.iter().filter(|s| !["none", "map"].contains(&s.name)) {
+        r.settings.shadows = shadows.name.to_owned();
+        let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
+        assert_eq!(bright, 0, "{}", shadows.name);
+    }
 }

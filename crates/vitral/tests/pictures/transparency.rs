@@ -5,9 +5,9 @@ use vitral::light::{AlphaMode, Reflectance};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;
 use vitral::render::transparency::registry::ORDERS;
-use vitral::render::{Background, Global, Lines, Transparency, TransparencyOrder};
-use vitral::scene::Part;
+use vitral::render::{Background, Global, Lines, Shading, Transparency, TransparencyOrder};
 use vitral::scene::builtin::solids;
+use vitral::scene::{Attribute, Part};
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
 
 /// A square from -1 to 1 at height `z`, which rises by `slope` along x.
@@ -244,6 +244,39 @@ fn thousands_of_layers_stay_within_their_memory_with_a_warning() {
     assert_ne!(cut, whole, "what is lost shows");
     let reversed: Vec<_> = panes.into_iter().rev().collect();
     assert!(run(reversed, 1 << 20).0 == cut, "the nearest layers stay in every order");
+}
+
+#[test]
+fn the_inner_sides_of_bodies_are_lit_as_both_sides_of_sheets_are() {
+    // Through the front of a closed body its back is seen from within, through holes as through glass.
+    let hole = Mesh { uvs: Vec::new(), ..solids::sphere(0.8, 24, 12) };
+    let leaves = Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() };
+    let mut holed = hole.clone();
+    holed.colors =
+        Some(Attribute::per_vertex(hole.positions.iter().map(|p| [0.8, 0.7, 0.3, f32::from(p[2] < 0.3)]).collect()));
+    let lit = Material { unlit: false, ..glass([0.8, 0.3, 0.2], 0.6) };
+    for (mesh, material) in [(solids::cuboid(DVec3::ONE), lit.clone()), (hole, lit), (holed, leaves)] {
+        for (shading, shadows, global) in [
+            (Shading::Phong, "none", Global::None),
+            (Shading::Flat, "none", Global::None),
+            (Shading::Gouraud, "ray", Global::None),
+            (Shading::Phong, "ray", Global::None),
+            (Shading::Phong, "volume", Global::None),
+            (Shading::Phong, "ray", Global::RayTrace),
+        ] {
+            let picture = |double_sided| {
+                let material = Material { double_sided, ..material.clone() };
+                let mut r = exact(scene_of([(mesh.clone(), material)]), 80, 60);
+                let position = DVec3::new(1.1, 0.9, 2.3);
+                r.camera = Some(Camera { position, ..on_z(2.5, 0.7) });
+                r.lights = Some(vec![sun(DVec3::new(0.4, 0.6, -0.7), 1.0)]);
+                (r.settings.shading, r.settings.global) = (shading, global);
+                r.settings.shadows = shadows.to_owned();
+                colors(&mut r)
+            };
+            assert!(picture(false) == picture(true), "{:?}, {shading:?}, {shadows}, {global:?}", material.alpha_mode);
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,8 @@
 
 mod coincident;
 pub mod media;
+mod sky;
+mod surface;
 pub(crate) mod whitted;
 
 pub(crate) use whitted::Whitted;

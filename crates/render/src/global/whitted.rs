@@ -29,6 +29,8 @@
 
 use super::coincident::{Pile, Piles};
 use super::media::{Border, Media};
+use super::sky::Sky;
+use super::surface::Surface;
 use crate::marks::MarkColors;
 use crate::prepare::mirrors;
 use crate::raytrace::beam::Beam;
@@ -669,45 +671,6 @@ enum Way {
     None,
 }
 
-/// Normals on the side from which a ray comes, world space, unit.
-struct Surface {
-    /// Of the shape that the facets stand for.
-    n: DVec3,
-    /// Of the facet.
-    facet: DVec3,
-}
-
-impl Surface {
-    /// The direction, on the side to which light goes that passes: the other half of the lobe is folded over.
-    fn behind(&self, direction: DVec3) -> DVec3 {
-        let towards = self.facet.dot(direction);
-        if towards < 0.0 { direction } else { direction - self.facet * (2.0 * towards) }
-    }
-
-    /// The direction in which a mirror sends a ray: it leaves at the angle at which it came, and not into the facet.
-    fn mirrored(&self, direction: DVec3) -> DVec3 {
-        let about = |n: DVec3| direction - n * (2.0 * n.dot(direction));
-        let mirrored = about(self.n);
-        if mirrored.dot(self.facet) > 0.0 { mirrored.normalize() } else { about(self.facet).normalize() }
-    }
-}
-
-/// The background all round the scene: what the picture shows in each row, and the first and last row beyond it.
-struct Sky {
-    /// Half of the picture's height, at the distance 1, times this is 1.
-    stretch: f64,
-    perspective: bool,
-}
-
-impl Sky {
-    /// The row in which a direction (view space) leaves a picture of `rows` rows.
-    fn row(&self, direction: DVec3, rows: usize) -> usize {
-        let up = if self.perspective { direction.y / (-direction.z).max(1e-9) * self.stretch } else { direction.y };
-        let from_top = (1.0 - up.clamp(-1.0, 1.0)) * 0.5;
-        ((from_top * rows as f64) as usize).min(rows - 1)
-    }
-}
-
 fn counts(weight: [f32; 4], least: f32) -> bool {
     weight.iter().any(|&w| w >= least)
 }
@@ -715,29 +678,5 @@ fn counts(weight: [f32; 4], least: f32) -> bool {
 fn add(sum: &mut [f32; 4], weight: [f32; 4], color: [f32; 4]) {
     for k in 0..4 {
         sum[k] += weight[k] * color[k];
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn p36_e14_mirrors_obey_the_law_of_reflection() {
-        let surface = Surface { n: DVec3::Y, facet: DVec3::Y };
-        let down = dvec3(0.6, -0.8, 0.0);
-        assert!(surface.mirrored(down).abs_diff_eq(dvec3(0.6, 0.8, 0.0), 1e-15));
-        // A bent normal must not send the ray into the facet.
-        let tilted = Surface { n: dvec3(0.8, 0.6, 0.0), facet: DVec3::Y };
-        let grazing = dvec3(-0.6, -0.05, 0.0).normalize();
-        assert!(tilted.mirrored(grazing).y > 0.0);
-    }
-
-    #[test]
-    fn the_sky_goes_on_from_the_picture() {
-        let sky = Sky { stretch: 2.0, perspective: true };
-        assert_eq!(sky.row(dvec3(0.3, 0.0, -1.0), 100), 50);
-        assert_eq!(sky.row(dvec3(0.0, 0.25, -1.0), 100), 25);
-        assert_eq!([sky.row(DVec3::Y, 100), sky.row(DVec3::NEG_Y, 100)], [0, 99]);
     }
 }

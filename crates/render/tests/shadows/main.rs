@@ -364,55 +364,6 @@ fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
     }
 }
 
-/// Width of the penumbra behind an edge, along a line across it: from where the first light is seen to where all of it is; and
-/// by the slope in its middle.
-fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
-    // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
-    let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
-    let settings = Settings { light_samples: samples, ..settings(algorithm) };
-    with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
-        let at = |x: f64| {
-            let parts = (0..32).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
-            f64::from(parts.sum::<f32>()) / 32.0
-        };
-        assert_eq!((at(-1.0), at(1.0)), (0.0, 1.0), "umbra and full light");
-        // Halve the interval in which it begins, and the one in which it ends.
-        let change = |above: f64| {
-            let (mut low, mut high) = (-1.0, 1.0);
-            for _ in 0..14 {
-                let middle = 0.5 * (low + high);
-                if at(middle) > above { high = middle } else { low = middle }
-            }
-            high
-        };
-        let (x, step) = (-0.1, 0.2);
-        [change(1.0 - 1e-6) - change(1e-6), step / (at(x + step) - at(x))]
-    })
-}
-
-#[test]
-fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
-    let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]].map(|[x, z]| dvec3(x, 3.0, z)).to_vec();
-    // D = 0.8, a = 2, b = 1.
-    let square = AreaShape::Polygon { corners };
-    let [width, slope] = penumbra("ray", square.clone(), 256);
-    assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
-    // The light's middle is 1 part in 40 brighter than its border, as seen from here.
-    assert!((slope / 0.4 - 1.0).abs() < 0.03, "{slope}");
-    // The same 64 places serve all points: steps of an eighth.
-    for algorithm in names().filter(|&name| name != "ray") {
-        let [_, slope] = penumbra(algorithm, square.clone(), 64);
-        assert!((slope / 0.4 - 1.0).abs() < 0.15, "{algorithm}: {slope}");
-    }
-    let disc = AreaShape::Disc { center: dvec3(0.0, 3.0, 0.0), normal: DVec3::NEG_Y, radius: 0.4 };
-    let [width, slope] = penumbra("ray", disc, 256);
-    assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
-    // Through its middle the lit part rises by 4 / (π D) of its width.
-    let t: f64 = 0.5;
-    let share = 2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
-    assert!((slope / (0.2 / share) - 1.0).abs() < 0.03, "{slope}");
-}
-
 #[test]
 fn pictures_by_rays_do_not_depend_on_threads_instructions_or_visibility() {
     pictures_do_not_depend("ray");

@@ -109,7 +109,7 @@ struct Reader<'a> {
     warnings: Warnings,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     fn error(&self, what: impl Into<String>) -> Error {
         Error::malformed(self.file, Place::Line(self.cursor.line()), what)
     }
@@ -173,15 +173,20 @@ impl Reader<'_> {
         }
     }
 
+    /// What `read` finds on this line or, if that is at its end, on the next with something on it.
+    fn here_or_below<T>(&mut self, read: impl Fn(&mut Cursor<'a>) -> Option<T>) -> Option<T> {
+        let here = read(&mut self.cursor);
+        if here.is_none() && self.cursor.at_line_end() && self.cursor.next_content() {
+            return read(&mut self.cursor);
+        }
+        here
+    }
+
     /// Numbers that belong together, on one line or several.
     fn floats<const N: usize>(&mut self, what: &str) -> Result<[f32; N], Error> {
         let mut values = [0.0; N];
         for (k, value) in values.iter_mut().enumerate() {
-            let mut read = self.cursor.float();
-            if read.is_none() && self.cursor.at_line_end() && self.cursor.next_content() {
-                read = self.cursor.float();
-            }
-            *value = match read {
+            *value = match self.here_or_below(Cursor::float) {
                 Some(value) => value,
                 None => return Err(self.no_number(k, what, N)),
             };
@@ -244,11 +249,7 @@ impl Reader<'_> {
         };
         let start = lists.corners.len();
         for k in 0..size {
-            let mut read = self.cursor.integer();
-            if read.is_none() && self.cursor.at_line_end() && self.cursor.next_content() {
-                read = self.cursor.integer();
-            }
-            match read {
+            match self.here_or_below(Cursor::integer) {
                 Some(index) if (0..lists.positions.len() as i64).contains(&index) => lists.corners.push(index as u32),
                 Some(index) => {
                     return Err(self.error(format!("index {index}, the file has {} vertices", lists.positions.len())));

@@ -165,13 +165,13 @@ fn check_polygon(corners: &[DVec3]) -> Result<(), &'static str> {
     let from_first: Vec<DVec3> = corners.iter().map(|&c| c - first).collect();
     let size = from_first.iter().map(|c| c.length()).fold(0.0, f64::max);
     let twice: DVec3 = from_first.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
-    let flat = |normal: DVec3| from_first.iter().all(|c| c.dot(normal).abs() <= FLAT * size);
+    let has_area = twice.length() > AREA * size * size;
     // Without an area, it may be that parts of an outline that crosses itself cancel each other.
-    let normal = if twice.length() > AREA * size * size { twice.normalize() } else { any_normal(&from_first) };
+    let normal = if has_area { twice.normalize() } else { any_normal(&from_first) };
     if normal == DVec3::ZERO {
         return Err("corners: a polygon with an area is required");
     }
-    if !flat(normal) {
+    if from_first.iter().any(|c| c.dot(normal).abs() > FLAT * size) {
         return Err("corners: they have to lie in one plane");
     }
     let (x, y) = normal.any_orthonormal_pair();
@@ -179,7 +179,7 @@ fn check_polygon(corners: &[DVec3]) -> Result<(), &'static str> {
     if crosses_itself(&corners) {
         return Err("corners: the outline must not cross itself");
     }
-    if twice.length() > AREA * size * size { Ok(()) } else { Err("corners: a polygon with an area is required") }
+    if has_area { Ok(()) } else { Err("corners: a polygon with an area is required") }
 }
 
 /// The normal of the largest triangle with the first corner, the origin, and a side; zero if all are on one line.

@@ -99,7 +99,8 @@ impl Piles {
     }
 }
 
-fn unit_normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
+/// The normal by the winding; none without area.
+pub(super) fn unit_normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
     (*b - *a).cross(*c - *a).try_normalize()
 }
 

@@ -27,7 +27,7 @@
 //! \[Cook, Porter & Carpenter 1984\]. Departs from them: opacity says what is transmitted, the
 //! material's flag `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
 
-use super::coincident::{Pile, Piles};
+use super::coincident::{Pile, Piles, unit_normal};
 use super::media::{Border, Media};
 use super::sky::Sky;
 use super::surface::Surface;
@@ -396,8 +396,7 @@ impl<'a> Whitted<'a> {
         direction: DVec3,
         is_first: bool,
     ) -> Option<u32> {
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = unit_normal(&corners).unwrap_or_default();
         let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
         piles.add(&self.tree, (number, corners), (position, normal), is_first)
     }

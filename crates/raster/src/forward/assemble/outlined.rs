@@ -55,14 +55,13 @@ impl Assembler<'_> {
         if self.state.cull[usize::from(back)] {
             return;
         }
-        let mode = self.state.polygon_mode[usize::from(back)];
+        let mode = usize::from(self.state.polygon_mode[usize::from(back)]);
         if mode > 1 {
             return self.interior(corners, provoking, back);
         }
         let outline: Vec<Corner> = corners.iter().zip(edges).map(|(&v, &edge)| self.corner(v, edge)).collect();
-        let outline =
-            if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline, usize::from(mode)) };
-        let offset = self.outline_offset(largest.1, &outline, usize::from(mode));
+        let outline = if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline, mode) };
+        let offset = self.outline_offset(largest.1, &outline, mode);
         let stroke = Stroke { provoking: self.slot(provoking), back, offset };
         let mut stipple = 0;
         for (i, corner) in outline.iter().enumerate().filter(|(_, corner)| corner.boundary) {

@@ -106,7 +106,7 @@ impl ShadowAlgorithm for VolumeShadows {
         let counting = settings.volume_counting.unwrap_or_default();
         let around_viewer = volumes.lights.iter().map(|places| {
             let around = |l: &LightVolumes| match counting {
-                VolumeCounting::ZPass => volumes.lit(l, execution.level).around(viewer),
+                VolumeCounting::ZPass => volumes.lit(l).around(viewer),
                 VolumeCounting::ZFail => 0,
             };
             places.iter().map(around).collect()
@@ -136,8 +136,8 @@ impl Volumes {
         Ok(Self { lights: lights?, surface, casters })
     }
 
-    fn lit<'a>(&'a self, volumes: &'a LightVolumes, level: Level) -> Lit<'a> {
-        Lit { volumes, casters: &self.casters, planes: &self.surface.planes, level }
+    fn lit<'a>(&'a self, volumes: &'a LightVolumes) -> Lit<'a> {
+        Lit { volumes, casters: &self.casters, planes: &self.surface.planes }
     }
 }
 
@@ -182,9 +182,9 @@ impl Shadows for Counting<'_> {
             let light = from.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
             batch.reset(asked.map(|(i, p)| (i as u32, lifted(p, extent))));
-            let lit = self.volumes.lit(place_of_light, self.level);
+            let lit = self.volumes.lit(place_of_light);
             let start = (self.counting, self.viewer, around_viewer);
-            batch.count(&lit, start, |index, at, count, filters| {
+            batch.count(self.level, &lit, start, |index, at, count, filters| {
                 if count <= 0 {
                     let own = places[index].facet;
                     let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);

@@ -1,6 +1,7 @@
 //! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
 
-use super::super::casters::{Casters, Solid, box_around, collect, near};
+use super::super::casters::{Casters, Solid, away, box_around, collect, near, ordered, wide};
+use super::edges::Side;
 use super::paths::{Boxes, Paths};
 use super::{LightVolumes, ODD, RUN};
 use crate::VolumeCounting;
@@ -10,7 +11,7 @@ use crate::raytrace::shaft::{Block, Shaft};
 use crate::raytrace::{Probe, Structure};
 use std::ops::Range;
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
-use vitral_math::{DVec3, DVec4, Vec3};
+use vitral_math::{DVec3, DVec4};
 
 /// Pairs of a place and a polygon that are sooner looked at than thinned out.
 const FEW_PAIRS: usize = 320;
@@ -22,54 +23,106 @@ pub(super) struct Lit<'a> {
     pub(super) casters: &'a Casters,
     /// For each triangle its plane by its winding.
     pub(super) planes: &'a [DVec4],
-    pub(super) level: Level,
 }
 
-/// Eight places, or the directions in which their paths do not end.
-type Ends<'e> = (&'e [DVec3; LANES], bool);
+/// `n · p + w`: twice the area, or more, times the height above a plane.
+#[inline(always)]
+pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
+    (plane.x * place.x + plane.y * place.y) + (plane.z * place.z + plane.w)
+}
+
+/// The side of a plane on which a place is. Two paths that end and begin there agree about it.
+#[inline(always)]
+pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
+    height(plane, place) > 0.0
+}
+
+/// A straight path, to its end or to infinity: one alone, by the formulas of [`Paths`].
+#[derive(Clone, Copy)]
+struct Path {
+    from: DVec3,
+    /// Where it ends, or the direction in which it does not.
+    to: DVec3,
+    ends: bool,
+    way: DVec3,
+    /// Normal of the plane through the path and the light.
+    normal: DVec3,
+}
+
+impl Path {
+    /// To a place, or along a direction: homogeneous.
+    fn new(from: DVec3, to: DVec4, light: DVec4) -> Self {
+        let (to, ends) = (to.truncate(), to.w > 0.0);
+        let way = if ends { to - from } else { to };
+        Self { from, to, ends, way, normal: (-away(light, from)).cross(way) }
+    }
+
+    /// Whether the path crosses a plane: 1 along the normal, -1 against it.
+    #[inline(always)]
+    fn crosses(&self, plane: DVec4) -> i32 {
+        let end = if self.ends { before(plane, self.to) } else { plane.truncate().dot(self.to) > 0.0 };
+        i32::from(end) - i32::from(before(plane, self.from))
+    }
+
+    /// The side of the line from `a` to `b` on which the path passes.
+    #[inline(always)]
+    fn left_of(&self, a: DVec3, b: DVec3) -> bool {
+        let value = |a: DVec3, b: DVec3| self.way.cross(a - self.from).dot(b - self.from) > 0.0;
+        if ordered(a, b) { value(a, b) } else { !value(b, a) }
+    }
+
+    /// What a side adds to the count, if the path crosses its plane `along` the normal.
+    #[inline(always)]
+    fn side(&self, side: &Side, along: i32) -> i32 {
+        if along == 0 {
+            return 0;
+        }
+        let [a, b] = [side.a, side.b].map(|p| self.normal.dot(p - self.from) > 0.0);
+        let enters = along > 0;
+        if a == enters || b != enters {
+            return 0;
+        }
+        let value = self.way.cross(side.a - self.from).dot(side.b - self.from) > 0.0;
+        if value == enters { 0 } else { along * side.multiplicity }
+    }
+
+    /// Whether a path that crosses a triangle's plane `along` its normal meets the triangle.
+    #[inline(always)]
+    fn meets(&self, corners: &[DVec3; 3], along: i32) -> bool {
+        let [a, b, c] = *corners;
+        let left = along > 0;
+        self.left_of(a, b) == left && self.left_of(b, c) == left && self.left_of(c, a) == left
+    }
+}
 
 impl Lit<'_> {
     fn light(&self) -> DVec4 {
         self.volumes.from.at
     }
 
-    /// What the listed sides and caps add to the count along paths from a place.
-    fn changes(&self, from: DVec3, to: Ends<'_>, sides: &[u32], caps: &[u32]) -> [i32; LANES] {
-        dispatch!(self.level, simd => self.changes_in_lanes(simd, from, to, sides, caps))
-    }
-
+    /// What the near cap of a triangle adds to the count along a path that crosses its plane `along` its normal.
     #[inline(always)]
-    fn changes_in_lanes<S: Simd>(
-        &self,
-        simd: S,
-        from: DVec3,
-        to: Ends<'_>,
-        sides: &[u32],
-        caps: &[u32],
-    ) -> [i32; LANES] {
-        let mut paths = Paths::new(simd, from, to, self.light());
-        for &s in sides {
-            paths.meet_side(&self.volumes.sides[s as usize]);
-        }
-        for &t in caps {
-            let (plane, corners) = self.cap(t);
-            paths.meet_cap(plane, corners, self.volumes.turned[t as usize]);
-        }
-        paths.changes
+    fn cap(&self, path: &Path, triangle: u32, along: i32) -> i32 {
+        let t = triangle as usize;
+        let corners = &self.casters.triangles().corners[t];
+        if along != 0 && path.meets(&wide(corners), along) { -along * i32::from(self.volumes.turned[t]) } else { 0 }
     }
 
-    /// The plane and the corners of an opaque triangle.
-    #[inline(always)]
-    fn cap(&self, triangle: u32) -> (DVec4, &[Vec3; 3]) {
-        (self.planes[triangle as usize], &self.casters.triangles().corners[triangle as usize])
+    /// What the listed sides and caps add to the count along a path.
+    fn change(&self, path: &Path, sides: &[u32], caps: &[u32]) -> i32 {
+        let of_side = |&s: &u32| {
+            let side = self.side(s);
+            path.side(side, path.crosses(side.plane))
+        };
+        let of_cap = |&t: &u32| self.cap(path, t, path.crosses(self.planes[t as usize]));
+        sides.iter().map(of_side).sum::<i32>() + caps.iter().map(of_cap).sum::<i32>()
     }
 
-    /// The opaque triangles near a path to a homogeneous place.
-    fn caps_near(&self, from: DVec3, to: DVec4) -> Vec<u32> {
+    /// The opaque triangles near a path.
+    fn caps_near(&self, path: &Path) -> Vec<u32> {
         let extent = self.casters.extent();
-        let way = if to.w > 0.0 { to.truncate() - from } else { to.truncate() };
-        let scale = way.abs().max_element();
-        let beam = Beam::around(&Ray::new(from.as_vec3(), (way / scale).as_vec3()), extent);
+        let scale = path.way.abs().max_element();
+        let beam = Beam::around(&Ray::new(path.from.as_vec3(), (path.way / scale).as_vec3()), extent);
         let mut list = Vec::new();
         self.casters.opaque_near(&beam, &mut list);
         list
@@ -82,29 +135,19 @@ impl Lit<'_> {
             return 0;
         }
         // From whichever is not at infinity to the other.
-        let (from, to) = if place.w > 0.0 { (place.truncate(), light) } else { (light.truncate(), place) };
-        let caps = self.caps_near(from, to);
-        dispatch!(self.level, simd => self.caps_met(simd, from, to, &caps))
+        let (from, to) = if place.w > 0.0 { (place, light) } else { (light, place) };
+        let path = Path::new(from.truncate(), to, light);
+        let met = |&t: &u32| self.cap(&path, t, path.crosses(self.planes[t as usize])).abs();
+        self.caps_near(&path).iter().map(met).sum()
     }
 
-    /// How many of the listed caps a path meets, from whichever side.
-    #[inline(always)]
-    fn caps_met<S: Simd>(&self, simd: S, from: DVec3, to: DVec4, caps: &[u32]) -> i32 {
-        let paths = Paths::new(simd, from, (&[to.truncate(); LANES], to.w > 0.0), self.light());
-        let met = caps.iter().filter(|&&t| {
-            let (plane, corners) = self.cap(t);
-            self.volumes.turned[t as usize] != 0 && paths.met(plane, corners).1 != 0
-        });
-        met.count() as i32
-    }
-
-    /// What the count changes along a path of any length, to a homogeneous place.
-    fn along(&self, from: DVec3, to: DVec4) -> i32 {
-        let end = to.truncate().extend(f64::from(u8::from(to.w > 0.0)));
+    /// What the count changes along a path of any length.
+    fn along(&self, path: &Path) -> i32 {
+        let end = path.to.extend(f64::from(u8::from(path.ends)));
+        let shaft = Shaft::triangle(path.from, [self.light(), end], self.casters.extent());
         let mut sides = Vec::new();
-        self.sides_near(&Shaft::triangle(from, [self.light(), end], self.casters.extent()), &mut sides);
-        let to_end = (&[to.truncate(); LANES], to.w > 0.0);
-        self.changes(from, to_end, &sides, &self.caps_near(from, to))[0]
+        self.sides_near(&shaft, &mut sides);
+        self.change(path, &sides, &self.caps_near(path))
     }
 
     /// Appends the sides near a probe.
@@ -119,13 +162,18 @@ impl Lit<'_> {
         list.extend(runs.iter().flat_map(run));
     }
 
+    #[inline(always)]
+    fn side(&self, number: u32) -> &Side {
+        &self.volumes.sides[number as usize]
+    }
+
     /// The count at a place, from the viewer or from infinity.
     fn at(&self, place: DVec3, counting: VolumeCounting, viewer: DVec4, around_viewer: i32) -> i32 {
         match counting {
-            VolumeCounting::ZPass => around_viewer - self.along(place, viewer),
+            VolumeCounting::ZPass => around_viewer - self.along(&Path::new(place, viewer, self.light())),
             VolumeCounting::ZFail => {
                 let from_viewer = (place * viewer.w - viewer.truncate()).extend(0.0);
-                self.around(from_viewer) - self.along(place, from_viewer)
+                self.around(from_viewer) - self.along(&Path::new(place, from_viewer, self.light()))
             }
         }
     }
@@ -162,6 +210,7 @@ impl Batch {
     /// Calls `found` for each place: which, where, its count, and the transparent triangles that may filter its light.
     pub(super) fn count(
         &mut self,
+        level: Level,
         lit: &Lit<'_>,
         (counting, viewer, around_viewer): (VolumeCounting, DVec4, i32),
         mut found: impl FnMut(usize, DVec3, i32, &[u32]),
@@ -182,35 +231,41 @@ impl Batch {
         let from = inner(middle, half);
         let known = (from, lit.at(from, counting, viewer, around_viewer));
         let lists = [0, 1, 2].map(|k| 0..self.lists[k].len());
-        self.part(lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
+        self.part(level, lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
     }
 
     /// The counts of a part, whose box holds the known place too.
-    fn part(&mut self, lit: &Lit<'_>, part: Part, slack: f64, found: &mut impl FnMut(usize, DVec3, i32, &[u32])) {
-        let (from, count) = part.known;
+    fn part(
+        &mut self,
+        level: Level,
+        lit: &Lit<'_>,
+        part: Part,
+        slack: f64,
+        found: &mut impl FnMut(usize, DVec3, i32, &[u32]),
+    ) {
         let polygons: usize = part.lists.iter().map(ExactSizeIterator::len).sum();
         if part.places.len() <= LANES || part.places.len() * polygons <= FEW_PAIRS {
-            let [sides, caps, filters] = [0, 1, 2].map(|k: usize| &self.lists[k][part.lists[k].clone()]);
-            for places in self.places[part.places].chunks(LANES) {
+            let filters = &self.lists[2][part.lists[2].clone()];
+            for places in self.places[part.places.clone()].chunks(LANES) {
                 // Places that are not there repeat the last.
                 let to = std::array::from_fn(|k| places[k.min(places.len() - 1)].1);
-                let changes = lit.changes(from, (&to, true), sides, caps);
+                let changes = dispatch!(level, simd => self.changes(simd, lit, &part, &to));
                 for (&(index, place), change) in places.iter().zip(changes) {
-                    found(index as usize, place, count + change, filters);
+                    found(index as usize, place, part.known.1 + change, filters);
                 }
             }
             return;
         }
-        let places = self.cut(part.places);
+        let places = self.cut(part.places.clone());
         let boxes = places.clone().map(|range| box_around(self.places[range].iter().map(|p| p.1), slack));
         let (middle, half) = (boxes.map(|b| b.0), boxes.map(|b| b.1));
         let to = boxes.map(|(middle, half)| inner(middle, half));
         let lengths = [0, 1, 2].map(|k: usize| self.lists[k].len());
-        let [sides, caps] = [0, 1].map(|k: usize| &self.lists[k][part.lists[k].clone()]);
-        let changes = lit.changes(from, (&to, true), sides, caps);
-        let lists = dispatch!(lit.level, simd => self.narrow(simd, lit, &part.lists, (&middle, &half)));
+        let changes = dispatch!(level, simd => self.changes(simd, lit, &part, &to));
+        let lists = dispatch!(level, simd => self.narrow(simd, lit, &part.lists, (&middle, &half)));
         for (k, (places, lists)) in places.into_iter().zip(lists).enumerate() {
-            self.part(lit, Part { places, known: (to[k], count + changes[k]), lists }, slack, found);
+            let known = (to[k], part.known.1 + changes[k]);
+            self.part(level, lit, Part { places, known, lists }, slack, found);
         }
         for (list, length) in self.lists.iter_mut().zip(lengths) {
             list.truncate(length);
@@ -235,6 +290,20 @@ impl Batch {
         parts
     }
 
+    /// What a part's lists add to the count on the ways from its known place to eight others.
+    #[inline(always)]
+    fn changes<S: Simd>(&self, simd: S, lit: &Lit<'_>, part: &Part, to: &[DVec3; LANES]) -> [i32; LANES] {
+        let mut paths = Paths::new(simd, part.known.0, to, lit.light());
+        for &s in &self.lists[0][part.lists[0].clone()] {
+            paths.meet_side(lit.side(s));
+        }
+        for &t in &self.lists[1][part.lists[1].clone()] {
+            let t = t as usize;
+            paths.meet_cap(lit.planes[t], &lit.casters.triangles().corners[t], lit.volumes.turned[t]);
+        }
+        paths.changes
+    }
+
     /// Appends what of the lists touches each of eight boxes, given by their middles and half their sides.
     #[inline(always)]
     fn narrow<S: Simd>(
@@ -249,15 +318,12 @@ impl Batch {
         let sides = self.deal(
             (0, lists[0].clone()),
             #[inline(always)]
-            |s| boxes.touched_by_side(&lit.volumes.sides[s as usize]),
+            |s| boxes.touched_by_side(lit.side(s)),
         );
         let caps = self.deal(
             (1, lists[1].clone()),
             #[inline(always)]
-            |t| {
-                let (plane, corners) = lit.cap(t);
-                boxes.touched_by_triangle(plane, corners)
-            },
+            |t| boxes.touched_by_triangle(lit.planes[t as usize], &lit.casters.triangles().corners[t as usize]),
         );
         let filters = self.deal((2, lists[2].clone()), |t| {
             let solid = Solid::new(&lit.casters.filter(t), lit.light(), least);

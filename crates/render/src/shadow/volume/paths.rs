@@ -1,9 +1,10 @@
 //! Eight straight paths that begin at one place, and eight boxes: what a side or a cap means to each.
 //!
-//! In double precision. What two polygons share, and what two paths share, gives both the same numbers: the same operations in
-//! the same order.
+//! In double precision, the operations in the order of the formulas for one path, so that a path has the same crossings
+//! whichever way it is looked at.
 
 use super::super::casters::{away, ordered, wide};
+use super::count::before;
 use super::edges::Side;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F64x8, LANES, Simd};
@@ -43,17 +44,11 @@ fn minus<S: Simd>(a: Points<S>, b: Points<S>) -> Points<S> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `n · p + w` for each point: twice the area, or more, times the height above a plane. `w` is 0 for directions.
+/// [`super::count::height`] of each point.
 #[inline(always)]
-fn heights<S: Simd>(simd: S, normal: DVec3, w: f64, p: Points<S>) -> F64x8<S> {
-    let [x, y, z] = splat(simd, normal);
-    (x * p[0] + y * p[1]) + (z * p[2] + w)
-}
-
-/// The same for one point.
-#[inline(always)]
-fn height(plane: DVec4, p: DVec3) -> f64 {
-    (plane.x * p.x + plane.y * p.y) + (plane.z * p.z + plane.w)
+fn heights<S: Simd>(simd: S, plane: DVec4, p: Points<S>) -> F64x8<S> {
+    let [x, y, z] = splat(simd, plane.truncate());
+    (x * p[0] + y * p[1]) + (z * p[2] + plane.w)
 }
 
 /// The lanes in which a value is positive, one bit each.
@@ -66,9 +61,7 @@ fn positive<S: Simd>(simd: S, value: F64x8<S>) -> u32 {
 pub(super) struct Paths<S: Simd> {
     simd: S,
     from: DVec3,
-    /// Where they end, or the directions in which they do not.
     to: Points<S>,
-    ends: bool,
     way: Points<S>,
     /// Normals of the planes through a path and the light.
     normal: Points<S>,
@@ -77,22 +70,21 @@ pub(super) struct Paths<S: Simd> {
 }
 
 impl<S: Simd> Paths<S> {
-    /// To eight places; in eight directions, if they have no ends.
+    /// To eight places.
     #[inline(always)]
-    pub(super) fn new(simd: S, from: DVec3, (to, ends): (&[DVec3; LANES], bool), light: DVec4) -> Self {
+    pub(super) fn new(simd: S, from: DVec3, to: &[DVec3; LANES], light: DVec4) -> Self {
         let to = points(simd, to);
-        let way = if ends { minus(to, splat(simd, from)) } else { to };
+        let way = minus(to, splat(simd, from));
         let normal = cross(splat(simd, -away(light, from)), way);
-        Self { simd, from, to, ends, way, normal, changes: [0; LANES] }
+        Self { simd, from, to, way, normal, changes: [0; LANES] }
     }
 
     /// Whether the paths that cross a plane do so along its normal, and which ones do.
     #[inline(always)]
     fn crossing(&self, plane: DVec4) -> (bool, u32) {
-        let w = if self.ends { plane.w } else { 0.0 };
-        let (start, ends) =
-            (height(plane, self.from) > 0.0, positive(self.simd, heights(self.simd, plane.truncate(), w, self.to)));
-        (!start, if start { !ends & 0xff } else { ends })
+        let ends = positive(self.simd, heights(self.simd, plane, self.to));
+        let along = !before(plane, self.from);
+        (along, if along { ends } else { !ends & 0xff })
     }
 
     /// The paths that have the line from `a` to `b`, given from where they begin, on their left.
@@ -132,12 +124,12 @@ impl<S: Simd> Paths<S> {
         }
     }
 
-    /// Whether the paths that meet a triangle with this plane do so along its normal, and which ones do.
+    /// Counts the near cap of a triangle with this plane, which is `turned` towards the light, 1, or away, -1.
     #[inline(always)]
-    pub(super) fn met(&self, plane: DVec4, corners: &[Vec3; 3]) -> (bool, u32) {
+    pub(super) fn meet_cap(&mut self, plane: DVec4, corners: &[Vec3; 3], turned: i8) {
         let (along, mut met) = self.crossing(plane);
         if met == 0 {
-            return (along, 0);
+            return;
         }
         let corners = wide(corners);
         for k in 0..3 {
@@ -148,13 +140,6 @@ impl<S: Simd> Paths<S> {
             let left = self.left_of(splat(self.simd, a - self.from), splat(self.simd, b - self.from));
             met &= if along != swap { left } else { !left };
         }
-        (along, met)
-    }
-
-    /// Counts the near cap of a triangle with this plane, which is `turned` towards the light, 1, or away, -1.
-    #[inline(always)]
-    pub(super) fn meet_cap(&mut self, plane: DVec4, corners: &[Vec3; 3], turned: i8) {
-        let (along, met) = self.met(plane, corners);
         self.add(met, if along { -i32::from(turned) } else { i32::from(turned) });
     }
 }
@@ -182,7 +167,7 @@ impl<S: Simd> Boxes<S> {
     /// Those that a plane cuts, with room for the rounding of a height.
     #[inline(always)]
     fn cut_by(&self, plane: DVec4) -> u32 {
-        let height = heights(self.simd, plane.truncate(), plane.w, self.middle).abs();
+        let height = heights(self.simd, plane, self.middle).abs();
         height.simd_le(self.reach(plane.truncate()) * (1.0 + 1e-9)).to_bitmask() as u32
     }
 
@@ -221,6 +206,7 @@ impl<S: Simd> Boxes<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::count::height;
     use super::*;
     use vitral_math::lanes::{available_levels, dispatch};
 
@@ -261,7 +247,7 @@ mod tests {
             });
             for (name, level) in available_levels() {
                 let changes = dispatch!(level, simd => {
-                    let mut paths = Paths::new(simd, from, (&to, true), LIGHT);
+                    let mut paths = Paths::new(simd, from, &to, LIGHT);
                     paths.meet_cap(plane, &corners, 1);
                     paths.changes
                 });
@@ -301,7 +287,7 @@ mod tests {
             met += expected.iter().filter(|&&n| n != 0).count();
             for (name, level) in available_levels() {
                 let changes = dispatch!(level, simd => {
-                    let mut paths = Paths::new(simd, from, (&to, true), LIGHT);
+                    let mut paths = Paths::new(simd, from, &to, LIGHT);
                     paths.meet_side(&side);
                     paths.changes
                 });

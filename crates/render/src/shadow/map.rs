@@ -8,8 +8,9 @@
 //! that its shadow loosens from its foot (*peter-panning*). So the depth that is compared is not the point's own but that of
 //! its facet's plane in the middle of the texel, which takes a slope exactly into account; what is left, the rounding of
 //! corners to 1/256 texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie on a neighbour
-//! that rises towards the light, the point is lifted by a texel along its normal (*normal bias*). Four texels round the point
-//! are compared one by one, and the answers are blended (*percentage-closer filtering*).
+//! that rises towards the light, the point is lifted by half a texel along its normal (*normal bias*). Four texels round the point
+//! are compared one by one, and the answers are blended (*percentage-closer filtering*), but for those in which the light
+//! sees something far behind: the surface does not reach there.
 //!
 //! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
 //! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its
@@ -50,7 +51,9 @@ pub struct MapShadows;
 /// Shortest side of an area light's maps.
 const LEAST_SIDE: u32 = 256;
 /// How far a point is lifted along its normal, in texels.
-const LIFT: f64 = 1.0;
+const LIFT: f64 = 0.5;
+/// How far behind a point's plane a surface may be and still count as its own, in texels.
+const BEYOND: f64 = 2.0;
 /// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
 /// texel, and two roundings may add up.
 const SLOPE_BIAS: f64 = 1.0 / 64.0;

@@ -6,7 +6,7 @@
 //! In:   places that face the light. Out: the part of the light that passes to each of them.
 //! Cost: a constant number of operations a place.
 
-use super::{DEPTH_BIAS, LIFT, Map, SLOPE_BIAS};
+use super::{BEYOND, DEPTH_BIAS, LIFT, Map, SLOPE_BIAS};
 use crate::shadow::Place;
 use std::ops::{Add, Mul, Sub};
 use vitral_light::Rgb;
@@ -23,6 +23,17 @@ struct Eight {
     first: [[f64; LANES]; 2],
     /// Depths of the places' planes in the four texels, row by row, less what they may be wrong by.
     depths: [[f64; LANES]; 4],
+    /// What lies farther in the four texels than this is not the surface that the place is on.
+    ends: [[f64; LANES]; 4],
+}
+
+/// What a texel says about a surface.
+#[derive(Clone, Copy)]
+struct Answer {
+    /// The part of each colour of light that passes to it.
+    passing: Rgb,
+    /// Whether the light sees only what is far behind, or nothing.
+    beyond: bool,
 }
 
 /// What maps answer to questions: the number of a map, and the place that is asked about, which faces its light.
@@ -112,10 +123,12 @@ impl Map {
         let [right, bottom] = [F32x8::from_slice(simd, &shares[0]), F32x8::from_slice(simd, &shares[1])];
         let mut parts = blended(lit, right, bottom).to_array().map(|part| [part; 3]);
         for lane in 0..LANES {
-            if apart[lane] {
+            // Few are answered differently by their texels.
+            let differ = parts[lane][0] > 0.0 && parts[lane][0] < 1.0;
+            if differ || apart[lane] {
                 let [left, top] = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
-                let depths = std::array::from_fn(|k| eight.depths[k][lane]);
-                parts[lane] = self.four_apart([left, top], depths, [shares[0][lane], shares[1][lane]]);
+                let surface = std::array::from_fn(|k| [eight.depths[k][lane], eight.ends[k][lane]]);
+                parts[lane] = self.four_apart([left, top], surface, [shares[0][lane], shares[1][lane]]);
             }
         }
         parts
@@ -146,8 +159,8 @@ impl Map {
         let (px, py, pz) = (px + matrix.w_axis.x, py + matrix.w_axis.y, pz + matrix.w_axis.z);
 
         // Lifted along the normal.
-        let lift = lens.side();
-        let lift = if lens.perspective { pz.abs() * lift * LIFT } else { splat(lift * LIFT) };
+        let texel = if lens.perspective { pz.abs() * lens.side() } else { splat(lens.side()) };
+        let lift = texel * LIFT;
         let point = [px + normal[0] * lift, py + normal[1] * lift, pz + normal[2] * lift];
         let own = -point[2];
 
@@ -177,8 +190,8 @@ impl Map {
             ((corner - height) * scale, [step[0] * scale, step[1] * scale])
         };
         let deep = own.abs() * DEPTH_BIAS;
-        let mut depths = [[0.0; LANES]; 4];
-        for (k, stored) in depths.iter_mut().enumerate() {
+        let (mut depths, mut ends) = ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
+        for (k, (stored, end)) in depths.iter_mut().zip(&mut ends).enumerate() {
             let (x, y) = (left + (k % 2) as f64 + 0.5, top + (k / 2) as f64 + 0.5);
             let value = start + step[0] * x + step[1] * y;
             let there = if lens.perspective {
@@ -191,6 +204,7 @@ impl Map {
             let slope = (there - own).abs();
             let nearer = there.simd_lt(own).select(there, own);
             (nearer - slope * SLOPE_BIAS - deep).store_slice(stored);
+            (nearer + slope * 2.0 + texel * BEYOND).store_slice(end);
         }
         let store = lanes::inlined(
             #[inline(always)]
@@ -200,7 +214,7 @@ impl Map {
                 stored
             },
         );
-        Eight { at: [store(u), store(v)], first: [store(left), store(top)], depths }
+        Eight { at: [store(u), store(v)], first: [store(left), store(top)], depths, ends }
     }
 
     /// The depths of four texels whose upper left one is given, `Some(None)` where nothing is; `None` if they are not in one
@@ -220,30 +234,45 @@ impl Map {
         Some(texels.map(|texels| [texels[0], texels[1], texels[TILE], texels[TILE + 1]]))
     }
 
-    /// What passes four texels, across tiles, at the map's border and behind transparent things.
+    /// What passes four texels, across tiles, at the map's border, behind transparent things and where not all say the same.
+    /// `surface` is how deep the place's surface begins and ends in each.
+    ///
+    /// A texel in which the light sees something far behind that surface tells nothing about it: there, it has come to its
+    /// end. Were such a texel lit, light would leak in where two walls of a closed room meet.
     #[inline(never)]
-    fn four_apart(&self, [left, top]: [i32; 2], depths: [f64; 4], [right, bottom]: [f32; 2]) -> Rgb {
-        let at = |dx: i32, dy: i32| self.passing_at([left + dx, top + dy], depths[(2 * dy + dx) as usize]);
-        let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-        [0, 1, 2].map(|k| blended(four.map(|color| color[k]), right, bottom))
+    fn four_apart(&self, [left, top]: [i32; 2], surface: [[f64; 2]; 4], [right, bottom]: [f32; 2]) -> Rgb {
+        let at = |k: usize| self.passing_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
+        let four = [at(0), at(1), at(2), at(3)];
+        let passing = four.map(|answer| answer.passing);
+        if passing.iter().all(|part| *part == [1.0; 3]) || !four.iter().any(|answer| answer.beyond) {
+            return [0, 1, 2].map(|k| blended(passing.map(|color| color[k]), right, bottom));
+        }
+        let shares = [(1.0 - right) * (1.0 - bottom), right * (1.0 - bottom), (1.0 - right) * bottom, right * bottom];
+        let (mut sum, mut all) = ([0.0; 3], 0.0);
+        for (answer, share) in four.iter().zip(shares).filter(|(answer, _)| !answer.beyond) {
+            sum = [0, 1, 2].map(|k| sum[k] + answer.passing[k] * share);
+            all += share;
+        }
+        sum.map(|part| if all > 0.0 { part / all } else { 0.0 })
     }
 
-    /// What passes one texel to this depth.
-    fn passing_at(&self, [column, row]: [i32; 2], depth: f64) -> Rgb {
+    /// What one texel says about a surface that begins and ends at these depths.
+    fn passing_at(&self, [column, row]: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
         let outside = |k: i32, side: u32| k < 0 || k >= side as i32;
         if outside(column, self.lens.width) || outside(row, self.lens.height) {
-            return [1.0; 3];
+            return Answer { passing: [1.0; 3], beyond: true };
         }
         let (column, row) = (column as usize, row as usize);
         let tile = self.tile(row / TILE * self.columns + column / TILE);
         let texel = row % TILE * TILE + column % TILE;
-        let nearest = tile.depth.get(texel).copied().unwrap_or(f32::INFINITY);
-        if f64::from(nearest) < depth {
-            [0.0; 3]
+        let nearest = f64::from(tile.depth.get(texel).copied().unwrap_or(f32::INFINITY));
+        if nearest < begin {
+            Answer { passing: [0.0; 3], beyond: false }
         } else if tile.layers.is_empty() {
-            [1.0; 3]
+            Answer { passing: [1.0; 3], beyond: nearest > end }
         } else {
-            tile.filtered(texel, depth)
+            // The surface itself may be among the transparent things.
+            Answer { passing: tile.filtered(texel, begin), beyond: false }
         }
     }
 }

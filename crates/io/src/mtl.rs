@@ -255,6 +255,12 @@ fn dissolve(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
     number(cursor, warnings)
 }
 
+/// The name of a file as resolvers take it: without quotes, blanks without the `\` that some writers put before them, and `/`
+/// between folders.
+pub(crate) fn file_name(text: &str) -> String {
+    text.trim_matches('"').replace("\\ ", " ").replace('\\', "/")
+}
+
 /// A texture statement: options, then a file name that may hold blanks.
 fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
     let line = cursor.line();
@@ -268,8 +274,7 @@ fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
         }
         *cursor = ahead;
     }
-    let name = String::from_utf8_lossy(cursor.rest_of_line());
-    map.path = name.trim_matches('"').replace('\\', "/");
+    map.path = file_name(&String::from_utf8_lossy(cursor.rest_of_line()));
     if map.path.is_empty() {
         warnings.note("map name", Place::Line(line), || "texture statement without a file name".into());
         return None;
@@ -303,7 +308,7 @@ impl Map {
             b"-bm" => unused(cursor.float().is_some_and(|b| b != 1.0)),
             b"-boost" => unused(cursor.float().is_some_and(|b| b != 0.0)),
             b"-texres" => unused(cursor.float().is_some()),
-            b"-type" => unused(!cursor.word().is_empty()),
+            b"-type" | b"-colorspace" => unused(!cursor.word().is_empty()),
             _ => return false,
         }
         true
@@ -378,6 +383,14 @@ mod tests {
         assert_eq!(one("newmtl a\nTf 0 .375 .375\nillum 4").0.filter, [0.0, 1.5, 1.5], "kt is 0.25");
         assert_eq!(one("newmtl a\nTf 0 .5 .25\nd .4\nillum 4").0.filter, [0.0, 1.0, 0.5]);
         assert_eq!(one("newmtl a\nTf 0 0 0\nillum 4").0.filter, [1.0; 3]);
+    }
+
+    #[test]
+    fn names_of_maps_begin_behind_all_options() {
+        let (_, requests, warnings) =
+            one("newmtl m\nmap_Kd -colorspace sRGB -o 0.5 0 a\\ b.png\nmap_Ks textures\\c.png");
+        assert_eq!(requests.paths(), ["a b.png", "textures/c.png"]);
+        assert_eq!(warnings, ["m.mtl: line 2: texture option `-colorspace` is not used"]);
     }
 
     #[test]

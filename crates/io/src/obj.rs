@@ -15,7 +15,8 @@
 //! * `l`, `p`: free lines and points, with the material in force. A file of vertices alone is a point cloud.
 //! * `o`, `g`, `s`, `usemtl`, `mtllib`. An unknown material is the default one, with a warning.
 //! * A number with something glued to it (`3.1+e2`) counts up to there, with a warning; a word that is no number, and
-//!   an index that leads nowhere, is an error that names the line.
+//!   the index of a vertex that leads nowhere, is an error that names the line. Texture coordinates and normals that lead
+//!   nowhere are left out, with a warning: files refer to ones that they do not have.
 //! * Free-form curves and surfaces are left out, with a warning.
 //!
 //! In:   UTF-8 or UTF-16 text. Out: a scene in model space, right-handed, any orientation of axes.
@@ -79,12 +80,16 @@ fn load_in_pieces(
 
     // Put the geometry together while the materials are read.
     let events = materials::Events::new(&chunks, &pieces, &first_lines);
-    let totals = stitch::Totals::new(&chunks, file)?;
-    if let Some(wrong) = stitch::first_bad_index(&chunks, &totals, (&pieces, &first_lines), file, workers) {
+    let mut totals = stitch::Totals::new(&chunks, file)?;
+    let text_of = (&pieces[..], &first_lines[..]);
+    if let Some(wrong) = stitch::first_bad_index(&chunks, &totals, text_of, file, workers) {
         return Err(earlier(error, wrong));
     }
     if let Some(error) = error {
         return Err(error);
+    }
+    if stitch::leave_out_bad_attributes(&mut chunks, &totals, text_of, &mut warnings, workers) {
+        totals = stitch::Totals::new(&chunks, file)?;
     }
     let (mut mesh, library) = workers.join(
         || stitch::stitch(chunks, &totals, &mut warnings, workers),

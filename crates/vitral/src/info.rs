@@ -4,8 +4,8 @@ use serde::Serialize;
 use std::fmt;
 use vitral_exec::Workers;
 use vitral_light::{AlphaMode, LightKind, Material, Reflectance};
-use vitral_math::Aabb;
-use vitral_scene::{Mesh, Projection, Scene, Topology, World};
+use vitral_math::{Aabb, DVec3};
+use vitral_scene::{Instance, Mesh, Projection, Scene, Topology, World};
 
 /// A scene in numbers. Meshes are counted once, however many instances they have, except where it says otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -240,7 +240,7 @@ pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         vertices: sum(|m| m.vertices),
         lines: sum(|m| m.lines),
         points: sum(|m| m.points),
-        bounds: Bounds::of(&world.bounds),
+        bounds: Bounds::of(&bounds(&world)),
         closed: meshes.iter().any(|m| m.triangles > 0) && meshes.iter().filter(solid).all(|m| m.closed),
         materials: scene.materials.iter().map(MaterialInfo::of).collect(),
         textures: scene.textures.iter().map(|t| texture_info(t)).collect(),
@@ -250,6 +250,25 @@ pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         warnings: warnings(scene, &meshes),
         meshes,
     })
+}
+
+/// The box round all that is seen, world space. An instance's own box is a mesh's box as it lies in the world, which is larger
+/// where the mesh is turned: such meshes are gone through.
+fn bounds(world: &World) -> Aabb {
+    let seen = |instance: &Instance| {
+        let matrix = &instance.world_from_model;
+        let is_turned =
+            (0..3).any(|k| [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().filter(|c| c[k] != 0.0).count() > 1);
+        if !is_turned {
+            return instance.bounds;
+        }
+        let mesh = &instance.mesh;
+        let used = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+        let positions = used.filter_map(|&i| mesh.positions.get(i as usize));
+        let positions = positions.map(|p| DVec3::from_array(p.map(f64::from))).filter(|p| p.is_finite());
+        Aabb::from_points(positions.map(|p| matrix.transform_point3(p)))
+    };
+    world.instances.iter().map(seen).fold(Aabb::EMPTY, |all, one| all.union(&one))
 }
 
 fn texture_info(texture: &vitral_frame::Texture) -> TextureInfo {
@@ -367,6 +386,7 @@ fn triple(v: [f64; 3]) -> String {
 mod tests {
     use super::*;
     use crate::load_builtin;
+    use vitral_math::DMat4;
 
     #[test]
     fn eight_cubes_are_counted() {
@@ -381,6 +401,20 @@ mod tests {
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!(json["meshes"][0]["boundary-edges"], 0);
         assert!((json["bounds"]["min"][0].as_f64().unwrap() + 1.2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bounds_are_those_of_what_is_seen_however_it_is_turned() {
+        let mut scene = Scene::default();
+        let corners = vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [9.0, 9.0, 9.0], [0.0, f32::NAN, 0.0]];
+        let mesh = Mesh { positions: corners, triangles: vec![[0, 1, 2], [0, 2, 4]], ..Mesh::default() };
+        // By 45 degrees: the box round the turned box would reach to 1.41 and -0.71.
+        scene.add_mesh(mesh, DMat4::from_rotation_z(std::f64::consts::FRAC_PI_4));
+        let bounds = info(&scene, &Workers::single()).unwrap().bounds.unwrap();
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        for (seen, expected) in bounds.min.iter().chain(&bounds.max).zip([-half, -half, 0.0, half, half, 0.0]) {
+            assert!((seen - expected).abs() < 1e-9, "{bounds:?}");
+        }
     }
 
     #[test]

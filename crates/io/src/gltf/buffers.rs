@@ -8,9 +8,10 @@ use crate::{Error, Place, Resolver};
 use gltf::json::Root;
 use std::borrow::Cow;
 
-/// All buffers of a document, each at least as long as it claims.
+/// All buffers of a document, each at least as long as it claims. `None` for one without bytes, which is an error where it is
+/// used: only extensions that are not read have any for it.
 pub(crate) struct Buffers<'a> {
-    data: Vec<Cow<'a, [u8]>>,
+    data: Vec<Option<Cow<'a, [u8]>>>,
 }
 
 impl<'a> Buffers<'a> {
@@ -25,26 +26,32 @@ impl<'a> Buffers<'a> {
                     Cow::Owned(read_target(target, file, resolver)?)
                 }
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
-                (None, _) => return Err(Error::malformed(file, place, "neither a uri nor the binary chunk of a GLB")),
+                (None, _) => {
+                    data.push(None);
+                    continue;
+                }
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
                 let what = format!("byteLength {}, there are {} bytes", buffer.byte_length.0, bytes.len());
                 return Err(Error::malformed(file, place, what));
             }
-            data.push(bytes);
+            data.push(Some(bytes));
         }
         Ok(Self { data })
     }
 
     /// Bytes of all buffers together.
     pub(crate) fn total(&self) -> u64 {
-        self.data.iter().map(|b| b.len() as u64).sum()
+        self.data.iter().flatten().map(|b| b.len() as u64).sum()
     }
 
     /// The bytes of a buffer view.
     pub(crate) fn view(&self, root: &Root, view: usize, file: &str) -> Result<&[u8], Error> {
         let entry = &root.buffer_views[view];
-        let buffer = &self.data[entry.buffer.value()];
+        let Some(buffer) = &self.data[entry.buffer.value()] else {
+            let place = Place::Json(format!("buffers[{}]", entry.buffer));
+            return Err(Error::malformed(file, place, "neither a uri nor the binary chunk of a GLB"));
+        };
         let (start, length) = (entry.byte_offset.map_or(0, |o| o.0), entry.byte_length.0);
         let end = start.checked_add(length).filter(|&end| end <= buffer.len() as u64);
         match end {
@@ -66,5 +73,29 @@ pub(crate) fn read_target(target: Target, file: &str, resolver: &dyn Resolver) -
             needed: path,
             why: why.to_string(),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gltf::document::parse;
+    use crate::{NoFiles, gltf};
+    use vitral_exec::Workers;
+
+    #[test]
+    fn a_buffer_without_bytes_matters_where_it_is_used() {
+        let load = |rest: &str| {
+            let text = format!(
+                r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+                "buffers":[{{"byteLength":4000000000}}],"bufferViews":[{{"buffer":0,"byteLength":36}}],
+                "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+                "accessors":[{{"componentType":5126,"count":3,"type":"VEC3"{rest}}}]}}"#
+            );
+            parse(text.as_bytes(), "a.gltf").unwrap();
+            gltf::load(text.as_bytes(), "a.gltf", &NoFiles, &Workers::single()).map_err(|e| e.to_string())
+        };
+        assert_eq!(load("").unwrap().meshes[0].triangles.len(), 1);
+        let told = "a.gltf: buffers[0]: neither a uri nor the binary chunk of a GLB";
+        assert_eq!(load(r#","bufferView":0"#).unwrap_err(), told);
     }
 }

@@ -8,8 +8,10 @@
 //! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
 //! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
 
+use super::untidy;
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
+use serde_json::{Map, Value};
 
 /// Extensions that change what is read; a file may require them.
 const SUPPORTED: [&str; 8] = [
@@ -36,12 +38,12 @@ pub(crate) struct Document<'a> {
 /// Reads and checks glTF JSON or a GLB container.
 pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Error> {
     let (text, binary) = if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
-    let root = parse_json(text, file)?;
-    let major = root.asset.version.split('.').next();
-    if major != Some("2") {
-        let what = format!("glTF version {}; version 2.x is read", root.asset.version);
-        return Err(Error::Unsupported { file: file.to_owned(), what });
+    let is_called_glb = file.len() > 4 && file.as_bytes()[file.len() - 4..].eq_ignore_ascii_case(b".glb");
+    if is_called_glb && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
+        return Err(Error::malformed(file, Place::Byte(0), "a GLB begins with `glTF`"));
     }
+    let root = parse_json(text, file)?;
+    check_version(&root.asset.version, file)?;
     if let Some(least) = root.asset.min_version.as_ref().filter(|v| is_above_2_0(v)) {
         let what = format!("needs a reader of glTF version {least}; version 2.0 is read");
         return Err(Error::Unsupported { file: file.to_owned(), what });
@@ -49,6 +51,22 @@ pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Err
     let warnings = check_extensions(&root, file)?;
     check_indices(&root, file)?;
     Ok(Document { root, binary, warnings })
+}
+
+/// Refuses all versions but 2.x.
+fn check_version(version: &str, file: &str) -> Result<(), Error> {
+    if version.split('.').next() == Some("2") {
+        return Ok(());
+    }
+    let what = format!("glTF version {version}; version 2.x is read");
+    Err(Error::Unsupported { file: file.to_owned(), what })
+}
+
+/// The version of a document that the types do not take. Version 1.0 has objects where 2.0 has lists, and need not name itself.
+fn version_of(document: &Map<String, Value>) -> Option<&str> {
+    let named = document.get("asset").and_then(|a| a.get("version")).and_then(Value::as_str);
+    let is_first = || ["accessors", "meshes", "nodes"].iter().any(|l| document.get(*l).is_some_and(Value::is_object));
+    named.or_else(|| is_first().then_some("1.0"))
 }
 
 /// Whether a version `MAJOR.MINOR` is above 2.0, or none at all.
@@ -93,26 +111,28 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
     Ok((&json[..length], binary))
 }
 
-/// Reads the JSON. What is only untidy (a scene without a list of nodes) is mended; a value of the wrong type is
-/// reported with its path.
+/// Reads the JSON. What is only untidy is mended; a value of the wrong type is reported with its path.
 fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     if let Ok(root) = serde_json::from_slice(text) {
         return Ok(root);
     }
-    let mut value: serde_json::Value = serde_json::from_slice(text).map_err(|e| {
+    let mut value: Value = serde_json::from_slice(text).map_err(|e| {
         let what = format!("column {}: this is not JSON: {}", e.column(), plain_message(&e));
         Error::malformed(file, Place::Line(e.line() as u64), what)
     })?;
-    for (list, field) in [("scenes", "nodes"), ("skins", "joints")] {
-        for entry in value.get_mut(list).and_then(|v| v.as_array_mut()).into_iter().flatten() {
-            if let Some(object) = entry.as_object_mut() {
-                object.entry(field).or_insert_with(|| serde_json::Value::Array(Vec::new()));
-            }
-        }
+    let Some(document) = value.as_object_mut() else {
+        return Err(Error::malformed(file, Place::File, "the JSON of a glTF file is an object"));
+    };
+    if let Some(version) = version_of(document) {
+        check_version(version, file)?;
     }
-    serde_path_to_error::deserialize(value)
-        .map_err(|e| Error::malformed(file, Place::Json(e.path().to_string()), plain_message(e.inner())))
+    untidy::mend(document);
+    serde_path_to_error::deserialize(value).map_err(|e| {
+        let path = e.path().to_string();
+        let place = if path == "." { Place::File } else { Place::Json(path) };
+        Error::malformed(file, place, plain_message(e.inner()))
+    })
 }
 
 /// The message without the position, which [`Place`] gives.
@@ -169,16 +189,22 @@ fn check_indices(root: &Root, file: &str) -> Result<(), Error> {
 
 /// Reports that are dealt with elsewhere, or do not matter to a picture.
 fn is_harmless(root: &Root, path: &str, error: validation::Error) -> bool {
+    if path.starts_with("animations[") {
+        return true;
+    }
     match error {
         validation::Error::Unsupported => true,
         validation::Error::IndexOutOfBounds => path == "scene" && root.scenes.is_empty(),
         validation::Error::Missing => {
             let zeros = path.starts_with("accessors[") && path.ends_with("].bufferView");
             let other_image = path.starts_with("textures[") && path.ends_with("].source");
-            zeros || other_image || path.ends_with("\"].min") || path.ends_with("\"].max")
+            let nothing_drawn = path.ends_with("].attributes[\"POSITION\"]");
+            zeros || other_image || nothing_drawn || path.ends_with("\"].min") || path.ends_with("\"].max")
         }
         validation::Error::Invalid => {
-            path.contains("<invalid semantic name>") || path.ends_with("\"].min") || path.ends_with("\"].max")
+            // A type of accessor, or of light, that is not known matters where it is used.
+            let kind = path.starts_with("accessors[") || path.starts_with("extensions.khrLightsPunctual.lights[");
+            kind || path.contains("<invalid semantic name>") || path.ends_with("\"].min") || path.ends_with("\"].max")
         }
         validation::Error::Oversize => false,
     }
@@ -260,6 +286,52 @@ mod tests {
             error(&format!("{head}{draco}")),
             "a.gltf: requires KHR_draco_mesh_compression, which is not supported"
         );
+    }
+
+    #[test]
+    fn files_of_version_1_are_told_as_such() {
+        let told = "a.gltf: glTF version 1.0; version 2.x is read";
+        assert_eq!(error(r#"{"asset":{"version":"1.0"},"accessors":{"a":{"count":1}}}"#), told);
+        assert_eq!(error(r#"{"meshes":{"m":{"primitives":[]}}}"#), told);
+        assert_eq!(error("{}"), "a.gltf: missing field `asset`");
+        assert_eq!(error("[1, 2]"), "a.gltf: the JSON of a glTF file is an object");
+        let told = parse(b"glXF\x02\0\0\0", "a.GLB").unwrap_err().to_string();
+        assert_eq!(told, "a.GLB: byte 0: a GLB begins with `glTF`");
+    }
+
+    #[test]
+    fn what_the_format_allows_and_what_is_not_read_is_no_error() {
+        let sound = |rest: &str| {
+            let text = format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{}}],{rest}}}"#);
+            let loaded = crate::gltf::load(text.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single());
+            let scene = loaded.unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(scene.nodes.len(), 1, "{rest}");
+            scene.warnings
+        };
+        let none: [&str; 0] = [];
+        assert_eq!(sound(r#""scene":0.0"#), none);
+        assert_eq!(sound(r#""cameras":[],"extras":42,"extensionsUsed":[]"#), none);
+        assert_eq!(
+            sound(r#""animations":[{"channels":[{"sampler":7,"target":{"path":"weights"}}],"samplers":[]}]"#),
+            none
+        );
+        assert_eq!(
+            sound(r#""animations":[{"channels":[{"sampler":7,"target":{"node":3,"path":"x"}}],"samplers":[]}]"#),
+            none
+        );
+        assert_eq!(sound(r#""accessors":[{"componentType":1,"count":1,"type":"VEC5"}]"#), none);
+        let mesh = r#""meshes":[{"primitives":[{"attributes":{"NORMAL":0}}]}],"scene":0,
+            "accessors":[{"componentType":5126,"count":3,"type":"VEC3"}]"#;
+        assert_eq!(sound(mesh), none);
+        let shown =
+            format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],{mesh}}}"#);
+        let workers = vitral_exec::Workers::single();
+        let scene = crate::gltf::load(shown.as_bytes(), "a.gltf", &crate::NoFiles, &workers).unwrap();
+        assert_eq!(scene.warnings, ["a.gltf: meshes[0].primitives[0]: no POSITION, nothing is drawn"]);
+        let light = r#""extensionsUsed":["KHR_lights_punctual"],
+            "extensions":{"KHR_lights_punctual":{"lights":[{"type":"sky"},{"type":"point"}]}}"#;
+        let place = "a.gltf: extensions.KHR_lights_punctual.lights[0]";
+        assert_eq!(sound(light), [format!("{place}: a light of a type that is not known, left out")]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! glTF 2.0, as JSON with files beside it or as one GLB.
 //!
-//! The way of the data: `document.rs` takes the container apart and checks every index; `buffers.rs` fetches bytes;
+//! The way of the data: `document.rs` takes the container apart and checks every index (`untidy.rs` helps it); `buffers.rs` fetches bytes;
 //! `accessor.rs` makes typed arrays of them; `geometry.rs`, `mesh.rs`, `normals.rs` and `deform.rs` make meshes;
 //! `texture.rs` and `material.rs` say what they look like; `node.rs` says where they are.
 //!
@@ -19,6 +19,7 @@ mod node;
 mod normals;
 mod specular_glossiness;
 mod texture;
+mod untidy;
 
 pub(crate) use document::plain_message;
 
@@ -158,7 +159,8 @@ fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene
     let mesh_numbers: std::collections::BTreeMap<_, _> =
         poses.iter().enumerate().map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32)).collect();
     let cameras: Vec<_> = root.cameras.iter().enumerate().map(|(i, c)| node::camera(source, c, i, warnings)).collect();
-    let lights: Vec<_> = AsRef::<[_]>::as_ref(root).iter().map(node::light).collect();
+    let lights = AsRef::<[_]>::as_ref(root).iter().enumerate();
+    let lights: Vec<_> = lights.map(|(i, l)| node::light(source, l, i, warnings)).collect();
 
     let mut skinned = Vec::new();
     for &n in &tree.shown {
@@ -178,7 +180,7 @@ fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene
             node.camera = Some(scene.cameras.len() as u32 - 1);
         }
         let punctual = json.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        node.light = punctual.and_then(|l| lights.get(l.light.value()).cloned());
+        node.light = punctual.and_then(|l| lights.get(l.light.value()).cloned().flatten());
         scene.nodes.push(node);
     }
     scene.roots = tree.roots.iter().map(|&n| numbers[n]).collect();

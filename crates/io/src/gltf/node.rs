@@ -199,20 +199,26 @@ pub(crate) fn camera(
     Some(Camera { position, focal_point, view_up, projection, clip })
 }
 
-/// A light in its node's space, shining along -z. Intensities (candela, lux) become linear RGB as they are.
-pub(crate) fn light(json: &JsonLight) -> Light {
+/// A light in its node's space, shining along -z. Intensities (candela, lux) become linear RGB as they are. `None` with a
+/// warning for a type that is not known.
+pub(crate) fn light(source: &Source<'_>, json: &JsonLight, index: usize, warnings: &mut Vec<String>) -> Option<Light> {
+    let Checked::Valid(kind) = json.type_ else {
+        let path = format!("extensions.KHR_lights_punctual.lights[{index}]");
+        warnings.push(format!("{}: {path}: a light of a type that is not known, left out", source.file));
+        return None;
+    };
     let intensity = if json.intensity.is_finite() { json.intensity.max(0.0) } else { 0.0 };
     let color = json.color.map(|c| if c.is_finite() { (c.max(0.0) * intensity).min(f32::MAX) } else { 0.0 });
     let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
-    let kind = match (&json.type_, &json.spot) {
-        (Checked::Valid(LightType::Spot), Some(spot)) => {
+    let kind = match (kind, &json.spot) {
+        (LightType::Spot, Some(spot)) => {
             let angle = |a: f32| f64::from(a).clamp(0.0, std::f64::consts::FRAC_PI_2);
             let cutoff = angle(spot.outer_cone_angle);
             let inner = angle(spot.inner_cone_angle).min(cutoff);
             LightKind::Spot { position, direction, cutoff, inner, exponent: 0.0 }
         }
-        (Checked::Valid(LightType::Point | LightType::Spot), _) => LightKind::Point { position },
-        (Checked::Valid(LightType::Directional) | Checked::Invalid, _) => LightKind::Directional { direction },
+        (LightType::Point | LightType::Spot, _) => LightKind::Point { position },
+        (LightType::Directional, _) => LightKind::Directional { direction },
     };
     let attenuation = match (&kind, json.range) {
         (LightKind::Directional { .. }, _) => Attenuation::None,
@@ -220,7 +226,7 @@ pub(crate) fn light(json: &JsonLight) -> Light {
         _ => Attenuation::InverseSquare,
     };
     let name = json.name.clone().unwrap_or_default();
-    Light { name, kind, diffuse: color, specular: color, attenuation, ..Light::default() }
+    Some(Light { name, kind, diffuse: color, specular: color, attenuation, ..Light::default() })
 }
 
 #[cfg(test)]

@@ -123,6 +123,42 @@ impl FaceList {
     pub(super) fn triangles(&self) -> usize {
         self.v.len() - 2 * self.count
     }
+
+    /// Takes the texture coordinates that are `bad` away from their corners; tells of how many.
+    pub(super) fn leave_out_uvs(&mut self, bad: impl Fn(u32) -> bool) -> usize {
+        let count = leave_out(&mut self.vt, bad);
+        self.vt_like_v &= count == 0;
+        count
+    }
+
+    /// Takes the normals that are `bad` away from their corners; tells of how many.
+    pub(super) fn leave_out_normals(&mut self, bad: impl Fn(u32) -> bool) -> usize {
+        let count = leave_out(&mut self.vn, bad);
+        if count > 0 {
+            self.vn_like_v = false;
+            let mut start = 0;
+            let bare = (0..self.count).filter(|&f| {
+                let corners = start..start + self.sizes.get(f).map_or(3, |&size| size as usize);
+                start = corners.end;
+                self.vn.get(corners).is_none_or(|vn| vn.contains(&NONE))
+            });
+            self.bare = bare.count();
+        }
+        count
+    }
+}
+
+/// Puts [`NONE`] where an index is `bad`; tells how often. A list without any other is emptied.
+fn leave_out(packed: &mut Vec<u32>, bad: impl Fn(u32) -> bool) -> usize {
+    let mut count = 0;
+    for index in packed.iter_mut().filter(|i| **i != NONE && bad(**i)) {
+        *index = NONE;
+        count += 1;
+    }
+    if packed.iter().all(|&i| i == NONE) {
+        packed.clear();
+    }
+    count
 }
 
 /// What a piece of the file holds.
@@ -333,12 +369,12 @@ impl Chunk {
         if cursor.peek() == b'/' {
             cursor.advance(1);
             if !matches!(cursor.peek(), b'/' | b'\n' | b'#') && !is_blank(cursor.peek()) {
-                vt = self.index(cursor, self.uvs.len(), "texture coordinate")?;
+                vt = self.attribute_index(cursor, self.uvs.len(), "texture coordinate")?;
             }
             if cursor.peek() == b'/' {
                 cursor.advance(1);
                 if cursor.peek() != b'\n' && !is_blank(cursor.peek()) {
-                    vn = self.index(cursor, self.normals.len(), "normal")?;
+                    vn = self.attribute_index(cursor, self.normals.len(), "normal")?;
                 }
             }
         }
@@ -357,6 +393,21 @@ impl Chunk {
         };
         self.has_relative |= index < 0;
         pack(index, count).ok_or_else(|| no_index(index, cursor.word_at(start), what))
+    }
+
+    /// An index of what a corner can do without: [`NONE`] with a warning for one that no file can have.
+    #[inline]
+    fn attribute_index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
+        let start = cursor.offset();
+        let Some(index) = cursor.integer() else {
+            return Err(format!("`{}` is not a {what} index", show(cursor.word())));
+        };
+        self.has_relative |= index < 0;
+        Ok(pack(index, count).unwrap_or_else(|| {
+            let told = || format!("{}; left out", no_index(index, cursor.word_at(start), what));
+            self.warnings.note("no index", Place::Line(cursor.line()), told);
+            NONE
+        }))
     }
 
     fn line(&mut self, cursor: &mut Cursor) -> Result<(), String> {

@@ -183,8 +183,8 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words, else what is called as
 /// the last part of the path, which may be that of another machine.
 fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
-    let text = String::from_utf8_lossy(names).replace('\\', "/");
-    let whole = text.trim_matches('"');
+    let text = String::from_utf8_lossy(names);
+    let whole = &mtl::file_name(&text);
     let mut missing = |name: &str, why: &crate::ResolveError| {
         warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
     };
@@ -192,14 +192,14 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
         Ok(bytes) => return vec![(whole.to_owned(), bytes)],
         Err(why) => why,
     };
-    let words: Vec<&str> = whole.split_ascii_whitespace().collect();
+    let words = words(&text);
     let mut found = Vec::new();
     let mut failures = Vec::new();
     if words.len() > 1 {
         for word in words {
-            match resolver.read(word) {
-                Ok(bytes) => found.push((word.to_owned(), bytes)),
-                Err(why) => failures.push((word.to_owned(), why)),
+            match resolver.read(&word) {
+                Ok(bytes) => found.push((word, bytes)),
+                Err(why) => failures.push((word, why)),
             }
         }
     }
@@ -218,4 +218,19 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
         failures.iter().for_each(|(word, why)| missing(word, why));
     }
     found
+}
+
+/// The names on a line; a blank behind `\` belongs to a name.
+fn words(line: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut goes_on = false;
+    for word in line.split_ascii_whitespace() {
+        let (part, continued) = word.strip_suffix('\\').map_or((word, false), |part| (part, true));
+        match words.last_mut().filter(|_| goes_on) {
+            Some(last) => *last += &format!(" {part}"),
+            None => words.push(part.to_owned()),
+        }
+        goes_on = continued;
+    }
+    words.iter().map(|w| mtl::file_name(w)).collect()
 }

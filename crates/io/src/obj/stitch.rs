@@ -74,7 +74,21 @@ impl Totals {
     }
 }
 
-/// The first index in the file that leads nowhere, as an error.
+/// Whether an index of a piece before which `base` values were read leads nowhere, of `total` in the file.
+fn is_bad(packed: u32, base: usize, total: usize) -> bool {
+    !(0..total as i64).contains(&unpack(packed, base as u32))
+}
+
+/// What is wrong with an index that leads nowhere, of `total` things called `what`.
+fn nowhere(index: i64, total: usize, what: &str) -> String {
+    if index < 0 {
+        format!("the index counts back {} {what} beyond the first", -index)
+    } else {
+        format!("index {}, the file has {total} {what}", index + 1)
+    }
+}
+
+/// The first index of a vertex in the file that leads nowhere, as an error.
 pub(super) fn first_bad_index(
     chunks: &[Chunk],
     totals: &Totals,
@@ -82,33 +96,55 @@ pub(super) fn first_bad_index(
     file: &str,
     workers: &Workers,
 ) -> Option<Error> {
-    let sum = totals.sum();
+    let total = totals.sum().v;
     let of_chunks = workers.map(chunks.len(), |i| {
-        let (chunk, base) = (&chunks[i], totals.bases[i]);
-        let bad = |packed: &u32, base: usize, total: usize| !(0..total as i64).contains(&unpack(*packed, base as u32));
-        let kinds: [(&str, &[u32], usize, usize); 3] = [
-            ("vertices", &chunk.faces.v, base.v, sum.v),
-            ("texture coordinates", &chunk.faces.vt, base.vt, sum.vt),
-            ("normals", &chunk.faces.vn, base.vn, sum.vn),
-        ];
-        let in_faces = kinds.into_iter().filter_map(|(what, packed, base, total)| {
-            let corner = packed.iter().position(|p| *p != NONE && bad(p, base, total))?;
-            Some((Chunk::line_of_corner(pieces[i], corner), what, unpack(packed[corner], base as u32), total))
-        });
+        let (chunk, base) = (&chunks[i], totals.bases[i].v);
+        let in_faces = chunk.faces.v.iter().position(|&p| is_bad(p, base, total));
+        let in_faces = in_faces.map(|c| (Chunk::line_of_corner(pieces[i], c), chunk.faces.v[c]));
         let ends =
             chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
-        let in_free = ends
-            .filter(|(packed, _)| bad(packed, base.v, sum.v))
-            .map(|(packed, line)| (line, "vertices", unpack(packed, base.v as u32), sum.v));
-        let (line, what, index, total) = in_faces.chain(in_free).min_by_key(|found| found.0)?;
-        let what = if index < 0 {
-            format!("the index counts back {} {what} beyond the first", -index)
-        } else {
-            format!("index {}, the file has {total} {what}", index + 1)
-        };
+        let in_free = ends.filter(|(packed, _)| is_bad(*packed, base, total)).map(|(packed, line)| (line, packed));
+        let (line, packed) = in_faces.into_iter().chain(in_free).min_by_key(|found| found.0)?;
+        let what = nowhere(unpack(packed, base as u32), total, "vertices");
         Some(Error::malformed(file, Place::Line(line + first_lines[i]), what))
     });
     of_chunks.into_iter().flatten().next()
+}
+
+/// Takes texture coordinates and normals that lead nowhere away from their corners, with a warning; true if there were any, so
+/// that the totals change.
+pub(super) fn leave_out_bad_attributes(
+    chunks: &mut [Chunk],
+    totals: &Totals,
+    (pieces, first_lines): (&[&[u8]], &[u64]),
+    warnings: &mut Warnings,
+    workers: &Workers,
+) -> bool {
+    let sum = totals.sum();
+    let first = workers.map(chunks.len(), |i| {
+        let (faces, base) = (&chunks[i].faces, totals.bases[i]);
+        let kinds = [(&faces.vt, base.vt, sum.vt), (&faces.vn, base.vn, sum.vn)];
+        kinds.map(|(list, base, total)| list.iter().position(|&p| p != NONE && is_bad(p, base, total)))
+    });
+    let mut note = |i: usize, corner: usize, index: i64, count: usize, total: usize, kind: &'static str| {
+        let place = Place::Line(Chunk::line_of_corner(pieces[i], corner) + first_lines[i]);
+        let told = || format!("{}; left out", nowhere(index, total, kind));
+        (0..count).for_each(|_| warnings.note(kind, place.clone(), told));
+    };
+    // One kind after the other, so that the order of the warnings does not tell the pieces.
+    for (i, [corner, _]) in first.iter().enumerate() {
+        let (Some(corner), base, faces) = (*corner, totals.bases[i].vt, &mut chunks[i].faces) else { continue };
+        let index = unpack(faces.vt[corner], base as u32);
+        let count = faces.leave_out_uvs(|p| is_bad(p, base, sum.vt));
+        note(i, corner, index, count, sum.vt, "texture coordinates");
+    }
+    for (i, [_, corner]) in first.iter().enumerate() {
+        let (Some(corner), base, faces) = (*corner, totals.bases[i].vn, &mut chunks[i].faces) else { continue };
+        let index = unpack(faces.vn[corner], base as u32);
+        let count = faces.leave_out_normals(|p| is_bad(p, base, sum.vn));
+        note(i, corner, index, count, sum.vn, "normals");
+    }
+    first.iter().flatten().any(Option::is_some)
 }
 
 /// The parts of the mesh's arrays that one piece fills.

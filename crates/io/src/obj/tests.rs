@@ -117,14 +117,45 @@ fn oddities_are_told_with_their_line() {
 }
 
 #[test]
+fn attributes_that_lead_nowhere_are_left_out() {
+    // None of them is there: as if none were named.
+    let s = read(&format!("{SQUARE}f 1/1/1 2/2/1 3/3/1 4/4/1"));
+    assert_eq!(
+        s.warnings,
+        [
+            "t.obj: line 5: index 1, the file has 0 texture coordinates; left out (and 3 more of the kind)",
+            "t.obj: line 5: index 1, the file has 0 normals; left out (and 3 more of the kind)",
+        ]
+    );
+    assert!(s.meshes[0].uvs.is_empty() && s.meshes[0].normals.is_none());
+
+    // Some are: faces with others have their own normal.
+    let text =
+        format!("{SQUARE}vt .5 .5\nvn 1 0 0\nf 1/1/1 2/1/1 3/-2/1\nf 1/1/1 3/1/0 4/1/1\nf 1/1/1 3/1/1 4/1/1 2/1/2");
+    for piece in [1, 60, PIECE] {
+        let s = load_in_pieces(text.as_bytes(), "t.obj", &NoFiles, &Workers::single(), piece).unwrap();
+        let m = &s.meshes[0];
+        m.check().unwrap();
+        let (uv, normals) = (&m.uvs[0], m.normals.as_ref().unwrap());
+        assert_eq!(uv.at(0, &m.triangles), [[0.5; 2], [0.5; 2], [0.0; 2]]);
+        assert_eq!(normals.at(0, &m.triangles), [[1.0, 0.0, 0.0]; 3]);
+        assert_eq!(normals.at(1, &m.triangles), [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]);
+        let last = [normals.at(2, &m.triangles), normals.at(3, &m.triangles)];
+        assert_eq!(last.as_flattened().iter().filter(|n| **n != [1.0, 0.0, 0.0]).count(), 1, "{last:?}");
+        let told = [
+            "line 8: normal index 0: indices begin with 1, or count back from -1; left out",
+            "line 7: the index counts back 1 texture coordinates beyond the first; left out",
+            "line 9: index 2, the file has 1 normals; left out",
+        ];
+        assert_eq!(s.warnings, told.map(|w| format!("t.obj: {w}")));
+    }
+}
+
+#[test]
 fn indices_that_lead_nowhere_are_errors() {
     assert_eq!(refusal(&format!("{SQUARE}\nf 1 2 5")), "t.obj: line 6: index 5, the file has 4 vertices");
     assert!(refusal(&format!("{SQUARE}f 1 2 -5")).starts_with("t.obj: line 5: the index counts back 1 vertices"));
     assert!(refusal(&format!("{SQUARE}f 1 2 0")).starts_with("t.obj: line 5: vertex index 0: indices begin with 1"));
-    assert_eq!(
-        refusal(&format!("{SQUARE}f 1/1 2/1 3/1")),
-        "t.obj: line 5: index 1, the file has 0 texture coordinates"
-    );
     assert_eq!(refusal(&format!("{SQUARE}f 1 2 9\nf 1 x 2")), "t.obj: line 5: index 9, the file has 4 vertices");
     assert_eq!(refusal(&format!("{SQUARE}f 1 x 2\nf 1 2 9")), "t.obj: line 5: `x` is not a vertex index");
     assert_eq!(refusal(&format!("{SQUARE}l 1 2\n l 3 7")), "t.obj: line 6: index 7, the file has 4 vertices");
@@ -158,6 +189,16 @@ fn libraries_with_paths_of_other_machines_lie_beside_the_file() {
     let text = format!("mtllib C:\\models\\my lib.mtl\n{SQUARE}usemtl a\nf 1 2 3");
     let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
     assert_eq!((s.materials.len(), s.warnings.len()), (1, 0), "{:?}", s.warnings);
+}
+
+#[test]
+fn names_of_libraries_may_have_blanks_behind_backslashes() {
+    let folder = Folder(&[("my own lib.mtl", "newmtl a"), ("b.mtl", "newmtl b")]);
+    for (line, missing) in [("my\\ own\\ lib.mtl", 1), ("b.mtl my\\ own\\ lib.mtl", 0), ("\"my own lib.mtl\"", 1)] {
+        let text = format!("mtllib {line}\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4");
+        let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+        assert_eq!((s.materials.len(), s.warnings.len()), (2 - missing, missing), "{line}: {:?}", s.warnings);
+    }
 }
 
 /// Files by name.

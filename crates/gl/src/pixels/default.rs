@@ -178,7 +178,8 @@ impl DefaultFramebuffer {
         let Some(client) = &self.buffer else {
             return Surfaces { status: FRAMEBUFFER_UNDEFINED, ..Surfaces::default() };
         };
-        let named = matches!(buffer, FRONT | FRONT_LEFT | LEFT | FRONT_AND_BACK);
+        // There is one buffer, which all names that are taken mean.
+        let named = buffer != NONE;
         Surfaces {
             status: FRAMEBUFFER_COMPLETE,
             size: Some(client.viewport),
@@ -512,6 +513,23 @@ mod tests {
         assert!(c.make_current(8, FLOAT, 4096, 4096));
         c.release();
         assert_eq!(c.check_framebuffer_status(FRAMEBUFFER), FRAMEBUFFER_UNDEFINED);
+    }
+
+    #[test]
+    fn the_back_buffer_is_the_only_one() {
+        for name in [BACK, BACK_LEFT, FRONT_AND_BACK, FRONT] {
+            let mut c = context();
+            assert!(c.configure_default_framebuffer(RGBA, 0, 0, 0));
+            assert!(c.make_current(BASE, UNSIGNED_BYTE, 1, 1));
+            c.draw_buffer(name);
+            c.read_buffer(if name == FRONT_AND_BACK { BACK } else { name });
+            c.clear_color(1.0, 0.0, 1.0, 1.0);
+            c.clear(COLOR_BUFFER_BIT);
+            c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE + 512);
+            c.finish();
+            assert_eq!((get::<4>(&c, BASE + 512), get::<4>(&c, BASE)), ([255, 0, 255, 255], [255, 0, 255, 255]));
+            assert_eq!(c.get_error(), NO_ERROR);
+        }
     }
 
     #[test]

@@ -42,6 +42,18 @@ fn half_flagged(c: &mut Stage) {
     c.end();
 }
 
+/// The specification leaves open which way halves are rounded; Mesa rounds those of points down, and those of lines up.
+#[test]
+fn halves_of_point_sizes_are_rounded_down() {
+    for (size, side) in [(0.5, 1), (1.5, 1), (1.6, 2), (2.5, 2), (2.6, 3), (3.5, 3)] {
+        let mut c = paper(8, 8);
+        c.point_size(size);
+        draw(&mut c, gl::POINTS, &[[4.1, 4.1]]);
+        let drawn = rows(&mut c).concat().matches('#').count();
+        assert_eq!(drawn, side * side, "{size}");
+    }
+}
+
 #[test]
 fn edges_along_a_clip_plane_are_drawn() {
     let mut c = paper(8, 8);

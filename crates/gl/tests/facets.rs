@@ -511,3 +511,37 @@ fn a_pass_in_rounds_draws_what_passes_one_after_the_other_draw() {
     let differ = many(false).iter().zip(&many(true)).filter(|(a, b)| a != b).count();
     assert_eq!(differ, 0);
 }
+
+/// A floor that reaches behind the eye is cut near it, far outside of the picture: depth is still that of the plane.
+#[test]
+fn a_cut_floor_has_the_depths_of_its_plane() {
+    const SIDE: i32 = 84;
+    let (near, far, height, half) = (0.08, 400.0f64, 6.0f64, 0.414);
+    for (reach, turn) in [(40.0, 90.0), (100.0, 60.0), (400.0, 45.0), (400.0, 90.0)] {
+        let mut c = Stage::new(SIDE, SIDE);
+        c.matrix_mode(gl::PROJECTION);
+        c.frustum(-half * near, half * near, -half * near, half * near, near, far);
+        c.matrix_mode(gl::MODELVIEW);
+        c.rotatef(35.0, 1.0, 0.0, 0.0);
+        c.translatef(0.0, -6.0, 0.0);
+        c.rotatef(turn, 0.0, 1.0, 0.0);
+        c.enable(gl::DEPTH_TEST);
+        c.clear(gl::DEPTH_BUFFER_BIT);
+        c.begin(gl::QUADS);
+        for [x, z] in [[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]] {
+            c.vertex_3f(x, 0.0, z);
+        }
+        c.end();
+        let (sine, cosine) = 35f64.to_radians().sin_cos();
+        let mut seen = 0;
+        for (i, depth) in c.depths().into_iter().enumerate().filter(|(_, depth)| *depth < 1.0) {
+            let up = ((i as i32 / SIDE) as f64 + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
+            let distance = height / (sine - cosine * half * up);
+            let expected = far / (far - near) * (1.0 - near / distance);
+            let error = (f64::from(depth) - expected) * f64::from(1 << 24);
+            assert!(error.abs() < 10.0, "{error} units at {i}, {reach} wide, turned by {turn}");
+            seen += 1;
+        }
+        assert!(seen > 1000, "{seen}");
+    }
+}

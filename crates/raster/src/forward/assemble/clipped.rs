@@ -2,6 +2,7 @@
 //! corners.
 
 use super::{Assembler, FacetKind, NONE};
+use crate::SUBPIXEL;
 use crate::Setup;
 use crate::setup::{CornerPosition, DepthPlane};
 
@@ -76,21 +77,8 @@ impl Assembler<'_> {
         if self.state.cull[usize::from(back)] {
             return;
         }
-        // One depth plane, that of the largest piece: the pieces of a fan must not differ along their seams.
-        let Some(largest) = (1..polygon.len() - 1).max_by_key(|&i| area_of(i).abs()) else { return };
         let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
-        let plane = if self.state.depth_clamp {
-            let Some(plane) = self.clamped_plane(corners, positions[0]) else { return };
-            plane
-        } else {
-            let mut plane = self.plane(fan(largest), area_of(largest), 2);
-            let offset = plane.z - positions[0].z;
-            for p in &positions {
-                plane.z_min = plane.z_min.min((p.z + offset).clamp(0.0, 1.0));
-                plane.z_max = plane.z_max.max((p.z + offset).clamp(0.0, 1.0));
-            }
-            plane
-        };
+        let Some(plane) = self.whole_plane(corners, &positions) else { return };
         let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
         let provoking = self.slot(provoking);
         for i in 1..polygon.len() - 1 {
@@ -109,13 +97,29 @@ impl Assembler<'_> {
         }
     }
 
-    /// The plane of a polygon that near and far do not clip: each fragment's depth is clamped to the depth range. The
-    /// corners that are left may lie near the eye's plane, where depth is not a number; the whole polygon's do not.
-    fn clamped_plane(&self, corners: &[u32; 3], origin: CornerPosition) -> Option<DepthPlane> {
+    /// One depth plane for all that is left of a triangle, at these places: that of the triangle before it was cut. Pieces do not
+    /// differ along their seams, and corners that clipping put far away, or near the eye's plane where depth is not a number,
+    /// tilt nothing by their rounding. `None` for a triangle seen edge on.
+    fn whole_plane(&self, corners: &[u32; 3], places: &[CornerPosition]) -> Option<DepthPlane> {
         let window = &self.state.window;
-        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), [origin.x, origin.y])?;
-        let [z_min, z_max] = window.depth_range();
-        Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) })
+        // Told from a place in the picture: what is computed there needs no steps of thousands of pixels.
+        let origin = [0, 1].map(|k| {
+            let (center, half) = (window.center[k], window.scale[k].abs());
+            let [low, high] = [center - half, center + half].map(|v| (v * SUBPIXEL as f32) as i32);
+            [places[0].x, places[0].y][k].clamp(low, high)
+        });
+        let mut plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), origin)?;
+        // Without near and far planes each fragment's depth is clamped to the depth range.
+        if !self.state.depth_clamp {
+            plane.z_min = places.iter().fold(1.0, |z, p| p.z.min(z));
+            plane.z_max = places.iter().fold(0.0, |z, p| p.z.max(z));
+        }
+        let range = [plane.z_min, plane.z_max];
+        plane = self.offset(plane, 2);
+        if self.state.depth_clamp {
+            [plane.z_min, plane.z_max] = range;
+        }
+        Some(plane)
     }
 
     pub(super) fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {

@@ -516,7 +516,7 @@ fn a_pass_in_rounds_draws_what_passes_one_after_the_other_draw() {
 #[test]
 fn a_cut_floor_has_the_depths_of_its_plane() {
     const SIDE: i32 = 84;
-    let (near, far, height, half) = (0.08, 400.0f64, 6.0f64, 0.414);
+    let (near, far, height, half) = (0.08, 400.0, 6.0, 0.414);
     for (reach, turn) in [(40.0, 90.0), (100.0, 60.0), (400.0, 45.0), (400.0, 90.0)] {
         let mut c = Stage::new(SIDE, SIDE);
         c.matrix_mode(gl::PROJECTION);
@@ -532,7 +532,8 @@ fn a_cut_floor_has_the_depths_of_its_plane() {
             c.vertex_3f(x, 0.0, z);
         }
         c.end();
-        let (sine, cosine) = 35f64.to_radians().sin_cos();
+        let down = 35f64.to_radians();
+        let (sine, cosine) = (vitral_math::func::sin(down), vitral_math::func::cos(down));
         let mut seen = 0;
         for (i, depth) in c.depths().into_iter().enumerate().filter(|(_, depth)| *depth < 1.0) {
             let up = ((i as i32 / SIDE) as f64 + 0.5) / f64::from(SIDE) * 2.0 - 1.0;

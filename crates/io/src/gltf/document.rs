@@ -9,6 +9,7 @@
 //! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
 
 use super::untidy;
+use crate::format::extension_of;
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 use serde_json::{Map, Value};
@@ -38,8 +39,7 @@ pub(crate) struct Document<'a> {
 /// Reads and checks glTF JSON or a GLB container.
 pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Error> {
     let (text, binary) = if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
-    let is_called_glb = file.len() > 4 && file.as_bytes()[file.len() - 4..].eq_ignore_ascii_case(b".glb");
-    if is_called_glb && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
+    if extension_of(file) == "glb" && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
         return Err(Error::malformed(file, Place::Byte(0), "a GLB begins with `glTF`"));
     }
     let root = parse_json(text, file)?;

@@ -130,24 +130,22 @@ impl Outline {
         primitive: &Primitive,
         attributes: Attributes,
         path: &str,
-        warnings: &mut Vec<String>,
     ) -> Result<Self, Error> {
         let vertices = source.count(attributes.positions)?;
         let Checked::Valid(mode) = primitive.mode else {
             return Err(source.error(format!("{path}.mode"), "unknown mode"));
         };
         let Some(accessor) = primitive.indices else {
-            warnings.extend(left_over(mode, vertices).map(|what| format!("{}: {path}: {what}", source.file)));
+            check_whole(source, mode, vertices, path)?;
             return Ok(Self { attributes, mode, indices: None, used: 0..vertices });
         };
         let path = format!("{path}.indices");
         let accessor = accessor.value();
-        let count = source.count(accessor)?;
-        warnings.extend(left_over(mode, count).map(|what| format!("{}: {path}: {what}", source.file)));
+        check_whole(source, mode, source.count(accessor)?, &path)?;
         if source.shape(accessor) != Some(Type::Scalar) {
             return Err(source.error(path, format!("accessor {accessor} is not SCALAR")));
         }
-        let indices = source.unsigned::<1>(accessor, 0..count, &path)?.into_flattened();
+        let indices = source.unsigned::<1>(accessor, 0..source.count(accessor)?, &path)?.into_flattened();
 
         // Find the range and check it at once; look for the culprit only if there is one.
         let (low, high) = indices.iter().fold((u32::MAX, 0), |(low, high), &i| (low.min(i), high.max(i)));
@@ -199,15 +197,17 @@ impl Outline {
     }
 }
 
-/// Lines come in pairs of vertices, triangles in threes: what is left over is not drawn, and told.
-fn left_over(mode: Mode, vertices: usize) -> Option<String> {
+/// Lines come in pairs of vertices, triangles in threes.
+fn check_whole(source: &Source<'_>, mode: Mode, vertices: usize, path: &str) -> Result<(), Error> {
     let (of, name) = match mode {
         Mode::Lines => (2, "LINES"),
         Mode::Triangles => (3, "TRIANGLES"),
-        _ => return None,
+        _ => return Ok(()),
     };
-    let rest = vertices % of;
-    (rest > 0).then(|| format!("{vertices} vertices, {name} need a multiple of {of}; the last {rest} are left out"))
+    if vertices.is_multiple_of(of) {
+        return Ok(());
+    }
+    Err(source.error(path, format!("{vertices} vertices, {name} need a multiple of {of}")))
 }
 
 #[cfg(test)]

@@ -385,13 +385,18 @@ impl Chunk {
         Err(format!("`{}` does not belong to a corner", show(cursor.word())))
     }
 
+    /// An index as it stands in the file.
+    #[inline]
+    fn written_index(&mut self, cursor: &mut Cursor, what: &str) -> Result<i64, String> {
+        let index = cursor.integer().ok_or_else(|| format!("`{}` is not a {what} index", show(cursor.word())))?;
+        self.has_relative |= index < 0;
+        Ok(index)
+    }
+
     #[inline]
     fn index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
         let start = cursor.offset();
-        let Some(index) = cursor.integer() else {
-            return Err(format!("`{}` is not a {what} index", show(cursor.word())));
-        };
-        self.has_relative |= index < 0;
+        let index = self.written_index(cursor, what)?;
         pack(index, count).ok_or_else(|| no_index(index, cursor.word_at(start), what))
     }
 
@@ -399,10 +404,7 @@ impl Chunk {
     #[inline]
     fn attribute_index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
         let start = cursor.offset();
-        let Some(index) = cursor.integer() else {
-            return Err(format!("`{}` is not a {what} index", show(cursor.word())));
-        };
-        self.has_relative |= index < 0;
+        let index = self.written_index(cursor, what)?;
         Ok(pack(index, count).unwrap_or_else(|| {
             let told = || format!("{}; left out", no_index(index, cursor.word_at(start), what));
             self.warnings.note("no index", Place::Line(cursor.line()), told);

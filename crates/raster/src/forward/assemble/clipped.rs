@@ -2,9 +2,8 @@
 //! corners.
 
 use super::{Assembler, FacetKind, NONE};
-use crate::SUBPIXEL;
-use crate::Setup;
 use crate::setup::{CornerPosition, DepthPlane};
+use crate::{SUBPIXEL, Setup};
 
 /// A vertex that clipping made.
 #[derive(Clone, Copy, Debug)]
@@ -108,18 +107,15 @@ impl Assembler<'_> {
             let [low, high] = [center - half, center + half].map(|v| (v * SUBPIXEL as f32) as i32);
             [places[0].x, places[0].y][k].clamp(low, high)
         });
-        let mut plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), origin)?;
-        // Without near and far planes each fragment's depth is clamped to the depth range.
-        if !self.state.depth_clamp {
-            plane.z_min = places.iter().fold(1.0, |z, p| p.z.min(z));
-            plane.z_max = places.iter().fold(0.0, |z, p| p.z.max(z));
-        }
-        let range = [plane.z_min, plane.z_max];
-        plane = self.offset(plane, 2);
+        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), origin)?;
         if self.state.depth_clamp {
-            [plane.z_min, plane.z_max] = range;
+            // Near and far planes cut nothing: each fragment's depth is clamped to the depth range, after the offset.
+            let DepthPlane { z_min, z_max, .. } = plane;
+            return Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) });
         }
-        Some(plane)
+        let z_min = places.iter().fold(1.0, |z, p| p.z.min(z));
+        let z_max = places.iter().fold(0.0, |z, p| p.z.max(z));
+        Some(self.offset(DepthPlane { z_min, z_max, ..plane }, 2))
     }
 
     pub(super) fn derived_slot(&mut self, parents: [u32; 3], corner: &Corner) -> u32 {

@@ -204,6 +204,7 @@ impl Map {
             let slope = (there - own).abs();
             let nearer = there.simd_lt(own).select(there, own);
             (nearer - slope * SLOPE_BIAS - deep).store_slice(stored);
+            // The farther of the two, and as much again for a surface that bends away.
             (nearer + slope * 2.0 + texel * BEYOND).store_slice(end);
         }
         let store = lanes::inlined(

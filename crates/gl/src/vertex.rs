@@ -9,6 +9,7 @@
 
 use crate::state::{MAX_TEXTURE_UNITS, MaterialFace};
 pub use crate::tnl::AssembledCell;
+use vitral_math::Mat4;
 
 /// What a run of vertices is assembled into; `mode` is `POINTS` ... `POLYGON`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +52,8 @@ pub struct VertexBatch {
     /// Materials (front, back) set between vertices: they hold from the given vertex on. If there are any, the first
     /// holds from vertex 0; without any the current material holds.
     pub materials: Vec<(u32, [MaterialFace; 2])>,
+    /// Modelview matrices set between primitives, in the same way.
+    pub modelviews: Vec<(u32, Mat4)>,
     /// Indices into the attributes; without them vertices are taken in order.
     pub indices: Option<Vec<u32>>,
     /// What is drawn, in order.
@@ -60,10 +63,14 @@ pub struct VertexBatch {
 }
 
 impl VertexBatch {
-    /// The materials at a vertex, if they were set between vertices.
-    pub(crate) fn material(&self, vertex: u32) -> Option<&[MaterialFace; 2]> {
-        let next = self.materials.partition_point(|(from, _)| *from <= vertex);
-        Some(&self.materials.get(next.checked_sub(1)?)?.1)
+    /// The materials at a vertex, if they were set between vertices, and how many vertices from there on have them.
+    pub(crate) fn material(&self, vertex: u32) -> Option<(&[MaterialFace; 2], u32)> {
+        at(&self.materials, vertex)
+    }
+
+    /// The modelview matrix at a vertex, if it was set between primitives, and how many vertices from there on have it.
+    pub(crate) fn modelview(&self, vertex: u32) -> Option<(&Mat4, u32)> {
+        at(&self.modelviews, vertex)
     }
 
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
@@ -87,6 +94,13 @@ impl VertexBatch {
         }
         self.primitives.push(Primitive { mode, first, count });
     }
+}
+
+/// What holds at a vertex of things that each hold from a vertex on, and for how many vertices more.
+fn at<T>(things: &[(u32, T)], vertex: u32) -> Option<(&T, u32)> {
+    let next = things.partition_point(|(from, _)| *from <= vertex);
+    let end = things.get(next).map_or(u32::MAX, |(from, _)| *from);
+    Some((&things.get(next.checked_sub(1)?)?.1, end - vertex))
 }
 
 /// Whether elements of this mode share no vertices, so that runs of them can be joined.

@@ -291,6 +291,7 @@ pub(crate) extern "C" fn OSMesaColorClamp(enable: u8) {
     guarded("OSMesaColorClamp", (), || {
         // SAFETY: the current context is alive and this thread's.
         if let Some(machine) = unsafe { machine(current()) } {
+            machine.context.flush_vertices();
             machine.context.state.clamp_fragments = enable != 0;
         }
     });

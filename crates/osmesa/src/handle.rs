@@ -47,6 +47,7 @@ impl Handle {
         let messages = Arc::<Messages>::default();
         let mut context = Context::new(Arc::<ProcessMemory>::clone(&memory), Arc::clone(&shared));
         context.set_runner_source(pool::runner);
+        context.set_merging(true);
         context.set_debug_printer(environment::debug().then_some(environment::say as fn(&str)));
         context.set_debug_hook(Some(messages.hook()));
         let Attributes { format, depth_bits, stencil_bits, accum_bits } = attributes;

@@ -49,7 +49,7 @@ macro_rules! material_call {
         #[doc = concat!("`", $call, "`.")]
         pub fn $name(&mut self, face: u32, pname: u32, param: $type) {
             let values = [Number::plain(param), 0.0, 0.0, 0.0];
-            self.listable(move |c| c.exec_material($call, face, pname, values));
+            self.listable_keeping(move |c| c.exec_material($call, face, pname, values));
         }
     };
     ($name:ident, $call:literal, vector $type:ty) => {
@@ -59,7 +59,7 @@ macro_rules! material_call {
             let Some(given) = self.take_arguments::<$type, 4>($call, params, Form::count(form)) else { return };
             let values =
                 if form == Some(Form::Color) { given.map(Number::normalized) } else { given.map(Number::plain) };
-            self.listable(move |c| c.exec_material($call, face, pname, values));
+            self.listable_keeping(move |c| c.exec_material($call, face, pname, values));
         }
     };
 }

@@ -62,7 +62,7 @@ macro_rules! matrix_call {
             let Some(given) = self.take_arguments::<$type, 16>($call, m, 16) else { return };
             let matrix = Mat4::from_cols_array(&given.map(|v| v as f32));
             let matrix = if $transposed { matrix.transpose() } else { matrix };
-            self.listable(move |c| c.change_matrix($call, |top| $store(top, matrix)));
+            self.listable_keeping(move |c| c.change_matrix($call, |top| $store(top, matrix)));
         }
     };
 }
@@ -76,8 +76,13 @@ fn multiply(top: &mut Mat4, matrix: Mat4) {
 }
 
 impl Context {
-    /// The stack that `MatrixMode` chose.
+    /// The stack that `MatrixMode` chose, to be changed: what waits to be drawn keeps the matrices that it was given with.
     fn current_stack(&mut self) -> &mut MatrixStack {
+        if matches!(self.state.matrices.mode, gl::PROJECTION | gl::TEXTURE) {
+            self.flush_vertices();
+        } else {
+            self.modelview_changes();
+        }
         let unit = self.state.active_unit;
         let matrices = &mut self.state.matrices;
         match matrices.mode {
@@ -95,12 +100,12 @@ impl Context {
 
     fn multiply_matrix(&mut self, call: &'static str, matrix: DMat4) {
         let matrix = matrix.as_mat4();
-        self.listable(move |c| c.change_matrix(call, |top| multiply(top, matrix)));
+        self.listable_keeping(move |c| c.change_matrix(call, |top| multiply(top, matrix)));
     }
 
     /// `glMatrixMode`.
     pub fn matrix_mode(&mut self, mode: u32) {
-        self.listable(move |c| {
+        self.listable_keeping(move |c| {
             let call = "glMatrixMode";
             if c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::MODELVIEW, gl::PROJECTION, gl::TEXTURE]) {
                 c.state.matrices.mode = mode;
@@ -110,7 +115,7 @@ impl Context {
 
     /// `glPushMatrix`.
     pub fn push_matrix(&mut self) {
-        self.listable(|c| {
+        self.listable_keeping(|c| {
             if !c.may_set("glPushMatrix") {
                 return;
             }
@@ -126,7 +131,7 @@ impl Context {
 
     /// `glPopMatrix`.
     pub fn pop_matrix(&mut self) {
-        self.listable(|c| {
+        self.listable_keeping(|c| {
             if !c.may_set("glPopMatrix") {
                 return;
             }
@@ -141,7 +146,7 @@ impl Context {
 
     /// `glLoadIdentity`.
     pub fn load_identity(&mut self) {
-        self.listable(|c| c.change_matrix("glLoadIdentity", |top| *top = Mat4::IDENTITY));
+        self.listable_keeping(|c| c.change_matrix("glLoadIdentity", |top| *top = Mat4::IDENTITY));
     }
 
     matrix_call!(load_matrixf, "glLoadMatrixf", f32, false, load);
@@ -184,7 +189,7 @@ impl Context {
     }
 
     fn project(&mut self, call: &'static str, sides: Sides, perspective: bool) {
-        self.listable(move |c| {
+        self.listable_keeping(move |c| {
             if !c.may_set(call) {
                 return;
             }

@@ -441,6 +441,7 @@ impl Context {
     /// Runs what is recorded and writes the colours to the client's buffer, if something was drawn. To be called by
     /// `Flush`, `Finish` and whatever lets the client look.
     pub fn store_default_framebuffer(&mut self) {
+        self.flush_vertices();
         if !self.default_framebuffer.drawn {
             return;
         }

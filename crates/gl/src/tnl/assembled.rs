@@ -1,6 +1,7 @@
 //! What a batch draws when polygons are filled: triangles in pieces, each found once, when it is drawn, and kept with the batch.
 
 use super::grid::{self, Grid};
+use super::snapshot::Transform;
 use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use crate::vertex::{Primitive, VertexBatch};
 use std::borrow::Cow;
@@ -39,6 +40,14 @@ impl PieceVertices {
         match self {
             Self::Range(start, _) => start + i,
             Self::List(list) => list[i as usize],
+        }
+    }
+
+    /// How many of its vertices from `start` on come before `vertex` in the batch, up to the first that does not.
+    pub(crate) fn below(&self, start: usize, vertex: u32) -> usize {
+        match self {
+            Self::Range(first, end) => (vertex.min(*end) - first) as usize - start,
+            Self::List(list) => list[start..].iter().take_while(|v| **v < vertex).count(),
         }
     }
 
@@ -317,9 +326,10 @@ fn extremes<'a, S: Simd>(simd: S, pairs: impl Iterator<Item = &'a [[f32; 4]; 2]>
 }
 
 impl Piece {
-    /// Whether the whole piece lies outside one plane of the view volume, or of `planes` (model space).
-    pub(crate) fn is_outside(&self, m: &[f32; 16], near: f32, planes: &[[f32; 4]]) -> bool {
+    /// Whether the whole piece lies outside one plane of the view volume, or of the user.
+    pub(crate) fn is_outside(&self, transform: &Transform, near: f32) -> bool {
         let Some([low, high]) = self.bounds else { return false };
+        let (m, planes) = (&transform.clip_from_model, &transform.clip_planes);
         let row = |r: usize| [m[r], m[4 + r], m[8 + r], m[12 + r]];
         let [x, y, z, w] = [row(0), row(1), row(2), row(3)];
         let sum = |a: [f32; 4], s: f32, b: [f32; 4]| [0, 1, 2, 3].map(|k| a[k] + s * b[k]);

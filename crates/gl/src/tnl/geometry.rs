@@ -2,6 +2,7 @@
 
 use super::assembled::{Assembled, Piece, PieceVertices};
 use super::grid::Grid;
+use super::parts::Parts;
 use super::snapshot::VertexSnapshot;
 use super::vertices::{Eight, front_colors, shade};
 use crate::enums as gl;
@@ -90,9 +91,9 @@ impl Geometry for DrawGeometry {
         if piece < self.filled_pieces() {
             let whole = self.assembled.piece(level, &self.batch, piece);
             let Piece { triangles, vertices, .. } = whole;
-            let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
             // With depth clamping near and far do not bound the view.
-            if !state.depth_clamp && whole.is_outside(matrix, state.window.near, planes) {
+            let bounded = !state.depth_clamp && self.batch.modelviews.is_empty();
+            if bounded && whole.is_outside(&self.snapshot.transform, state.window.near) {
                 return;
             }
             let turned = self.first_diagonal.then(|| {
@@ -114,9 +115,19 @@ impl Geometry for DrawGeometry {
         let row = &grid.vertices[row as usize * columns..][..columns];
         let own = &row[eight as usize * LANES..];
         let vertices = std::array::from_fn(|lane| own[lane.min(own.len() - 1)]);
-        let lanes = Eight { vertices, count: LANES, batch: &self.batch };
+        let lanes = Eight { vertices, count: LANES, batch: &self.batch, transform: &self.snapshot.transform };
         let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
         std::array::from_fn(|lane| [r[lane], g[lane], b[lane], a[lane]])
+    }
+}
+
+/// Distances to the planes of the user, one after the other for each position.
+fn add_user_distances(planes: &[[f32; 4]], positions: &[[f32; 4]], distances: &mut Vec<f32>) {
+    let distance = |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+    if !planes.is_empty() {
+        for p in positions {
+            distances.extend(planes.iter().map(|plane| distance(plane, p)));
+        }
     }
 }
 
@@ -130,9 +141,8 @@ impl DrawGeometry {
         screen: &ForwardScreen,
         out: &mut Primitives,
     ) {
-        let (matrix, planes) = (&self.snapshot.clip_from_model, &self.snapshot.clip_planes);
         let Piece { triangles, vertices, .. } = &grid.rectangle;
-        if !state.depth_clamp && grid.rectangle.is_outside(matrix, state.window.near, planes) {
+        if !state.depth_clamp && grid.rectangle.is_outside(&self.snapshot.transform, state.window.near) {
             return;
         }
         if self.layout.grid.is_some() {
@@ -163,15 +173,23 @@ impl DrawGeometry {
         };
         let (mut clip_memory, mut window_memory) = out.scratch.take(count);
         let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
-        project(level, positions, &self.snapshot.clip_from_model, &state.window, clip, window);
-        let user = self.user_distances(positions);
+        let (mut user, mut sizes) = (Vec::new(), Vec::new());
+        let parts = Parts::new(&self.snapshot, &self.batch, vertices);
+        for (part, transform) in parts.each(count) {
+            let positions = &positions[part.clone()];
+            let (clip, window) = (&mut clip[part.clone()], &mut window[part.clone()]);
+            project(level, positions, &transform.clip_from_model, &state.window, clip, window);
+            add_user_distances(&transform.clip_planes, positions, &mut user);
+            if self.needs_sizes() {
+                self.add_sizes(&transform.modelview, positions, &mut sizes);
+            }
+        }
         flag_user_planes(&user, window);
-        let sizes = if self.needs_sizes() { self.sizes(positions) } else { Vec::new() };
         let in_piece = Vertices { clip, screen: window, user: &user, sizes: &sizes };
         let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, &self.layout, &in_piece);
         assemble(&mut assembler);
         assembler.shade(|eight, records| {
-            self.shade_eight(level, vertices, clip, eight, records);
+            self.shade_eight(level, vertices, &parts, clip, eight, records);
             if let (Some(at), Some(grid)) = (self.layout.grid, self.grid()) {
                 let own = eight
                     .iter()
@@ -189,6 +207,7 @@ impl DrawGeometry {
         &self,
         level: Level,
         vertices: &PieceVertices,
+        parts: &Parts<'_>,
         clip: &[[f32; 4]],
         eight: &[u32],
         records: &mut [f32],
@@ -202,38 +221,25 @@ impl DrawGeometry {
             });
         }
         let Some(some) = eight.iter().copied().find(|&v| Assembler::is_own(v)) else { return };
-        let mut numbers = [0; LANES];
-        let mut inverse_w = [1.0; LANES];
-        for lane in 0..LANES {
-            let own = eight.get(lane).copied().filter(|&v| Assembler::is_own(v)).unwrap_or(some);
-            numbers[lane] = vertices.get(own);
-            inverse_w[lane] = 1.0 / clip[own as usize][3];
+        let own: [u32; LANES] =
+            std::array::from_fn(|lane| eight.get(lane).copied().filter(|&v| Assembler::is_own(v)).unwrap_or(some));
+        let numbers = own.map(|v| vertices.get(v));
+        let mut lane = 0;
+        while lane < eight.len() {
+            // Together as far as they share the matrix and the materials.
+            let (transform, part) = parts.at(own[lane]);
+            let more = self.batch.material(numbers[lane]).map_or(u32::MAX, |(_, more)| more);
+            let same = |l: usize| (own[lane]..part).contains(&own[l]) && numbers[l].wrapping_sub(numbers[lane]) < more;
+            let varies = !self.batch.materials.is_empty() || !parts.is_whole();
+            let end = (lane + 1..eight.len()).find(|&l| varies && !same(l)).unwrap_or(eight.len());
+            let used = |i: usize| (lane + i).min(end - 1);
+            let inverse_w = std::array::from_fn(|i| 1.0 / clip[own[used(i)] as usize][3]);
+            let some = std::array::from_fn(|i| numbers[used(i)]);
+            let some = Eight { vertices: some, count: end - lane, batch: &self.batch, transform };
+            let records = &mut records[lane * stride..];
+            dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &some, &inverse_w, records));
+            lane = end;
         }
-        if self.batch.materials.is_empty() {
-            let lanes = Eight { vertices: numbers, count: eight.len(), batch: &self.batch };
-            dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &lanes, &inverse_w, records));
-            return;
-        }
-        // Materials change between vertices: one at a time.
-        for lane in 0..eight.len() {
-            let one = Eight { vertices: [numbers[lane]; LANES], count: 1, batch: &self.batch };
-            let w = [inverse_w[lane]; LANES];
-            let record = &mut records[lane * stride..];
-            dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &one, &w, record));
-        }
-    }
-
-    /// Distances to the user's planes, one after the other for each vertex.
-    fn user_distances(&self, positions: &[[f32; 4]]) -> Vec<f32> {
-        let planes = &self.snapshot.clip_planes;
-        let distance = |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
-        let mut distances = Vec::with_capacity(positions.len() * planes.len());
-        if !planes.is_empty() {
-            for p in positions {
-                distances.extend(planes.iter().map(|plane| distance(plane, p)));
-            }
-        }
-        distances
     }
 
     fn needs_sizes(&self) -> bool {
@@ -241,8 +247,8 @@ impl DrawGeometry {
     }
 
     /// Point sizes and fade factors.
-    fn sizes(&self, positions: &[[f32; 4]]) -> Vec<[f32; 2]> {
-        let (m, points) = (&self.snapshot.modelview, &self.points);
+    fn add_sizes(&self, m: &[f32; 16], positions: &[[f32; 4]], sizes: &mut Vec<[f32; 2]>) {
+        let points = &self.points;
         let size_at = |p: &[f32; 4]| {
             // The distance from the eye, taken along its axis as Mesa does.
             let d = (p[0] * m[2] + p[1] * m[6] + p[2] * m[10] + p[3] * m[14]).abs();
@@ -258,7 +264,7 @@ impl DrawGeometry {
                 _ => [size, 1.0],
             }
         };
-        positions.iter().map(size_at).collect()
+        sizes.extend(positions.iter().map(size_at));
     }
 
     /// Points, lines, and polygons that are not filled.

@@ -136,6 +136,7 @@ fn is_plain(batch: &VertexBatch) -> bool {
         && batch.secondary.is_none()
         && batch.fog.is_none()
         && batch.materials.is_empty()
+        && batch.modelviews.is_empty()
         && batch.normals.as_ref().is_none_or(same)
 }
 

@@ -36,7 +36,7 @@ impl Context {
     pub(crate) fn process_batch(&mut self, batch: &VertexBatch) -> Vec<ProcessedVertex> {
         let units: Vec<usize> = (0..MAX_TEXTURE_UNITS).collect();
         let snapshot = VertexSnapshot::new(&self.state, &units, true, &mut LightCache::default());
-        let mut planes = snapshot.clip_planes.iter();
+        let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
         let level = Level::new();
         let mut out = vec![ProcessedVertex::default(); batch.positions.len()];
@@ -46,7 +46,7 @@ impl Context {
             let last = (first + LANES).min(batch.positions.len());
             for first in (first..last).step_by(count) {
                 let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
-                let eight = Eight { vertices, count, batch };
+                let eight = Eight { vertices, count, batch, transform: &snapshot.transform };
                 dispatch!(level, simd => {
                     let (_, shaded, tex) = process(simd, &snapshot, &eight);
                     let color = shaded.color.map(|c| c.to_array());
@@ -65,7 +65,7 @@ impl Context {
                 });
             }
         }
-        let m = &snapshot.clip_from_model;
+        let m = &snapshot.transform.clip_from_model;
         for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {
             vertex.clip = [0, 1, 2, 3].map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
             vertex.user =

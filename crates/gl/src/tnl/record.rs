@@ -106,6 +106,7 @@ impl Context {
 
     /// Runs everything recorded: afterwards all planes and queries are up to date.
     pub(crate) fn flush_recorded(&mut self) {
+        self.flush_vertices();
         self.recorder.run();
     }
 

@@ -71,19 +71,42 @@ pub(crate) enum FogSource {
 #[derive(Clone, Debug)]
 pub(crate) struct VertexSnapshot {
     pub current: Current,
+    /// With the current modelview matrix.
+    pub transform: Transform,
+    projection: Mat4,
+    pub normalize: bool,
+    rescale_normal: bool,
+    pub lighting: Option<LightingSnapshot>,
+    pub units: Vec<UnitSnapshot>,
+    pub fog: Option<FogSource>,
+    /// Eye-space planes: inside is >= 0.
+    clip_planes: Vec<[f64; 4]>,
+    /// The secondary colour is used although lighting is off.
+    pub color_sum: bool,
+}
+
+/// What depends on the modelview matrix.
+#[derive(Clone, Debug)]
+pub(crate) struct Transform {
     /// Column-major.
     pub modelview: [f32; 16],
     pub clip_from_model: [f32; 16],
     /// Rows of the map of normals to eye space.
     pub normal_rows: [[f32; 3]; 3],
-    pub normalize: bool,
-    pub lighting: Option<LightingSnapshot>,
-    pub units: Vec<UnitSnapshot>,
-    pub fog: Option<FogSource>,
     /// Model-space planes: inside is >= 0.
     pub clip_planes: Vec<[f32; 4]>,
-    /// The secondary colour is used although lighting is off.
-    pub color_sum: bool,
+}
+
+impl Transform {
+    fn new(modelview: &Mat4, projection: &Mat4, rescale_normal: bool, planes: &[[f64; 4]]) -> Self {
+        let model_plane = |p: &[f64; 4]| (modelview.transpose() * Vec4::from_array(p.map(|v| v as f32))).to_array();
+        Self {
+            modelview: modelview.to_cols_array(),
+            clip_from_model: (*projection * *modelview).to_cols_array(),
+            normal_rows: normal_map(modelview, rescale_normal),
+            clip_planes: planes.iter().map(model_plane).collect(),
+        }
+    }
 }
 
 impl VertexSnapshot {
@@ -92,44 +115,49 @@ impl VertexSnapshot {
         self.lighting.is_none() && self.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
     }
 
+    /// What another modelview matrix makes of it.
+    pub(crate) fn transform_by(&self, modelview: &Mat4) -> Transform {
+        Transform::new(modelview, &self.projection, self.rescale_normal, &self.clip_planes)
+    }
+
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
     pub(crate) fn new(state: &State, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
-        let modelview = state.matrices.modelview.top();
-        let clip_from_model = state.matrices.projection.top() * modelview;
-        let (normal_rows, normalize) = normal_map(state, &modelview);
+        let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
+        let clip_planes: Vec<_> = planes.map(|(plane, _)| *plane).collect();
         let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
-        let model_plane = |p: &[f64; 4]| (modelview.transpose() * Vec4::from_array(p.map(|v| v as f32))).to_array();
+        let projection = matrices.projection.top();
+        let rescale_normal = matrices.rescale_normal && !matrices.normalize;
         Self {
             current: state.current,
-            modelview: modelview.to_cols_array(),
-            clip_from_model: clip_from_model.to_cols_array(),
-            normal_rows,
-            normalize,
+            transform: Transform::new(&matrices.modelview.top(), &projection, rescale_normal, &clip_planes),
+            projection,
+            normalize: matrices.normalize,
+            rescale_normal,
             lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, lights)),
             units: units.iter().map(|&u| unit(state, u)).collect(),
             fog: fog.then_some(source),
-            clip_planes: planes.map(|(p, _)| model_plane(p)).collect(),
+            clip_planes,
             color_sum: state.color_sum,
         }
     }
 }
 
-/// Rows of the map of normals, and whether they are normalised.
-fn normal_map(state: &State, modelview: &Mat4) -> ([[f32; 3]; 3], bool) {
+/// Rows of the map of normals.
+fn normal_map(modelview: &Mat4, rescale: bool) -> [[f32; 3]; 3] {
     let upper = Mat3::from_mat4(*modelview);
     let determinant = upper.determinant();
     let inverse = if determinant != 0.0 && determinant.is_finite() { upper.inverse() } else { Mat3::IDENTITY };
     // n_eye = (M^-1)^T n: its rows are the columns of the inverse.
     let mut rows = [inverse.x_axis.to_array(), inverse.y_axis.to_array(), inverse.z_axis.to_array()];
-    if state.matrices.rescale_normal && !state.matrices.normalize {
+    if rescale {
         let third = inverse.row(2);
         let length = third.length();
         if length > 0.0 {
             rows.iter_mut().flatten().for_each(|v| *v /= length);
         }
     }
-    (rows, state.matrices.normalize)
+    rows
 }
 
 fn unit(state: &State, index: usize) -> UnitSnapshot {

@@ -3,7 +3,7 @@
 //! In:   attributes of a batch, the snapshot of the state. Out: a record for each vertex, see [`Layout`].
 //! Source: OpenGL 1.5 specification, sections 2.11 to 2.14 and 3.10.
 
-use super::snapshot::{FogSource, Generation, LightingSnapshot, UnitSnapshot, VertexSnapshot};
+use super::snapshot::{FogSource, Generation, LightingSnapshot, Transform, UnitSnapshot, VertexSnapshot};
 use crate::state::MaterialFace;
 use crate::vertex::VertexBatch;
 use vitral_light::{Illumination, Phong, Reflected, Surface, phong};
@@ -21,6 +21,8 @@ pub(crate) struct Eight<'a> {
     /// How many there are.
     pub count: usize,
     pub batch: &'a VertexBatch,
+    /// All have the same.
+    pub transform: &'a Transform,
 }
 
 #[inline(always)]
@@ -124,7 +126,7 @@ pub(crate) fn shade<S: Simd>(
                 records[lane * stride] = inverse_w[lane];
             }
             let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
-            let eye = transform(&snapshot.modelview, &position);
+            let eye = transform(&eight.transform.modelview, &position);
             let normal = eye_normal(simd, snapshot, eight);
             let shaded = colors(simd, snapshot, eight, &eye, normal);
             for k in 0..4 {
@@ -166,7 +168,7 @@ pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &
         #[inline(always)]
         || {
             let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
-            let eye = transform(&snapshot.modelview, &position);
+            let eye = transform(&eight.transform.modelview, &position);
             let normal = eye_normal(simd, snapshot, eight);
             let [r, g, b, a] = colors(simd, snapshot, eight, &eye, normal).color;
             [r.to_array(), g.to_array(), b.to_array(), a.to_array()]
@@ -186,7 +188,7 @@ fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) ->
         return V3::splat(splat(simd, 0.0), [0.0, 0.0, 1.0]);
     }
     let [x, y, z] = attribute(simd, &eight.batch.normals, snapshot.current.normal, &eight.vertices);
-    let m = &snapshot.normal_rows;
+    let m = &eight.transform.normal_rows;
     let n = V3::new(
         x * m[0][0] + y * m[0][1] + z * m[0][2],
         x * m[1][0] + y * m[1][1] + z * m[1][2],
@@ -232,7 +234,7 @@ pub(crate) fn colors<S: Simd>(
     let one = splat(simd, 1.0);
     let inverse = one / eye[3];
     let position = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse);
-    let materials = eight.batch.material(eight.vertices[0]).unwrap_or(&lighting.material);
+    let materials = eight.batch.material(eight.vertices[0]).map_or(&lighting.material, |(materials, _)| materials);
     let (front, secondary) = lit(simd, lighting, materials, 0, &color, position, normal);
     let back = lighting.two_side.then(
         #[inline(always)]
@@ -341,7 +343,7 @@ pub(crate) fn process<S: Simd>(
     eight: &Eight<'_>,
 ) -> (F4<S>, Shaded<S>, [F4<S>; 8]) {
     let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
-    let eye = transform(&snapshot.modelview, &position);
+    let eye = transform(&eight.transform.modelview, &position);
     let normal = eye_normal(simd, snapshot, eight);
     let shaded = colors(simd, snapshot, eight, &eye, normal);
     let zero = splat(simd, 0.0);

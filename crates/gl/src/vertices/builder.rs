@@ -4,14 +4,16 @@
 //! filled with the value that was current until then. What was never given stays `None`: the current value holds for
 //! all. So a vertex costs one push for each attribute in use.
 //!
-//! If the caller promises to announce every call that is not one of vertices or their attributes
-//! ([`Context::set_merging`]), Begin/End pairs gather in one batch until then.
+//! If the caller promises to announce every call that changes what primitives are drawn with ([`Context::set_merging`]),
+//! Begin/End pairs gather in one batch until then. Modelview matrices and materials may change in between: they are kept
+//! with the vertices.
 
 use super::attribute::{CARRIED, COLOR};
 use crate::state::{Current, MaterialFace};
 use crate::vertex::{Sent, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
+use vitral_math::Mat4;
 
 /// Vertices of a batch that waits for no more.
 const LONG_ENOUGH: usize = 1 << 16;
@@ -32,8 +34,12 @@ pub(crate) struct Builder {
     merging: bool,
     mode: u32,
     first: u32,
-    /// The materials at Begin.
+    /// The materials at the first Begin.
     material: [MaterialFace; 2],
+    /// The modelview matrix then.
+    modelview: Mat4,
+    /// It may have changed since the last Begin.
+    moved: bool,
     /// What was drawn last: its memory serves again when it has been.
     pub(super) drawn: Option<Arc<VertexBatch>>,
     /// Empty vectors with memory, for the attributes of `batch`.
@@ -89,6 +95,25 @@ impl Builder {
             self.spare = drawn;
             self.spare.truncate_vertices(0);
             self.batch.positions = std::mem::take(&mut self.spare.positions);
+        }
+    }
+
+    /// Notes that primitives are given with this modelview matrix from here on.
+    fn set_modelview(&mut self, modelview: Mat4) {
+        let n = self.batch.positions.len() as u32;
+        let all = &mut self.batch.modelviews;
+        if all.last().map_or(&self.modelview, |(_, last)| last) == &modelview {
+            return;
+        }
+        match all.last_mut() {
+            Some((from, last)) if *from == n => *last = modelview,
+            None if n == 0 => self.modelview = modelview,
+            last => {
+                if last.is_none() {
+                    all.push((0, self.modelview));
+                }
+                all.push((n, modelview));
+            }
         }
     }
 
@@ -153,11 +178,21 @@ impl Context {
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
         } else if !self.refused_by_framebuffer("glBegin") {
-            if !self.builder.gathering {
-                self.builder.material = self.state.lighting.material;
-            }
-            self.builder.open(mode);
+            self.open_primitive(mode);
         }
+    }
+
+    /// Begins a primitive, with the state as it is now.
+    pub(super) fn open_primitive(&mut self, mode: u32) {
+        let builder = &mut self.builder;
+        if !builder.gathering {
+            builder.material = self.state.lighting.material;
+            builder.modelview = self.state.matrices.modelview.top();
+        } else if builder.moved {
+            builder.set_modelview(self.state.matrices.modelview.top());
+        }
+        builder.moved = false;
+        builder.open(mode);
     }
 
     pub(super) fn exec_end(&mut self) {
@@ -166,13 +201,15 @@ impl Context {
             return;
         }
         self.builder.close();
-        if !self.builder.merging || self.builder.batch.positions.len() >= LONG_ENOUGH {
+        let waits = self.builder.merging && self.feedback.mode == enums::RENDER;
+        if !waits || self.builder.batch.positions.len() >= LONG_ENOUGH {
             self.flush_vertices();
         }
     }
 
     /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call
-    /// but `begin`, `end`, `array_element` and those that give a vertex or set one of its attributes.
+    /// but `begin`, `end`, `array_element`, those that give a vertex or set one of its attributes, those that change
+    /// matrices or materials, and `call_list` and `call_lists`.
     pub fn set_merging(&mut self, merging: bool) {
         self.flush_vertices();
         self.builder.merging = merging;
@@ -186,8 +223,19 @@ impl Context {
         }
     }
 
+    /// To be called before a modelview matrix changes.
+    pub(crate) fn modelview_changes(&mut self) {
+        self.builder.moved = true;
+    }
+
     /// Draws what the builder holds.
+    #[inline(never)]
     pub(super) fn draw_gathered(&mut self) {
+        let builder = &mut self.builder;
+        let alone = builder.batch.modelviews.is_empty();
+        if alone && builder.moved && builder.modelview != self.state.matrices.modelview.top() {
+            builder.batch.modelviews.push((0, builder.modelview));
+        }
         let batch = Arc::new(self.builder.take());
         if REUSED.contains(&batch.positions.len()) {
             self.builder.drawn = Some(Arc::clone(&batch));
@@ -235,7 +283,7 @@ impl Context {
 
     /// To be called when `Material` has changed the materials: between vertices they are kept with the batch.
     pub(crate) fn material_changed(&mut self) {
-        if !self.inside_begin() {
+        if !self.builder.gathering {
             return;
         }
         let builder = &mut self.builder;

@@ -20,8 +20,10 @@ pub(crate) type Call = Box<dyn Fn(&mut Context) + Send + Sync>;
 
 /// One step of a display list.
 pub(crate) enum Item {
-    /// Any call.
+    /// Any call, before which what waits is drawn.
     Call(Call),
+    /// A call that leaves it waiting.
+    Keeping(Call),
     /// Complete primitives.
     Batch(Arc<VertexBatch>),
     /// Sets a current attribute.
@@ -37,7 +39,7 @@ pub(crate) enum Item {
 impl std::fmt::Debug for Item {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Call(_) => f.write_str("Call"),
+            Self::Call(_) | Self::Keeping(_) => f.write_str("Call"),
             Self::Batch(batch) => write!(f, "Batch of {} vertices", batch.positions.len()),
             Self::Attribute(which, value) => write!(f, "Attribute {which} {value:?}"),
             Self::Begin(mode) => write!(f, "Begin {mode}"),
@@ -131,9 +133,9 @@ impl Compiler {
     }
 
     /// Any other call.
-    pub(crate) fn call(&mut self, call: Call) {
+    pub(crate) fn call(&mut self, call: Item) {
         self.settle();
-        self.items.push(Item::Call(call));
+        self.items.push(call);
         self.known = 0;
     }
 

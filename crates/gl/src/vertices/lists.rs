@@ -1,7 +1,7 @@
 //! Display lists: making, calling, names.
 
 use super::client;
-use super::compile::{Compiler, Item};
+use super::compile::{Call, Compiler, Item};
 use crate::state::MAX_LIST_NESTING;
 use crate::vertex::Sent;
 use crate::{Context, enums};
@@ -42,6 +42,15 @@ const MAX_RANGE: u32 = 1 << 22;
 impl Context {
     /// Runs `call` now, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
     pub(crate) fn listable(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
+        self.listed(call, Item::Call);
+    }
+
+    /// [`Self::listable`] for a call that leaves waiting what waits to be drawn, or draws it itself.
+    pub(crate) fn listable_keeping(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
+        self.listed(call, Item::Keeping);
+    }
+
+    fn listed(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static, item: fn(Call) -> Item) {
         if !self.lists.recording {
             call(self);
             return;
@@ -49,7 +58,7 @@ impl Context {
         if self.lists.mode == enums::COMPILE_AND_EXECUTE {
             self.unrecorded(&call);
         }
-        self.compile(|compiler| compiler.call(Box::new(call)));
+        self.compile(|compiler| compiler.call(item(Box::new(call))));
     }
 
     /// Runs `call` with nothing being compiled.
@@ -116,7 +125,7 @@ impl Context {
 
     /// `glCallList`.
     pub fn call_list(&mut self, list: u32) {
-        self.listable(move |c| c.execute_lists(&[list]));
+        self.listable_keeping(move |c| c.execute_lists(&[list]));
     }
 
     /// `glCallLists`.
@@ -128,7 +137,7 @@ impl Context {
                 return;
             }
         };
-        self.listable(move |c| {
+        self.listable_keeping(move |c| {
             let base = c.state.list_base;
             let names: Vec<u32> = offsets.iter().map(|offset| base.wrapping_add(*offset)).collect();
             c.execute_lists(&names);
@@ -171,6 +180,7 @@ impl Context {
                 self.flush_vertices();
                 call(self);
             }
+            Item::Keeping(call) => call(self),
             Item::Batch(batch) => {
                 if !self.refused_inside_begin("glBegin") {
                     self.flush_vertices();

@@ -7,7 +7,7 @@ use crate::state::ArrayPointer;
 use crate::vertex::{Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
-use crate::vertices::compile::drawing_nothing;
+use crate::vertices::compile::{Item, drawing_nothing};
 use crate::{Context, enums};
 use std::sync::Arc;
 
@@ -241,7 +241,7 @@ impl Context {
     /// A list gets a draw of nothing.
     fn compile_refusal(&mut self, call: &'static str) {
         if self.lists.recording {
-            self.compile(|compiler| compiler.call(drawing_nothing(call)));
+            self.compile(|compiler| compiler.call(Item::Call(drawing_nothing(call))));
         }
     }
 

@@ -135,7 +135,7 @@ impl Context {
 
     /// One primitive of a mesh.
     fn mesh_row(&mut self, primitive: u32, range: RangeInclusive<i32>, give: impl Fn(&mut Self, i32)) {
-        self.builder.open(primitive);
+        self.open_primitive(primitive);
         range.for_each(|i| give(self, i));
         self.builder.close();
     }

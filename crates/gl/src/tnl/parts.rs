@@ -1,0 +1,45 @@
+//! Parts of a piece whose vertices were given with one modelview matrix.
+
+use super::assembled::PieceVertices;
+use super::snapshot::{Transform, VertexSnapshot};
+use crate::vertex::VertexBatch;
+use std::ops::Range;
+
+/// The parts, in order; none if all vertices of the batch have the current matrix.
+pub(crate) struct Parts<'a> {
+    whole: &'a Transform,
+    /// How many vertices of the piece there are up to the end of each, and its transform.
+    parts: Vec<(usize, Transform)>,
+}
+
+impl<'a> Parts<'a> {
+    pub(crate) fn new(snapshot: &'a VertexSnapshot, batch: &VertexBatch, vertices: &PieceVertices) -> Self {
+        let (mut parts, mut start) = (Vec::new(), 0);
+        while start < vertices.len() {
+            let vertex = vertices.get(start as u32);
+            let Some((modelview, more)) = batch.modelview(vertex) else { break };
+            start += vertices.below(start, vertex.saturating_add(more));
+            parts.push((start, snapshot.transform_by(modelview)));
+        }
+        Self { whole: &snapshot.transform, parts }
+    }
+
+    /// Whether all vertices have the current matrix.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.parts.is_empty()
+    }
+
+    /// The vertices of each part, out of `count`.
+    pub(crate) fn each(&self, count: usize) -> impl Iterator<Item = (Range<usize>, &Transform)> {
+        let whole = self.is_whole().then_some((0..count, self.whole));
+        let start = |i: usize| if i == 0 { 0 } else { self.parts[i - 1].0 };
+        let parts = self.parts.iter().enumerate();
+        whole.into_iter().chain(parts.map(move |(i, (end, transform))| (start(i)..*end, transform)))
+    }
+
+    /// The transform of a vertex of the piece, and up to which one it holds.
+    pub(crate) fn at(&self, vertex: u32) -> (&Transform, u32) {
+        let part = self.parts.partition_point(|(end, _)| *end <= vertex as usize);
+        self.parts.get(part).map_or((self.whole, u32::MAX), |(end, transform)| (transform, *end as u32))
+    }
+}

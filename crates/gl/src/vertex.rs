@@ -23,9 +23,10 @@ pub struct Primitive {
 }
 
 /// Whether a batch is drawn at once or comes out of a display list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sent {
     /// By Begin and End, or from arrays.
+    #[default]
     Now,
     /// By a list.
     Listed,

@@ -2,6 +2,7 @@
 
 use crate::state::{Current, MAX_TEXTURE_UNITS};
 use crate::vertex::VertexBatch;
+use std::ops::Range;
 
 pub(crate) const NORMAL: usize = 0;
 pub(crate) const COLOR: usize = 1;
@@ -91,6 +92,45 @@ impl VertexBatch {
         push(&mut self.edges, current.edge);
         for unit in 1..MAX_TEXTURE_UNITS {
             push(&mut self.tex[unit], current.tex[unit]);
+        }
+    }
+
+    /// The attributes that have arrays.
+    pub(crate) fn attributes(&self) -> impl Iterator<Item = usize> {
+        let has = |which: usize| match which {
+            NORMAL => self.normals.is_some(),
+            COLOR => self.colors.is_some(),
+            SECONDARY => self.secondary.is_some(),
+            FOG => self.fog.is_some(),
+            EDGE => self.edges.is_some(),
+            _ => self.tex[which - TEX].is_some(),
+        };
+        (0..INDEX).filter(move |which| has(*which))
+    }
+
+    /// Appends vertices of another batch, by their place in its order; attributes that it does not have come from `current`.
+    pub(crate) fn append(&mut self, other: &Self, vertices: Range<u32>, current: &Current) {
+        let numbers = vertices.map(|i| other.vertex(i));
+        fn add<T: Copy>(
+            values: &mut Option<Vec<T>>,
+            others: &Option<Vec<T>>,
+            current: T,
+            numbers: impl ExactSizeIterator<Item = usize>,
+        ) {
+            match (values, others) {
+                (None, _) => {}
+                (Some(values), Some(others)) => values.extend(numbers.map(|v| others[v])),
+                (Some(values), None) => values.resize(values.len() + numbers.len(), current),
+            }
+        }
+        self.positions.extend(numbers.clone().map(|v| other.positions[v]));
+        add(&mut self.normals, &other.normals, current.normal, numbers.clone());
+        add(&mut self.colors, &other.colors, current.color, numbers.clone());
+        add(&mut self.secondary, &other.secondary, current.secondary, numbers.clone());
+        add(&mut self.fog, &other.fog, current.fog, numbers.clone());
+        add(&mut self.edges, &other.edges, current.edge, numbers.clone());
+        for (unit, values) in self.tex.iter_mut().enumerate() {
+            add(values, &other.tex[unit], current.tex[unit], numbers.clone());
         }
     }
 

@@ -18,6 +18,9 @@ use vitral_math::Mat4;
 /// Vertices of a batch that waits for no more.
 const LONG_ENOUGH: usize = 1 << 16;
 
+/// Vertices of a batch that is not worth a draw of its own.
+const SMALL: usize = 48;
+
 /// Vertices of a batch whose memory is used again: fewer cost nothing to allocate, more are too much to keep.
 const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
 
@@ -34,6 +37,8 @@ pub(crate) struct Builder {
     merging: bool,
     mode: u32,
     first: u32,
+    /// Whether what is gathered is cut as what comes at once.
+    sent: Sent,
     /// The materials at the first Begin.
     material: [MaterialFace; 2],
     /// The modelview matrix then.
@@ -68,9 +73,6 @@ impl Builder {
 
     /// Begins a primitive.
     pub(crate) fn open(&mut self, mode: u32) {
-        if !self.gathering {
-            self.reclaim();
-        }
         self.open = true;
         self.gathering = true;
         self.mode = mode;
@@ -89,8 +91,8 @@ impl Builder {
         self.open = false;
     }
 
-    /// Takes the memory of the batch that was drawn last, if nobody needs that any more.
-    fn reclaim(&mut self) {
+    /// Begins a batch, in the memory of the one that was drawn last, if nobody needs that any more.
+    fn start(&mut self) {
         if let Some(drawn) = self.drawn.take().and_then(Arc::into_inner) {
             self.spare = drawn;
             self.spare.truncate_vertices(0);
@@ -178,21 +180,49 @@ impl Context {
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
         } else if !self.refused_by_framebuffer("glBegin") {
-            self.open_primitive(mode);
+            self.gather(Sent::Now);
+            self.builder.open(mode);
         }
     }
 
-    /// Begins a primitive, with the state as it is now.
-    pub(super) fn open_primitive(&mut self, mode: u32) {
+    /// Notes the state as it is now, for a primitive that begins.
+    pub(super) fn gather(&mut self, sent: Sent) {
+        if self.builder.sent != sent {
+            self.flush_vertices();
+        }
         let builder = &mut self.builder;
         if !builder.gathering {
+            builder.start();
+            builder.sent = sent;
             builder.material = self.state.lighting.material;
             builder.modelview = self.state.matrices.modelview.top();
         } else if builder.moved {
             builder.set_modelview(self.state.matrices.modelview.top());
         }
         builder.moved = false;
-        builder.open(mode);
+    }
+
+    /// Whether a batch is gathered rather than drawn; if so, it has been.
+    pub(super) fn gathers(&mut self, batch: &VertexBatch, sent: Sent) -> bool {
+        let count = batch.primitives.iter().map(|p| p.count as usize).sum::<usize>();
+        if count > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
+            return false;
+        }
+        // What is indexed is cut as what lists hold.
+        self.gather(if batch.indices.is_some() { Sent::Listed } else { sent });
+        let builder = &mut self.builder;
+        for which in batch.attributes() {
+            builder.see(which, &self.state.current);
+        }
+        for primitive in &batch.primitives {
+            builder.open(primitive.mode);
+            builder.batch.append(batch, primitive.first..primitive.first + primitive.count, &self.state.current);
+            builder.close();
+        }
+        if builder.batch.positions.len() >= LONG_ENOUGH {
+            self.flush_vertices();
+        }
+        true
     }
 
     pub(super) fn exec_end(&mut self) {
@@ -236,11 +266,11 @@ impl Context {
         if alone && builder.moved && builder.modelview != self.state.matrices.modelview.top() {
             builder.batch.modelviews.push((0, builder.modelview));
         }
-        let batch = Arc::new(self.builder.take());
+        let (batch, sent) = (Arc::new(self.builder.take()), self.builder.sent);
         if REUSED.contains(&batch.positions.len()) {
             self.builder.drawn = Some(Arc::clone(&batch));
         }
-        self.draw_batch(batch, Sent::Now);
+        self.draw_batch(batch, sent);
     }
 
     #[inline(always)]

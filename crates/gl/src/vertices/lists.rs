@@ -182,7 +182,7 @@ impl Context {
             }
             Item::Keeping(call) => call(self),
             Item::Batch(batch) => {
-                if !self.refused_inside_begin("glBegin") {
+                if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Sent::Listed) {
                     self.flush_vertices();
                     self.draw_batch(batch.clone(), Sent::Listed);
                 }

@@ -201,7 +201,8 @@ impl Context {
         if self.lists.recording {
             self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
         }
-        if self.executes() {
+        if self.executes() && !self.gathers(&batch, Sent::Now) {
+            self.flush_vertices();
             self.draw_batch(batch, Sent::Now);
         }
     }

@@ -1,8 +1,9 @@
 //! What a batch draws when polygons are filled: triangles in pieces, each found once, when it is drawn, and kept with the batch.
 
 use super::grid::{self, Grid};
+use super::ordered;
 use super::snapshot::Transform;
-use crate::enums::{POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
+use crate::enums::{POINTS, POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use crate::vertex::{Primitive, VertexBatch};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -68,8 +69,12 @@ pub(crate) struct Assembled {
     starts: Vec<u32>,
     /// There are points or lines too.
     pub others: bool,
+    /// There are points.
+    pub points: bool,
     /// All triangles are a flat grid.
     pub grid: Option<Grid>,
+    /// See [`Self::ordered`].
+    ordered: OnceLock<Vec<Vec<Primitive>>>,
 }
 
 /// A place for `Assembled` in a batch: no part of its value.
@@ -109,12 +114,18 @@ impl Assembled {
             starts.push(count);
         }
         let others = batch.primitives.iter().any(|primitive| primitive.mode < TRIANGLES);
-        let mut assembled = Self { pieces: Vec::new(), starts, others, grid: None };
+        let points = batch.primitives.iter().any(|primitive| primitive.mode == POINTS);
+        let mut assembled = Self { points, pieces: Vec::new(), starts, others, grid: None, ordered: OnceLock::new() };
         if !others {
             assembled.grid = grid::find(batch, count as usize, || assembled.triangles(batch, 0..count));
         }
         assembled.pieces.resize_with((count as usize).div_ceil(PIECE), OnceLock::new);
         assembled
+    }
+
+    /// All primitives in parts, for what is not only filled triangles.
+    pub(crate) fn ordered(&self, batch: &VertexBatch) -> &[Vec<Primitive>] {
+        self.ordered.get_or_init(|| ordered::parts(&batch.primitives))
     }
 
     /// How many pieces there are.
@@ -174,9 +185,7 @@ impl Assembled {
                 let vertex = (primitive.first + (triangle - start) * 2) as usize;
                 if all || is_bent(batch, vertex) {
                     let at = (triangle - range.start) as usize;
-                    let turned = turned.get_or_insert_with(|| triangles.to_vec());
-                    let ([a, b, d], c) = (turned[at], turned[at + 1][1]);
-                    (turned[at], turned[at + 1]) = ([a, b, c], [a, c, d]);
+                    turn(&mut turned.get_or_insert_with(|| triangles.to_vec())[at..]);
                 }
             }
         }
@@ -201,6 +210,31 @@ impl Assembled {
         }
         triangles
     }
+}
+
+/// The filled triangles of one primitive, as numbers of vertices of the batch. With `turned`, quads are cut as
+/// [`Assembled::turned`] cuts them; whether all of them.
+pub(super) fn add_filled(batch: &VertexBatch, primitive: &Primitive, turned: Option<bool>, out: &mut Vec<[u32; 3]>) {
+    let start = out.len();
+    add_triangles(primitive, 0..triangle_count(primitive), out);
+    if let Some(all) = turned.filter(|_| primitive.mode == QUADS) {
+        for (quad, pair) in out[start..].chunks_exact_mut(2).enumerate() {
+            if all || is_bent(batch, primitive.first as usize + 4 * quad) {
+                turn(pair);
+            }
+        }
+    }
+    if let Some(indices) = &batch.indices {
+        for corner in out[start..].iter_mut().flatten() {
+            *corner = indices[*corner as usize];
+        }
+    }
+}
+
+/// Cuts a quad, its halves the first two triangles, along the other diagonal.
+fn turn(halves: &mut [[u32; 3]]) {
+    let ([a, b, d], [_, c, _]) = (halves[0], halves[1]);
+    (halves[0], halves[1]) = ([a, b, c], [a, c, d]);
 }
 
 /// Whether something is not linear on the quad of four vertices from `first` on: it looks different along each diagonal.
@@ -350,7 +384,6 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::enums::POINTS;
 
     fn triangles(mode: u32, count: u32) -> Vec<[u32; 3]> {
         let p = Primitive { mode, first: 0, count };

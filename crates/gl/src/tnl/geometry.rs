@@ -5,7 +5,6 @@ use super::grid::Grid;
 use super::parts::Parts;
 use super::snapshot::VertexSnapshot;
 use super::vertices::{Eight, front_colors, shade};
-use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
@@ -42,12 +41,13 @@ pub(crate) struct DrawGeometry {
 }
 
 impl DrawGeometry {
-    fn filled(&self) -> bool {
+    pub(super) fn filled(&self) -> bool {
         self.primitive.polygon_mode == [2, 2] && !self.primitive.polygon_smooth
     }
 
-    fn filled_pieces(&self) -> usize {
-        if self.filled() { self.assembled.len() } else { 0 }
+    /// The parts that are drawn in the order of their primitives, unless all are filled triangles.
+    fn ordered(&self) -> Option<&[Vec<Primitive>]> {
+        (!self.filled() || self.assembled.others).then(|| self.assembled.ordered(&self.batch))
     }
 
     /// The flat grid that is drawn.
@@ -61,17 +61,17 @@ impl Geometry for DrawGeometry {
         if self.grid().is_some() {
             return 1;
         }
-        self.filled_pieces() + usize::from(!self.filled() || self.assembled.others)
+        self.ordered().map_or(self.assembled.len(), <[_]>::len)
     }
 
     fn weight(&self, piece: usize) -> usize {
         if let Some(grid) = self.grid() {
             return grid.rectangle.triangles.len();
         }
-        if piece < self.filled_pieces() {
-            return self.assembled.weight(piece);
+        match self.ordered() {
+            Some(ordered) => ordered[piece].iter().map(|p| p.count as usize).sum(),
+            None => self.assembled.weight(piece),
         }
-        self.batch.primitives.iter().map(|p| p.count as usize).sum()
     }
 
     fn layout(&self) -> &Layout {
@@ -88,25 +88,23 @@ impl Geometry for DrawGeometry {
         if let Some(grid) = self.grid() {
             return self.emit_grid(level, grid, state, screen, out);
         }
-        if piece < self.filled_pieces() {
-            let whole = self.assembled.piece(level, &self.batch, piece);
-            let Piece { triangles, vertices, .. } = whole;
-            // With depth clamping near and far do not bound the view.
-            let bounded = !state.depth_clamp && self.batch.modelviews.is_empty();
-            if bounded && whole.is_outside(&self.snapshot.transform, state.window.near) {
-                return;
-            }
-            let turned = self.first_diagonal.then(|| {
-                let all = !self.snapshot.is_linear();
-                self.assembled.turned(&self.batch, piece, triangles, all)
-            });
-            let turned = turned.flatten();
-            let triangles = turned.as_deref().unwrap_or(triangles);
-            self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
-        } else {
-            let all = PieceVertices::Range(0, self.batch.positions.len() as u32);
-            self.emit_vertices(level, &all, &state, screen, out, |assembler| self.emit_primitives(assembler));
+        if let Some(ordered) = self.ordered() {
+            return self.emit_ordered(level, &ordered[piece], &state, screen, out);
         }
+        let whole = self.assembled.piece(level, &self.batch, piece);
+        let Piece { triangles, vertices, .. } = whole;
+        // With depth clamping near and far do not bound the view.
+        let bounded = !state.depth_clamp && self.batch.modelviews.is_empty();
+        if bounded && whole.is_outside(&self.snapshot.transform, state.window.near) {
+            return;
+        }
+        let turned = self.first_diagonal.then(|| {
+            let all = !self.snapshot.is_linear();
+            self.assembled.turned(&self.batch, piece, triangles, all)
+        });
+        let turned = turned.flatten();
+        let triangles = turned.as_deref().unwrap_or(triangles);
+        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
     }
 
     fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES] {
@@ -153,7 +151,7 @@ impl DrawGeometry {
     }
 
     /// Transforms a piece's vertices, assembles, and shades the vertices that primitives use.
-    fn emit_vertices(
+    pub(super) fn emit_vertices(
         &self,
         level: Level,
         vertices: &PieceVertices,
@@ -243,7 +241,7 @@ impl DrawGeometry {
     }
 
     fn needs_sizes(&self) -> bool {
-        self.primitive.polygon_mode.contains(&0) || self.batch.primitives.iter().any(|p| p.mode == gl::POINTS)
+        self.primitive.polygon_mode.contains(&0) || self.assembled.points
     }
 
     /// Point sizes and fade factors.
@@ -265,70 +263,5 @@ impl DrawGeometry {
             }
         };
         sizes.extend(positions.iter().map(size_at));
-    }
-
-    /// Points, lines, and polygons that are not filled.
-    fn emit_primitives(&self, assembler: &mut Assembler<'_>) {
-        for primitive in &self.batch.primitives {
-            let vertex = |i: u32| self.batch.vertex(primitive.first + i) as u32;
-            let n = primitive.count;
-            match primitive.mode {
-                gl::POINTS => (0..n).for_each(|i| assembler.point(vertex(i))),
-                gl::LINES => (0..n / 2).for_each(|i| {
-                    assembler.line([vertex(2 * i), vertex(2 * i + 1)], vertex(2 * i + 1), 0);
-                }),
-                gl::LINE_STRIP | gl::LINE_LOOP => {
-                    let mut stipple = 0;
-                    for i in 1..n {
-                        stipple = assembler.line([vertex(i - 1), vertex(i)], vertex(i), stipple);
-                    }
-                    if primitive.mode == gl::LINE_LOOP {
-                        assembler.line([vertex(n - 1), vertex(0)], vertex(0), stipple);
-                    }
-                }
-                _ if !self.filled() => self.emit_outlined(assembler, primitive),
-                _ => {}
-            }
-        }
-    }
-
-    /// Polygons with their edges.
-    fn emit_outlined(&self, assembler: &mut Assembler<'_>, primitive: &Primitive) {
-        let vertex = |i: u32| self.batch.vertex(primitive.first + i) as u32;
-        let flag = |v: u32| match &self.batch.edges {
-            Some(edges) => edges[v as usize],
-            None => self.snapshot.current.edge,
-        };
-        let n = primitive.count;
-        let mut polygon = |corners: &[u32], provoking: u32, flagged: bool| {
-            let edges: Vec<bool> = corners.iter().map(|&v| !flagged || flag(v)).collect();
-            assembler.polygon(corners, &edges, provoking);
-        };
-        match primitive.mode {
-            gl::TRIANGLES => (0..n / 3).for_each(|i| {
-                let c = [0, 1, 2].map(|k| vertex(3 * i + k));
-                polygon(&c, c[2], true);
-            }),
-            gl::QUADS => (0..n / 4).for_each(|i| {
-                let c = [0, 1, 2, 3].map(|k| vertex(4 * i + k));
-                polygon(&c, c[3], true);
-            }),
-            gl::POLYGON => {
-                let c: Vec<u32> = (0..n).map(vertex).collect();
-                polygon(&c, c[0], true);
-            }
-            gl::TRIANGLE_STRIP => (2..n).for_each(|i| {
-                let (a, b) = if i % 2 == 0 { (i - 2, i - 1) } else { (i - 1, i - 2) };
-                polygon(&[vertex(a), vertex(b), vertex(i)], vertex(i), false);
-            }),
-            gl::TRIANGLE_FAN => (2..n).for_each(|i| {
-                polygon(&[vertex(0), vertex(i - 1), vertex(i)], vertex(i), false);
-            }),
-            gl::QUAD_STRIP => (0..n.saturating_sub(2) / 2).for_each(|i| {
-                let c = [0, 1, 3, 2].map(|k| vertex(2 * i + k));
-                polygon(&c, c[2], false);
-            }),
-            _ => {}
-        }
     }
 }

@@ -4,6 +4,7 @@ mod assembled;
 mod derive;
 mod geometry;
 mod grid;
+mod ordered;
 mod parts;
 mod process;
 mod record;

@@ -56,10 +56,10 @@ pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Contex
     let context = unsafe { &mut (*handle.machine()).context };
     let result = match catch_unwind(AssertUnwindSafe(|| body(context))) {
         Ok(result) => result,
-        Err(cause) => panicked(context, name, &*cause),
+        Err(cause) => panicked(context, name, cause),
     };
     if handle.messages.any() {
-        deliver(&Arc::clone(&handle.messages));
+        deliver(handle);
     }
     result
 }
@@ -86,7 +86,8 @@ fn call_apart<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) ->
 
 /// Turns a panic into INVALID_OPERATION.
 #[cold]
-fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Send)) -> R {
+#[inline(never)]
+fn panicked<R: Default>(context: &mut Context, name: &str, cause: Box<dyn Any + Send>) -> R {
     let what = cause.downcast_ref::<String>().map(String::as_str).or_else(|| cause.downcast_ref::<&str>().copied());
     let what = what.unwrap_or("no reason given");
     environment::say(&format!("{name}: this is a fault of vitral: {what}"));
@@ -100,10 +101,13 @@ fn panicked<R: Default>(context: &mut Context, name: &str, cause: &(dyn Any + Se
 /// `GLDEBUGPROC`.
 type DebugProc = unsafe extern "C" fn(u32, u32, u32, u32, i32, *const u8, usize);
 
-/// Calls the client's debug callback with each message that waits. The callback may call OpenGL, and even destroy the
-/// context: nothing of its handle is borrowed here.
+/// Calls the client's debug callback with each message that waits for the current context's. The callback may call OpenGL, and
+/// even destroy the context: nothing of its handle is borrowed here.
 #[cold]
-fn deliver(messages: &Messages) {
+#[inline(never)]
+fn deliver(handle: *const Handle) {
+    // SAFETY: the current handle is alive until it is replaced.
+    let messages: Arc<Messages> = unsafe { Arc::clone(&(*handle).messages) };
     while let Some(Waiting { callback, user, mut message }) = messages.next() {
         let length = i32::try_from(message.text.len()).unwrap_or(i32::MAX);
         message.text.push(0);

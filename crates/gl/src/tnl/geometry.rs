@@ -104,7 +104,7 @@ impl Geometry for DrawGeometry {
         });
         let turned = turned.flatten();
         let triangles = turned.as_deref().unwrap_or(triangles);
-        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
+        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| assembler.triangles(level, triangles));
     }
 
     fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES] {
@@ -147,7 +147,7 @@ impl DrawGeometry {
             state.grid = out.grids.len() as u32;
             out.grids.push(out.grid_colors.add(grid.cells.map(|cells| cells + 1), grid.rising));
         }
-        self.emit_vertices(level, vertices, &state, screen, out, |assembler| assembler.triangles(level, triangles));
+        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| assembler.triangles(level, triangles));
     }
 
     /// Transforms a piece's vertices, assembles, and shades the vertices that primitives use.
@@ -158,7 +158,7 @@ impl DrawGeometry {
         state: &PrimitiveState,
         screen: &ForwardScreen,
         out: &mut Primitives,
-        assemble: impl FnOnce(&mut Assembler<'_>),
+        assemble: &dyn Fn(&mut Assembler<'_>),
     ) {
         let count = vertices.len();
         let gathered: Vec<[f32; 4]>;

@@ -72,7 +72,7 @@ impl DrawGeometry {
         out: &mut Primitives,
     ) {
         let own = PieceVertices::of(&self.batch, primitives);
-        self.emit_vertices(level, &own, state, screen, out, |assembler| {
+        self.emit_vertices(level, &own, state, screen, out, &|assembler| {
             self.emit_primitives(level, primitives, &own, assembler);
         });
     }
@@ -115,6 +115,7 @@ impl DrawGeometry {
     }
 
     /// Emits triangles that have gathered.
+    #[inline(never)]
     fn emit_filled(
         &self,
         level: Level,

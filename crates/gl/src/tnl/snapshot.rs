@@ -80,7 +80,7 @@ pub(crate) struct VertexSnapshot {
     pub units: Vec<UnitSnapshot>,
     pub fog: Option<FogSource>,
     /// Eye-space planes: inside is >= 0.
-    clip_planes: Vec<[f64; 4]>,
+    clip_planes: Vec<[f32; 4]>,
     /// The secondary colour is used although lighting is off.
     pub color_sum: bool,
 }
@@ -98,8 +98,8 @@ pub(crate) struct Transform {
 }
 
 impl Transform {
-    fn new(modelview: &Mat4, projection: &Mat4, rescale_normal: bool, planes: &[[f64; 4]]) -> Self {
-        let model_plane = |p: &[f64; 4]| (modelview.transpose() * Vec4::from_array(p.map(|v| v as f32))).to_array();
+    fn new(modelview: &Mat4, projection: &Mat4, rescale_normal: bool, planes: &[[f32; 4]]) -> Self {
+        let model_plane = |plane: &[f32; 4]| (modelview.transpose() * Vec4::from_array(*plane)).to_array();
         Self {
             modelview: modelview.to_cols_array(),
             clip_from_model: (*projection * *modelview).to_cols_array(),
@@ -124,7 +124,7 @@ impl VertexSnapshot {
     pub(crate) fn new(state: &State, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
-        let clip_planes: Vec<_> = planes.map(|(plane, _)| *plane).collect();
+        let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
         let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
         let projection = matrices.projection.top();
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;

@@ -7,7 +7,7 @@
 //! `count` is a multiple of 2, 3 or 4 for `LINES`, `TRIANGLES`, `QUADS`, even for `QUAD_STRIP`, and large enough for at
 //! least one element.
 
-use crate::state::{MAX_TEXTURE_UNITS, MaterialFace};
+use crate::state::{MAX_TEXTURE_UNITS, MaterialFace, State};
 pub use crate::tnl::AssembledCell;
 use vitral_math::Mat4;
 
@@ -30,6 +30,22 @@ pub enum Sent {
     Now,
     /// By a list.
     Listed,
+}
+
+/// What vertices are drawn with besides their attributes, where a batch does not say otherwise.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Given {
+    /// Model to eye.
+    pub modelview: Mat4,
+    /// Front, back.
+    pub material: [MaterialFace; 2],
+}
+
+impl Given {
+    /// As it is now.
+    pub(crate) fn current(state: &State) -> Self {
+        Self { modelview: state.matrices.modelview.top(), material: state.lighting.material }
+    }
 }
 
 /// Vertices and what they form. An attribute that is `None` has the current value for all vertices, taken when drawn.
@@ -64,14 +80,25 @@ pub struct VertexBatch {
 }
 
 impl VertexBatch {
-    /// The materials at a vertex, if they were set between vertices, and how many vertices from there on have them.
-    pub(crate) fn material(&self, vertex: u32) -> Option<(&[MaterialFace; 2], u32)> {
-        at(&self.materials, vertex)
+    /// The materials at a vertex, if they were set between vertices. `near` is the number of those of a vertex asked before.
+    pub(crate) fn material(&self, vertex: u32, near: &mut usize) -> Option<&[MaterialFace; 2]> {
+        let all = &self.materials;
+        let from = |i: usize| all.get(i).map_or(u32::MAX, |(from, _)| *from);
+        let holds = |i: usize| from(i) <= vertex && vertex < from(i + 1);
+        if !holds(*near) {
+            *near += 1;
+        }
+        if !holds(*near) {
+            *near = all.partition_point(|(from, _)| *from <= vertex).checked_sub(1)?;
+        }
+        Some(&all[*near].1)
     }
 
     /// The modelview matrix at a vertex, if it was set between primitives, and how many vertices from there on have it.
     pub(crate) fn modelview(&self, vertex: u32) -> Option<(&Mat4, u32)> {
-        at(&self.modelviews, vertex)
+        let next = self.modelviews.partition_point(|(from, _)| *from <= vertex);
+        let end = self.modelviews.get(next).map_or(u32::MAX, |(from, _)| *from);
+        Some((&self.modelviews.get(next.checked_sub(1)?)?.1, end - vertex))
     }
 
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
@@ -95,13 +122,6 @@ impl VertexBatch {
         }
         self.primitives.push(Primitive { mode, first, count });
     }
-}
-
-/// What holds at a vertex of things that each hold from a vertex on, and for how many vertices more.
-fn at<T>(things: &[(u32, T)], vertex: u32) -> Option<(&T, u32)> {
-    let next = things.partition_point(|(from, _)| *from <= vertex);
-    let end = things.get(next).map_or(u32::MAX, |(from, _)| *from);
-    Some((&things.get(next.checked_sub(1)?)?.1, end - vertex))
 }
 
 /// Whether elements of this mode share no vertices, so that runs of them can be joined.

@@ -4,7 +4,7 @@ use super::assembled::{Assembled, Piece, PieceVertices};
 use super::grid::Grid;
 use super::parts::Parts;
 use super::snapshot::VertexSnapshot;
-use super::vertices::{Eight, front_colors, shade};
+use super::vertices::{Eight, LaneFaces, front_colors, shade};
 use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
@@ -113,7 +113,9 @@ impl Geometry for DrawGeometry {
         let row = &grid.vertices[row as usize * columns..][..columns];
         let own = &row[eight as usize * LANES..];
         let vertices = std::array::from_fn(|lane| own[lane.min(own.len() - 1)]);
-        let lanes = Eight { vertices, count: LANES, batch: &self.batch, transform: &self.snapshot.transform };
+        let faces = &LaneFaces::new(&self.snapshot, &self.batch, &vertices);
+        let transform = &self.snapshot.transform;
+        let lanes = Eight { vertices, count: LANES, batch: &self.batch, transform, faces };
         let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
         std::array::from_fn(|lane| [r[lane], g[lane], b[lane], a[lane]])
     }
@@ -224,16 +226,15 @@ impl DrawGeometry {
         let numbers = own.map(|v| vertices.get(v));
         let mut lane = 0;
         while lane < eight.len() {
-            // Together as far as they share the matrix and the materials.
+            // Together as far as they share the matrix.
             let (transform, part) = parts.at(own[lane]);
-            let more = self.batch.material(numbers[lane]).map_or(u32::MAX, |(_, more)| more);
-            let same = |l: usize| (own[lane]..part).contains(&own[l]) && numbers[l].wrapping_sub(numbers[lane]) < more;
-            let varies = !self.batch.materials.is_empty() || !parts.is_whole();
-            let end = (lane + 1..eight.len()).find(|&l| varies && !same(l)).unwrap_or(eight.len());
+            let same = |l: usize| parts.is_whole() || (own[lane]..part).contains(&own[l]);
+            let end = (lane + 1..eight.len()).find(|&l| !same(l)).unwrap_or(eight.len());
             let used = |i: usize| (lane + i).min(end - 1);
             let inverse_w = std::array::from_fn(|i| 1.0 / clip[own[used(i)] as usize][3]);
             let some = std::array::from_fn(|i| numbers[used(i)]);
-            let some = Eight { vertices: some, count: end - lane, batch: &self.batch, transform };
+            let faces = &*parts.faces(&some);
+            let some = Eight { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
             let records = &mut records[lane * stride..];
             dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &some, &inverse_w, records));
             lane = end;

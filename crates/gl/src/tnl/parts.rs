@@ -1,19 +1,25 @@
-//! Parts of a piece whose vertices were given with one modelview matrix.
+//! What a piece's vertices were given with besides their attributes: parts of them with one modelview matrix, and materials.
 
 use super::assembled::PieceVertices;
 use super::snapshot::{Transform, VertexSnapshot};
+use super::vertices::LaneFaces;
 use crate::vertex::VertexBatch;
+use std::borrow::Cow;
 use std::ops::Range;
+use vitral_math::lanes::LANES;
 
-/// The parts, in order; none if all vertices of the batch have the current matrix.
+/// See the module.
 pub(crate) struct Parts<'a> {
-    whole: &'a Transform,
-    /// How many vertices of the piece there are up to the end of each, and its transform.
+    snapshot: &'a VertexSnapshot,
+    batch: &'a VertexBatch,
+    /// The materials, if all vertices of the batch have the same.
+    faces: Option<LaneFaces>,
+    /// In order; none if all vertices of the batch have the current matrix. How many vertices of the piece there are up to the end of each, and its transform.
     parts: Vec<(usize, Transform)>,
 }
 
 impl<'a> Parts<'a> {
-    pub(crate) fn new(snapshot: &'a VertexSnapshot, batch: &VertexBatch, vertices: &PieceVertices) -> Self {
+    pub(crate) fn new(snapshot: &'a VertexSnapshot, batch: &'a VertexBatch, vertices: &PieceVertices) -> Self {
         let (mut parts, mut start) = (Vec::new(), 0);
         while start < vertices.len() {
             let vertex = vertices.get(start as u32);
@@ -21,7 +27,16 @@ impl<'a> Parts<'a> {
             start += vertices.below(start, vertex.saturating_add(more));
             parts.push((start, snapshot.transform_by(modelview)));
         }
-        Self { whole: &snapshot.transform, parts }
+        let faces = batch.materials.is_empty().then(|| LaneFaces::new(snapshot, batch, &[0; LANES]));
+        Self { snapshot, batch, faces, parts }
+    }
+
+    /// The materials of eight vertices of the batch.
+    pub(crate) fn faces(&self, vertices: &[u32; LANES]) -> Cow<'_, LaneFaces> {
+        match &self.faces {
+            Some(faces) => Cow::Borrowed(faces),
+            None => Cow::Owned(LaneFaces::new(self.snapshot, self.batch, vertices)),
+        }
     }
 
     /// Whether all vertices have the current matrix.
@@ -31,7 +46,7 @@ impl<'a> Parts<'a> {
 
     /// The vertices of each part, out of `count`.
     pub(crate) fn each(&self, count: usize) -> impl Iterator<Item = (Range<usize>, &Transform)> {
-        let whole = self.is_whole().then_some((0..count, self.whole));
+        let whole = self.is_whole().then_some((0..count, &self.snapshot.transform));
         let start = |i: usize| if i == 0 { 0 } else { self.parts[i - 1].0 };
         let parts = self.parts.iter().enumerate();
         whole.into_iter().chain(parts.map(move |(i, (end, transform))| (start(i)..*end, transform)))
@@ -40,6 +55,6 @@ impl<'a> Parts<'a> {
     /// The transform of a vertex of the piece, and up to which one it holds.
     pub(crate) fn at(&self, vertex: u32) -> (&Transform, u32) {
         let part = self.parts.partition_point(|(end, _)| *end <= vertex as usize);
-        self.parts.get(part).map_or((self.whole, u32::MAX), |(end, transform)| (transform, *end as u32))
+        self.parts.get(part).map_or((&self.snapshot.transform, u32::MAX), |(end, transform)| (transform, *end as u32))
     }
 }

@@ -1,11 +1,11 @@
 //! Vertices processed at once, for feedback, selection and the raster position.
 
 use super::snapshot::{LightCache, VertexSnapshot};
-use super::vertices::{Eight, process};
+use super::vertices::{Eight, LaneFaces, process};
 use crate::Context;
 use crate::enums as gl;
 use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
-use crate::vertex::VertexBatch;
+use crate::vertex::{Given, VertexBatch};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::WindowTransform;
@@ -35,35 +35,33 @@ impl Context {
     /// Transforms and lights all vertices of a batch now.
     pub(crate) fn process_batch(&mut self, batch: &VertexBatch) -> Vec<ProcessedVertex> {
         let units: Vec<usize> = (0..MAX_TEXTURE_UNITS).collect();
-        let snapshot = VertexSnapshot::new(&self.state, &units, true, &mut LightCache::default());
+        let snapshot =
+            VertexSnapshot::new(&self.state, &Given::current(&self.state), &units, true, &mut LightCache::default());
         let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
         let level = Level::new();
         let mut out = vec![ProcessedVertex::default(); batch.positions.len()];
         for first in (0..batch.positions.len()).step_by(LANES) {
-            // Materials may change between vertices: one at a time then.
-            let count = if batch.materials.is_empty() { LANES.min(batch.positions.len() - first) } else { 1 };
-            let last = (first + LANES).min(batch.positions.len());
-            for first in (first..last).step_by(count) {
-                let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
-                let eight = Eight { vertices, count, batch, transform: &snapshot.transform };
-                dispatch!(level, simd => {
-                    let (_, shaded, tex) = process(simd, &snapshot, &eight);
-                    let color = shaded.color.map(|c| c.to_array());
-                    let back = shaded.back.map_or(shaded.color, |(c, _)| c).map(|c| c.to_array());
-                    let secondary = shaded.secondary.map(|c| [c.x.to_array(), c.y.to_array(), c.z.to_array()]);
-                    let tex = tex.map(|unit| unit.map(|c| c.to_array()));
-                    let fog = shaded.fog.to_array();
-                    for lane in 0..count {
-                        let vertex = &mut out[first + lane];
-                        vertex.color = color.map(|c| c[lane]);
-                        vertex.back_color = back.map(|c| c[lane]);
-                        vertex.secondary = secondary.map_or([0.0; 3], |s| s.map(|c| c[lane]));
-                        vertex.tex = tex.map(|unit| unit.map(|c| c[lane]));
-                        vertex.fog = fog[lane];
-                    }
-                });
-            }
+            let count = LANES.min(batch.positions.len() - first);
+            let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
+            let faces = &LaneFaces::new(&snapshot, batch, &vertices);
+            let eight = Eight { vertices, count, batch, transform: &snapshot.transform, faces };
+            dispatch!(level, simd => {
+                let (_, shaded, tex) = process(simd, &snapshot, &eight);
+                let color = shaded.color.map(|c| c.to_array());
+                let back = shaded.back.map_or(shaded.color, |(c, _)| c).map(|c| c.to_array());
+                let secondary = shaded.secondary.map(|c| [c.x.to_array(), c.y.to_array(), c.z.to_array()]);
+                let tex = tex.map(|unit| unit.map(|c| c.to_array()));
+                let fog = shaded.fog.to_array();
+                for lane in 0..count {
+                    let vertex = &mut out[first + lane];
+                    vertex.color = color.map(|c| c[lane]);
+                    vertex.back_color = back.map(|c| c[lane]);
+                    vertex.secondary = secondary.map_or([0.0; 3], |s| s.map(|c| c[lane]));
+                    vertex.tex = tex.map(|unit| unit.map(|c| c[lane]));
+                    vertex.fog = fog[lane];
+                }
+            });
         }
         let m = &snapshot.transform.clip_from_model;
         for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {

@@ -5,7 +5,7 @@ use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
-use crate::vertex::{Sent, VertexBatch};
+use crate::vertex::{Given, Sent, VertexBatch};
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::Vec4;
@@ -67,14 +67,14 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Sent) {
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Sent, given: &Given) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
         let Some(target) = self.draw_target() else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
-        let Some(geometry) = self.draw_geometry(batch, sent, &fragment, &target) else { return };
+        let Some(geometry) = self.draw_geometry(batch, sent, given, &fragment, &target) else { return };
         self.recorder.waiting += count;
         self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
     }
@@ -121,6 +121,7 @@ impl Context {
         &mut self,
         batch: Arc<VertexBatch>,
         sent: Sent,
+        given: &Given,
         fragment: &FragmentState,
         target: &Target,
     ) -> Option<DrawGeometry> {
@@ -129,7 +130,7 @@ impl Context {
         let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
-        let mut snapshot = VertexSnapshot::new(&self.state, &units, fog, &mut self.recorder.lights);
+        let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         let mut layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let assembled = batch.assembled.get(&batch);

@@ -2,6 +2,7 @@
 
 use crate::enums as gl;
 use crate::state::{Current, MaterialFace, State};
+use crate::vertex::Given;
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
 use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4, func};
 
@@ -121,7 +122,7 @@ impl VertexSnapshot {
     }
 
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
-    pub(crate) fn new(state: &State, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
+    pub(crate) fn new(state: &State, given: &Given, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
@@ -130,11 +131,11 @@ impl VertexSnapshot {
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;
         Self {
             current: state.current,
-            transform: Transform::new(&matrices.modelview.top(), &projection, rescale_normal, &clip_planes),
+            transform: Transform::new(&given.modelview, &projection, rescale_normal, &clip_planes),
             projection,
             normalize: matrices.normalize,
             rescale_normal,
-            lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, lights)),
+            lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, given, lights)),
             units: units.iter().map(|&u| unit(state, u)).collect(),
             fog: fog.then_some(source),
             clip_planes,
@@ -174,7 +175,7 @@ fn unit(state: &State, index: usize) -> UnitSnapshot {
 }
 
 impl LightingSnapshot {
-    fn new(state: &State, cache: &mut LightCache) -> Self {
+    fn new(state: &State, given: &Given, cache: &mut LightCache) -> Self {
         let lighting = &state.lighting;
         let material = lighting.color_material;
         let tracked = |face: u32| {
@@ -195,7 +196,7 @@ impl LightingSnapshot {
             local_viewer: lighting.model.local_viewer,
             two_side: lighting.model.two_side,
             separate_specular: lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR,
-            material: lighting.material,
+            material: given.material,
             tracked: [tracked(gl::FRONT), tracked(gl::BACK)],
         }
     }

@@ -3,7 +3,7 @@
 //! In:   attributes of a batch, the snapshot of the state. Out: a record for each vertex, see [`Layout`].
 //! Source: OpenGL 1.5 specification, sections 2.11 to 2.14 and 3.10.
 
-use super::snapshot::{FogSource, Generation, LightingSnapshot, Transform, UnitSnapshot, VertexSnapshot};
+use super::snapshot::{FogSource, Generation, LightingSnapshot, Tracked, Transform, UnitSnapshot, VertexSnapshot};
 use crate::state::MaterialFace;
 use crate::vertex::VertexBatch;
 use vitral_light::{Illumination, Phong, Reflected, Surface, phong};
@@ -23,6 +23,65 @@ pub(crate) struct Eight<'a> {
     pub batch: &'a VertexBatch,
     /// All have the same.
     pub transform: &'a Transform,
+    /// Only asked with lighting.
+    pub faces: &'a LaneFaces,
+}
+
+/// One side's materials of eight vertices, by component.
+#[derive(Clone)]
+pub(crate) struct LaneFace {
+    ambient: [[f32; LANES]; 3],
+    /// With alpha.
+    diffuse: [[f32; LANES]; 4],
+    specular: [[f32; LANES]; 3],
+    emission: [[f32; LANES]; 3],
+    shininess: [f32; LANES],
+    /// No specular colour anywhere.
+    dull: bool,
+}
+
+impl LaneFace {
+    fn new(each: &[&[MaterialFace; 2]; LANES], side: usize) -> Self {
+        fn rows<const N: usize>(
+            each: &[&[MaterialFace; 2]; LANES],
+            side: usize,
+            color: impl Fn(&MaterialFace) -> [f32; 4],
+        ) -> [[f32; LANES]; N] {
+            let colors = each.map(|faces| color(&faces[side]));
+            std::array::from_fn(|k| colors.map(|c| c[k]))
+        }
+        let specular = rows(each, side, |m| m.specular);
+        Self {
+            ambient: rows(each, side, |m| m.ambient),
+            diffuse: rows(each, side, |m| m.diffuse),
+            specular,
+            emission: rows(each, side, |m| m.emission),
+            shininess: each.map(|faces| faces[side].shininess),
+            dull: specular == [[0.0; LANES]; 3],
+        }
+    }
+}
+
+/// Materials of eight vertices.
+#[derive(Clone)]
+pub(crate) struct LaneFaces {
+    front: LaneFace,
+    /// With two-sided lighting.
+    back: Option<LaneFace>,
+}
+
+impl LaneFaces {
+    /// Those that were given with some vertices, or those of the snapshot.
+    pub(crate) fn new(snapshot: &VertexSnapshot, batch: &VertexBatch, vertices: &[u32; LANES]) -> Self {
+        let (current, two_side) = match &snapshot.lighting {
+            Some(lighting) => (&lighting.material, lighting.two_side),
+            None => (&[MaterialFace::default(); 2], false),
+        };
+        let mut near = 0;
+        let each = vertices.map(|v| batch.material(v, &mut near).unwrap_or(current));
+        let back = two_side.then(|| LaneFace::new(&each, 1));
+        Self { front: LaneFace::new(&each, 0), back }
+    }
 }
 
 #[inline(always)]
@@ -234,11 +293,10 @@ pub(crate) fn colors<S: Simd>(
     let one = splat(simd, 1.0);
     let inverse = one / eye[3];
     let position = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse);
-    let materials = eight.batch.material(eight.vertices[0]).map_or(&lighting.material, |(materials, _)| materials);
-    let (front, secondary) = lit(simd, lighting, materials, 0, &color, position, normal);
-    let back = lighting.two_side.then(
+    let (front, secondary) = lit(simd, lighting, &eight.faces.front, &lighting.tracked[0], &color, position, normal);
+    let back = eight.faces.back.as_ref().map(
         #[inline(always)]
-        || lit(simd, lighting, materials, 1, &color, position, -normal),
+        |face| lit(simd, lighting, face, &lighting.tracked[1], &color, position, -normal),
     );
     Shaded { color: front, secondary, back, fog }
 }
@@ -247,8 +305,8 @@ pub(crate) fn colors<S: Simd>(
 fn lit<S: Simd>(
     simd: S,
     lighting: &LightingSnapshot,
-    materials: &[MaterialFace; 2],
-    side: usize,
+    m: &LaneFace,
+    tracked: &Tracked,
     color: &F4<S>,
     position: V3<F<S>>,
     n: V3<F<S>>,
@@ -256,18 +314,23 @@ fn lit<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let (m, tracked) = (&materials[side], lighting.tracked[side]);
             let one = splat(simd, 1.0);
             let given = V3::new(color[0], color[1], color[2]);
+            let row = lanes::inlined(
+                #[inline(always)]
+                |values: &[f32; LANES]| F32x8::from_slice(simd, values),
+            );
             let of = lanes::inlined(
                 #[inline(always)]
-                |follows: bool, c: [f32; 4]| if follows { given } else { V3::splat(one, [c[0], c[1], c[2]]) },
+                |follows: bool, c: &[[f32; LANES]]| {
+                    if follows { given } else { V3::new(row(&c[0]), row(&c[1]), row(&c[2])) }
+                },
             );
             let k = Phong {
-                ka: of(tracked.ambient, m.ambient),
-                kd: of(tracked.diffuse, m.diffuse),
-                ks: of(tracked.specular, m.specular),
-                shininess: splat(simd, m.shininess),
+                ka: of(tracked.ambient, &m.ambient),
+                kd: of(tracked.diffuse, &m.diffuse),
+                ks: of(tracked.specular, &m.specular),
+                shininess: row(&m.shininess),
             };
             let v = if lighting.local_viewer { (-position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
             let surface = Surface { position, n, v };
@@ -276,12 +339,12 @@ fn lit<S: Simd>(
                 |_: usize| V3::new(one, one, one),
             );
             // Without a specular colour the halfway vectors need not be computed.
-            let dull = !tracked.specular && m.specular[0] == 0.0 && m.specular[1] == 0.0 && m.specular[2] == 0.0;
+            let dull = !tracked.specular && m.dull;
             let model = if dull { Illumination::Lambert } else { Illumination::BlinnPhong };
             let Reflected { diffuse, specular } =
                 phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible);
-            let primary = diffuse + of(tracked.emission, m.emission);
-            let alpha = if tracked.diffuse { color[3] } else { splat(simd, m.diffuse[3]) };
+            let primary = diffuse + of(tracked.emission, &m.emission);
+            let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {
                 let s = saturate4([specular.x, specular.y, specular.z, one]);
                 return (saturate4([primary.x, primary.y, primary.z, alpha]), Some(V3::new(s[0], s[1], s[2])));

@@ -97,15 +97,20 @@ impl VertexBatch {
 
     /// The attributes that have arrays.
     pub(crate) fn attributes(&self) -> impl Iterator<Item = usize> {
-        let has = |which: usize| match which {
+        (0..INDEX).filter(|which| self.has(*which))
+    }
+
+    /// Whether attribute `which` has an array, or needs none.
+    pub(crate) fn has(&self, which: usize) -> bool {
+        match which {
             NORMAL => self.normals.is_some(),
             COLOR => self.colors.is_some(),
             SECONDARY => self.secondary.is_some(),
             FOG => self.fog.is_some(),
             EDGE => self.edges.is_some(),
+            INDEX => true,
             _ => self.tex[which - TEX].is_some(),
-        };
-        (0..INDEX).filter(move |which| has(*which))
+        }
     }
 
     /// Appends vertices of another batch, by their place in its order; attributes that it does not have come from `current`.

@@ -9,8 +9,8 @@
 //! with the vertices.
 
 use super::attribute::{CARRIED, COLOR};
-use crate::state::{Current, MaterialFace};
-use crate::vertex::{Sent, VertexBatch};
+use crate::state::Current;
+use crate::vertex::{Given, Sent, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
@@ -20,6 +20,9 @@ const LONG_ENOUGH: usize = 1 << 16;
 
 /// Vertices of a batch that is not worth a draw of its own.
 const SMALL: usize = 48;
+
+/// How many batches are kept for their memory.
+const MOST_KEPT: usize = 16;
 
 /// Vertices of a batch whose memory is used again: fewer cost nothing to allocate, more are too much to keep.
 const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
@@ -39,14 +42,14 @@ pub(crate) struct Builder {
     first: u32,
     /// Whether what is gathered is cut as what comes at once.
     sent: Sent,
-    /// The materials at the first Begin.
-    material: [MaterialFace; 2],
-    /// The modelview matrix then.
-    modelview: Mat4,
-    /// It may have changed since the last Begin.
+    /// As it was at the first Begin.
+    given: Given,
+    /// The modelview matrix may have changed since the last Begin.
     moved: bool,
-    /// What was drawn last: its memory serves again when it has been.
-    pub(super) drawn: Option<Arc<VertexBatch>>,
+    /// All that is gathered: a batch that somebody else holds, too. Nothing is in `batch` then.
+    lone: Option<Arc<VertexBatch>>,
+    /// What is drawn: its memory serves again when it has been.
+    pub(super) drawn: Vec<Arc<VertexBatch>>,
     /// Empty vectors with memory, for the attributes of `batch`.
     spare: VertexBatch,
     /// What was drawn.
@@ -86,17 +89,48 @@ impl Builder {
         self.batch.add_primitive(self.mode, self.first, count);
     }
 
+    /// Adds the primitives of a batch.
+    fn add(&mut self, batch: &VertexBatch, current: &Current) {
+        for which in batch.attributes() {
+            self.see(which, current);
+        }
+        for primitive in &batch.primitives {
+            self.open(primitive.mode);
+            self.batch.append(batch, primitive.first..primitive.first + primitive.count, current);
+            self.close();
+        }
+    }
+
     /// Forgets the open primitive, but not its vertices.
     pub(crate) fn abandon(&mut self) {
         self.open = false;
     }
 
-    /// Begins a batch, in the memory of the one that was drawn last, if nobody needs that any more.
+    /// Begins a batch, in the memory of one that was drawn, if nobody needs that any more.
     fn start(&mut self) {
-        if let Some(drawn) = self.drawn.take().and_then(Arc::into_inner) {
-            self.spare = drawn;
-            self.spare.truncate_vertices(0);
-            self.batch.positions = std::mem::take(&mut self.spare.positions);
+        let free = self.drawn.iter().position(|drawn| Arc::strong_count(drawn) == 1);
+        let Some(drawn) = free.and_then(|free| Arc::into_inner(self.drawn.swap_remove(free))) else { return };
+        let (spare, batch) = (&mut self.spare, &mut self.batch);
+        *spare = drawn;
+        spare.truncate_vertices(0);
+        spare.materials.clear();
+        spare.modelviews.clear();
+        spare.primitives.clear();
+        batch.positions = std::mem::take(&mut spare.positions);
+        batch.materials = std::mem::take(&mut spare.materials);
+        batch.modelviews = std::mem::take(&mut spare.modelviews);
+        batch.primitives = std::mem::take(&mut spare.primitives);
+    }
+
+    /// Keeps what is drawn, for its memory.
+    fn keep(&mut self, batch: &Arc<VertexBatch>) {
+        if !REUSED.contains(&batch.positions.len()) {
+            return;
+        }
+        self.drawn.push(Arc::clone(batch));
+        let size = |drawn: &[Arc<VertexBatch>]| drawn.iter().map(|kept| kept.positions.len()).sum::<usize>();
+        while self.drawn.len() > MOST_KEPT || size(&self.drawn) > REUSED.end {
+            self.drawn.remove(0);
         }
     }
 
@@ -104,15 +138,15 @@ impl Builder {
     fn set_modelview(&mut self, modelview: Mat4) {
         let n = self.batch.positions.len() as u32;
         let all = &mut self.batch.modelviews;
-        if all.last().map_or(&self.modelview, |(_, last)| last) == &modelview {
+        if all.last().map_or(&self.given.modelview, |(_, last)| last) == &modelview {
             return;
         }
         match all.last_mut() {
             Some((from, last)) if *from == n => *last = modelview,
-            None if n == 0 => self.modelview = modelview,
+            None if n == 0 => self.given.modelview = modelview,
             last => {
                 if last.is_none() {
-                    all.push((0, self.modelview));
+                    all.push((0, self.given.modelview));
                 }
                 all.push((n, modelview));
             }
@@ -190,35 +224,49 @@ impl Context {
         if self.builder.sent != sent {
             self.flush_vertices();
         }
+        self.take_in_lone();
         let builder = &mut self.builder;
         if !builder.gathering {
             builder.start();
             builder.sent = sent;
-            builder.material = self.state.lighting.material;
-            builder.modelview = self.state.matrices.modelview.top();
+            builder.given = Given::current(&self.state);
         } else if builder.moved {
             builder.set_modelview(self.state.matrices.modelview.top());
         }
         builder.moved = false;
     }
 
+    /// Puts a batch that was gathered alone with those that come.
+    #[inline]
+    fn take_in_lone(&mut self) {
+        let builder = &mut self.builder;
+        if let Some(lone) = builder.lone.take() {
+            builder.start();
+            builder.add(&lone, &self.state.current);
+            if builder.given.material != self.state.lighting.material {
+                self.material_changed();
+            }
+        }
+    }
+
     /// Whether a batch is gathered rather than drawn; if so, it has been.
-    pub(super) fn gathers(&mut self, batch: &VertexBatch, sent: Sent) -> bool {
+    pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
         let count = batch.primitives.iter().map(|p| p.count as usize).sum::<usize>();
         if count > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
         // What is indexed is cut as what lists hold.
-        self.gather(if batch.indices.is_some() { Sent::Listed } else { sent });
+        let sent = if batch.indices.is_some() { Sent::Listed } else { sent };
+        if !self.builder.gathering {
+            let given = Given::current(&self.state);
+            let builder = &mut self.builder;
+            (builder.sent, builder.given, builder.moved) = (sent, given, false);
+            (builder.lone, builder.gathering) = (Some(Arc::clone(batch)), true);
+            return true;
+        }
+        self.gather(sent);
         let builder = &mut self.builder;
-        for which in batch.attributes() {
-            builder.see(which, &self.state.current);
-        }
-        for primitive in &batch.primitives {
-            builder.open(primitive.mode);
-            builder.batch.append(batch, primitive.first..primitive.first + primitive.count, &self.state.current);
-            builder.close();
-        }
+        builder.add(batch, &self.state.current);
         if builder.batch.positions.len() >= LONG_ENOUGH {
             self.flush_vertices();
         }
@@ -262,15 +310,19 @@ impl Context {
     #[inline(never)]
     pub(super) fn draw_gathered(&mut self) {
         let builder = &mut self.builder;
-        let alone = builder.batch.modelviews.is_empty();
-        if alone && builder.moved && builder.modelview != self.state.matrices.modelview.top() {
-            builder.batch.modelviews.push((0, builder.modelview));
-        }
-        let (batch, sent) = (Arc::new(self.builder.take()), self.builder.sent);
-        if REUSED.contains(&batch.positions.len()) {
-            self.builder.drawn = Some(Arc::clone(&batch));
-        }
-        self.draw_batch(batch, sent);
+        let batch = match builder.lone.take() {
+            Some(lone) => {
+                builder.gathering = false;
+                lone
+            }
+            None => {
+                let batch = Arc::new(builder.take());
+                builder.keep(&batch);
+                batch
+            }
+        };
+        let (sent, given) = (builder.sent, builder.given);
+        self.draw_batch(batch, sent, &given);
     }
 
     #[inline(always)]
@@ -283,12 +335,24 @@ impl Context {
     #[inline(always)]
     pub(super) fn exec_attribute(&mut self, which: usize, value: [f32; 4]) {
         if self.builder.gathering {
-            self.builder.see(which, &self.state.current);
+            self.sees(which);
         }
         self.state.current.set(which, value);
         if which == COLOR && self.state.lighting.color_material.enabled {
             self.follow_color();
         }
+    }
+
+    /// Keeps the value of an attribute for what is gathered, before it changes.
+    #[inline(always)]
+    fn sees(&mut self, which: usize) {
+        if let Some(lone) = &self.builder.lone {
+            if lone.has(which) {
+                return;
+            }
+            self.take_in_lone();
+        }
+        self.builder.see(which, &self.state.current);
     }
 
     /// Sets the material properties that `COLOR_MATERIAL` ties to the current colour.
@@ -313,14 +377,14 @@ impl Context {
 
     /// To be called when `Material` has changed the materials: between vertices they are kept with the batch.
     pub(crate) fn material_changed(&mut self) {
-        if !self.builder.gathering {
+        if !self.builder.gathering || self.builder.lone.is_some() {
             return;
         }
         let builder = &mut self.builder;
         let n = builder.batch.positions.len() as u32;
         let materials = &mut builder.batch.materials;
         if materials.is_empty() && n > 0 {
-            materials.push((0, builder.material));
+            materials.push((0, builder.given.material));
         }
         match materials.last_mut() {
             Some((from, material)) if *from == n => *material = self.state.lighting.material,

@@ -372,7 +372,7 @@ mod tests {
             c.end();
             c.finish();
             let drawn = c.builder.log.pop().map(|batch| (*batch).clone()).unwrap_or_default();
-            (drawn, c.builder.drawn.as_ref().map(|kept| kept.positions.as_ptr()))
+            (drawn, c.builder.drawn.last().map(|kept| kept.positions.as_ptr()))
         };
         let (first, memory) = gives(1.0, false);
         assert_eq!((first.positions.len(), first.positions[2999]), (3000, [1.0, 2999.0, 0.0, 1.0]));

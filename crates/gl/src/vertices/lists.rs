@@ -3,7 +3,7 @@
 use super::client;
 use super::compile::{Call, Compiler, Item};
 use crate::state::MAX_LIST_NESTING;
-use crate::vertex::Sent;
+use crate::vertex::{Given, Sent};
 use crate::{Context, enums};
 use std::collections::BTreeMap;
 use std::sync::{Arc, MutexGuard, PoisonError};
@@ -184,7 +184,7 @@ impl Context {
             Item::Batch(batch) => {
                 if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Sent::Listed) {
                     self.flush_vertices();
-                    self.draw_batch(batch.clone(), Sent::Listed);
+                    self.draw_batch(batch.clone(), Sent::Listed, &Given::current(&self.state));
                 }
             }
             Item::Attribute(which, value) => self.exec_attribute(*which, *value),

@@ -26,19 +26,19 @@ pub use lists::{List, ListNames};
 
 use crate::Context;
 use crate::enums;
-use crate::vertex::{Sent, VertexBatch};
+use crate::vertex::{Given, Sent, VertexBatch};
 use std::sync::Arc;
 
 impl Context {
     /// Draws a batch: to the screen, or to the feedback or selection buffer.
-    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Sent) {
+    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Sent, given: &Given) {
         if batch.primitives.is_empty() {
             return;
         }
         #[cfg(test)]
         self.builder.log.push(batch.clone());
         if self.feedback.mode == enums::RENDER {
-            self.record_draw(batch, sent);
+            self.record_draw(batch, sent, given);
         } else if !self.refused_by_framebuffer("draw") {
             self.feed_batch(&batch);
         }

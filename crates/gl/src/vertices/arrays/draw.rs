@@ -4,7 +4,7 @@ use super::POSITION;
 use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, store};
 use crate::state::ArrayPointer;
-use crate::vertex::{Sent, VertexBatch};
+use crate::vertex::{Given, Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
 use crate::vertices::compile::{Item, drawing_nothing};
@@ -203,7 +203,7 @@ impl Context {
         }
         if self.executes() && !self.gathers(&batch, Sent::Now) {
             self.flush_vertices();
-            self.draw_batch(batch, Sent::Now);
+            self.draw_batch(batch, Sent::Now, &Given::current(&self.state));
         }
     }
 

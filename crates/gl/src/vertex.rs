@@ -101,6 +101,11 @@ impl VertexBatch {
         Some((&self.modelviews.get(next.checked_sub(1)?)?.1, end - vertex))
     }
 
+    /// How many indices (or vertices) its primitives have.
+    pub(crate) fn count(&self) -> usize {
+        self.primitives.iter().map(|p| p.count as usize).sum()
+    }
+
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
     pub fn vertex(&self, i: u32) -> usize {
         self.indices.as_ref().map_or(i, |indices| indices[i as usize]) as usize

@@ -417,7 +417,19 @@ impl Batch {
     }
 
     #[inline(always)]
-    pub(crate) fn push(&mut self, setup: Setup, [x0, y0, x1, y1]: [u32; 4], screen: &Screen) {
+    pub(crate) fn push(&mut self, setup: Setup, pixels: [u32; 4], screen: &Screen) {
+        self.push_where(setup, pixels, screen, |tx, ty| touches_tile(&setup, tx, ty));
+    }
+
+    /// Adds something that may cover these pixels, of those tiles that it touches.
+    #[inline(always)]
+    pub(crate) fn push_where(
+        &mut self,
+        setup: Setup,
+        [x0, y0, x1, y1]: [u32; 4],
+        screen: &Screen,
+        touches: impl Fn(i32, i32) -> bool,
+    ) {
         let index = self.setups.len() as u32;
         let tiles_x = screen.viewport.tiles_x();
         let tile = TILE as u32;
@@ -432,7 +444,7 @@ impl Batch {
         }
         for ty in ty0..=ty1 {
             for tx in tx0..=tx1 {
-                if touches_tile(&setup, tx as i32, ty as i32) {
+                if touches(tx as i32, ty as i32) {
                     self.enter([tx, ty], index, [x0, y0, x1, y1], tiles_x);
                 }
             }

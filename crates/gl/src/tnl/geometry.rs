@@ -5,6 +5,7 @@ use super::grid::Grid;
 use super::parts::Parts;
 use super::snapshot::VertexSnapshot;
 use super::vertices::{Eight, LaneFaces, front_colors, shade};
+use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Primitive, VertexBatch};
 use std::sync::Arc;
@@ -27,7 +28,8 @@ pub(crate) struct PointSizes {
 #[derive(Debug)]
 pub(crate) struct DrawGeometry {
     pub batch: Arc<VertexBatch>,
-    pub assembled: Arc<Assembled>,
+    /// Its triangles; none for few vertices, which are not drawn again.
+    pub assembled: Option<Arc<Assembled>>,
     /// The batch is a flat grid, and drawn as one.
     pub grid: bool,
     /// Quads are cut from their first corner to the third, not from the second to the fourth. The specification leaves
@@ -45,32 +47,50 @@ impl DrawGeometry {
         self.primitive.polygon_mode == [2, 2] && !self.primitive.polygon_smooth
     }
 
-    /// The parts that are drawn in the order of their primitives, unless all are filled triangles.
-    fn ordered(&self) -> Option<&[Vec<Primitive>]> {
-        (!self.filled() || self.assembled.others).then(|| self.assembled.ordered(&self.batch))
-    }
-
     /// The flat grid that is drawn.
     fn grid(&self) -> Option<&Grid> {
-        self.assembled.grid.as_ref().filter(|_| self.grid)
+        self.assembled.as_ref()?.grid.as_ref().filter(|_| self.grid)
     }
+
+    /// How it is cut into pieces.
+    fn cut(&self) -> Cut<'_> {
+        let Some(assembled) = &self.assembled else { return Cut::Small(&self.batch.primitives) };
+        match self.grid() {
+            Some(grid) => Cut::Grid(grid),
+            None if assembled.others || !self.filled() => Cut::Ordered(assembled.ordered(&self.batch)),
+            None => Cut::Filled(assembled),
+        }
+    }
+}
+
+/// How a draw is cut into pieces.
+enum Cut<'a> {
+    /// One piece for a flat grid.
+    Grid(&'a Grid),
+    /// One piece for few vertices.
+    Small(&'a [Primitive]),
+    /// Primitives in their order.
+    Ordered(&'a [Vec<Primitive>]),
+    /// Triangles alone.
+    Filled(&'a Assembled),
 }
 
 impl Geometry for DrawGeometry {
     fn pieces(&self) -> usize {
-        if self.grid().is_some() {
-            return 1;
+        match self.cut() {
+            Cut::Grid(_) | Cut::Small(_) => 1,
+            Cut::Ordered(parts) => parts.len(),
+            Cut::Filled(assembled) => assembled.len(),
         }
-        self.ordered().map_or(self.assembled.len(), <[_]>::len)
     }
 
     fn weight(&self, piece: usize) -> usize {
-        if let Some(grid) = self.grid() {
-            return grid.rectangle.triangles.len();
-        }
-        match self.ordered() {
-            Some(ordered) => ordered[piece].iter().map(|p| p.count as usize).sum(),
-            None => self.assembled.weight(piece),
+        let count = |primitives: &[Primitive]| primitives.iter().map(|p| p.count as usize).sum();
+        match self.cut() {
+            Cut::Grid(grid) => grid.rectangle.triangles.len(),
+            Cut::Small(primitives) => count(primitives),
+            Cut::Ordered(parts) => count(&parts[piece]),
+            Cut::Filled(assembled) => assembled.weight(piece),
         }
     }
 
@@ -85,13 +105,13 @@ impl Geometry for DrawGeometry {
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives) {
         let mut state = self.primitive.clone();
         state.draw = draw;
-        if let Some(grid) = self.grid() {
-            return self.emit_grid(level, grid, state, screen, out);
-        }
-        if let Some(ordered) = self.ordered() {
-            return self.emit_ordered(level, &ordered[piece], &state, screen, out);
-        }
-        let whole = self.assembled.piece(level, &self.batch, piece);
+        let assembled = match self.cut() {
+            Cut::Grid(grid) => return self.emit_grid(level, grid, state, screen, out),
+            Cut::Small(primitives) => return self.emit_ordered(level, primitives, &state, screen, out),
+            Cut::Ordered(parts) => return self.emit_ordered(level, &parts[piece], &state, screen, out),
+            Cut::Filled(assembled) => assembled,
+        };
+        let whole = assembled.piece(level, &self.batch, piece);
         let Piece { triangles, vertices, .. } = whole;
         // With depth clamping near and far do not bound the view.
         let bounded = !state.depth_clamp && self.batch.modelviews.is_empty();
@@ -100,7 +120,7 @@ impl Geometry for DrawGeometry {
         }
         let turned = self.first_diagonal.then(|| {
             let all = !self.snapshot.is_linear();
-            self.assembled.turned(&self.batch, piece, triangles, all)
+            assembled.turned(&self.batch, piece, triangles, all)
         });
         let turned = turned.flatten();
         let triangles = turned.as_deref().unwrap_or(triangles);
@@ -242,7 +262,9 @@ impl DrawGeometry {
     }
 
     fn needs_sizes(&self) -> bool {
-        self.primitive.polygon_mode.contains(&0) || self.assembled.points
+        let points = |primitive: &Primitive| primitive.mode == gl::POINTS;
+        self.primitive.polygon_mode.contains(&0)
+            || self.assembled.as_ref().map_or_else(|| self.batch.primitives.iter().any(points), |all| all.points)
     }
 
     /// Point sizes and fade factors.

@@ -36,6 +36,9 @@ impl std::fmt::Debug for Recorder {
     }
 }
 
+/// How many vertices that come once are drawn without looking at them first.
+const FEW: usize = 64;
+
 /// Most vertices that wait before they are drawn.
 const MOST_WAITING: usize = 8 << 20;
 
@@ -133,9 +136,11 @@ impl Context {
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         let mut layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
-        let assembled = batch.assembled.get(&batch);
+        let small = sent == Sent::Now && batch.count() <= FEW;
+        let assembled = (!small).then(|| batch.assembled.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
-        let grid = assembled.grid.is_some() && self.draws_grids(&snapshot, &primitive, fragment);
+        let flat = assembled.as_ref().is_some_and(|assembled| assembled.grid.is_some());
+        let grid = flat && self.draws_grids(&snapshot, &primitive, fragment);
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
         }

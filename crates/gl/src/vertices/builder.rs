@@ -251,8 +251,7 @@ impl Context {
 
     /// Whether a batch is gathered rather than drawn; if so, it has been.
     pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
-        let count = batch.primitives.iter().map(|p| p.count as usize).sum::<usize>();
-        if count > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
+        if batch.count() > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
         // What is indexed is cut as what lists hold.

@@ -15,6 +15,7 @@ mod outlined;
 use self::clipped::Derived;
 use super::boxes::Boxes;
 use super::color_grid::{ColorGrid, GridColors};
+use super::hard_line::HardLine;
 use super::project::WindowTransform;
 use super::shade::Layout;
 use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
@@ -28,10 +29,12 @@ use vitral_math::lanes::{LANES, Level};
 pub enum FacetKind {
     /// A polygon's interior.
     Polygon,
-    /// A line: its local coordinates are in [`Facet::shape`].
+    /// A line with soft borders or a stipple: its local coordinates are in [`Facet::shape`].
     Line,
-    /// A point.
+    /// A point that is soft, a sprite, or fades.
     Point,
+    /// A line or a point that is nothing of this: its fragments are those of a polygon without stipple.
+    Plain,
 }
 
 /// A triangle of a primitive, by the number in its setup.
@@ -53,6 +56,33 @@ pub struct Facet {
     pub grid: u32,
 }
 
+impl Facet {
+    /// What is drawn of it.
+    #[inline(always)]
+    pub(super) fn extent<'a>(&self, primitives: &'a Primitives) -> Extent<'a> {
+        if self.kind == FacetKind::Polygon {
+            return Extent::Whole;
+        }
+        match primitives.shapes.get(self.shape as usize) {
+            Some(Shape::Point { pixels: Some([x0, y0, x1, y1]), .. }) => {
+                Extent::Box([*x0 as i32, *y0 as i32, *x1 as i32 + 1, *y1 as i32 + 1])
+            }
+            Some(Shape::Line { hard: Some(line), .. }) => Extent::Line(line),
+            _ => Extent::Whole,
+        }
+    }
+}
+
+/// What is drawn of a facet.
+pub(super) enum Extent<'a> {
+    /// All that it covers.
+    Whole,
+    /// That, as far as it lies within pixels x0, y0, x1, y1 of the target, the last two exclusive.
+    Box([i32; 4]),
+    /// Another area in its plane.
+    Line(&'a HardLine),
+}
+
 /// Local geometry of lines and points, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {
@@ -68,6 +98,8 @@ pub enum Shape {
         first: Option<f32>,
         /// Stipple count at the start.
         stipple: u32,
+        /// What it covers, if its facet alone does not say so.
+        hard: Option<HardLine>,
     },
     /// A triangle of a smooth polygon, whose setup is wider by a border.
     Polygon {
@@ -86,6 +118,8 @@ pub enum Shape {
         size: f32,
         /// Factor for alpha.
         fade: f32,
+        /// All that is drawn of the facet, if not all that it covers: first column and row, last column and row.
+        pixels: Option<[u32; 4]>,
     },
 }
 
@@ -206,6 +240,8 @@ pub struct Assembler<'a> {
     first_slot: u32,
     /// All vertices have the first slot.
     one_slot: bool,
+    /// Points, lines are [`FacetKind::Plain`] if they do not fade.
+    plain: [bool; 2],
 }
 
 /// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a vertex.
@@ -245,7 +281,8 @@ impl<'a> Assembler<'a> {
         used.clear();
         used.extend((layout.uniform && !out.pending && !vertices.clip.is_empty()).then_some(0));
         let stride = layout.stride as u32;
-        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot, one_slot }
+        let plain = [!layout.smooth[0] && layout.sprites == 0, !layout.smooth[1] && layout.line_stipple.is_none()];
+        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot, one_slot, plain }
     }
 
     /// The slot of a vertex: where its record begins.
@@ -350,20 +387,35 @@ impl<'a> Assembler<'a> {
         area: i64,
         plane: &DepthPlane,
         pixels: [u32; 4],
-        [a, b, c]: [u32; 3],
+        corners: [u32; 3],
         provoking: u32,
         kind: FacetKind,
         back: bool,
         shape: u32,
     ) {
-        let (mut facet, draw, grid) = (self.state.draw, self.state.draw, self.state.grid);
-        if !self.out.pending {
-            facet = self.out.facets.len() as u32;
-            // The setup turns clockwise triangles over.
-            let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
-            self.out.facets.push(Facet { corners, provoking, draw, kind, back, shape, grid });
-        }
+        let facet = self.push_facet(area, corners, provoking, kind, back, shape);
         self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
+    }
+
+    /// Adds a facet, and gives what its setup has to name.
+    #[inline(always)]
+    fn push_facet(
+        &mut self,
+        area: i64,
+        [a, b, c]: [u32; 3],
+        provoking: u32,
+        kind: FacetKind,
+        back: bool,
+        shape: u32,
+    ) -> u32 {
+        let (draw, grid) = (self.state.draw, self.state.grid);
+        if self.out.pending {
+            return draw;
+        }
+        // The setup turns clockwise triangles over.
+        let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
+        self.out.facets.push(Facet { corners, provoking, draw, kind, back, shape, grid });
+        self.out.facets.len() as u32 - 1
     }
 
     /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the

@@ -12,6 +12,7 @@ mod depth_ranges;
 mod environment;
 mod fragment;
 mod fragment_ops;
+mod hard_line;
 mod pass;
 mod pending;
 mod plane;

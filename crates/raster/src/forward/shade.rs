@@ -262,10 +262,20 @@ impl<'a> Shader<'a> {
         Self { draw, facet, primitives, tile, scratch, ready: false, constant: None }
     }
 
+    /// Whether its borders are soft, or it has a stipple, or what else [`Shape`] is for.
+    #[inline(always)]
+    pub(super) fn is_shaped(&self) -> bool {
+        match self.facet.kind {
+            FacetKind::Polygon => self.draw.layout.smooth[2],
+            FacetKind::Plain => false,
+            FacetKind::Line | FacetKind::Point => true,
+        }
+    }
+
     /// Local geometry of a line, point or smooth polygon.
     #[inline(always)]
     fn shape(&self) -> Option<Shape> {
-        if self.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2] {
+        if !self.is_shaped() {
             return None;
         }
         self.primitives.shapes.get(self.facet.shape as usize).copied()
@@ -594,11 +604,7 @@ impl<'a> Shader<'a> {
     /// Stipples and the soft borders of smooth primitives.
     #[inline(always)]
     fn covered<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, color: Rgba<S>) -> (Rgba<S>, u32) {
-        let smooth = self.draw.layout.smooth;
-        match self.facet.kind {
-            FacetKind::Polygon if !smooth[2] => (color, 0xff),
-            _ => self.soft(simd, x, y, color),
-        }
+        if self.is_shaped() { self.soft(simd, x, y, color) } else { (color, 0xff) }
     }
 
     #[inline(never)]
@@ -614,7 +620,7 @@ impl<'a> Shader<'a> {
                         color[3] *= coverage;
                         pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
-                    Some(Shape::Line { from, to, width, first, stipple }) => {
+                    Some(Shape::Line { from, to, width, first, stipple, .. }) => {
                         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
                         let length = (dx * dx + dy * dy).sqrt();
                         let (ux, uy) = (dx / length, dy / length);
@@ -622,7 +628,10 @@ impl<'a> Shader<'a> {
                         let smooth = self.draw.layout.smooth[1];
                         if smooth {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
-                            color[3] *= overlap(across, -width * 0.5, width * 0.5);
+                            let coverage = overlap(across, -width * 0.5, width * 0.5);
+                            color[3] *= coverage;
+                            let ends = overlap(along, 0.0, length);
+                            pass = bits_of((coverage * ends).simd_gt(splat(simd, 0.0)));
                         }
                         match self.draw.layout.line_stipple {
                             Some(stippling) if smooth => {
@@ -644,9 +653,11 @@ impl<'a> Shader<'a> {
                             None => {}
                         }
                     }
-                    Some(Shape::Point { center, size, fade }) => {
+                    Some(Shape::Point { center, size, fade, .. }) => {
                         if self.draw.layout.smooth[0] {
-                            color[3] *= disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
+                            let coverage = disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
+                            color[3] *= coverage;
+                            pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                         }
                         color[3] *= fade;
                     }

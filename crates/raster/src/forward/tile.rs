@@ -1,10 +1,11 @@
 //! One tile walks a pass: clears, images, facets.
 
-use super::assemble::FacetKind;
+use super::assemble::{Extent, FacetKind};
 use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
+use super::hard_line::HardLine;
 use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
 use super::plane::PlaneTile;
 use super::sample::sample;
@@ -13,7 +14,7 @@ use super::state::{Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
 use crate::kernel::plane::RowPlane;
-use crate::kernel::traverse::{Block, BlockSink, Placed, traverse_window};
+use crate::kernel::traverse::{Block, BlockSink, Placed, Window, traverse_window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
@@ -108,12 +109,27 @@ impl<'a> TileRun<'a> {
                     if known != facet.draw {
                         known = facet.draw;
                         clip = self.part(draw.clip);
-                        let [x0, y0, x1, y1] = clip.map(|v| v.max(0) as usize);
-                        window = [x0..x1, y0..y1];
+                        window = self::window(clip);
                         tiny = by_eights(draw, self);
                     }
-                    let Some(place) = Placed::new(setup, (x, y), &window, pattern) else { continue };
-                    if tiny && place.is_tiny() && facet.kind == FacetKind::Polygon {
+                    let (mut clip, mut window) = (clip, &window);
+                    let own;
+                    match facet.extent(job.primitives) {
+                        Extent::Whole => {}
+                        Extent::Box(pixels) => {
+                            let [x0, y0, x1, y1] = self.part(pixels);
+                            clip = [clip[0].max(x0), clip[1].max(y0), clip[2].min(x1), clip[3].min(y1)];
+                            own = self::window(clip);
+                            window = &own;
+                        }
+                        Extent::Line(line) => {
+                            let tiny = tiny && facet.kind == FacetKind::Plain;
+                            self.hard_line(simd, job, memory, (entry, line), clip, tiny);
+                            continue;
+                        }
+                    }
+                    let Some(place) = Placed::new(setup, (x, y), window, pattern) else { continue };
+                    if tiny && place.is_tiny() && matches!(facet.kind, FacetKind::Polygon | FacetKind::Plain) {
                         if !memory.waiting.takes(facet.draw) {
                             self.tiny_facets(simd, job, memory);
                         }
@@ -123,11 +139,44 @@ impl<'a> TileRun<'a> {
                     self.tiny_facets(simd, job, memory);
                     let shader = Shader::new(facet, draw, job.primitives, [x as f32, y as f32], &mut memory.scratch);
                     let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut memory.words };
-                    traverse_window(simd, setup, (x, y), &window, pattern, &mut sink);
+                    traverse_window(simd, setup, (x, y), window, pattern, &mut sink);
                 }
                 self.tiny_facets(simd, job, memory);
             },
         );
+    }
+
+    /// A line with hard borders, entry number `entry` of the tile lists.
+    #[inline(never)]
+    fn hard_line<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+        (entry, line): (usize, &HardLine),
+        clip: [i32; 4],
+        tiny: bool,
+    ) {
+        let setup = job.primitives.batch.item(entry);
+        let facet = facet_of(job.primitives, setup.facet);
+        let tile = [self.x, self.y];
+        if tiny {
+            return line.boxes(tile, clip, |corner, mask| {
+                if !memory.waiting.takes(facet.draw) {
+                    self.tiny_facets(simd, job, memory);
+                }
+                memory.waiting.push_pixels(entry, facet.draw, setup, tile, corner, mask);
+            });
+        }
+        self.tiny_facets(simd, job, memory);
+        let draw = &job.draws[facet.draw as usize];
+        let shader = Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
+        let words = &mut memory.words;
+        let mut sink = ForwardSink { run: self, draw, shader, clip, pattern: job.pattern(draw), words };
+        line.boxes(tile, clip, |[x, y], mask| {
+            let last = BLOCK - mask.leading_zeros() as usize / BLOCK;
+            sink.cover(simd, setup, &Block { x, y, rows: 0..last }, &[mask]);
+        });
     }
 
     /// The fragments of an image.
@@ -273,6 +322,12 @@ fn image_color<S: Simd>(
     color
 }
 
+/// Columns and rows of a part of a tile.
+fn window(part: [i32; 4]) -> Window {
+    let [x0, y0, x1, y1] = part.map(|v| v.max(0) as usize);
+    [x0..x1, y0..y1]
+}
+
 /// Covered blocks and rows become fragments.
 pub(super) struct ForwardSink<'r, 'a, 'd> {
     pub(super) run: &'r mut TileRun<'a>,
@@ -321,7 +376,7 @@ impl ForwardSink<'_, '_, '_> {
     #[inline(always)]
     pub(super) fn by_blocks(&self) -> bool {
         let packed = !matches!(self.run.planes.color, Some(ColorTile::RgbaF32(_)));
-        self.draw.ops.common && packed && self.shader.facet.kind == FacetKind::Polygon && !self.draw.layout.smooth[2]
+        self.draw.ops.common && packed && !self.shader.is_shaped()
     }
 
     /// The common kinds of fragments, see [`super::block`]. One function, since traversals come in several kinds.

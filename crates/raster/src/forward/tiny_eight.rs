@@ -85,6 +85,22 @@ impl TinyFacets {
         self.eight.push(setup, place);
     }
 
+    /// One more, of which these pixels are covered: see [`TinyEight::push_pixels`].
+    #[inline(always)]
+    pub(super) fn push_pixels(
+        &mut self,
+        entry: usize,
+        draw: u32,
+        setup: &Setup,
+        tile: [u32; 2],
+        corner: [usize; 2],
+        pixels: u64,
+    ) {
+        self.entries[self.eight.len() % LANES] = entry;
+        self.draw = draw;
+        self.eight.push_pixels(setup, tile, corner, pixels);
+    }
+
     /// One of them.
     #[inline(always)]
     fn facet<'p>(&self, primitives: &'p Primitives, number: usize) -> &'p Facet {

@@ -31,6 +31,8 @@ pub(crate) struct TinyEight {
     planes: [[[i32; 4]; 2]; LANES],
     /// The pixels of boxes.
     boxes: [u64; LANES],
+    /// All ones where those are covered, whatever the corners say.
+    given: [u64; LANES],
     /// The largest of their ends: columns, rows.
     size: [usize; 2],
     count: usize,
@@ -48,6 +50,7 @@ impl Default for TinyEight {
             top: zeros,
             planes: [[[0; 4]; 2]; LANES],
             boxes: [0; LANES],
+            given: [0; LANES],
             size: [0; 2],
             count: 0,
             depths: [[[0.0; LANES]; PLACES]; SAMPLES],
@@ -82,6 +85,7 @@ impl TinyEight {
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.boxes = [0; LANES];
+        self.given = [0; LANES];
         self.size = [0; 2];
         self.count = 0;
     }
@@ -90,19 +94,38 @@ impl TinyEight {
     #[inline(always)]
     pub(crate) fn push(&mut self, setup: &Setup, place: &Placed) {
         let at = self.count % LANES;
-        let words: [i32; size_of::<Setup>() / 4] = bytemuck::cast(*setup);
-        self.planes[at] = [[words[6], words[7], words[8], words[9]], [words[10], words[11], words[12], words[13]]];
-        let (x, y) = place.corners();
-        for k in 0..3 {
-            (self.x[k][at], self.y[k][at]) = (x[k], y[k]);
-        }
         let (left, [top, bottom]) = (place.left(), place.rows);
-        (self.left[at], self.top[at]) = (left as i32, top as i32);
+        self.set(setup, place.corners(), [left, top]);
         let [first, last] = [place.columns[0] - left, place.columns[1] - left];
         let columns = (0xff << first & 0xff >> (BLOCK - 1 - last)) * 0x0101_0101_0101_0101;
         self.boxes[at] = columns & u64::MAX >> (BLOCK * (BLOCK - 1 - (bottom - top)));
         self.size = [self.size[0].max(last + 1), self.size[1].max(bottom - top + 1)];
         self.count = at + 1;
+    }
+
+    /// One more whose covered pixels are given, as are the first column and row of their box in the tile, which begins at pixel
+    /// `tile`. Not for more than eight.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn push_pixels(&mut self, setup: &Setup, tile: [u32; 2], corner: [usize; 2], pixels: u64) {
+        let at = self.count % LANES;
+        let [x, y] = tile.map(|v| v as i32 * SUBPIXEL);
+        self.set(setup, (setup.x.map(|v| v - x), setup.y.map(|v| v - y)), corner);
+        (self.boxes[at], self.given[at]) = (pixels, u64::MAX);
+        self.size = [BLOCK, self.size[1].max(BLOCK - pixels.leading_zeros() as usize / BLOCK)];
+        self.count = at + 1;
+    }
+
+    /// Fills the next lane but for its pixels.
+    #[inline(always)]
+    fn set(&mut self, setup: &Setup, (x, y): ([i32; 3], [i32; 3]), [left, top]: [usize; 2]) {
+        let at = self.count % LANES;
+        let words: [i32; size_of::<Setup>() / 4] = bytemuck::cast(*setup);
+        self.planes[at] = [[words[6], words[7], words[8], words[9]], [words[10], words[11], words[12], words[13]]];
+        for k in 0..3 {
+            (self.x[k][at], self.y[k][at]) = (x[k], y[k]);
+        }
+        (self.left[at], self.top[at]) = (left as i32, top as i32);
     }
 
     /// The first pixel of a triangle's box within the tile, column and row.
@@ -224,7 +247,8 @@ impl TinyEight {
         let (low, high) = (halves[0].to_array(), halves[1].to_array());
         let mut covered = self.boxes;
         for lane in 0..LANES {
-            covered[lane] &= u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
+            let inside = u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
+            covered[lane] &= inside | self.given[lane];
         }
         covered
     }

@@ -2,6 +2,7 @@
 
 use super::clipped::{Corner, between};
 use super::*;
+use crate::forward::hard_line::{HardLine, WIDEST};
 
 /// What the edges and corners of a polygon are drawn with, or a line or a point.
 #[derive(Clone, Copy, Debug)]
@@ -69,11 +70,22 @@ impl Assembler<'_> {
             let ([x0, y0], [x1, y1]) = (from, to);
             ([[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]], Some(first), count)
         };
-        let shape = self.out.shapes.len() as u32;
         let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
-        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, first, stipple });
+        let kind = if self.plain[1] { FacetKind::Plain } else { FacetKind::Line };
         let plane = line_plane([[x0, y0, z0], [x1, y1, z1]], true_rectangle);
-        self.quad(quad, plane, [slots[0], slots[1], slots[1], slots[0]], stroke, FacetKind::Line, shape);
+        let pixels = (width + 0.5).floor().max(1.0) as i32;
+        let hard = (!true_rectangle && !self.out.pending && pixels <= WIDEST).then(|| HardLine {
+            edge: [quad[0], quad[1]].map(|[x, y]| [snapped(x), snapped(y)]),
+            axis: usize::from(dx.abs() < dy.abs()),
+            width: pixels,
+        });
+        let shape = self.out.shapes.len() as u32;
+        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, first, stipple, hard });
+        if let Some(line) = hard {
+            self.hard_line(&line, &plane, slots, stroke, kind, shape);
+            return stipple.wrapping_add(count);
+        }
+        self.quad(quad, plane, [slots[0], slots[1], slots[1], slots[0]], stroke, kind, shape);
         stipple.wrapping_add(count)
     }
 
@@ -159,25 +171,58 @@ impl Assembler<'_> {
             let middle = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
             ([middle(x), middle(y)], size * 0.5)
         };
-        let shape = self.out.shapes.len() as u32;
-        self.out.shapes.push(Shape::Point { center, size, fade });
         let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
             .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
         let origin = center.map(snapped);
         let plane = DepthPlane { z, dz_dx: 0.0, dz_dy: 0.0, origin, z_min: z, z_max: z };
-        self.quad(quad, plane, [slot; 4], stroke, FacetKind::Point, shape);
+        let kind = if self.plain[0] && fade == 1.0 { FacetKind::Plain } else { FacetKind::Point };
+        let shape = self.out.shapes.len() as u32;
+        if self.state.multisample || self.state.point_sprite || self.out.pending {
+            self.out.shapes.push(Shape::Point { center, size, fade, pixels: None });
+            return self.quad(quad, plane, [slot; 4], stroke, kind, shape);
+        }
+        // One triangle over the square is less to walk than its two halves.
+        let [low, high] = [quad[0], quad[2]].map(|corner| corner.map(snapped));
+        let corner = |x: i32, y: i32| CornerPosition { x, y, z };
+        let square = [corner(low[0], low[1]), corner(high[0], high[1]), corner(low[0], high[1])];
+        let Some(pixels) = self.pixels(&square) else { return };
+        self.out.shapes.push(Shape::Point { center, size, fade, pixels: Some(pixels) });
+        let side = high[0] - low[0];
+        let over = [square[0], corner(low[0] + 2 * side, low[1]), corner(low[0], low[1] + 2 * side)];
+        let area = Setup::doubled_area(over[0], over[1], over[2]);
+        let plane = self.stroke_plane(plane, stroke.offset);
+        self.push(over, area, &plane, pixels, [slot; 3], stroke.provoking, kind, stroke.back, shape);
     }
 
-    /// Two triangles that share the diagonal and the depth plane.
-    fn quad(
+    /// A line with hard borders: one facet for its plane.
+    fn hard_line(
         &mut self,
-        quad: [[f32; 2]; 4],
-        mut plane: DepthPlane,
-        slots: [u32; 4],
-        Stroke { provoking, back, offset }: Stroke,
+        line: &HardLine,
+        plane: &DepthPlane,
+        [from, to]: [u32; 2],
+        stroke: Stroke,
         kind: FacetKind,
         shape: u32,
     ) {
+        let mut over = [0; 2];
+        over[1 - line.axis] = line.width * SUBPIXEL;
+        let corner = |[x, y]: [i32; 2]| CornerPosition { x, y, z: plane.z };
+        let [a, b] = line.edge;
+        let far = [b[0] + over[0], b[1] + over[1]];
+        let triangle = [corner(a), corner(b), corner(far)];
+        let area = Setup::doubled_area(triangle[0], triangle[1], triangle[2]);
+        let low = [a[0].min(b[0]), a[1].min(b[1])];
+        let high = [a[0].max(b[0]) + over[0], a[1].max(b[1]) + over[1]];
+        let extent = [corner(low), corner(high), corner([low[0], high[1]])];
+        let Some(pixels) = self.pixels(&extent).filter(|_| area != 0) else { return };
+        let plane = self.stroke_plane(*plane, stroke.offset);
+        let facet = self.push_facet(area, [from, to, to], stroke.provoking, kind, stroke.back, shape);
+        let setup = Setup::with_plane(triangle, area, &plane, facet);
+        self.out.batch.push_where(setup, pixels, self.screen, |tx, ty| line.touches([tx, ty]));
+    }
+
+    /// The depth plane of a line or point after polygon offset.
+    fn stroke_plane(&self, mut plane: DepthPlane, offset: f32) -> DepthPlane {
         if offset != 0.0 {
             plane.move_by(offset);
         }
@@ -186,6 +231,20 @@ impl Assembler<'_> {
             plane.z_min = plane.z_min.clamp(low, high);
             plane.z_max = plane.z_max.clamp(low, high);
         }
+        plane
+    }
+
+    /// Two triangles that share the diagonal and the depth plane.
+    fn quad(
+        &mut self,
+        quad: [[f32; 2]; 4],
+        plane: DepthPlane,
+        slots: [u32; 4],
+        Stroke { provoking, back, offset }: Stroke,
+        kind: FacetKind,
+        shape: u32,
+    ) {
+        let plane = self.stroke_plane(plane, offset);
         let corner = |i: usize| CornerPosition { x: snapped(quad[i][0]), y: snapped(quad[i][1]), z: plane.z };
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];

@@ -73,8 +73,8 @@ pub(crate) struct Assembled {
     pub points: bool,
     /// All triangles are a flat grid.
     pub grid: Option<Grid>,
-    /// See [`Self::ordered`].
-    ordered: OnceLock<Vec<Vec<Primitive>>>,
+    /// See [`Self::ordered`]: without a stipple, with one.
+    ordered: [OnceLock<Vec<Vec<Primitive>>>; 2],
 }
 
 /// A place for `Assembled` in a batch: no part of its value.
@@ -115,7 +115,8 @@ impl Assembled {
         }
         let others = batch.primitives.iter().any(|primitive| primitive.mode < TRIANGLES);
         let points = batch.primitives.iter().any(|primitive| primitive.mode == POINTS);
-        let mut assembled = Self { points, pieces: Vec::new(), starts, others, grid: None, ordered: OnceLock::new() };
+        let mut assembled =
+            Self { points, pieces: Vec::new(), starts, others, grid: None, ordered: Default::default() };
         if !others {
             assembled.grid = grid::find(batch, count as usize, || assembled.triangles(batch, 0..count));
         }
@@ -123,9 +124,9 @@ impl Assembled {
         assembled
     }
 
-    /// All primitives in parts, for what is not only filled triangles.
-    pub(crate) fn ordered(&self, batch: &VertexBatch) -> &[Vec<Primitive>] {
-        self.ordered.get_or_init(|| ordered::parts(&batch.primitives))
+    /// All primitives in parts, for what is not only filled triangles; whether a stipple runs along lines.
+    pub(crate) fn ordered(&self, batch: &VertexBatch, stippled: bool) -> &[Vec<Primitive>] {
+        self.ordered[usize::from(stippled)].get_or_init(|| ordered::parts(&batch.primitives, stippled))
     }
 
     /// How many pieces there are.

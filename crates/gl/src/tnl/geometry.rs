@@ -57,7 +57,9 @@ impl DrawGeometry {
         let Some(assembled) = &self.assembled else { return Cut::Small(&self.batch.primitives) };
         match self.grid() {
             Some(grid) => Cut::Grid(grid),
-            None if assembled.others || !self.filled() => Cut::Ordered(assembled.ordered(&self.batch)),
+            None if assembled.others || !self.filled() => {
+                Cut::Ordered(assembled.ordered(&self.batch, self.layout.line_stipple.is_some()))
+            }
             None => Cut::Filled(assembled),
         }
     }

@@ -10,21 +10,24 @@ use vitral_raster::forward::{Assembler, ForwardScreen, PrimitiveState, Primitive
 /// About how many vertices a part has.
 const PART: u32 = 1024;
 
-/// Cuts primitives into parts of about equal size. Strips, fans, loops and polygons stay whole.
-pub(super) fn parts(primitives: &[Primitive]) -> Vec<Vec<Primitive>> {
+/// Cuts primitives into parts of about equal size. Fans, loops and polygons stay whole, and so do strips of lines if a stipple
+/// runs along them.
+pub(super) fn parts(primitives: &[Primitive], stippled: bool) -> Vec<Vec<Primitive>> {
     let (mut parts, mut weight) = (Vec::new(), u32::MAX);
     for primitive in primitives {
-        let element = match primitive.mode {
-            gl::POINTS => 1,
-            gl::LINES => 2,
-            gl::TRIANGLES => 3,
-            gl::QUADS => 4,
-            _ => primitive.count,
+        // Vertices from one place where it may be cut to the next, and how many both sides share.
+        let (element, shared) = match primitive.mode {
+            gl::POINTS => (1, 0),
+            gl::LINES => (2, 0),
+            gl::TRIANGLES => (3, 0),
+            gl::QUADS => (4, 0),
+            gl::LINE_STRIP if !stippled => (1, 1),
+            gl::TRIANGLE_STRIP | gl::QUAD_STRIP => (2, 2),
+            _ => (primitive.count, 0),
         };
-        // A whole number of elements.
         let most = (PART / element).max(1) * element;
-        for start in (0..primitive.count).step_by(most as usize) {
-            let count = most.min(primitive.count - start);
+        for start in (0..primitive.count - shared).step_by(most as usize) {
+            let count = (most + shared).min(primitive.count - start);
             if weight.saturating_add(count) > PART {
                 parts.push(Vec::new());
                 weight = 0;
@@ -165,6 +168,41 @@ impl DrawGeometry {
                 polygon(&c, c[2], false);
             }),
             _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_hold_all_elements_once() {
+        let all = [
+            (gl::LINE_STRIP, 3000),
+            (gl::TRIANGLE_STRIP, 2501),
+            (gl::QUADS, 8),
+            (gl::LINE_LOOP, 2000),
+            (gl::POINTS, 1),
+        ];
+        let mut first = 5;
+        let primitives = all.map(|(mode, count)| {
+            first += count;
+            Primitive { mode, first: first - count, count }
+        });
+        // Elements by their last vertex; loops and quads here have none but that of the whole.
+        let elements = |p: &Primitive| match p.mode {
+            gl::LINE_STRIP => (p.first + 1..p.first + p.count).collect(),
+            gl::TRIANGLE_STRIP => (p.first + 2..p.first + p.count).collect(),
+            _ => vec![p.first + p.count - 1],
+        };
+        for stippled in [false, true] {
+            let parts = parts(&primitives, stippled);
+            assert_eq!(parts.len(), if stippled { 6 } else { 8 });
+            let found: Vec<u32> = parts.iter().flatten().flat_map(elements).collect();
+            assert_eq!(found, primitives.iter().flat_map(elements).collect::<Vec<_>>());
+            let strips = parts.iter().flatten().filter(|p| p.mode == gl::TRIANGLE_STRIP);
+            assert!(strips.clone().count() == 3 && strips.clone().all(|p| (p.first - primitives[1].first) % 2 == 0));
         }
     }
 }

@@ -176,8 +176,8 @@ impl Assembler<'_> {
         let origin = center.map(snapped);
         let plane = DepthPlane { z, dz_dx: 0.0, dz_dy: 0.0, origin, z_min: z, z_max: z };
         let kind = if self.plain[0] && fade == 1.0 { FacetKind::Plain } else { FacetKind::Point };
-        let shape = self.out.shapes.len() as u32;
         if self.state.multisample || self.state.point_sprite || self.out.pending {
+            let shape = self.out.shapes.len() as u32;
             self.out.shapes.push(Shape::Point { center, size, fade, pixels: None });
             return self.quad(quad, plane, [slot; 4], stroke, kind, shape);
         }
@@ -186,9 +186,16 @@ impl Assembler<'_> {
         let corner = |x: i32, y: i32| CornerPosition { x, y, z };
         let square = [corner(low[0], low[1]), corner(high[0], high[1]), corner(low[0], high[1])];
         let Some(pixels) = self.pixels(&square) else { return };
-        self.out.shapes.push(Shape::Point { center, size, fade, pixels: Some(pixels) });
-        let side = high[0] - low[0];
-        let over = [square[0], corner(low[0] + 2 * side, low[1]), corner(low[0], low[1] + 2 * side)];
+        // One over a pixel's centre covers no other, and needs no box.
+        let alone = kind == FacetKind::Plain && half == 0.5;
+        let (near, far) = if alone { (SUBPIXEL / 4, SUBPIXEL) } else { (0, 2 * (high[0] - low[0])) };
+        let mut shape = NONE;
+        if !alone {
+            shape = self.out.shapes.len() as u32;
+            self.out.shapes.push(Shape::Point { center, size, fade, pixels: Some(pixels) });
+        }
+        let at = |x: i32, y: i32| corner(low[0] + x, low[1] + y);
+        let over = [at(near, near), at(far, near), at(near, far)];
         let area = Setup::doubled_area(over[0], over[1], over[2]);
         let plane = self.stroke_plane(plane, stroke.offset);
         self.push(over, area, &plane, pixels, [slot; 3], stroke.provoking, kind, stroke.back, shape);

@@ -80,7 +80,7 @@ pub struct VertexBatch {
 }
 
 impl VertexBatch {
-    /// The materials at a vertex, if they were set between vertices. `near` is the number of those of a vertex asked before.
+    /// The materials at a vertex, if they were set between vertices. `near` is a guess at their number, and then is that.
     pub(crate) fn material(&self, vertex: u32, near: &mut usize) -> Option<&[MaterialFace; 2]> {
         let all = &self.materials;
         let from = |i: usize| all.get(i).map_or(u32::MAX, |(from, _)| *from);

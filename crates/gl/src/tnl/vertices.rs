@@ -77,7 +77,8 @@ impl LaneFaces {
             Some(lighting) => (&lighting.material, lighting.two_side),
             None => (&[MaterialFace::default(); 2], false),
         };
-        let mut near = 0;
+        // Each vertex may have its own.
+        let mut near = vertices[0] as usize;
         let each = vertices.map(|v| batch.material(v, &mut near).unwrap_or(current));
         let back = two_side.then(|| LaneFace::new(&each, 1));
         Self { front: LaneFace::new(&each, 0), back }

@@ -1,10 +1,10 @@
-//! The common case: two dimensions, 8 bits a component, no border in reach.
+//! The common case: two dimensions, 8 bits a component, no border in reach. One dimension is a single row.
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
 use super::fetch::{Words, interior, quads};
 use super::halves::{Halves, weight};
-use super::mip::{Choice, choose, mix_rgba};
+use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
 use crate::forward::texture::{Filter, Level, Sampler, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, bits_of, every, floor, max, min, select_rgba};
@@ -18,7 +18,7 @@ pub(crate) struct Packed<'a> {
     levels: &'a [Arc<Level>],
     /// Level 0, for what bytes mean.
     first: Words<'a>,
-    /// Of level 0, in texels.
+    /// Of level 0, in texels; 0 along what the texture does not have.
     size: [f32; 2],
     sampler: &'a Sampler,
 }
@@ -33,17 +33,19 @@ impl<'a> Packed<'a> {
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
-        if texture.kind != TextureKind::Two || texture.swizzle.is_some() || !stays_inside(&texture.sampler.wrap) {
+        let flat = matches!(texture.kind, TextureKind::One | TextureKind::Two);
+        if !flat || texture.swizzle.is_some() || !stays_inside(&texture.sampler.wrap) {
             return None;
         }
-        let [width, height, _] = interior(first, 2);
+        let [width, height, _] = interior(first, dimensions(texture.kind));
         for (k, level) in levels.iter().enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
             if level.border != 0 || level.size[..2] != size || Words::new(level).is_none() {
                 return None;
             }
         }
-        let size = [width as f32, height as f32];
+        // A row has no height that texels a pixel could be counted along.
+        let size = [width as f32, if texture.kind == TextureKind::One { 0.0 } else { height as f32 }];
         Some(Self { levels, first: Words::new(first)?, size, sampler: &texture.sampler })
     }
 
@@ -65,7 +67,7 @@ impl<'a> Packed<'a> {
         self.sampler.min != self.sampler.mag
     }
 
-    /// Width and height of level 0.
+    /// Width and height of level 0; 0 for the height of one dimension.
     #[inline(always)]
     pub(crate) fn size(&self) -> [f32; 2] {
         self.size
@@ -275,14 +277,21 @@ impl<'a> Packed<'a> {
     /// One texel a lane; 0 where there is none.
     #[inline(always)]
     fn words<S: Simd, V: Floats<S>>(&self, simd: S, level: V::Ints, at: V::Ints) -> V::Words {
-        let (level, at) = (level.as_slice(), at.as_slice());
         let mut words = [0u32; MOST_LANES];
-        for lane in 0..V::LEN {
-            if let Some(words_there) = Words::new(self.get(level[lane])) {
-                words[lane] = words_there.texels.get(at[lane] as u32 as usize).copied().unwrap_or_default();
-            }
-        }
+        self.add_words(level.as_slice(), at.as_slice(), &mut words);
         V::Words::from_slice(simd, &words[..V::LEN])
+    }
+
+    #[inline(never)]
+    fn add_words(&self, level: &[i32], at: &[i32], words: &mut [u32; MOST_LANES]) {
+        let texels = |level: i32| Words::new(self.get(level)).map_or(&[][..], |words| words.texels);
+        let [first, ..] = level else { return };
+        // Nearly always all lanes need the same level.
+        let (same, shared) = (level.iter().all(|other| other == first), texels(*first));
+        for (word, (level, at)) in words.iter_mut().zip(level.iter().zip(at)) {
+            let texels = if same { shared } else { texels(*level) };
+            *word = texels.get(*at as u32 as usize).copied().unwrap_or_default();
+        }
     }
 }
 

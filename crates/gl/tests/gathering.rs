@@ -63,9 +63,8 @@ fn pair(c: &mut Stage, d: &mut Dice) {
     c.end();
 }
 
-/// A call that changes what primitives are drawn with.
+/// A call that changes what primitives are drawn with; some see to what waits themselves.
 fn change(c: &mut Stage, d: &mut Dice) {
-    c.flush_vertices();
     let on = d.below(2) == 1;
     let modes = [gl::POINT, gl::LINE, gl::FILL, gl::FILL];
     let switches = [
@@ -83,9 +82,19 @@ fn change(c: &mut Stage, d: &mut Dice) {
     ];
     match d.below(20) {
         0 => c.shade_model(if on { gl::FLAT } else { gl::SMOOTH }),
-        1 => c.polygon_mode(gl::FRONT_AND_BACK, modes[d.below(4) as usize]),
-        2 => c.light_modeli(gl::LIGHT_MODEL_TWO_SIDE, i32::from(on)),
-        3 => c.point_size(1.0 + d.below(5) as f32),
+        1 => {
+            c.flush_vertices();
+            c.polygon_mode(gl::FRONT_AND_BACK, modes[d.below(4) as usize]);
+        }
+        2 => {
+            c.flush_vertices();
+            c.light_modeli(gl::LIGHT_MODEL_TWO_SIDE, i32::from(on));
+        }
+        3 => {
+            c.flush_vertices();
+            c.point_size(1.0 + d.below(5) as f32);
+        }
+        4 => c.bind_texture(gl::TEXTURE_2D, d.below(3)),
         _ if on => c.enable(switches[d.below(11) as usize]),
         _ => c.disable(switches[d.below(11) as usize]),
     }
@@ -130,6 +139,11 @@ fn run(c: &mut Stage, seed: u64) {
     c.vertex_pointer(3, gl::FLOAT, 0, corners);
     c.color_pointer(4, gl::FLOAT, 0, colors);
     c.enable_client_state(gl::VERTEX_ARRAY);
+    for texture in 1..3u8 {
+        let texels: Vec<[u8; 4]> = (0..16).map(|i| [i * 16, 255 / texture, 90, 255 - i]).collect();
+        c.bind_texture(gl::TEXTURE_2D, texture.into());
+        c.texture(&[(4, texels)]);
+    }
     let plane = c.put(&[0.3, 1.0, 0.2, 0.6]);
     c.clip_plane(gl::CLIP_PLANE0, plane);
     for list in 1..=8 {
@@ -148,7 +162,6 @@ fn run(c: &mut Stage, seed: u64) {
             6..8 => c.call_list(d.below(9)),
             8 => arrays(c, &mut d),
             9 => {
-                c.flush_vertices();
                 let on = d.below(2) == 1;
                 if on { c.enable_client_state(gl::COLOR_ARRAY) } else { c.disable_client_state(gl::COLOR_ARRAY) }
             }

@@ -159,8 +159,13 @@ impl Context {
         Some(&mut array.enabled)
     }
 
-    /// Sets a server capability; `false` if there is none of that name.
+    /// Sets a server capability; `false` if there is none of that name. What waits is drawn before it changes.
     pub(super) fn set_capability(&mut self, cap: u32, on: bool) -> bool {
+        match self.capability(cap) {
+            None => return false,
+            Some(switch) if *switch == on => return true,
+            Some(_) => self.flush_vertices(),
+        }
         let coloring = cap == gl::COLOR_MATERIAL;
         if coloring {
             // What the current colour did to the material stays when tracking ends.
@@ -188,7 +193,7 @@ impl Context {
     /// Arrays are client state: EXT_vertex_array enables them with Enable, which is then not compiled into lists.
     fn switch(&mut self, call: &'static str, cap: u32, on: bool) {
         if self.client_capability(cap).is_none() {
-            self.listable(move |c| c.exec_capability(call, cap, on));
+            self.listable_keeping(move |c| c.exec_capability(call, cap, on));
         } else if self.may_set(call)
             && let Some(switch) = self.client_capability(cap)
         {

@@ -135,9 +135,11 @@ impl Context {
 
     /// `glShadeModel`.
     pub fn shade_model(&mut self, mode: u32) {
-        self.listable(move |c| {
+        self.listable_keeping(move |c| {
             let call = "glShadeModel";
-            if c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::FLAT, gl::SMOOTH]) {
+            let allowed = c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::FLAT, gl::SMOOTH]);
+            if allowed && c.state.lighting.shade_model != mode {
+                c.flush_vertices();
                 c.state.lighting.shade_model = mode;
             }
         });

@@ -171,7 +171,7 @@ impl Context {
 
     /// `glBindTexture`.
     pub fn bind_texture(&mut self, target: u32, texture: u32) {
-        self.listable(move |c| c.exec_bind_texture(target, texture));
+        self.listable_keeping(move |c| c.exec_bind_texture(target, texture));
     }
 
     fn exec_bind_texture(&mut self, target: u32, name: u32) {
@@ -194,7 +194,11 @@ impl Context {
                 return;
             }
         }
-        self.state.units[self.state.active_unit].bindings[slot] = name;
+        let unit = self.state.active_unit;
+        if self.state.units[unit].bindings[slot] != name {
+            self.flush_vertices();
+            self.state.units[unit].bindings[slot] = name;
+        }
     }
 
     /// `glPrioritizeTextures`.

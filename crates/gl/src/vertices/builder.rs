@@ -284,9 +284,10 @@ impl Context {
         }
     }
 
-    /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call
-    /// but `begin`, `end`, `array_element`, those that give a vertex or set one of its attributes, those that change
-    /// matrices or materials, and `call_list` and `call_lists`.
+    /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call but
+    /// those that leave them waiting, or draw them where they must be: `begin`, `end`, `array_element`, all that give a vertex
+    /// or set one of its attributes, matrices and materials, client arrays and draws from them, lists that are called,
+    /// `enable`, `disable`, `bind_texture`, `shade_model`, names for selection, `get_...v` and `is_enabled`.
     pub fn set_merging(&mut self, merging: bool) {
         self.flush_vertices();
         self.builder.merging = merging;

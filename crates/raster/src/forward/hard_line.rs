@@ -7,7 +7,7 @@
 //!
 //! In:   a line on the grid of 1/256 pixel. Out: boxes of 8x8 pixels with the covered ones.
 //! Cost: linear in its length.
-//! Source: J. E. Bresenham, "Algorithm for computer control of a digital plotter", IBM Systems Journal 4 (1), 1965.
+//! Source: [Bresenham 1965].
 
 use crate::{BLOCK, SUBPIXEL, TILE};
 

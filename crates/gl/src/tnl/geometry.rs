@@ -35,7 +35,7 @@ pub(crate) struct DrawGeometry {
     /// Quads are cut from their first corner to the third, not from the second to the fourth. The specification leaves
     /// open which; Mesa does so with what is neither indexed nor comes from a list, and where colours vary all see it.
     pub first_diagonal: bool,
-    pub snapshot: Arc<VertexSnapshot>,
+    pub snapshot: VertexSnapshot,
     pub primitive: PrimitiveState,
     pub layout: Layout,
     pub clip: [i32; 4],

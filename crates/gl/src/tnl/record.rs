@@ -159,7 +159,6 @@ impl Context {
             fade: multisample.then_some(s.points.fade_threshold),
         };
         let clip = primitive.clip;
-        let snapshot = Arc::new(snapshot);
         let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
         Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, clip, points })
     }

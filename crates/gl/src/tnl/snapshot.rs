@@ -3,6 +3,7 @@
 use crate::enums as gl;
 use crate::state::{Current, MaterialFace, State};
 use crate::vertex::Given;
+use std::sync::Arc;
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
 use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4, func};
 
@@ -48,7 +49,7 @@ pub(crate) struct Tracked {
 /// Lighting as it was.
 #[derive(Clone, Debug)]
 pub(crate) struct LightingSnapshot {
-    pub lights: Vec<PreparedLight>,
+    pub lights: Arc<[PreparedLight]>,
     pub ambient: [f32; 3],
     pub local_viewer: bool,
     pub two_side: bool,
@@ -206,19 +207,25 @@ impl LightingSnapshot {
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     lights: Vec<Option<(crate::state::Light, Option<PreparedLight>)>>,
+    /// Those that were on.
+    on: Arc<[PreparedLight]>,
 }
 
 impl LightCache {
-    fn prepare(&mut self, lights: &[crate::state::Light]) -> Vec<PreparedLight> {
+    fn prepare(&mut self, lights: &[crate::state::Light]) -> Arc<[PreparedLight]> {
         self.lights.resize(lights.len(), None);
-        let mut out = Vec::new();
-        for (light, kept) in lights.iter().zip(&mut self.lights).filter(|(l, _)| l.enabled) {
-            if kept.as_ref().is_none_or(|(of, _)| of != light) {
-                *kept = Some((*light, prepare(light)));
+        let mut changed = false;
+        for (light, kept) in lights.iter().zip(&mut self.lights) {
+            let is = kept.as_ref().is_some_and(|(of, _)| of.enabled);
+            if is != light.enabled || (is && kept.as_ref().is_none_or(|(of, _)| of != light)) {
+                *kept = Some((*light, if light.enabled { prepare(light) } else { None }));
+                changed = true;
             }
-            out.extend(kept.as_ref().and_then(|(_, prepared)| prepared.clone()));
         }
-        out
+        if changed {
+            self.on = self.lights.iter().flatten().filter_map(|(_, prepared)| prepared.clone()).collect();
+        }
+        self.on.clone()
     }
 }
 

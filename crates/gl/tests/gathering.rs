@@ -212,3 +212,28 @@ fn lines_and_polygons_of_a_list_are_drawn_in_their_order() {
     let (red, green, blue) = ([255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]);
     assert_eq!([c.pixel(1, 1), c.pixel(1, 4), c.pixel(6, 1), c.pixel(6, 4)], [red, green, blue, blue]);
 }
+
+/// A draw from arrays that has too few vertices for its primitive leaves nothing behind.
+#[test]
+fn a_colour_after_a_draw_is_not_that_draw_s() {
+    let mut c = Stage::new(8, 8);
+    c.set_merging(true);
+    let corners = c.put(&[[-1.0f32, -1.0], [3.0, -1.0], [-1.0, 3.0]]);
+    let colors = c.put(&[[0u8, 0, 255, 255]; 3]);
+    let indices = c.put(&[0u8, 1, 2]);
+    c.vertex_pointer(2, gl::FLOAT, 0, corners);
+    c.color_pointer(4, gl::UNSIGNED_BYTE, 0, colors);
+    c.enable_client_state(gl::VERTEX_ARRAY);
+    c.enable_client_state(gl::COLOR_ARRAY);
+    c.draw_elements(gl::TRIANGLES, 3, gl::UNSIGNED_BYTE, indices);
+    c.draw_arrays(gl::TRIANGLE_STRIP, 0, 1);
+    c.disable_client_state(gl::COLOR_ARRAY);
+    c.color_3f(0.0, 1.0, 0.0);
+    c.draw_elements(gl::TRIANGLES, 3, gl::UNSIGNED_BYTE, indices);
+    let red = [1.0, 0.0, 0.0];
+    if !c.quick_color(Some(red)) {
+        c.color_3fv(Some(red));
+    }
+    c.finish();
+    assert_eq!(c.pixel(4, 4), [0, 255, 0, 255]);
+}

@@ -228,6 +228,7 @@ impl Context {
         let builder = &mut self.builder;
         if !builder.gathering {
             builder.start();
+            builder.gathering = true;
             builder.sent = sent;
             builder.given = Given::current(&self.state);
         } else if builder.moved {
@@ -253,6 +254,9 @@ impl Context {
     pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
         if batch.count() > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
+        }
+        if batch.primitives.is_empty() {
+            return true;
         }
         // What is indexed is cut as what lists hold.
         let sent = if batch.indices.is_some() { Sent::Listed } else { sent };

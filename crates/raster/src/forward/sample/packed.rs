@@ -1,4 +1,5 @@
-//! The common case: two dimensions, 8 bits a component, no border in reach. One dimension is a single row.
+//! The common case: two dimensions, 8 bits a component, no border in reach. One dimension is a single row, where it is filtered:
+//! between two texels the nearest may be another one here.
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
@@ -33,8 +34,15 @@ impl<'a> Packed<'a> {
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
-        let flat = matches!(texture.kind, TextureKind::One | TextureKind::Two);
-        if !flat || texture.swizzle.is_some() || !stays_inside(&texture.sampler.wrap) {
+        let sampler = &texture.sampler;
+        let linear = |filter: Filter| {
+            matches!(filter, Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear)
+        };
+        let flat = match texture.kind {
+            TextureKind::One => linear(sampler.mag) && linear(sampler.min),
+            kind => kind == TextureKind::Two,
+        };
+        if !flat || texture.swizzle.is_some() || !stays_inside(&sampler.wrap) {
             return None;
         }
         let [width, height, _] = interior(first, dimensions(texture.kind));

@@ -1,26 +1,32 @@
 //! Welds triangles that come as loose corners (STL): corners at exactly equal positions become one vertex.
 //!
-//! Vertices are numbered by their first occurrence in the file, so the result does not depend on threads. The corners
-//! are dealt into partitions by a hash of their position; each partition is small enough that its hash table stays in
-//! the processor's cache, and partitions are independent:
+//! Vertices are numbered by their first occurrence in the file, so the result does not depend on threads. Neighbours in a mesh
+//! are mostly neighbours in the file: each block of triangles first finds the places of its own corners, with a hash table that
+//! stays in the processor's cache. Then the places of all blocks, far fewer than corners, are dealt into partitions by a hash of
+//! their position; each partition's hash table stays in the cache, too, and partitions are independent:
 //!
-//! 1. each block of triangles sorts its corners by partition (counting sort, 2 bytes a corner);
-//! 2. each partition walks its corners in file order and finds for each the first corner at the same place;
-//! 3. each block fetches these answers back; corners that are their own first occurrence are new vertices, marked in a
+//! 1. each block gives its places in the order in which they occur, and for each corner the number of its place;
+//! 2. each block of places is sorted by partition (counting sort, 2 bytes a place);
+//! 3. each partition walks its places in file order and finds for each the first one at the same position;
+//! 4. each block fetches these answers back; places that are their own first occurrence are new vertices, marked in a
 //!    bit set;
-//! 4. a corner's vertex number is the number of marks before its first occurrence.
+//! 5. a corner's vertex number is the number of marks before the first occurrence of its place.
 //!
 //! In:   a function that gives the three corners of each triangle. `-0` equals `0`; a NaN equals the same NaN.
 //! Out:  vertices, and triangles of indices to them.
-//! Cost: `O(n)`, or `O(n log n)` for positions made to collide in the hash; about 8 bytes of working memory a corner.
+//! Cost: `O(n)`, or `O(n log n)` for positions made to collide in the hash; 6 bytes of working memory a triangle and about 24 a
+//! place.
 //! Source: partitioned hash join, [Shatdal, Kant & Naughton 1994].
 
 use vitral_exec::Workers;
 
-/// Triangles of a block; their corners are numbered with 16 bits.
+/// Triangles of a block; the places of their corners are numbered with 16 bits.
 const BLOCK: usize = u16::MAX as usize / 3;
 
-/// Corners that a partition should have at most: its table then fits the second-level cache.
+/// Places of a block of them, numbered likewise.
+const PLACES: usize = u16::MAX as usize;
+
+/// Places that a partition should have at most: its table then fits the second-level cache.
 const PARTITION: usize = 1 << 15;
 
 /// A position as comparable bits.
@@ -38,7 +44,15 @@ fn hash(key: Key) -> u64 {
     (h ^ h >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15)
 }
 
-/// A block's corners, sorted by partition: partition `p` has `order[starts[p]..starts[p + 1]]`.
+/// The places of a block's corners.
+struct Local {
+    /// In the order in which they occur.
+    places: Vec<[f32; 3]>,
+    /// Their numbers, of all corners.
+    numbers: Vec<[u16; 3]>,
+}
+
+/// A block's places, sorted by partition: partition `p` has `order[starts[p]..starts[p + 1]]`.
 struct Dealt {
     starts: Vec<u32>,
     order: Vec<u16>,
@@ -54,17 +68,69 @@ pub(crate) fn weld(
     workers: &Workers,
 ) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     assert!(count <= u32::MAX as usize / 3, "corner numbers have 32 bits");
-    let partitions = (3 * count / PARTITION).next_power_of_two().min(1 << 12);
     let blocks = count.div_ceil(BLOCK);
-    let corner = |c: usize| corners(c / 3)[c % 3];
-
-    // Find for every corner the first one at its place.
-    let dealt = workers.map(blocks, |b| deal(b * BLOCK..count.min((b + 1) * BLOCK), &corners, partitions));
-    let firsts = workers.map(partitions, |p| first_occurrences(&dealt, p, &corner));
+    let mut locals = workers.map(blocks, |b| local_places(b * BLOCK..count.min((b + 1) * BLOCK), &corners));
+    let mut starts = Vec::with_capacity(blocks);
+    let mut places = Vec::with_capacity(locals.iter().map(|local| local.places.len()).sum());
+    for local in &mut locals {
+        starts.push(places.len());
+        places.append(&mut local.places);
+    }
+    let mut numbers = first_places(&places, workers);
+    let rank = Rank::new(&numbers, workers);
+    let positions = gather(&places, &rank, workers);
+    drop(places);
+    workers.for_each_chunk(&mut numbers, PLACES, |_, chunk| chunk.iter_mut().for_each(|n| *n = rank.of(*n)));
     let mut triangles = vec![[0u32; 3]; count];
-    let segments = segment_offsets(&dealt, partitions);
     workers.for_each_chunk(&mut triangles, BLOCK, |b, chunk| {
-        let chunk = chunk.as_flattened_mut();
+        let numbers = &numbers[starts[b]..];
+        for (triangle, local) in chunk.iter_mut().zip(&locals[b].numbers) {
+            *triangle = local.map(|place| numbers[place as usize]);
+        }
+    });
+    (positions, triangles)
+}
+
+/// The places of the corners of some triangles. Where positions collide in the hash too often, later ones get places of their own.
+fn local_places(triangles: std::ops::Range<usize>, corners: &impl Fn(usize) -> [[f32; 3]; 3]) -> Local {
+    const EMPTY: u16 = u16::MAX;
+    let count = 3 * triangles.len();
+    let mut table = vec![EMPTY; (2 * count).next_power_of_two()];
+    let mask = table.len() - 1;
+    let mut places: Vec<[f32; 3]> = Vec::with_capacity(count / 2);
+    let mut steps = 0usize;
+    let mut number = |position: [f32; 3]| {
+        // The lower bits choose the partition.
+        let mut slot = (hash(key(position)) >> 20) as usize & mask;
+        while steps < 16 * count && table[slot] != EMPTY {
+            let place = table[slot];
+            if key(places[place as usize]) == key(position) {
+                return place;
+            }
+            slot = (slot + 1) & mask;
+            steps += 1;
+        }
+        let place = places.len() as u16;
+        places.push(position.map(|c| c + 0.0));
+        if table[slot] == EMPTY {
+            table[slot] = place;
+        }
+        place
+    };
+    let numbers = triangles.map(|t| corners(t).map(&mut number)).collect();
+    Local { places, numbers }
+}
+
+/// For each place the number of the first one at the same position.
+fn first_places(places: &[[f32; 3]], workers: &Workers) -> Vec<u32> {
+    let count = places.len();
+    let partitions = (count / PARTITION).next_power_of_two().min(1 << 12);
+    let blocks = count.div_ceil(PLACES);
+    let dealt = workers.map(blocks, |b| deal(&places[b * PLACES..count.min((b + 1) * PLACES)], partitions));
+    let firsts = workers.map(partitions, |p| first_occurrences(&dealt, p, places));
+    let mut numbers = vec![0u32; count];
+    let segments = segment_offsets(&dealt, partitions);
+    workers.for_each_chunk(&mut numbers, PLACES, |b, chunk| {
         for p in 0..partitions {
             let mine = &dealt[b].order[dealt[b].starts[p] as usize..dealt[b].starts[p + 1] as usize];
             let answers = &firsts[p][segments[b * partitions + p] as usize..][..mine.len()];
@@ -73,42 +139,31 @@ pub(crate) fn weld(
             }
         }
     });
-    drop((dealt, firsts));
-
-    // Number the first occurrences and replace corners by vertices.
-    let rank = Rank::new(&triangles, workers);
-    let positions = gather(&triangles, &rank, &corner, workers);
-    workers.for_each_chunk(&mut triangles, BLOCK, |_, chunk| {
-        chunk.as_flattened_mut().iter_mut().for_each(|c| *c = rank.of(*c));
-    });
-    (positions, triangles)
+    numbers
 }
 
-/// Sorts the corners of `triangles` by partition, keeping their order within each.
-fn deal(triangles: std::ops::Range<usize>, corners: &impl Fn(usize) -> [[f32; 3]; 3], partitions: usize) -> Dealt {
+/// Sorts places by partition, keeping their order within each.
+fn deal(places: &[[f32; 3]], partitions: usize) -> Dealt {
     let mask = partitions as u64 - 1;
-    let mut part = Vec::with_capacity(3 * triangles.len());
     let mut starts = vec![0u32; partitions + 1];
-    for t in triangles {
-        for position in corners(t) {
-            let p = (hash(key(position)) & mask) as u16;
-            starts[p as usize + 1] += 1;
-            part.push(p);
-        }
+    let part = |position: &[f32; 3]| (hash(key(*position)) & mask) as u16;
+    let parts: Vec<u16> = places.iter().map(part).collect();
+    for p in &parts {
+        starts[*p as usize + 1] += 1;
     }
     for p in 0..partitions {
         starts[p + 1] += starts[p];
     }
     let mut next = starts.clone();
-    let mut order = vec![0u16; part.len()];
-    for (local, &p) in part.iter().enumerate() {
+    let mut order = vec![0u16; parts.len()];
+    for (local, &p) in parts.iter().enumerate() {
         order[next[p as usize] as usize] = local as u16;
         next[p as usize] += 1;
     }
     Dealt { starts, order }
 }
 
-/// Where each block's corners begin among those of each partition.
+/// Where each block's places begin among those of each partition.
 fn segment_offsets(dealt: &[Dealt], partitions: usize) -> Vec<u32> {
     let mut running = vec![0u32; partitions];
     let mut offsets = Vec::with_capacity(dealt.len() * partitions);
@@ -121,23 +176,23 @@ fn segment_offsets(dealt: &[Dealt], partitions: usize) -> Vec<u32> {
     offsets
 }
 
-/// For each corner of partition `p`, in file order: the number of the first corner at the same place.
-fn first_occurrences(dealt: &[Dealt], p: usize, corner: &impl Fn(usize) -> [f32; 3]) -> Vec<u32> {
+/// For each place of partition `p`, in file order: the number of the first one at the same position.
+fn first_occurrences(dealt: &[Dealt], p: usize, places: &[[f32; 3]]) -> Vec<u32> {
     const EMPTY: u32 = u32::MAX;
     let members = || {
         dealt.iter().enumerate().flat_map(move |(b, block)| {
             let mine = &block.order[block.starts[p] as usize..block.starts[p + 1] as usize];
-            mine.iter().map(move |&local| (b * BLOCK * 3 + local as usize) as u32)
+            mine.iter().map(move |&local| (b * PLACES + local as usize) as u32)
         })
     };
     let total: usize = dealt.iter().map(|b| (b.starts[p + 1] - b.starts[p]) as usize).sum();
 
-    // An open table that grows with the vertices found, not with the corners.
+    // An open table that grows with the vertices found, not with the places.
     let mut table = vec![([0u32; 3], EMPTY); 64];
     let (mut used, mut steps) = (0, 0usize);
     let mut firsts = Vec::with_capacity(total);
     for c in members() {
-        let key = key(corner(c as usize));
+        let key = key(places[c as usize]);
         let mask = table.len() - 1;
         // The lower bits of the hash chose the partition.
         let mut slot = (hash(key) >> 20) as usize & mask;
@@ -156,7 +211,7 @@ fn first_occurrences(dealt: &[Dealt], p: usize, corner: &impl Fn(usize) -> [f32;
         }
         // Positions made to collide: sort instead.
         if steps > 64 * total {
-            return first_occurrences_by_sorting(members(), corner);
+            return first_occurrences_by_sorting(members(), places);
         }
     }
     firsts
@@ -175,9 +230,9 @@ fn regrown(table: &[(Key, u32)]) -> Vec<(Key, u32)> {
     larger
 }
 
-fn first_occurrences_by_sorting(members: impl Iterator<Item = u32>, corner: &impl Fn(usize) -> [f32; 3]) -> Vec<u32> {
+fn first_occurrences_by_sorting(members: impl Iterator<Item = u32>, places: &[[f32; 3]]) -> Vec<u32> {
     let mut sorted: Vec<(Key, u32, u32)> =
-        members.enumerate().map(|(rank, c)| (key(corner(c as usize)), c, rank as u32)).collect();
+        members.enumerate().map(|(rank, c)| (key(places[c as usize]), c, rank as u32)).collect();
     sorted.sort_unstable();
     let mut firsts = vec![0; sorted.len()];
     let mut first = 0;
@@ -190,7 +245,7 @@ fn first_occurrences_by_sorting(members: impl Iterator<Item = u32>, corner: &imp
     firsts
 }
 
-/// A bit set of the corners that are first occurrences, which counts marks before a bit.
+/// A bit set of the places that are first occurrences, which counts marks before a bit.
 struct Rank {
     /// 64 marks, and the number of marks in all words before.
     words: Vec<(u64, u32)>,
@@ -198,13 +253,12 @@ struct Rank {
 }
 
 impl Rank {
-    fn new(triangles: &[[u32; 3]], workers: &Workers) -> Self {
-        let corners = triangles.as_flattened();
-        let mut words = vec![(0u64, 0u32); corners.len().div_ceil(64)];
+    fn new(firsts: &[u32], workers: &Workers) -> Self {
+        let mut words = vec![(0u64, 0u32); firsts.len().div_ceil(64)];
         workers.for_each_chunk(&mut words, 1024, |chunk, words| {
             for (w, word) in words.iter_mut().enumerate() {
                 let base = (chunk * 1024 + w) * 64;
-                for (bit, &first) in corners[base..].iter().take(64).enumerate() {
+                for (bit, &first) in firsts[base..].iter().take(64).enumerate() {
                     word.0 |= u64::from(first as usize == base + bit) << bit;
                 }
             }
@@ -229,26 +283,20 @@ impl Rank {
 }
 
 /// The positions of the first occurrences, in order.
-fn gather(
-    triangles: &[[u32; 3]],
-    rank: &Rank,
-    corner: &(impl Fn(usize) -> [f32; 3] + Sync),
-    workers: &Workers,
-) -> Vec<[f32; 3]> {
+fn gather(places: &[[f32; 3]], rank: &Rank, workers: &Workers) -> Vec<[f32; 3]> {
     let mut positions = vec![[0.0f32; 3]; rank.total as usize];
-    let corners = 3 * triangles.len();
     let mut jobs = Vec::new();
     let mut rest = positions.as_mut_slice();
-    for start in (0..corners).step_by(BLOCK * 3) {
-        let end = corners.min(start + BLOCK * 3);
-        let until = if end == corners { rank.total } else { rank.of(end as u32) };
+    for start in (0..places.len()).step_by(PLACES) {
+        let end = places.len().min(start + PLACES);
+        let until = if end == places.len() { rank.total } else { rank.of(end as u32) };
         let (mine, after) = rest.split_at_mut((until - rank.of(start as u32)) as usize);
         rest = after;
         jobs.push((start..end, mine));
     }
     workers.for_each(jobs, |(range, out)| {
-        for (slot, c) in out.iter_mut().zip(range.filter(|&c| rank.is_first(c))) {
-            *slot = corner(c).map(|x| x + 0.0);
+        for (slot, place) in out.iter_mut().zip(range.filter(|&place| rank.is_first(place))) {
+            *slot = places[place];
         }
     });
     positions
@@ -299,10 +347,8 @@ mod tests {
     #[test]
     fn sorting_finds_the_same_first_occurrences() {
         let points: Vec<[f32; 3]> = (0..300).map(|i| [(i * i % 7) as f32, (i % 5) as f32, 0.0]).collect();
-        let soup: Vec<_> = points.as_chunks::<3>().0.to_vec();
-        let dealt = [deal(0..100, &|t| soup[t], 1)];
-        let corner = |c: usize| points[c];
-        assert_eq!(first_occurrences(&dealt, 0, &corner), first_occurrences_by_sorting(0..300, &corner));
+        let dealt = [deal(&points, 1)];
+        assert_eq!(first_occurrences(&dealt, 0, &points), first_occurrences_by_sorting(0..300, &points));
     }
 
     proptest! {

@@ -101,9 +101,9 @@ impl VertexBatch {
         Some((&self.modelviews.get(next.checked_sub(1)?)?.1, end - vertex))
     }
 
-    /// How many indices (or vertices) its primitives have.
-    pub(crate) fn count(&self) -> usize {
-        self.primitives.iter().map(|p| p.count as usize).sum()
+    /// Whether its primitives have no more indices (or vertices) than this. Each has some, so that many need not be counted.
+    pub(crate) fn has_at_most(&self, count: usize) -> bool {
+        self.primitives.len() <= count && self.primitives.iter().map(|p| p.count as usize).sum::<usize>() <= count
     }
 
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).

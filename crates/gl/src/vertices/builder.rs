@@ -6,7 +6,7 @@
 //!
 //! If the caller promises to announce every call that changes what primitives are drawn with ([`Context::set_merging`]),
 //! Begin/End pairs gather in one batch until then. Modelview matrices and materials may change in between: they are kept
-//! with the vertices.
+//! with the vertices. Small batches from lists and arrays gather with them; one that stays alone is drawn as it is.
 
 use super::attribute::{CARRIED, COLOR};
 use crate::state::Current;
@@ -252,7 +252,7 @@ impl Context {
 
     /// Whether a batch is gathered rather than drawn; if so, it has been.
     pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
-        if batch.count() > SMALL || !self.builder.merging || self.feedback.mode != enums::RENDER {
+        if !batch.has_at_most(SMALL) || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
         if batch.primitives.is_empty() {

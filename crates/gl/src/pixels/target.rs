@@ -197,6 +197,13 @@ impl Context {
         target
     }
 
+    /// To be called when something comes that is drawn later: the client may free its buffer before, or write to it.
+    pub(crate) fn will_draw(&mut self) {
+        if self.resolve().default_color {
+            self.load_default_framebuffer();
+        }
+    }
+
     /// Whether the draw framebuffer is complete; records the error if not.
     pub(crate) fn draw_framebuffer_complete(&mut self, call: &str) -> bool {
         let complete = self.resolve().surfaces.status == FRAMEBUFFER_COMPLETE;

@@ -1,25 +1,8 @@
 /* OpenGL by programs of old: a frame is thousands of small draws, with matrices, materials, textures and switches between
- * them, at once or from lists. 640x480, one sample a pixel. Prints the median time of a frame, its end (glFinish) included.
- *
- * cc -O2 small.c -o small -lOSMesa -lm; run it with LD_LIBRARY_PATH at one libOSMesa and at the other.
- * The name of a way as argument measures that alone. */
-#define GL_GLEXT_PROTOTYPES
-#include <GL/osmesa.h>
-#include <GL/gl.h>
-#include <GL/glext.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
+ * them, at once or from lists. bench.h says how to run it. */
+#include "bench.h"
 
-enum { WIDTH = 640, HEIGHT = 480, ACROSS = 80, DOWN = 60, MANY = ACROSS * DOWN, FRAMES = 15, SIDES = 12 };
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * 1e3 + t.tv_nsec * 1e-6;
-}
+enum { ACROSS = 80, DOWN = 60, MANY = ACROSS * DOWN, SIDES = 12 };
 
 static void place(int i) { glTranslatef(i % ACROSS + 0.5f, i / ACROSS + 0.5f, 0); }
 
@@ -178,46 +161,10 @@ static void arrays(void) {
     for (int i = 0; i < MANY; i++) glDrawArrays(GL_QUADS, 4 * i, 4);
 }
 
-static int by_value(const void *a, const void *b) {
-    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
-}
-
-static const char *only, *folder;
-static unsigned char *pixels;
-
-static void measure(const char *name, void (*draw)(void)) {
-    double times[FRAMES];
-    if (only && strcmp(only, "all") && strcmp(only, name)) return;
-    for (int i = -2; i < FRAMES; i++) {
-        double start = now();
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        draw();
-        glFinish();
-        if (i >= 0) times[i] = now() - start;
-    }
-    qsort(times, FRAMES, sizeof *times, by_value);
-    printf("%-12s %8.2f ms\n", name, times[FRAMES / 2]);
-    if (folder) {
-        char path[1000];
-        snprintf(path, sizeof path, "%s/%s.ppm", folder, name);
-        FILE *file = fopen(path, "wb");
-        if (!file) exit(1);
-        fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT);
-        for (int i = 0; i < WIDTH * HEIGHT; i++) fwrite(pixels + 4 * i, 1, 3, file);
-        fclose(file);
-    }
-}
-
 int main(int count, char **arguments) {
     float at[4] = { 1, 2, 3, 0 };
     unsigned char image[64 * 64 * 3];
-    pixels = malloc(WIDTH * HEIGHT * 4);
-    OSMesaContext context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, NULL);
-    if (!context || !OSMesaMakeCurrent(context, pixels, GL_UNSIGNED_BYTE, WIDTH, HEIGHT)) return 1;
-    printf("%s\n", (const char *)glGetString(GL_RENDERER));
-    if (count > 1) only = arguments[1];
-    if (count > 2) folder = arguments[2];
-    glViewport(0, 0, WIDTH, HEIGHT);
+    begin(count, arguments);
     glMatrixMode(GL_PROJECTION);
     glOrtho(0, ACROSS, 0, DOWN, -10, 10);
     glMatrixMode(GL_MODELVIEW);
@@ -238,22 +185,20 @@ int main(int count, char **arguments) {
     glNewList(1, GL_COMPILE), tube(), glEndList();
     glNewList(2, GL_COMPILE), matrices(), glEndList();
     glNewList(3, GL_COMPILE), changing(), glEndList();
-    measure("pairs", pairs);
-    measure("colors", colors);
-    measure("materials", materials);
-    measure("matrices", matrices);
-    measure("tubes", tubes);
-    measure("strips", strips);
-    measure("lists", lists);
-    measure("listed", listed);
-    measure("inside", inside);
-    measure("changing", changing);
-    measure("outlines", outlines);
-    measure("loops", loops);
-    measure("switches", switches);
-    measure("textures", textures);
-    measure("arrays", arrays);
-    if (glGetError()) printf("an OpenGL error\n");
-    OSMesaDestroyContext(context);
-    return 0;
+    measure("pairs", pairs, 0);
+    measure("colors", colors, 0);
+    measure("materials", materials, 0);
+    measure("matrices", matrices, 0);
+    measure("tubes", tubes, 0);
+    measure("strips", strips, 0);
+    measure("lists", lists, 0);
+    measure("listed", listed, 0);
+    measure("inside", inside, 0);
+    measure("changing", changing, 0);
+    measure("outlines", outlines, 0);
+    measure("loops", loops, 0);
+    measure("switches", switches, 0);
+    measure("textures", textures, 0);
+    measure("arrays", arrays, 0);
+    return end();
 }

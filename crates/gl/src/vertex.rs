@@ -101,9 +101,11 @@ impl VertexBatch {
         Some((&self.modelviews.get(next.checked_sub(1)?)?.1, end - vertex))
     }
 
-    /// Whether its primitives have no more indices (or vertices) than this. Each has some, so that many need not be counted.
-    pub(crate) fn has_at_most(&self, count: usize) -> bool {
-        self.primitives.len() <= count && self.primitives.iter().map(|p| p.count as usize).sum::<usize>() <= count
+    /// Whether its primitives have so few indices (or vertices) that preparing it for being drawn again costs more than drawing it.
+    pub(crate) fn is_small(&self) -> bool {
+        const SMALL: usize = 48;
+        // Each has some, so that many need not be counted.
+        self.primitives.len() <= SMALL && self.primitives.iter().map(|p| p.count as usize).sum::<usize>() <= SMALL
     }
 
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).

@@ -29,6 +29,9 @@ const PLACES: usize = u16::MAX as usize;
 /// Places that a partition should have at most: its table then fits the second-level cache.
 const PARTITION: usize = 1 << 15;
 
+/// Corners after which a block may know that its triangles come in no order.
+const SAMPLE: usize = 1 << 12;
+
 /// A position as comparable bits.
 type Key = [u32; 3];
 
@@ -91,31 +94,34 @@ pub(crate) fn weld(
     (positions, triangles)
 }
 
-/// The places of the corners of some triangles. Where positions collide in the hash too often, later ones get places of their own.
+/// The places of the corners of some triangles. Where few of the first ones share places, or positions collide in the hash too
+/// often, later ones get places of their own.
 fn local_places(triangles: std::ops::Range<usize>, corners: &impl Fn(usize) -> [[f32; 3]; 3]) -> Local {
     const EMPTY: u16 = u16::MAX;
     let count = 3 * triangles.len();
     let mut table = vec![EMPTY; (2 * count).next_power_of_two()];
     let mask = table.len() - 1;
     let mut places: Vec<[f32; 3]> = Vec::with_capacity(count / 2);
-    let mut steps = 0usize;
+    let (mut seen, mut steps, mut looks) = (0, 0usize, true);
     let mut number = |position: [f32; 3]| {
-        // The lower bits choose the partition.
-        let mut slot = (hash(key(position)) >> 20) as usize & mask;
-        while steps < 16 * count && table[slot] != EMPTY {
-            let place = table[slot];
-            if key(places[place as usize]) == key(position) {
-                return place;
+        let new = places.len() as u16;
+        seen += 1;
+        if looks && steps < 16 * count {
+            // The lower bits choose the partition.
+            let mut slot = (hash(key(position)) >> 20) as usize & mask;
+            while table[slot] != EMPTY {
+                let place = table[slot];
+                if key(places[place as usize]) == key(position) {
+                    return place;
+                }
+                slot = (slot + 1) & mask;
+                steps += 1;
             }
-            slot = (slot + 1) & mask;
-            steps += 1;
+            table[slot] = new;
+            looks = seen < SAMPLE || usize::from(new) < seen - seen / 4;
         }
-        let place = places.len() as u16;
         places.push(position.map(|c| c + 0.0));
-        if table[slot] == EMPTY {
-            table[slot] = place;
-        }
-        place
+        new
     };
     let numbers = triangles.map(|t| corners(t).map(&mut number)).collect();
     Local { places, numbers }
@@ -342,6 +348,19 @@ mod tests {
         for workers in [Workers::single(), Workers::new(2)] {
             assert_eq!(weld(soup.len(), |t| soup[t], &workers), expected);
         }
+        // In no order, and with neighbours again where the blocks no longer look for them.
+        let scattered = |i: u32| at((i * 7919) % side);
+        let soup: Vec<_> = (0..side)
+            .map(|i| {
+                if i % BLOCK as u32 > 9000 {
+                    [at(i), at(i), at(i + 1)]
+                } else {
+                    [0, 1, 2].map(|k| scattered(3 * i + k))
+                }
+            })
+            .collect();
+        assert!(local_places(0..BLOCK, &|t| soup[t]).places.len() > 3 * BLOCK - 2 * SAMPLE);
+        assert_eq!(weld(soup.len(), |t| soup[t], &Workers::single()), plain(&soup));
     }
 
     #[test]

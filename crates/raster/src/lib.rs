@@ -30,12 +30,11 @@ mod tile;
 
 pub use fragments::{Fragment, FragmentSink};
 pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex, TileLists, Unsorted};
+pub use kernel::block::{Block, BlockSink, InBlocks, RowSink};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::plane::RowPlane;
 pub use kernel::transform::transform;
-pub use kernel::traverse::{
-    Block, BlockSink, InBlocks, RowSink, Window, traverse, traverse_block, traverse_by_rows, traverse_window,
-};
+pub use kernel::traverse::{Window, traverse, traverse_block, traverse_by_rows, traverse_window};
 pub use layers::LayerList;
 pub use samples::SamplePattern;
 pub use setup::{CornerPosition, Setup, snap};

@@ -1,7 +1,7 @@
 //! What covered samples mean: the nearest facet, the last of a list, or all facets in front.
 
+use crate::kernel::block::{Block, RowSink};
 use crate::kernel::plane::RowPlane;
-use crate::kernel::traverse::{Block, RowSink};
 use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};

@@ -35,6 +35,29 @@ pub(crate) enum PieceVertices {
 }
 
 impl PieceVertices {
+    /// Those that `numbers` gives, in any order and more than once: all from the lowest to the highest if these are no more than
+    /// `most`.
+    pub(super) fn of<I: Iterator<Item = u32>>(numbers: impl Fn() -> I, most: usize) -> Self {
+        let (low, high) = numbers().fold((u32::MAX, 0), |(low, high), v| (low.min(v), high.max(v + 1)));
+        let low = low.min(high);
+        if (high - low) as usize <= most {
+            return Self::Range(low, high);
+        }
+        let mut list: Vec<u32> = numbers().collect();
+        list.sort_unstable();
+        list.dedup();
+        Self::List(list)
+    }
+
+    /// The number in the piece of a vertex of the batch.
+    #[inline(always)]
+    pub(super) fn number(&self, vertex: u32) -> u32 {
+        match self {
+            Self::Range(start, _) => vertex - start,
+            Self::List(list) => list.binary_search(&vertex).unwrap_or(0) as u32,
+        }
+    }
+
     /// The vertex with number `i` of the piece.
     #[inline(always)]
     pub(crate) fn get(&self, i: u32) -> u32 {
@@ -309,29 +332,14 @@ fn piece_apart(level: Level, vertices: Range<u32>, positions: &[[f32; 4]]) -> Pi
 
 /// A piece of triangles given as numbers of vertices of the batch.
 fn make_piece(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Piece {
-    let (mut low, mut high) = (u32::MAX, 0);
-    for [a, b, c] in &triangles {
-        low = low.min(*a.min(b).min(c));
-        high = high.max(*a.max(b).max(c) + 1);
-    }
-    let low = low.min(high);
-    if (high - low) as usize <= 4 * triangles.len() + 64 {
+    let vertices = PieceVertices::of(|| triangles.iter().flatten().copied(), 4 * triangles.len() + 64);
+    triangles.iter_mut().flatten().for_each(|corner| *corner = vertices.number(*corner));
+    let bounds = match &vertices {
         // Vertices between that no triangle uses may widen the bounds: they only ever save work.
-        let bounds = bounds(level, &positions[low as usize..high as usize]);
-        for corner in triangles.iter_mut().flatten() {
-            *corner -= low;
-        }
-        return Piece { triangles: triangles.into(), vertices: PieceVertices::Range(low, high), bounds };
-    }
-    let mut list: Vec<u32> = triangles.iter().flatten().copied().collect();
-    list.sort_unstable();
-    list.dedup();
-    for corner in triangles.iter_mut().flatten() {
-        *corner = list.binary_search(corner).unwrap_or(0) as u32;
-    }
-    let used: Vec<[f32; 4]> = list.iter().map(|&v| positions[v as usize]).collect();
-    let bounds = bounds(level, &used);
-    Piece { triangles: triangles.into(), vertices: PieceVertices::List(list), bounds }
+        PieceVertices::Range(low, high) => bounds(level, &positions[*low as usize..*high as usize]),
+        PieceVertices::List(list) => bounds(level, &list.iter().map(|&v| positions[v as usize]).collect::<Vec<_>>()),
+    };
+    Piece { triangles: triangles.into(), vertices, bounds }
 }
 
 /// The least and the largest coordinates, if all are finite and all `w` 1.

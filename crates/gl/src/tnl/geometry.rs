@@ -196,13 +196,13 @@ impl DrawGeometry {
         let (mut clip_memory, mut window_memory) = out.scratch.take(count);
         let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
         let (mut user, mut sizes) = (Vec::new(), Vec::new());
-        let parts = Parts::new(&self.snapshot, &self.batch, vertices);
+        let (parts, sized) = (Parts::new(&self.snapshot, &self.batch, vertices), self.needs_sizes());
         for (part, transform) in parts.each(count) {
             let positions = &positions[part.clone()];
             let (clip, window) = (&mut clip[part.clone()], &mut window[part.clone()]);
             project(level, positions, &transform.clip_from_model, &state.window, clip, window);
             add_user_distances(&transform.clip_planes, positions, &mut user);
-            if self.needs_sizes() {
+            if sized {
                 self.add_sizes(&transform.modelview, positions, &mut sizes);
             }
         }

@@ -3,7 +3,7 @@
 use super::assembled::{PieceVertices, add_filled};
 use super::geometry::DrawGeometry;
 use crate::enums as gl;
-use crate::vertex::{Primitive, VertexBatch};
+use crate::vertex::Primitive;
 use vitral_math::lanes::Level;
 use vitral_raster::forward::{Assembler, ForwardScreen, PrimitiveState, Primitives};
 
@@ -41,29 +41,6 @@ pub(super) fn parts(primitives: &[Primitive], stippled: bool) -> Vec<Vec<Primiti
     parts
 }
 
-impl PieceVertices {
-    /// What some primitives of a batch use.
-    fn of(batch: &VertexBatch, primitives: &[Primitive]) -> Self {
-        let numbers = || primitives.iter().flat_map(|p| p.first..p.first + p.count).map(|i| batch.vertex(i) as u32);
-        let (low, high) = numbers().fold((u32::MAX, 0), |(low, high), v| (low.min(v), high.max(v + 1)));
-        if low >= high || (high - low) as usize <= 4 * numbers().count() + 64 {
-            return Self::Range(low.min(high), high);
-        }
-        let mut list: Vec<u32> = numbers().collect();
-        list.sort_unstable();
-        list.dedup();
-        Self::List(list)
-    }
-
-    /// The number in the piece of a vertex of the batch.
-    fn number(&self, vertex: u32) -> u32 {
-        match self {
-            Self::Range(start, _) => vertex - start,
-            Self::List(list) => list.binary_search(&vertex).unwrap_or(0) as u32,
-        }
-    }
-}
-
 impl DrawGeometry {
     /// Emits some primitives, one after the other.
     pub(super) fn emit_ordered(
@@ -74,7 +51,8 @@ impl DrawGeometry {
         screen: &ForwardScreen,
         out: &mut Primitives,
     ) {
-        let own = PieceVertices::of(&self.batch, primitives);
+        let indices = || primitives.iter().flat_map(|p| p.first..p.first + p.count);
+        let own = PieceVertices::of(|| indices().map(|i| self.batch.vertex(i) as u32), 4 * indices().count() + 64);
         self.emit_vertices(level, &own, state, screen, out, &|assembler| {
             self.emit_primitives(level, primitives, &own, assembler);
         });
@@ -118,7 +96,6 @@ impl DrawGeometry {
     }
 
     /// Emits triangles that have gathered.
-    #[inline(never)]
     fn emit_filled(
         &self,
         level: Level,

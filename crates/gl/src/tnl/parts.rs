@@ -14,7 +14,8 @@ pub(crate) struct Parts<'a> {
     batch: &'a VertexBatch,
     /// The materials, if all vertices of the batch have the same.
     faces: Option<LaneFaces>,
-    /// In order; none if all vertices of the batch have the current matrix. How many vertices of the piece there are up to the end of each, and its transform.
+    /// How many vertices of the piece there are up to the end of each part, and its transform. None if all vertices of the
+    /// batch have the matrix of the snapshot.
     parts: Vec<(usize, Transform)>,
 }
 
@@ -39,7 +40,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Whether all vertices have the current matrix.
+    /// Whether all vertices have the matrix of the snapshot.
     pub(crate) fn is_whole(&self) -> bool {
         self.parts.is_empty()
     }

@@ -36,9 +36,6 @@ impl std::fmt::Debug for Recorder {
     }
 }
 
-/// How many vertices that come once are drawn without looking at them first.
-const FEW: usize = 64;
-
 /// Most vertices that wait before they are drawn.
 const MOST_WAITING: usize = 8 << 20;
 
@@ -136,7 +133,7 @@ impl Context {
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         let mut layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
-        let small = sent == Sent::Now && batch.has_at_most(FEW);
+        let small = sent == Sent::Now && batch.is_small();
         let assembled = (!small).then(|| batch.assembled.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
         let flat = assembled.as_ref().is_some_and(|assembled| assembled.grid.is_some());

@@ -73,7 +73,7 @@ pub(crate) enum FogSource {
 #[derive(Clone, Debug)]
 pub(crate) struct VertexSnapshot {
     pub current: Current,
-    /// With the current modelview matrix.
+    /// With the modelview matrix that all have for which the batch names none.
     pub transform: Transform,
     projection: Mat4,
     pub normalize: bool,
@@ -203,7 +203,7 @@ impl LightingSnapshot {
     }
 }
 
-/// Lights that were prepared before: most draws share them.
+/// Lights that were on before, prepared: most draws share them.
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     lights: Vec<Option<(crate::state::Light, Option<PreparedLight>)>>,
@@ -216,9 +216,8 @@ impl LightCache {
         self.lights.resize(lights.len(), None);
         let mut changed = false;
         for (light, kept) in lights.iter().zip(&mut self.lights) {
-            let is = kept.as_ref().is_some_and(|(of, _)| of.enabled);
-            if is != light.enabled || (is && kept.as_ref().is_none_or(|(of, _)| of != light)) {
-                *kept = Some((*light, if light.enabled { prepare(light) } else { None }));
+            if !kept.as_ref().map_or(!light.enabled, |(of, _)| of == light) {
+                *kept = light.enabled.then(|| (*light, prepare(light)));
                 changed = true;
             }
         }

@@ -18,9 +18,6 @@ use vitral_math::Mat4;
 /// Vertices of a batch that waits for no more.
 const LONG_ENOUGH: usize = 1 << 16;
 
-/// Vertices of a batch that is not worth a draw of its own.
-const SMALL: usize = 48;
-
 /// How many batches are kept for their memory.
 const MOST_KEPT: usize = 16;
 
@@ -255,7 +252,7 @@ impl Context {
 
     /// Whether a batch is gathered rather than drawn; if so, it has been.
     pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
-        if !batch.has_at_most(SMALL) || !self.builder.merging || self.feedback.mode != enums::RENDER {
+        if !batch.is_small() || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
         if batch.primitives.is_empty() {

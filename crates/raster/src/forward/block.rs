@@ -13,7 +13,7 @@ use super::pass::places;
 use super::state::{Compare, StencilFace, StencilOp};
 use super::surface::Surface;
 use super::wide::{bits_of, mask_of, max, min, select, splat};
-use crate::kernel::traverse::Block;
+use crate::kernel::block::Block;
 use crate::setup::DepthPlane;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;

@@ -412,7 +412,8 @@ impl Runner {
     }
 }
 
-fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
+/// The pixels of both: x0, y0, x1, y1.
+pub(super) fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
     [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
 }
 

@@ -148,6 +148,13 @@ pub enum Filter {
     LinearMipmapLinear,
 }
 
+impl Filter {
+    /// Whether texels of a level are mixed.
+    pub(crate) fn is_linear(self) -> bool {
+        matches!(self, Self::Linear | Self::LinearMipmapNearest | Self::LinearMipmapLinear)
+    }
+}
+
 /// Where a component of what sampling yields comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]

@@ -6,15 +6,16 @@ use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
 use super::hard_line::HardLine;
-use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of};
+use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of, intersection};
 use super::plane::PlaneTile;
 use super::sample::sample;
 use super::shade::{CENTERS, Shader};
 use super::state::{Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
+use crate::kernel::block::{Block, BlockSink};
 use crate::kernel::plane::RowPlane;
-use crate::kernel::traverse::{Block, BlockSink, Placed, Window, traverse_window};
+use crate::kernel::traverse::{Placed, Window, traverse_window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
@@ -117,8 +118,7 @@ impl<'a> TileRun<'a> {
                     match facet.extent(job.primitives) {
                         Extent::Whole => {}
                         Extent::Box(pixels) => {
-                            let [x0, y0, x1, y1] = self.part(pixels);
-                            clip = [clip[0].max(x0), clip[1].max(y0), clip[2].min(x1), clip[3].min(y1)];
+                            clip = intersection(clip, self.part(pixels));
                             own = self::window(clip);
                             window = &own;
                         }
@@ -133,7 +133,7 @@ impl<'a> TileRun<'a> {
                         if !memory.waiting.takes(facet.draw) {
                             self.tiny_facets(simd, job, memory);
                         }
-                        memory.waiting.push(entry, facet.draw, setup, &place);
+                        memory.waiting.next(entry, facet.draw).push(setup, &place);
                         continue;
                     }
                     self.tiny_facets(simd, job, memory);
@@ -165,7 +165,7 @@ impl<'a> TileRun<'a> {
                 if !memory.waiting.takes(facet.draw) {
                     self.tiny_facets(simd, job, memory);
                 }
-                memory.waiting.push_pixels(entry, facet.draw, setup, tile, corner, mask);
+                memory.waiting.next(entry, facet.draw).push_pixels(setup, tile, corner, mask);
             });
         }
         self.tiny_facets(simd, job, memory);
@@ -173,10 +173,7 @@ impl<'a> TileRun<'a> {
         let shader = Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
         let words = &mut memory.words;
         let mut sink = ForwardSink { run: self, draw, shader, clip, pattern: job.pattern(draw), words };
-        line.boxes(tile, clip, |[x, y], mask| {
-            let last = BLOCK - mask.leading_zeros() as usize / BLOCK;
-            sink.cover(simd, setup, &Block { x, y, rows: 0..last }, &[mask]);
-        });
+        line.boxes(tile, clip, |corner, mask| sink.cover(simd, setup, &Block::of(corner, mask), &[mask]));
     }
 
     /// The fragments of an image.

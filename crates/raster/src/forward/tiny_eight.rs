@@ -16,8 +16,7 @@ use super::shade::{EightFacets, FacetPixels, Scratch, Shader, go_together};
 use super::state::{Compare, DepthTest};
 use super::tile::TileRun;
 use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
-use crate::kernel::traverse::Placed;
-use crate::{BLOCK, SamplePattern, Setup, TILE_PIXELS};
+use crate::{BLOCK, SamplePattern, TILE_PIXELS};
 use vitral_math::lanes::{LANES, Simd};
 
 /// Tiny facets of one draw that wait until there are eight.
@@ -77,28 +76,12 @@ impl TinyFacets {
         self.eight.len() == 0 || (self.draw == draw && self.eight.len() < LANES)
     }
 
-    /// One more: [`Self::takes`] it.
+    /// Where one more, [`Self::takes`] it, has to be pushed.
     #[inline(always)]
-    pub(super) fn push(&mut self, entry: usize, draw: u32, setup: &Setup, place: &Placed) {
+    pub(super) fn next(&mut self, entry: usize, draw: u32) -> &mut TinyEight {
         self.entries[self.eight.len() % LANES] = entry;
         self.draw = draw;
-        self.eight.push(setup, place);
-    }
-
-    /// One more, of which these pixels are covered: see [`TinyEight::push_pixels`].
-    #[inline(always)]
-    pub(super) fn push_pixels(
-        &mut self,
-        entry: usize,
-        draw: u32,
-        setup: &Setup,
-        tile: [u32; 2],
-        corner: [usize; 2],
-        pixels: u64,
-    ) {
-        self.entries[self.eight.len() % LANES] = entry;
-        self.draw = draw;
-        self.eight.push_pixels(setup, tile, corner, pixels);
+        &mut self.eight
     }
 
     /// One of them.

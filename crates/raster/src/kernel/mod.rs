@@ -1,5 +1,6 @@
 //! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or tile.
 
+pub(crate) mod block;
 pub(crate) mod nearest;
 pub(crate) mod plane;
 pub(crate) mod sift;

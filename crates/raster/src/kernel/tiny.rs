@@ -7,7 +7,8 @@
 //! In:   triangles of a tile whose boxes hold at most 8x8 pixels. Out: masks of covered pixels, and depths.
 //! Cost: some operations for each pixel of the largest box, shared by eight triangles.
 
-use super::traverse::{Block, Placed, biases};
+use super::block::Block;
+use super::traverse::{Placed, biases};
 use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
@@ -112,7 +113,7 @@ impl TinyEight {
         let [x, y] = tile.map(|v| v as i32 * SUBPIXEL);
         self.set(setup, (setup.x.map(|v| v - x), setup.y.map(|v| v - y)), corner);
         (self.boxes[at], self.given[at]) = (pixels, u64::MAX);
-        self.size = [BLOCK, self.size[1].max(BLOCK - pixels.leading_zeros() as usize / BLOCK)];
+        self.size = [BLOCK, self.size[1].max(Block::of(corner, pixels).rows.end)];
         self.count = at + 1;
     }
 
@@ -150,8 +151,7 @@ impl TinyEight {
     /// A triangle's box, with the rows down to the last of these pixels.
     #[inline(always)]
     pub(crate) fn block(&self, triangle: usize, pixels: u64) -> Block {
-        let [x, y] = self.corner(triangle);
-        Block { x, y, rows: 0..BLOCK - pixels.leading_zeros() as usize / BLOCK }
+        Block::of(self.corner(triangle), pixels)
     }
 
     /// Corners' x and y of all triangles, in 1/256 pixel of the tile.

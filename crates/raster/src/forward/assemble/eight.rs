@@ -9,7 +9,6 @@ use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
 
 impl Assembler<'_> {
     /// Triangles; the last corner provokes.
-    #[inline(never)]
     pub(super) fn by_eights(&mut self, level: Level, triangles: &[[u32; 3]]) {
         dispatch!(level, simd => self.by_eights_inlined(simd, triangles));
     }

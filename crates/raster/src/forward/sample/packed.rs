@@ -35,11 +35,8 @@ impl<'a> Packed<'a> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
         let sampler = &texture.sampler;
-        let linear = |filter: Filter| {
-            matches!(filter, Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear)
-        };
         let flat = match texture.kind {
-            TextureKind::One => linear(sampler.mag) && linear(sampler.min),
+            TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
             kind => kind == TextureKind::Two,
         };
         if !flat || texture.swizzle.is_some() || !stays_inside(&sampler.wrap) {

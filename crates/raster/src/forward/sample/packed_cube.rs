@@ -43,7 +43,6 @@ impl<'a> PackedCube<'a> {
         let levels = texture.faces.first()?;
         let (first, last) = (levels.first()?, levels.len().min(LEVELS) - 1);
         let size = first.size[0];
-        let linear = [Filter::Linear, Filter::LinearMipmapNearest, Filter::LinearMipmapLinear];
         let regular = texture.faces.iter().all(|levels| {
             let side = |(k, level): (usize, &Level)| {
                 let bytes = matches!(level.texels(), Texels::Rgba8(_));
@@ -53,7 +52,7 @@ impl<'a> PackedCube<'a> {
         });
         let sampler = &texture.sampler;
         let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
-        if !usual || !regular || sampler.mag != Filter::Linear || !linear.contains(&sampler.min) {
+        if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {
             return None;
         }
         let wrap = match (sampler.seamless, &sampler.wrap[..2]) {

@@ -7,7 +7,9 @@
 mod budget;
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
 mod placement;
+mod started;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};
+pub use started::{Started, forked, hold_for_fork};
 pub use workers::Workers;

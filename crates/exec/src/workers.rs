@@ -1,7 +1,8 @@
 //! Loops over a pool of our own. With one thread there is no pool and nothing is locked.
 
+use crate::Started;
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
-use crate::placement::Placement;
+use crate::placement::{Lent, Placement};
 #[cfg(feature = "threads")]
 use std::sync::Arc;
 use std::sync::{Mutex, PoisonError};
@@ -130,6 +131,26 @@ impl Workers {
             return;
         }
         items.by_ref().for_each(f);
+    }
+
+    /// Has `f` run while the calling thread goes on; it may share work among the same threads. Where there are none, and while
+    /// the process is about to fork ([`hold_for_fork`](crate::hold_for_fork)), `f` comes back.
+    pub fn start<F: FnOnce() + Send + 'static>(&self, f: F) -> Result<Started, F> {
+        #[cfg(feature = "threads")]
+        if let Some(pool) = &self.pool {
+            #[cfg(all(target_os = "linux", not(miri)))]
+            if pool.current_thread_index().is_none() {
+                self.placement.make_way();
+            }
+            return Started::on(pool, self, f);
+        }
+        Err(f)
+    }
+
+    /// Lets a worker have the processor of the calling thread, which waits as long as what is returned lives.
+    #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+    pub(crate) fn lend(&self) -> Option<Lent<'_>> {
+        self.placement.lend()
     }
 
     /// Runs both, at the same time where there are threads.

@@ -132,7 +132,7 @@ impl VertexBatch {
 }
 
 /// Whether elements of this mode share no vertices, so that runs of them can be joined.
-fn is_independent(mode: u32) -> bool {
+pub(crate) fn is_independent(mode: u32) -> bool {
     use crate::enums::{LINES, POINTS, QUADS, TRIANGLES};
     matches!(mode, POINTS | LINES | TRIANGLES | QUADS)
 }

@@ -3,7 +3,11 @@
 mod common;
 
 use common::Stage;
+use std::sync::{Arc, OnceLock};
+use vitral_exec::Workers;
 use vitral_gl::enums as gl;
+use vitral_math::lanes::Level;
+use vitral_raster::forward::Runner;
 
 /// Numbers without order.
 struct Dice(u64);
@@ -236,4 +240,77 @@ fn a_colour_after_a_draw_is_not_that_draw_s() {
     }
     c.finish();
     assert_eq!(c.pixel(4, 4), [0, 255, 0, 255]);
+}
+
+/// The threads of the contexts that draw while more is given.
+fn threads() -> Arc<Runner> {
+    static RUNNER: OnceLock<Arc<Runner>> = OnceLock::new();
+    Arc::clone(RUNNER.get_or_init(|| Arc::new(Runner::new(Workers::new(3), Level::new()))))
+}
+
+/// Long primitives, of which a part is drawn before they end, between calls that change what they are drawn with.
+fn run_long(c: &mut Stage, mode: u32) {
+    let mut d = Dice(u64::from(mode));
+    c.enable(gl::BLEND);
+    c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
+    c.enable(gl::LIGHT0);
+    c.enable(gl::COLOR_MATERIAL);
+    c.enable(gl::TEXTURE_2D);
+    let mut queries = [0; 4];
+    for (part, query) in queries.iter_mut().enumerate() {
+        let texels: Vec<[u8; 4]> = (0..16).map(|i| [i * 16, 255, 60 * part as u8, 255 - i]).collect();
+        // As the library does before most calls.
+        c.flush_vertices();
+        c.bind_texture(gl::TEXTURE_2D, 1);
+        c.texture(&[(4, texels)]);
+        if part == 2 {
+            c.enable(gl::LIGHTING);
+            c.begin_query(gl::SAMPLES_PASSED, 7);
+        }
+        c.begin(mode);
+        // Far from a multiple of anything.
+        for vertex in 0..75_001 + 1234 * part {
+            match d.below(3000) {
+                0 => c.color_4fv(Some(d.color())),
+                1 => c.normal_3f(d.number(), d.number(), 1.0),
+                2 => material(c, &mut d),
+                _ => {}
+            }
+            let [x, y] = [(vertex / 3 % 97) as f32 / 50.0 - 1.0, (vertex / 3 % 89) as f32 / 45.0 - 1.0];
+            c.tex_coord_2f(x, y);
+            let place = [x + d.number() * 0.05, y + d.number() * 0.05, d.number()];
+            if !c.quick_vertex(Some(place)) {
+                c.vertex_3fv(Some(place));
+            }
+        }
+        c.end();
+        if part == 2 {
+            c.flush_vertices();
+            c.end_query(gl::SAMPLES_PASSED);
+        }
+        c.translatef(0.1, 0.0, 0.0);
+        *query = c.get_error();
+    }
+    assert_eq!(queries, [gl::NO_ERROR; 4]);
+}
+
+#[test]
+fn long_primitives_are_drawn_while_they_are_given() {
+    for mode in gl::POINTS..gl::POLYGON {
+        let [mut alone, mut together] = [Stage::new(64, 48), Stage::new(64, 48)];
+        together.set_runner_source(threads);
+        together.set_merging(true);
+        run_long(&mut alone, mode);
+        run_long(&mut together, mode);
+        let passed = [&mut alone, &mut together].map(|c| {
+            let at = c.put(&[0u32]);
+            c.get_query_objectuiv(7, gl::QUERY_RESULT, at);
+            c.take::<u32>(at, 1)[0]
+        });
+        assert_eq!(passed[0], passed[1], "samples of mode {mode}");
+        let (a, b) = (alone.bytes(), together.bytes());
+        assert_eq!(a.iter().zip(&b).filter(|(a, b)| a != b).count(), 0, "pixels of mode {mode}");
+        assert!(alone.depths() == together.depths(), "depths of mode {mode}");
+        assert!(passed[0] > 1000 && a.iter().filter(|p| **p != a[0]).count() > 50, "mode {mode} draws something");
+    }
 }

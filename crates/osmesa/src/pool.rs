@@ -1,11 +1,12 @@
 //! The threads that draw, shared by all contexts of the process. They belong to the process that made them: after a fork
-//! the child makes its own, and never looks at its parent's, since their threads are not there.
+//! the child makes its own, and never looks at its parent's, since their threads are not there. What they draw while the
+//! program goes on is waited for before a fork.
 
 use crate::environment;
 use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicPtr, Ordering};
-use vitral_exec::Workers;
+use vitral_exec::{Workers, forked, hold_for_fork};
 use vitral_math::lanes::{Level, level_from_environment};
 use vitral_raster::forward::Runner;
 
@@ -19,6 +20,19 @@ struct Pool {
 /// No lock: it could be held by a thread that a fork leaves behind.
 static POOL: AtomicPtr<Pool> = AtomicPtr::new(ptr::null_mut());
 
+unsafe extern "C" {
+    /// POSIX: calls `prepare` before a fork, `parent` and `child` after it. Not 0 if there is no memory for it.
+    fn pthread_atfork(prepare: extern "C" fn(), parent: extern "C" fn(), child: extern "C" fn()) -> i32;
+}
+
+extern "C" fn before_fork() {
+    hold_for_fork();
+}
+
+extern "C" fn after_fork() {
+    forked();
+}
+
 /// The process' runner.
 pub(crate) fn runner() -> Arc<Runner> {
     let process = std::process::id();
@@ -31,6 +45,14 @@ pub(crate) fn runner() -> Arc<Runner> {
         environment::say(&why);
         Level::new()
     });
+    if found.is_null() {
+        // The child has the same handlers. Where two threads come here at the same time, there are two of each: no harm.
+        // SAFETY: the library is never unloaded, so that the functions stay.
+        let failed = unsafe { pthread_atfork(before_fork, after_fork, after_fork) };
+        if failed != 0 {
+            environment::say("no memory to be told of forks: do not fork while something is drawn");
+        }
+    }
     let runner = Arc::new(Runner::new(Workers::new(environment::threads()), level));
     let made = Box::into_raw(Box::new(Pool { process, runner }));
     match POOL.compare_exchange(found, made, Ordering::AcqRel, Ordering::Acquire) {

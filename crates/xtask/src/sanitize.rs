@@ -25,9 +25,9 @@ const MODES: [&str; 10] = [
     "attributes",
 ];
 
-/// One more, for Valgrind: the sanitizers have no threads after a fork. `growth` is for the test suite alone: these tools' own
+/// More, for Valgrind: the sanitizers have no threads after a fork. `growth` is for the test suite alone: these tools' own
 /// memory grows.
-const MORE_MODES: [&str; 1] = ["fork"];
+const MORE_MODES: [&str; 2] = ["fork", "fork-while-drawing"];
 
 /// Where the sanitized libraries are for; they need a target by name.
 const TARGET: &str = "x86_64-unknown-linux-gnu";

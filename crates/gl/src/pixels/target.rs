@@ -278,7 +278,9 @@ fn target_of(surfaces: &Surfaces) -> Option<Target> {
     if surfaces.status != FRAMEBUFFER_COMPLETE {
         return None;
     }
+    let depth_scale = |s: &Surface| s.depth.as_ref().map(|depth| lock(depth).scale);
     let target = Target {
+        depth_scale: surfaces.depth.as_ref().and_then(depth_scale).unwrap_or(16_777_215.0),
         viewport: surfaces.size?,
         samples: surfaces.samples.max(1),
         color: surfaces.color.as_ref().and_then(|s| s.color.clone()),

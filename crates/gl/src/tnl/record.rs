@@ -1,4 +1,5 @@
-//! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks.
+//! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks. Of a long stream of
+//! vertices, what is there already runs while the calling thread takes in more.
 
 use super::geometry::{DrawGeometry, PointSizes};
 use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
@@ -7,7 +8,7 @@ use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Given, Sent, VertexBatch};
 use std::sync::Arc;
-use vitral_exec::Workers;
+use vitral_exec::{Started, Workers};
 use vitral_math::Vec4;
 use vitral_math::lanes::Level;
 use vitral_raster::forward::{
@@ -28,6 +29,8 @@ pub(crate) struct Recorder {
     waiting: usize,
     /// Bytes of images that came while something waits: what waits may be all that needs those before.
     images: usize,
+    /// What runs while more is recorded: all that was recorded before.
+    ahead: Option<Started>,
 }
 
 impl std::fmt::Debug for Recorder {
@@ -44,14 +47,43 @@ const MOST_WAITING: usize = 8 << 20;
 const MOST_IMAGES: usize = 64 << 20;
 
 impl Recorder {
-    fn run(&mut self) {
-        (self.waiting, self.images) = (0, 0);
-        let Some(pass) = self.pass.take() else { return };
-        let runner = match self.source {
+    fn runner(&mut self) -> Arc<Runner> {
+        match self.source {
             Some(source) => source(),
             None => self.own.get_or_insert_with(|| Arc::new(Runner::new(Workers::single(), Level::new()))).clone(),
-        };
-        runner.run(&pass);
+        }
+    }
+
+    /// Runs everything.
+    fn run(&mut self) {
+        (self.waiting, self.images) = (0, 0);
+        if let Some(ahead) = self.ahead.take() {
+            ahead.wait();
+        }
+        if let Some(pass) = self.pass.take() {
+            self.runner().run(&pass);
+        }
+    }
+
+    /// Has what is recorded run while more comes, unless what was recorded before is still running. Depths alone are left to be
+    /// drawn where they are looked at.
+    fn start(&mut self) {
+        if self.ahead.as_ref().is_some_and(|ahead| !ahead.is_done()) {
+            return;
+        }
+        let runner = self.runner();
+        let Some(pass) = self.pass.as_mut().filter(|pass| pass.target.color.is_some()) else { return };
+        if let Some(ahead) = self.ahead.take() {
+            ahead.wait();
+        }
+        let commands = std::mem::take(&mut pass.commands);
+        let recorded = Pass { target: pass.target.clone(), commands };
+        let workers = runner.workers.clone();
+        match workers.start(move || runner.run(&recorded)) {
+            Ok(ahead) => self.ahead = Some(ahead),
+            Err(run) => run(),
+        }
+        (self.waiting, self.images) = (0, 0);
     }
 }
 
@@ -75,8 +107,8 @@ impl Context {
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
         let Some(geometry) = self.draw_geometry(batch, sent, given, &fragment, &target) else { return };
-        self.recorder.waiting += count;
         self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
+        self.recorder.waiting += count;
     }
 
     /// Records a command on the current draw target.
@@ -102,6 +134,11 @@ impl Context {
                 self.recorder.run();
             }
         }
+    }
+
+    /// Has everything recorded run while the caller gives more.
+    pub(crate) fn start_recorded(&mut self) {
+        self.recorder.start();
     }
 
     /// Runs everything recorded: afterwards all planes and queries are up to date.
@@ -248,9 +285,5 @@ impl Context {
 /// The unit of polygon offset in a fixed-point depth plane: two of its steps, since rounding may swallow part of one. 0 for
 /// floating point.
 fn depth_step(target: &Target) -> f32 {
-    let scale = target
-        .depth
-        .as_ref()
-        .map_or(16_777_215.0, |depth| depth.lock().unwrap_or_else(std::sync::PoisonError::into_inner).scale);
-    if scale == 1.0 { 0.0 } else { 2.0 / (scale + 1.0) }
+    if target.depth_scale == 1.0 { 0.0 } else { 2.0 / (target.depth_scale + 1.0) }
 }

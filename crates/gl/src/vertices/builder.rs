@@ -6,17 +6,18 @@
 //!
 //! If the caller promises to announce every call that changes what primitives are drawn with ([`Context::set_merging`]),
 //! Begin/End pairs gather in one batch until then. Modelview matrices and materials may change in between: they are kept
-//! with the vertices. Small batches from lists and arrays gather with them; one that stays alone is drawn as it is.
+//! with the vertices. Small batches from lists and arrays gather with them; one that stays alone is drawn as it is. What has become
+//! long is drawn while more is given; for that, long primitives whose elements share no vertices are cut.
 
 use super::attribute::{CARRIED, COLOR};
 use crate::state::Current;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{Given, Sent, VertexBatch, is_independent};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
 
 /// Vertices of a batch that waits for no more.
-const LONG_ENOUGH: usize = 1 << 16;
+const LONG_ENOUGH: usize = 12 * 2730;
 
 /// How many batches are kept for their memory.
 const MOST_KEPT: usize = 16;
@@ -37,6 +38,8 @@ pub(crate) struct Builder {
     merging: bool,
     mode: u32,
     first: u32,
+    /// With so many vertices the open primitive is long.
+    pub(super) most: usize,
     /// Whether what is gathered is cut as what comes at once.
     sent: Sent,
     /// As it was at the first Begin.
@@ -77,6 +80,7 @@ impl Builder {
         self.gathering = true;
         self.mode = mode;
         self.first = self.batch.positions.len() as u32;
+        self.most = self.batch.positions.len() + LONG_ENOUGH;
     }
 
     /// Ends the primitive.
@@ -272,7 +276,7 @@ impl Context {
         let builder = &mut self.builder;
         builder.add(batch, &self.state.current);
         if builder.batch.positions.len() >= LONG_ENOUGH {
-            self.flush_vertices();
+            self.draw_long();
         }
         true
     }
@@ -283,9 +287,10 @@ impl Context {
             return;
         }
         self.builder.close();
-        let waits = self.builder.merging && self.feedback.mode == enums::RENDER;
-        if !waits || self.builder.batch.positions.len() >= LONG_ENOUGH {
+        if !self.builder.merging || self.feedback.mode != enums::RENDER {
             self.flush_vertices();
+        } else if self.builder.batch.positions.len() >= LONG_ENOUGH {
+            self.draw_long();
         }
     }
 
@@ -333,8 +338,34 @@ impl Context {
     #[inline(always)]
     pub(super) fn exec_vertex(&mut self, position: [f32; 4]) {
         if self.builder.is_open() {
+            if self.builder.batch.positions.len() == self.builder.most {
+                self.cut();
+            }
             self.builder.vertex(position, &self.state.current);
         }
+    }
+
+    /// Draws what waits, while more is given.
+    fn draw_long(&mut self) {
+        self.flush_vertices();
+        self.start_recorded();
+    }
+
+    /// Draws what there is of a long primitive whose elements share no vertices, and goes on with it.
+    #[cold]
+    #[inline(never)]
+    fn cut(&mut self) {
+        let builder = &mut self.builder;
+        builder.most += LONG_ENOUGH;
+        let whole = (builder.batch.positions.len() - builder.first()).is_multiple_of(12);
+        if !builder.merging || self.feedback.mode != enums::RENDER || !is_independent(builder.mode) || !whole {
+            return;
+        }
+        let (mode, sent) = (builder.mode, builder.sent);
+        builder.close();
+        self.draw_long();
+        self.gather(sent);
+        self.builder.open(mode);
     }
 
     #[inline(always)]

@@ -16,7 +16,7 @@ impl Context {
             return false;
         }
         let positions = &mut builder.batch.positions;
-        if positions.len() == positions.capacity() {
+        if positions.len() == positions.capacity() || positions.len() == builder.most {
             return false;
         }
         positions.push(filled(given));

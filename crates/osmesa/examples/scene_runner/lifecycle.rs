@@ -13,6 +13,7 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
     let gl = Gl::load(library)?;
     match mode {
         "fork" => fork(&gl),
+        "fork-while-drawing" => fork_while_drawing(&gl),
         "threads" => threads(&gl),
         "moved" => moved(&gl),
         "growth" => growth(&gl),
@@ -46,6 +47,25 @@ impl Window {
 
     fn make_current(&mut self, gl: &Gl) {
         gl.OSMesaMakeCurrent(self.context, at_mut(&mut self.buffer), UNSIGNED_BYTE, SIDE, SIDE);
+    }
+
+    /// Gives this many quads, each over all of the picture, in one primitive: they are drawn while more are given.
+    fn give_many(&mut self, gl: &Gl, count: usize) {
+        gl.glColor3f(0.0, 1.0, 0.0);
+        gl.glBegin(QUADS);
+        for _ in 0..count {
+            for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+                gl.glVertex2f(x, y);
+            }
+        }
+        gl.glEnd();
+    }
+
+    /// Finishes such a picture, and checks that it came out.
+    fn finish_many(&mut self, gl: &Gl) -> Result<(), String> {
+        gl.glFinish();
+        let wrong = self.buffer.iter().filter(|pixel| pixel.to_ne_bytes() != [0, 255, 0, 255]).count();
+        if wrong == 0 { Ok(()) } else { Err(format!("{wrong} pixels are not green")) }
     }
 
     /// Draws a frame, and checks that it came out.
@@ -83,6 +103,31 @@ fn fork(gl: &Gl) -> Result<(), String> {
             return Err(format!("the child ended with status {status:#x}"));
         }
         window.frame(gl)?;
+    }
+    Ok(())
+}
+
+/// A fork amid a frame, of which a part is being drawn while more is given: parent and child finish it, each for itself.
+fn fork_while_drawing(gl: &Gl) -> Result<(), String> {
+    let mut window = Window::new(gl);
+    for round in 0..10 {
+        window.give_many(gl, 40_000 + 7000 * round);
+        // SAFETY: no other thread of ours holds anything that the child needs.
+        let child = unsafe { libc::fork() };
+        window.give_many(gl, 1);
+        let fine = window.finish_many(gl);
+        if child == 0 {
+            let fine = fine.is_ok() && window.frame(gl).is_ok();
+            // SAFETY: ends the child at once.
+            unsafe { libc::_exit(i32::from(!fine)) };
+        }
+        let mut status = 0;
+        // SAFETY: waits for our child.
+        unsafe { libc::waitpid(child, &raw mut status, 0) };
+        if status != 0 {
+            return Err(format!("the child ended with status {status:#x}"));
+        }
+        fine?;
     }
     Ok(())
 }
@@ -211,6 +256,7 @@ fn exit(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
     window.frame(gl)?;
     gl.glRectf(-0.2, -0.2, 0.2, 0.2);
+    window.give_many(gl, 50_000);
     drop(window);
     std::process::exit(0);
 }

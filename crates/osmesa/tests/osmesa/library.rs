@@ -17,6 +17,7 @@ fn lifecycle(mode: &str, threads: Option<&str>) {
 fn a_forked_process_draws() {
     for threads in ["1", "4"] {
         lifecycle("fork", Some(threads));
+        lifecycle("fork-while-drawing", Some(threads));
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Target {
     pub depth: Option<Arc<Mutex<DepthPlane>>>,
     /// Stencil; without one the stencil test passes.
     pub stencil: Option<Arc<Mutex<StencilPlane>>>,
+    /// [`DepthPlane::scale`]; without depth any.
+    pub depth_scale: f32,
 }
 
 impl Target {

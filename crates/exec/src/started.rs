@@ -1,0 +1,150 @@
+//! Work that goes on while the thread that asked for it does something else.
+//!
+//! A process that forks while such work is going on would leave half of it to the child, whose threads are not there. So
+//! whoever may be part of a process that forks has [`hold_for_fork`] called before and [`forked`] after it.
+
+#[cfg(feature = "threads")]
+use crate::Workers;
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread;
+
+/// How many works are going on in the process.
+static GOING_ON: AtomicUsize = AtomicUsize::new(0);
+
+/// How many threads are about to fork.
+static FORKING: AtomicUsize = AtomicUsize::new(0);
+
+/// What [`Workers::start`](crate::Workers::start) has started. To drop it is not to stop it.
+pub struct Started {
+    #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+    workers: Workers,
+    outcome: Arc<Outcome>,
+}
+
+/// How it ended.
+#[derive(Default)]
+struct Outcome {
+    done: Mutex<Option<thread::Result<()>>>,
+    told: Condvar,
+}
+
+impl std::fmt::Debug for Started {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Started(done: {})", self.is_done())
+    }
+}
+
+impl Started {
+    #[cfg(feature = "threads")]
+    pub(crate) fn on<F>(pool: &rayon::ThreadPool, workers: &Workers, f: F) -> Result<Self, F>
+    where
+        F: FnOnce() + Send + 'static,
+    {
+        GOING_ON.fetch_add(1, SeqCst);
+        if FORKING.load(SeqCst) != 0 {
+            GOING_ON.fetch_sub(1, SeqCst);
+            return Err(f);
+        }
+        let outcome = Arc::new(Outcome::default());
+        #[cfg(not(all(target_os = "linux", not(miri))))]
+        let _ = workers;
+        let started = Self {
+            #[cfg(all(target_os = "linux", not(miri)))]
+            workers: workers.clone(),
+            outcome: Arc::clone(&outcome),
+        };
+        pool.spawn(move || {
+            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(f));
+            *outcome.done.lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+            outcome.told.notify_all();
+            drop(outcome);
+            GOING_ON.fetch_sub(1, SeqCst);
+        });
+        Ok(started)
+    }
+
+    /// Whether it has ended.
+    pub fn is_done(&self) -> bool {
+        self.outcome.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// Returns when it has ended.
+    ///
+    /// # Panics
+    /// If it did.
+    pub fn wait(self) {
+        let mut done = self.outcome.done.lock().unwrap_or_else(PoisonError::into_inner);
+        #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+        let _lent = done.is_none().then(|| self.workers.lend());
+        while done.is_none() {
+            done = self.outcome.told.wait(done).unwrap_or_else(PoisonError::into_inner);
+        }
+        if let Some(Err(panic)) = done.take() {
+            drop(done);
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+/// Waits until nothing is going on, and lets nothing start until [`forked`] is called.
+pub fn hold_for_fork() {
+    FORKING.fetch_add(1, SeqCst);
+    while GOING_ON.load(SeqCst) != 0 {
+        thread::yield_now();
+    }
+}
+
+/// To be called after a fork, in the parent and in the child.
+pub fn forked() {
+    FORKING.fetch_sub(1, SeqCst);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::channel;
+
+    /// Held by tests that start something, since what they hold up is held up for the whole process.
+    static ALONE: Mutex<()> = Mutex::new(());
+
+    #[test]
+    fn work_goes_on_beside_the_caller_and_shares_its_threads() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let workers = Workers::new(2);
+        let (to, from) = channel();
+        let (back, answer) = channel();
+        let own = workers.clone();
+        let work = move || {
+            let asked: u32 = from.recv().unwrap();
+            back.send(own.map(100, |i| i as u32 * asked).iter().sum::<u32>()).unwrap();
+        };
+        let started = workers.start(work).unwrap_or_else(|_| panic!("there are threads"));
+        assert!(!started.is_done());
+        to.send(3).unwrap();
+        assert_eq!(answer.recv(), Ok(3 * 4950));
+        started.wait();
+
+        let broken = workers.start(|| panic!("as it should")).unwrap_or_else(|_| panic!("there are threads"));
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| broken.wait())).is_err());
+        assert!(Workers::single().start(|| ()).is_err(), "there is no thread that could");
+    }
+
+    #[test]
+    fn nothing_is_going_on_when_a_process_forks() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let workers = Workers::new(2);
+        let (to, from) = channel::<()>();
+        let started = workers.start(move || from.recv().unwrap()).unwrap_or_else(|_| panic!("there are threads"));
+        let about_to_fork = thread::spawn(hold_for_fork);
+        while FORKING.load(SeqCst) == 0 {
+            thread::yield_now();
+        }
+        assert!(workers.start(|| ()).is_err() && !about_to_fork.is_finished());
+        to.send(()).unwrap();
+        started.wait();
+        about_to_fork.join().unwrap();
+        forked();
+        workers.start(|| ()).unwrap_or_else(|_| panic!("it may start again")).wait();
+    }
+}

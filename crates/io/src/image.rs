@@ -1,10 +1,12 @@
-//! Images in: PNG and JPEG, known by their content, as 8-bit RGBA with straight alpha.
+//! Images in: PNG, JPEG, TGA, BMP, GIF and WebP, known by their content, as 8-bit RGBA with straight alpha.
 //!
 //! In:   the bytes of a file. Out: a plane, the top row first. PNG: every colour type, 16 bits reduced to 8,
-//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive.
+//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive. GIF and WebP: the first picture.
 //! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before anything is allocated.
 
 use crate::{Error, Place};
+use image::codecs::{bmp::BmpDecoder, gif::GifDecoder, jpeg::JpegDecoder, tga::TgaDecoder, webp::WebPDecoder};
+use image::{DynamicImage, ImageDecoder, ImageResult};
 use std::io::Cursor;
 use vitral_frame::Plane;
 
@@ -15,6 +17,9 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Bytes that a decoder may take besides its output.
 const DECODER_MEMORY: usize = 64 << 20;
 
+/// What is read, for messages about other formats.
+const READ: &str = "PNG, JPEG, TGA, BMP, GIF and WebP are";
+
 /// Most pixels that a byte of a JPEG file can stand for: each block of 64 takes at least one bit of its first scan.
 const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
 
@@ -23,12 +28,12 @@ const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
 /// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     whole(bytes, file)?;
-    decode_else(bytes, file, "PNG and JPEG are")
+    decode_else(bytes, file, READ)
 }
 
 /// [`decode`] for textures: a JPEG that is cut off is shown as far as it goes; the message says so.
 pub(crate) fn decode_texture(bytes: &[u8], file: &str) -> Result<(Plane<[u8; 4]>, Option<String>), Error> {
-    let plane = decode_else(bytes, file, "PNG and JPEG are")?;
+    let plane = decode_else(bytes, file, READ)?;
     Ok((plane, whole(bytes, file).err().map(|e| e.to_string())))
 }
 
@@ -71,13 +76,15 @@ pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Pl
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
         [0xff, 0xd8, 0xff, ..] => decode_jpeg(bytes, file),
-        [b'G', b'I', b'F', b'8', ..] => Err(unsupported("GIF")),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Err(unsupported("WebP")),
+        [b'G', b'I', b'F', b'8', ..] => decode_by(GifDecoder::new(Cursor::new(bytes)), "GIF", file),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
+            decode_by(WebPDecoder::new(Cursor::new(bytes)), "WebP", file)
+        }
         [b'D', b'D', b'S', b' ', ..] => Err(unsupported("DDS")),
         [0xab, b'K', b'T', b'X', ..] => Err(unsupported("KTX")),
-        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => Err(unsupported("BMP")),
+        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => decode_by(BmpDecoder::new(Cursor::new(bytes)), "BMP", file),
         [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Err(unsupported("TIFF")),
-        _ if has_tga_header(bytes) => Err(unsupported("TGA")),
+        _ if has_tga_header(bytes) => decode_by(TgaDecoder::new(Cursor::new(bytes)), "TGA", file),
         _ => Err(unsupported("this image format")),
     }
 }
@@ -150,16 +157,24 @@ pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
 }
 
 fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
-    use image::ImageDecoder;
-    let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("JPEG: {e}"));
-    let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes)).map_err(bad)?;
+    let decoder = JpegDecoder::new(Cursor::new(bytes));
+    if let Ok((width, height)) = decoder.as_ref().map(ImageDecoder::dimensions) {
+        check_size(width, height, file)?;
+        if u64::from(width) * u64::from(height) > JPEG_PIXELS_A_BYTE * bytes.len() as u64 {
+            let what = format!("JPEG: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
+            return Err(Error::malformed(file, Place::File, what));
+        }
+    }
+    decode_by(decoder, "JPEG", file)
+}
+
+/// What a decoder gives.
+fn decode_by(decoder: ImageResult<impl ImageDecoder>, format: &str, file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("{format}: {e}"));
+    let decoder = decoder.map_err(bad)?;
     let (width, height) = decoder.dimensions();
     check_size(width, height, file)?;
-    if u64::from(width) * u64::from(height) > JPEG_PIXELS_A_BYTE * bytes.len() as u64 {
-        let what = format!("JPEG: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
-        return Err(Error::malformed(file, Place::File, what));
-    }
-    let rgba = image::DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
+    let rgba = DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
     plane(width, height, rgba_from_bytes(rgba), file)
 }
 
@@ -260,13 +275,47 @@ mod tests {
         assert_eq!(decode(cut, "a.jpg").unwrap_err().to_string(), message);
     }
 
+    /// The colours of a picture of three by two pixels.
+    const SIX: [[u8; 4]; 6] =
+        [[255, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 255], [1, 2, 3, 255], [250, 128, 4, 0], [9, 8, 7, 255]];
+
+    fn of_hex(text: &str) -> Vec<u8> {
+        (0..text.len() / 2).map(|k| u8::from_str_radix(&text[2 * k..2 * k + 2], 16).unwrap()).collect()
+    }
+
+    #[test]
+    fn pictures_of_old_programs_and_of_the_web() {
+        let opaque = SIX.map(|[r, g, b, _]| [r, g, b, 255]);
+        let tga = "000002000000000000000000030002002008030201ff0480fa00070809ff0000ffff00ff0080ff0000ff";
+        let runs = "00000a00000000000000000003000200200802030201ff0480fa00070809ff020000ffff00ff0080ff0000ff";
+        let bmp = "424d4e0000000000000036000000280000000300000002000000010018000000000018000000c40e0000c40e0000000000\
+                   00000000000302010480fa0708090000000000ff00ff00ff0000000000";
+        let webp = "524946464c000000574542505650384c400000002f024000102fa0a06d1ba69ff7508f8adab66d18c393ff7fd6e951d3b6\
+                    01930efe7c7b9540d2c6e87bf207f0e3458ca9dedb5503810065ac58e68288fec77801";
+        let gif = "47494638376103000200820000fa800400ff00090807010203ff00000000ff0000000000002c0000000003000200000809\
+                   000904283000808080003b";
+        let files = [(tga, SIX), (runs, SIX), (bmp, opaque), (webp, SIX), (gif, opaque)];
+        for (number, (file, colors)) in files.into_iter().enumerate() {
+            let bytes = of_hex(file);
+            let picture = decode(&bytes, "a").unwrap();
+            assert_eq!((picture.width(), picture.height()), (3, 2), "file {number}");
+            assert_eq!(picture.into_data(), colors, "file {number}");
+            // GIF and WebP pictures may end with bytes that nobody needs.
+            for end in 0..bytes.len() * 2 / 3 {
+                assert!(decode(&bytes[..end], "a").is_err(), "file {number} cut at {end}");
+            }
+        }
+        let grey = of_hex("00000300000000000000000002000100080007c8");
+        assert_eq!(decode(&grey, "a").unwrap().into_data(), [[7, 7, 7, 255], [200, 200, 200, 255]]);
+    }
+
     #[test]
     fn damage_is_an_error_and_strange_formats_are_named() {
         let good = png_of(png::ColorType::Rgb, png::BitDepth::Eight, 4, 4, &[7; 48], |_| {});
         for cut in 0..good.len() - 12 {
             assert!(decode(&good[..cut], "a.png").is_err(), "cut at {cut}");
         }
-        assert!(decode(b"GIF89a", "a.gif").unwrap_err().to_string().contains("GIF is not read"));
+        assert!(decode(b"II*\0", "a.tif").unwrap_err().to_string().contains("TIFF is not read; PNG, JPEG, TGA"));
         assert!(decode(b"\xff\xd8\xff\xe0junk", "a.jpg").is_err());
     }
 }

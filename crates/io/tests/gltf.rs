@@ -506,6 +506,24 @@ fn samplers_and_texture_sets() {
 }
 
 #[test]
+fn a_picture_in_webp_goes_before_the_one_for_other_readers() {
+    // One red pixel, lossless.
+    let webp = "data:image/webp;base64,UklGRhwAAABXRUJQVlA4TA8AAAAvAAAAAAcQ/Y/+ByKi/wEA";
+    let scene = load_text(&format!(
+        r#"{{"asset":{{"version":"2.0"}},"extensionsUsed":["EXT_texture_webp"],"extensionsRequired":["EXT_texture_webp"],
+        "materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}},"emissiveTexture":{{"index":1}}}}],
+        "textures":[{{"source":0,"extensions":{{"EXT_texture_webp":{{"source":1}}}}}},
+        {{"extensions":{{"EXT_texture_webp":{{"source":1}}}}}}],
+        "images":[{{"uri":"missing.png"}},{{"uri":"{webp}"}}]}}"#
+    ))
+    .unwrap();
+    let material = &scene.materials[0];
+    let numbers = [material.base_texture, material.emission_texture].map(|texture| texture.unwrap().texture);
+    assert_eq!((scene.textures.len(), numbers), (1, [0, 0]));
+    assert!(!scene.warnings.iter().any(|w| w.contains("missing.png") || w.contains("webp")), "{:?}", scene.warnings);
+}
+
+#[test]
 fn lights_shine_along_minus_z() {
     let text = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1,2]}],
         "nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}},"rotation":[0.70710678,0,0,0.70710678]},

@@ -24,13 +24,13 @@ use crate::Error;
 use vitral_frame::Plane;
 use vitral_math::color;
 
-/// Reads a picture in one of the formats that are written here: PNG, JPEG or PPM (also PGM), known by content.
+/// Reads a picture: PPM (also PGM), or a format that textures come in, known by content.
 pub fn decode_picture(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     match bytes {
         [b'P', b'5' | b'6', ..] => ppm::decode(bytes, file),
         _ => {
             crate::image::whole(bytes, file)?;
-            crate::image::decode_else(bytes, file, "PNG, JPEG and PPM are")
+            crate::image::decode_else(bytes, file, "PNG, JPEG, TGA, BMP, GIF, WebP and PPM are")
         }
     }
 }

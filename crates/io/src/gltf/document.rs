@@ -14,8 +14,12 @@ use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 use serde_json::{Map, Value};
 
+/// WebP pictures, which a texture names beside those that any reader knows.
+pub(crate) const WEBP: &str = "EXT_texture_webp";
+
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 8] = [
+const SUPPORTED: [&str; 9] = [
+    WEBP,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",

@@ -3,11 +3,11 @@
 //! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour or data), on all
 //! workers. A picture that cannot be had is a warning, and materials do without it.
 //!
-//! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform.
+//! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform, EXT_texture_webp.
 
 use super::accessor::Source;
 use super::buffers::read_target;
-use super::document::name_or;
+use super::document::{WEBP, name_or};
 use crate::uri::{self, Target};
 use crate::{Error, Resolver, image};
 use gltf::json::extensions::texture::TextureTransform;
@@ -48,11 +48,12 @@ impl Wanted {
         warnings: &mut Vec<String>,
     ) -> Option<TextureRef> {
         let texture = &source.root.textures[reference.texture];
-        let image = texture.source.value();
-        if image >= source.root.images.len() {
-            warnings.push(format!("{}: textures[{}]: no PNG or JPEG image, left out", source.file, reference.texture));
+        let webp = texture.extensions.as_ref().and_then(|e| e.others.get(WEBP)?.get("source")?.as_u64());
+        let candidates = [webp.map(|image| image as usize), Some(texture.source.value())];
+        let Some(image) = candidates.into_iter().flatten().find(|image| *image < source.root.images.len()) else {
+            warnings.push(format!("{}: textures[{}]: no image that is read, left out", source.file, reference.texture));
             return None;
-        }
+        };
         let key = (image, encoding);
         let number = self.images.iter().position(|&k| k == key).unwrap_or_else(|| {
             self.images.push(key);

@@ -2,8 +2,8 @@
  * (glFinish) included.
  *
  * cc -O2 NAME.c -o NAME $(PKG_CONFIG_PATH=target/osmesa/pkgconfig pkg-config --cflags --libs osmesa) -lm
- * Run it with LD_LIBRARY_PATH at one libOSMesa and at the other. The name of a way as argument
- * measures that alone (`all` measures each); a folder as second argument gets the pictures. */
+ * Run it with LD_LIBRARY_PATH at one libOSMesa and at the other. The name of a way as argument measures that alone (`all`
+ * measures each); a folder as second argument gets the pictures. */
 #define GL_GLEXT_PROTOTYPES
 #include <GL/osmesa.h>
 #include <GL/gl.h>

@@ -55,7 +55,6 @@ static void million(void) {
     glEnd();
 }
 
-
 int main(int count, char **arguments) {
     unsigned buffers[2];
     begin(count, arguments);

@@ -11,5 +11,5 @@ mod started;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};
-pub use started::{Started, forked, hold_for_fork};
+pub use started::{Started, born_of_fork, forked, hold_for_fork};
 pub use workers::Workers;

@@ -1,7 +1,8 @@
 //! Work that goes on while the thread that asked for it does something else.
 //!
 //! A process that forks while such work is going on would leave half of it to the child, whose threads are not there. So
-//! whoever may be part of a process that forks has [`hold_for_fork`] called before and [`forked`] after it.
+//! whoever may be part of a process that forks has [`hold_for_fork`] called before it, and after it [`forked`] and, in the child,
+//! [`born_of_fork`].
 
 #[cfg(feature = "threads")]
 use crate::Workers;
@@ -87,7 +88,7 @@ impl Started {
     }
 }
 
-/// Waits until nothing is going on, and lets nothing start until [`forked`] is called.
+/// Waits until nothing is going on, and lets nothing start until [`forked`] or [`born_of_fork`] is called.
 pub fn hold_for_fork() {
     FORKING.fetch_add(1, SeqCst);
     while GOING_ON.load(SeqCst) != 0 {
@@ -95,9 +96,16 @@ pub fn hold_for_fork() {
     }
 }
 
-/// To be called after a fork, in the parent and in the child.
+/// To be called in the parent after a fork.
 pub fn forked() {
     FORKING.fetch_sub(1, SeqCst);
+}
+
+/// To be called in the child after a fork. Other threads of the parent, which are not there, may have been about to start
+/// something, or to fork.
+pub fn born_of_fork() {
+    GOING_ON.store(0, SeqCst);
+    FORKING.store(0, SeqCst);
 }
 
 #[cfg(test)]
@@ -146,5 +154,13 @@ mod tests {
         about_to_fork.join().unwrap();
         forked();
         workers.start(|| ()).unwrap_or_else(|_| panic!("it may start again")).wait();
+
+        // Two threads fork, and a third one starts something: a child has the counts, but not the threads.
+        (0..2).for_each(|_| hold_for_fork());
+        GOING_ON.fetch_add(1, SeqCst);
+        born_of_fork();
+        workers.start(|| ()).unwrap_or_else(|_| panic!("a child may start")).wait();
+        hold_for_fork();
+        forked();
     }
 }

@@ -20,6 +20,11 @@ const DECODER_MEMORY: usize = 64 << 20;
 /// What is read, for messages about other formats.
 const READ: &str = "PNG, JPEG, TGA, BMP, GIF and WebP are";
 
+/// So many pixels are read however short a file is: one colour all over takes few bytes.
+const SURE_PIXELS: u64 = 1 << 24;
+/// Beyond them, most pixels that a byte of a file may stand for.
+const PIXELS_A_BYTE: u64 = 1 << 12;
+
 /// Most pixels that a byte of a JPEG file can stand for: each block of 64 takes at least one bit of its first scan.
 const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
 
@@ -76,15 +81,17 @@ pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Pl
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
         [0xff, 0xd8, 0xff, ..] => decode_jpeg(bytes, file),
-        [b'G', b'I', b'F', b'8', ..] => decode_by(GifDecoder::new(Cursor::new(bytes)), "GIF", file),
+        [b'G', b'I', b'F', b'8', ..] => decode_dense(GifDecoder::new(Cursor::new(bytes)), "GIF", (bytes, file)),
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
-            decode_by(WebPDecoder::new(Cursor::new(bytes)), "WebP", file)
+            decode_dense(WebPDecoder::new(Cursor::new(bytes)), "WebP", (bytes, file))
         }
         [b'D', b'D', b'S', b' ', ..] => Err(unsupported("DDS")),
         [0xab, b'K', b'T', b'X', ..] => Err(unsupported("KTX")),
-        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => decode_by(BmpDecoder::new(Cursor::new(bytes)), "BMP", file),
+        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => {
+            decode_dense(BmpDecoder::new(Cursor::new(bytes)), "BMP", (bytes, file))
+        }
         [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Err(unsupported("TIFF")),
-        _ if has_tga_header(bytes) => decode_by(TgaDecoder::new(Cursor::new(bytes)), "TGA", file),
+        _ if has_tga_header(bytes) => decode_dense(TgaDecoder::new(Cursor::new(bytes)), "TGA", (bytes, file)),
         _ => Err(unsupported("this image format")),
     }
 }
@@ -157,23 +164,33 @@ pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
 }
 
 fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
-    let decoder = JpegDecoder::new(Cursor::new(bytes));
-    if let Ok((width, height)) = decoder.as_ref().map(ImageDecoder::dimensions) {
-        check_size(width, height, file)?;
-        if u64::from(width) * u64::from(height) > JPEG_PIXELS_A_BYTE * bytes.len() as u64 {
-            let what = format!("JPEG: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
-            return Err(Error::malformed(file, Place::File, what));
-        }
-    }
-    decode_by(decoder, "JPEG", file)
+    decode_by(JpegDecoder::new(Cursor::new(bytes)), "JPEG", (bytes, file), JPEG_PIXELS_A_BYTE * bytes.len() as u64)
 }
 
-/// What a decoder gives.
-fn decode_by(decoder: ImageResult<impl ImageDecoder>, format: &str, file: &str) -> Result<Plane<[u8; 4]>, Error> {
+/// Any of the formats whose pictures may be much shorter than their pixels.
+fn decode_dense(
+    decoder: ImageResult<impl ImageDecoder>,
+    format: &str,
+    (bytes, file): (&[u8], &str),
+) -> Result<Plane<[u8; 4]>, Error> {
+    decode_by(decoder, format, (bytes, file), SURE_PIXELS.max(PIXELS_A_BYTE * bytes.len() as u64))
+}
+
+/// What a decoder gives of a file that cannot hold more than `most` pixels.
+fn decode_by(
+    decoder: ImageResult<impl ImageDecoder>,
+    format: &str,
+    (bytes, file): (&[u8], &str),
+    most: u64,
+) -> Result<Plane<[u8; 4]>, Error> {
     let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("{format}: {e}"));
     let decoder = decoder.map_err(bad)?;
     let (width, height) = decoder.dimensions();
     check_size(width, height, file)?;
+    if u64::from(width) * u64::from(height) > most {
+        let what = format!("{format}: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
+        return Err(Error::malformed(file, Place::File, what));
+    }
     let rgba = DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
     plane(width, height, rgba_from_bytes(rgba), file)
 }
@@ -305,6 +322,10 @@ mod tests {
                 assert!(decode(&bytes[..end], "a").is_err(), "file {number} cut at {end}");
             }
         }
+        let mut large = of_hex(gif);
+        large[6..10].copy_from_slice(&[0, 0x40, 0, 0x40]);
+        let error = decode(&large, "a.gif").unwrap_err().to_string();
+        assert!(error.contains("16384 x 16384 pixels are announced, the file has 60 bytes"), "{error}");
         let grey = of_hex("00000300000000000000000002000100080007c8");
         assert_eq!(decode(&grey, "a").unwrap().into_data(), [[7, 7, 7, 255], [200, 200, 200, 255]]);
     }

@@ -6,7 +6,7 @@ use crate::environment;
 use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicPtr, Ordering};
-use vitral_exec::{Workers, forked, hold_for_fork};
+use vitral_exec::{Workers, born_of_fork, forked, hold_for_fork};
 use vitral_math::lanes::{Level, level_from_environment};
 use vitral_raster::forward::Runner;
 
@@ -33,6 +33,10 @@ extern "C" fn after_fork() {
     forked();
 }
 
+extern "C" fn in_child() {
+    born_of_fork();
+}
+
 /// The process' runner.
 pub(crate) fn runner() -> Arc<Runner> {
     let process = std::process::id();
@@ -48,7 +52,7 @@ pub(crate) fn runner() -> Arc<Runner> {
     if found.is_null() {
         // The child has the same handlers. Where two threads come here at the same time, there are two of each: no harm.
         // SAFETY: the library is never unloaded, so that the functions stay.
-        let failed = unsafe { pthread_atfork(before_fork, after_fork, after_fork) };
+        let failed = unsafe { pthread_atfork(before_fork, after_fork, in_child) };
         if failed != 0 {
             environment::say("no memory to be told of forks: do not fork while something is drawn");
         }

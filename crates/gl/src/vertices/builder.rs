@@ -16,7 +16,7 @@ use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
 
-/// Vertices of a batch that waits for no more.
+/// Vertices of a batch that waits for no more: whole points, lines, triangles and quadrilaterals.
 const LONG_ENOUGH: usize = 12 * 2730;
 
 /// How many batches are kept for their memory.
@@ -357,8 +357,7 @@ impl Context {
     fn cut(&mut self) {
         let builder = &mut self.builder;
         builder.most += LONG_ENOUGH;
-        let whole = (builder.batch.positions.len() - builder.first()).is_multiple_of(12);
-        if !builder.merging || self.feedback.mode != enums::RENDER || !is_independent(builder.mode) || !whole {
+        if !builder.merging || self.feedback.mode != enums::RENDER || !is_independent(builder.mode) {
             return;
         }
         let (mode, sent) = (builder.mode, builder.sent);

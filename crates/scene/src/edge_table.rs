@@ -17,8 +17,9 @@ use vitral_exec::Workers;
 /// Faces beyond this cannot be numbered in a use (one bit holds the direction).
 pub(crate) const MAX_FACES: usize = 1 << 31;
 
-/// One side of a face: the number of the face, and whether it runs from the higher to the lower vertex.
-#[derive(Clone, Copy)]
+/// One side of a face: the number of the face, and whether it runs from the higher to the lower vertex. In order of the higher
+/// vertex.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Use(u64);
 
 impl Use {

@@ -20,11 +20,11 @@ mod faces;
 use crate::corner_fans::{Rule, fan_normals};
 use crate::weld::Weld;
 use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solidity};
-use faces::{face_data, outline_normal};
+use faces::outline_normal;
 use std::f64::consts::PI;
 use vitral_exec::Workers;
 
-pub(crate) use faces::FaceData;
+pub(crate) use faces::{FaceData, face_data, measure_triangles};
 
 /// The normal of a vertex without any face that has one.
 pub(crate) const DEFAULT_NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
@@ -84,15 +84,14 @@ fn first_corner(mesh: &Mesh, f: usize) -> usize {
 
 fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solidity>) {
     let weld = Weld::new(&mesh.positions, workers);
-    let faces = face_data(mesh, workers);
     let rule = match &mesh.smoothing_groups {
         Some(groups) if groups.len() == mesh.face_count() => Rule::Groups(groups),
         _ if crease_angle.is_nan() || crease_angle >= PI => {
-            return (Attribute::per_vertex(smooth(mesh, &weld, &faces, workers)), None);
+            return (Attribute::per_vertex(smooth(mesh, &weld, &face_data(mesh, workers), workers)), None);
         }
         _ => Rule::within(crease_angle),
     };
-    let made = fan_normals(mesh, &weld, &faces, rule, workers);
+    let made = fan_normals(mesh, &weld, rule, workers);
     let corners = made.of_corner.map(|of_corner| triangle_corners(mesh, &of_corner, workers));
     (Attribute { values: made.values, corners }, made.solidity)
 }

@@ -12,7 +12,7 @@
 
 use crate::Mesh;
 use crate::disjoint_sets::DisjointSets;
-use crate::edge_table::{MAX_FACES, Outlines, Use, edges_at, for_each_edge, is_collapsed};
+use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge, is_collapsed};
 use crate::weld::Weld;
 use vitral_exec::Workers;
 use vitral_math::{Fingerprint, mixed};
@@ -39,7 +39,7 @@ impl Solidity {
         }
         let weld = Weld::new(&mesh.positions, workers);
         let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
-        let visit = |seen: &mut Seen, _, _, uses: &[Use]| skins.edge(seen, uses);
+        let visit = |seen: &mut Seen, _, _, uses: &[Use]| skins.edge(seen, uses, uses.len() as u32);
         let seen = for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
         skins.solidity(&seen, workers)
     }
@@ -64,8 +64,10 @@ impl KnownSolidity {
     }
 }
 
-/// With more sides at a vertex they are sorted.
-const MANY: usize = 8;
+/// With more corners at a vertex its sides are sorted.
+const MANY: u32 = 64;
+/// Not an edge.
+const NONE: u32 = u32::MAX;
 
 /// A hash of positions and triangles. Reading them once is little against finding neighbours again.
 fn fingerprint(mesh: &Mesh, workers: &Workers) -> u64 {
@@ -94,9 +96,37 @@ pub(crate) struct Seen {
     some: bool,
     open: bool,
     twisted: bool,
-    /// Memory for the sides at a vertex: of triangles that leave, and of those that come back.
-    out: Vec<Use>,
-    back: Vec<Use>,
+    /// Memory for the edges of some vertices.
+    edges: Vec<Edge>,
+    /// For each vertex, the newest edge that has it as its lower one.
+    newest: Vec<u32>,
+    /// The uses of edges at vertices with many corners, with the lower vertex.
+    long: Vec<(u32, Use)>,
+}
+
+/// An edge, at its lower vertex.
+struct Edge {
+    /// The first one, and the last one if there are more.
+    uses: [Use; 2],
+    count: u32,
+    /// The edge before it at this vertex.
+    older: u32,
+}
+
+impl Seen {
+    fn use_edge(&mut self, vertex: usize, side: Use) {
+        let mut at = self.newest[vertex];
+        while let Some(edge) = self.edges.get_mut(at as usize) {
+            if edge.uses[0].higher() == side.higher() {
+                edge.uses[1] = side;
+                edge.count += 1;
+                return;
+            }
+            at = edge.older;
+        }
+        let older = std::mem::replace(&mut self.newest[vertex], self.edges.len() as u32);
+        self.edges.push(Edge { uses: [side; 2], count: 1, older });
+    }
 }
 
 impl<'a> Skins<'a> {
@@ -107,14 +137,14 @@ impl<'a> Skins<'a> {
     }
 
     fn welded(&self, corners: &[u32; 3]) -> [u32; 3] {
-        corners.map(|i| self.weld.representative[i as usize])
+        corners.map(|i| self.weld.of(i))
     }
 
-    /// Looks at an edge, given the triangles that use it.
-    fn edge(&self, seen: &mut Seen, uses: &[Use]) {
+    /// Looks at an edge that `count` triangles use, of which it needs no more than two.
+    fn edge(&self, seen: &mut Seen, uses: &[Use], count: u32) {
         seen.some = true;
         match uses {
-            [a, b] => {
+            [a, b] if count == 2 => {
                 seen.twisted |= a.reversed() == b.reversed();
                 self.bodies.join(a.face(), b.face());
             }
@@ -122,46 +152,44 @@ impl<'a> Skins<'a> {
         }
     }
 
-    /// Looks at the edges from a welded vertex to those with higher numbers. `corners` are all corners of triangles that
-    /// lie there, three a triangle in order.
-    pub(crate) fn vertex(&self, seen: &mut Seen, vertex: u32, corners: &[u32]) {
-        let (mut out, mut back) = (std::mem::take(&mut seen.out), std::mem::take(&mut seen.back));
-        out.clear();
-        back.clear();
-        for &corner in corners {
-            let (triangle, k) = (corner / 3, corner as usize % 3);
-            let at = self.welded(&self.mesh.triangles[triangle as usize]);
+    /// Looks at the edges whose lower vertex is one of those from `first_vertex` on, of which `degrees` tells how many corners of
+    /// triangles lie there. `faces` are all triangles that have one of these corners, each once; `welded` their welded corners.
+    pub(crate) fn look_at(
+        &self,
+        seen: &mut Seen,
+        first_vertex: u32,
+        degrees: &[u32],
+        faces: &[u32],
+        welded: &[[u32; 3]],
+    ) {
+        seen.edges.clear();
+        seen.long.clear();
+        seen.newest.clear();
+        seen.newest.resize(degrees.len(), NONE);
+        for (&face, &at) in faces.iter().zip(welded) {
             if is_collapsed(at) {
                 continue;
             }
-            let (to, from) = (at[(k + 1) % 3], at[(k + 2) % 3]);
-            if to > vertex {
-                out.push(Use::new(to, triangle, false));
-            }
-            if from > vertex {
-                back.push(Use::new(from, triangle, true));
+            for (from, to) in [(at[0], at[1]), (at[1], at[2]), (at[2], at[0])] {
+                let (lower, higher) = (from.min(to), from.max(to));
+                let vertex = lower.wrapping_sub(first_vertex) as usize;
+                match degrees.get(vertex) {
+                    None => {}
+                    Some(&degree) if degree > MANY => seen.long.push((lower, Use::new(higher, face, from > to))),
+                    Some(_) => seen.use_edge(vertex, Use::new(higher, face, from > to)),
+                }
             }
         }
-        // Almost always one triangle leaves by each edge and one comes back, and there are few.
-        if out.len() != back.len() || out.len() > MANY || !self.pairs(seen, &out, &back) {
-            out.append(&mut back);
-            edges_at(&mut out, |_, uses| self.edge(seen, uses));
-        }
-        (seen.out, seen.back) = (out, back);
-    }
 
-    /// Joins the triangles on both sides of each edge, if every edge has one that leaves by it and one that comes back; as
-    /// many leave as come.
-    fn pairs(&self, seen: &mut Seen, out: &[Use], back: &[Use]) -> bool {
-        for (k, side) in out.iter().enumerate() {
-            let other = back.iter().find(|b| b.higher() == side.higher());
-            let (Some(other), false) = (other, out[..k].iter().any(|o| o.higher() == side.higher())) else {
-                return false;
-            };
-            self.bodies.join(side.face(), other.face());
-            seen.some = true;
+        let edges = std::mem::take(&mut seen.edges);
+        edges.iter().for_each(|edge| self.edge(seen, &edge.uses[..(edge.count as usize).min(2)], edge.count));
+        seen.edges = edges;
+        let mut long = std::mem::take(&mut seen.long);
+        long.sort_unstable();
+        for edge in long.chunk_by(|a, b| (a.0, a.1.higher()) == (b.0, b.1.higher())) {
+            self.edge(seen, &[edge[0].1, edge[edge.len() - 1].1], edge.len() as u32);
         }
-        true
+        seen.long = long;
     }
 
     /// The answer, when all edges were looked at.

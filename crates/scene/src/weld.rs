@@ -42,6 +42,15 @@ impl Weld {
     }
 }
 
+impl Weld {
+    /// The representative of `vertex`.
+    #[inline]
+    pub(crate) fn of(&self, vertex: u32) -> u32 {
+        // Files often share vertices where they can: nothing to look up then.
+        if self.distinct == self.representative.len() { vertex } else { self.representative[vertex as usize] }
+    }
+}
+
 /// A position as bits, with -0 made 0.
 fn key(p: [f32; 3]) -> [u32; 3] {
     p.map(|c| (c + 0.0).to_bits())

@@ -25,7 +25,7 @@ pub(crate) struct FaceData {
 }
 
 /// Normals and angles of all faces.
-pub(super) fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
+pub(crate) fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
     let faces = mesh.face_count();
     let mut normals = vec![[0.0; 3]; faces];
     let mut weights = vec![0.0; face_corner_list(mesh).len()];
@@ -45,6 +45,23 @@ pub(super) fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
         dispatch!(level, simd => measure_faces(simd, mesh, first, normals, weights));
     });
     FaceData { normals, weights }
+}
+
+/// The normals of the triangles in `list`, and their angles, three each.
+pub(crate) fn measure_triangles(mesh: &Mesh, list: &[u32], normals: &mut [[f32; 3]], angles: &mut [f32]) {
+    dispatch!(Level::new(), simd => measure_listed(simd, mesh, list, normals, angles));
+}
+
+#[inline(always)]
+fn measure_listed<S: Simd>(simd: S, mesh: &Mesh, list: &[u32], normals: &mut [[f32; 3]], angles: &mut [f32]) {
+    let mut triangles = Triangles::default();
+    for (k, &triangle) in list.iter().enumerate() {
+        triangles.push(k, 3 * k, mesh.triangles[triangle as usize]);
+        if triangles.count == LANES {
+            triangles.measure(simd, mesh, normals, angles);
+        }
+    }
+    triangles.measure(simd, mesh, normals, angles);
 }
 
 /// The normals of the faces from `first` on, and their angles.

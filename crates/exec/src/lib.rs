@@ -7,9 +7,11 @@
 mod budget;
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
 mod placement;
+mod spare;
 mod started;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};
+pub use spare::Spare;
 pub use started::{Started, born_of_fork, forked, hold_for_fork};
 pub use workers::Workers;

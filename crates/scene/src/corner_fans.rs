@@ -13,17 +13,17 @@
 mod bucket;
 mod fan;
 
-use crate::buckets::{Buckets, shift_and_count};
+use crate::buckets::shift_and_count;
 use crate::normals::{DEFAULT_NORMAL, face_corner_list, unit};
 use crate::solidity::{Seen, Skins};
 use crate::weld::Weld;
 use crate::{Faces, Mesh, Solidity};
 use bucket::{AllFaces, Bucket};
 use fan::Fan;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Mutex, OnceLock, PoisonError};
-use vitral_exec::Workers;
+use vitral_exec::{Spare, Workers};
 use vitral_math::func;
 
 /// Vertices or corners that are worked on together, where each is little work.
@@ -79,13 +79,13 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
     let sorted = |degree: &u32| *degree > 0;
     let Rule::Angle { half, .. } = rule else {
         apart.clear();
-        apart.extend(bucket.degrees.iter().map(sorted));
+        apart.extend(bucket.around.degrees.iter().map(sorted));
         return apart.contains(&true);
     };
     apart.clear();
     apart.resize(normals.len(), false);
     bucket.sums(normals);
-    for ((normal, apart), &degree) in normals.iter_mut().zip(&mut *apart).zip(&bucket.degrees) {
+    for ((normal, apart), &degree) in normals.iter_mut().zip(&mut *apart).zip(&bucket.around.degrees) {
         let mean = unit(*normal).filter(|_| degree as usize <= MANY);
         *apart = degree > 0 && mean.is_none();
         *normal = mean.unwrap_or(DEFAULT_NORMAL);
@@ -98,33 +98,29 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
 pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Workers) -> FanNormals {
     let vertices = mesh.positions.len();
     let (shift, count) = shift_and_count(vertices);
-    let all = AllFaces::new(mesh, weld, shift, workers);
+    let all = AllFaces::new(mesh, weld, workers);
     let skins = if matches!(mesh.faces, Faces::Triangles) { Skins::new(mesh, weld) } else { None };
-    let dealt = Buckets::deal(&all, count, workers);
 
     // Each vertex has room for one normal; further ones are kept by bucket. For each corner 0 if it takes the first, else one more
     // than the place of a further one; made when the first vertex with two is found.
     let mut first = vec![DEFAULT_NORMAL; vertices];
     let mut further: Vec<Vec<[f32; 3]>> = vec![Vec::new(); count];
     let which: OnceLock<Vec<AtomicU32>> = OnceLock::new();
-    let spare: Mutex<Vec<Scratch>> = Mutex::default();
-    let take = || spare.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+    let spare = Spare::<Scratch>::default();
     let buckets: Vec<_> = first.chunks_mut(1 << shift).zip(&mut further).enumerate().collect();
-    workers.for_each(buckets, |(b, (first, further))| {
-        let mut scratch = take();
-        let Scratch { bucket, fan, apart, seen } = &mut scratch;
-        bucket.gather(&all, &dealt, b, first.len());
+    let make = |b: usize, first: &mut [[f32; 3]], further: &mut Vec<[f32; 3]>, scratch: &mut Scratch| {
+        let Scratch { bucket, fan, apart, seen } = scratch;
+        bucket.gather(&all, b, first.len());
         if let Some(skins) = &skins {
-            skins.look_at(seen, (b << shift) as u32, &bucket.degrees, &bucket.faces, &bucket.welded);
+            skins.look_at(seen, &bucket.around);
         }
         if !average(bucket, rule, first, apart) {
-            spare.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
             return;
         }
         bucket.sort(apart);
         for (v, first) in first.iter_mut().enumerate().filter(|(v, _)| apart[*v]) {
             let corners = bucket.at(v);
-            fan.make(corners, &bucket.faces, &bucket.normals, rule);
+            fan.make(corners, &bucket.around.faces, &bucket.normals, rule);
             *first = fan.values[0];
             if fan.values.len() > 1 {
                 let which = which.get_or_init(|| face_corner_list(mesh).iter().map(|_| AtomicU32::new(0)).collect());
@@ -134,10 +130,10 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
                 further.extend_from_slice(&fan.values[1..]);
             }
         }
-        spare.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
-    });
-    drop(dealt);
-    let spare = spare.into_inner().unwrap_or_else(PoisonError::into_inner);
+    };
+    workers.for_each(buckets, |(b, (first, further))| spare.lend(|scratch| make(b, first, further, scratch)));
+    drop(all);
+    let spare = spare.into_inner();
     let solidity = skins.map(|skins| skins.solidity(spare.iter().map(|scratch| &scratch.seen), workers));
 
     // One normal a vertex: no indices needed.

@@ -171,9 +171,6 @@ pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect:
 
 /// As [`frame_from`], fitting all finite points of a world instead of the corners of the box round it: closer where the
 /// model leaves the corners of its box empty.
-///
-/// What a point needs is convex, so no point of a box needs more than its neediest corner: runs of triangles are looked
-/// at neediest box first, until no box can need more than a point that was seen.
 pub fn frame_world(
     world: &World,
     eye: DVec3,
@@ -187,18 +184,41 @@ pub fn frame_world(
         return frame_from(&world.bounds, eye, view_up, lens, aspect, fill);
     }
     let fit = Fit::new(&world.bounds, eye, view_up, lens, aspect, fill);
-    let need = |instance: &Instance, vertices: &[u32]| {
-        let points = vertices.iter().map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
-        points.filter(|p| p.is_finite()).fold(0.0, |most, p| fit.need(p).max(most))
-    };
+    let need = greatest_need(world, |point| fit.need(point), workers);
+    fit.camera(need)
+}
 
+/// A camera for pictures in which the model turns about `up` through the middle of its box: what all finite points of the
+/// world sweep fills [`FILL`] of the picture, so that nothing leaves it and the size does not pulse.
+pub fn frame_turning(world: &World, view: View, up: Axis, lens: Lens, aspect: f64, workers: &Workers) -> Camera {
+    let (eye, picture_up) = view.eye_and_up(up);
+    let bounds = presentable(&world.bounds);
+    let fit = Fit::new(&bounds, eye, picture_up, lens, aspect, FILL);
+    let turning = Turning::new(&fit, up.vector());
+    if bounds != world.bounds {
+        return fit.camera(bounds.corners().into_iter().map(|corner| turning.need(corner)).fold(0.0, f64::max));
+    }
+    let need = greatest_need(world, |point| turning.need(point), workers);
+    fit.camera(need)
+}
+
+/// The greatest of what the finite points of a world need.
+///
+/// What a point needs must be convex: no point of a box needs more than its neediest corner then, and runs of triangles are looked
+/// at neediest box first, until no box can need more than a point that was seen.
+fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Workers) -> f64 {
+    let of_vertices = |instance: &Instance, vertices: &[u32]| {
+        let points = vertices.iter().map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
+        points.filter(|p| p.is_finite()).fold(0.0, |most, p| need(p).max(most))
+    };
     let mut runs = Vec::new();
     let mut seen = 0.0f64;
     for instance in &world.instances {
-        seen = seen.max(need(instance, instance.mesh.lines.as_flattened())).max(need(instance, &instance.mesh.points));
+        let (lines, points) = (instance.mesh.lines.as_flattened(), &instance.mesh.points);
+        seen = seen.max(of_vertices(instance, lines)).max(of_vertices(instance, points));
         for (run, bounds) in world.run_bounds[instance.mesh_index as usize].iter().enumerate() {
             if !bounds.is_empty() {
-                let corners = bounds.corners().map(|c| fit.need(instance.world_from_model.transform_point3(c)));
+                let corners = bounds.corners().map(|c| need(instance.world_from_model.transform_point3(c)));
                 runs.push((corners.into_iter().fold(0.0, f64::max), instance, run));
             }
         }
@@ -209,12 +229,12 @@ pub fn frame_world(
         // A hair more, for what rounding may do to corners.
         let open = rest[..rest.len().min(batch)].partition_point(|(most, ..)| most * (1.0 + 1e-9) >= seen);
         if open == 0 {
-            return fit.camera(seen);
+            return seen;
         }
         let found = workers.map(open, |i| {
             let (_, instance, run) = rest[i];
             let triangles = instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
-            need(instance, triangles.as_flattened())
+            of_vertices(instance, triangles.as_flattened())
         });
         seen = found.into_iter().fold(seen, f64::max);
         (rest, batch) = (&rest[open..], 2 * batch);
@@ -279,16 +299,38 @@ impl Fit {
     }
 }
 
-/// A camera for pictures in which the model turns about `up` through the middle of the box: the framed view of the box
-/// of everything that the turning box sweeps, so that no corner leaves the picture and the size does not pulse.
-pub fn frame_turning(bounds: &Aabb, view: View, up: Axis, lens: Lens, aspect: f64) -> Camera {
-    let bounds = presentable(bounds);
-    let (axis, half) = (up.vector(), bounds.size() * 0.5);
-    let height = half.dot(axis.abs());
-    let radius = (half - axis.abs() * height).length();
-    let reach = axis.abs() * height + (DVec3::ONE - axis.abs()) * radius;
-    let center = bounds.center();
-    frame(&Aabb { min: center - reach, max: center + reach }, view, up, lens, aspect)
+/// What points need while they turn about an axis through the middle.
+///
+/// A point at height `h` and radius `r` runs through `h·a + r·(u·cos φ + v·sin φ)`, with unit vectors `a` along the axis and `u`,
+/// `v` across it. What it needs is the greatest of four linear functions `f` (its place on the right, on the left, above and below,
+/// each with its depth), and over the circle each has the maximum `h·(f·a) + r·√((f·u)² + (f·v)²)`.
+struct Turning {
+    center: DVec3,
+    axis: DVec3,
+    /// For each function, what height and what radius count.
+    functions: [(f64, f64); 4],
+}
+
+impl Turning {
+    /// About `axis` (unit, world space).
+    fn new(fit: &Fit, axis: DVec3) -> Self {
+        let a = fit.view_from_world.transform_vector3(axis);
+        let depth = if fit.lens == Lens::Parallel { 0.0 } else { 1.0 };
+        let (width, height) = (fit.per_width, fit.per_height);
+        let functions = [(width, 0.0), (-width, 0.0), (0.0, height), (0.0, -height)].map(|(x, y)| {
+            let f = DVec3::new(x, y, depth);
+            (f.dot(a), (f.length_squared() - f.dot(a) * f.dot(a)).max(0.0).sqrt())
+        });
+        Self { center: fit.camera.focal_point, axis, functions }
+    }
+
+    /// As [`Fit::need`], for all directions that `point` gets to.
+    fn need(&self, point: DVec3) -> f64 {
+        let p = point - self.center;
+        let h = p.dot(self.axis);
+        let r = (p - self.axis * h).length();
+        self.functions.iter().fold(0.0, |most, (of_height, of_radius)| (h * of_height + r * of_radius).max(most))
+    }
 }
 
 /// Distances along the direction of view to the nearest and farthest corner of `bounds`, for [`Camera::transform`].
@@ -327,7 +369,10 @@ fn presentable(bounds: &Aabb) -> Aabb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::builtin::solids;
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
+    use vitral_math::DQuat;
 
     const VIEWS: [View; 7] = [View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
     const AXES: [Axis; 6] = [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
@@ -366,7 +411,7 @@ mod tests {
 
     #[test]
     fn fitting_the_points_of_a_ball_shows_it_larger_than_its_box_would() {
-        let ball = crate::builtin::solids::sphere(1.0, 64, 32);
+        let ball = solids::sphere(1.0, 64, 32);
         let points: Vec<_> = ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let bounds = ball.bounds();
         let world = World::new(&crate::Scene::from_mesh(ball)).unwrap();
@@ -410,11 +455,33 @@ mod tests {
         }
 
         #[test]
-        fn a_turning_box_stays_in_the_picture(size in prop::array::uniform3(0.1f64..9.0), turn in 0.0f64..6.3) {
-            let half = DVec3::from_array(size) * 0.5;
-            let bounds = Aabb { min: -half, max: half };
-            let camera = frame_turning(&bounds, View::Iso, Axis::PlusY, Lens::default(), 1.5);
-            prop_assert!(reach(&camera.azimuth(turn), &bounds, 1.5) <= FILL + 1e-9);
+        fn what_turns_stays_in_the_picture_and_fills_it(
+            size in prop::array::uniform3(0.1f64..9.0), at in prop::array::uniform3(-3.0f64..3.0),
+            view in 0usize..7, axis in 0usize..6, aspect in 0.4f64..2.5, parallel: bool, ball: bool,
+        ) {
+            let mut mesh = if ball { solids::sphere(1.0, 24, 12) } else { solids::cuboid(DVec3::ONE) };
+            for p in mesh.positions.iter_mut() {
+                *p = std::array::from_fn(|k| p[k] * size[k] as f32 + at[k] as f32);
+            }
+            let points: Vec<_> = mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+            let world = World::new(&crate::Scene::from_mesh(mesh)).unwrap();
+            let lens = if parallel { Lens::Parallel } else { Lens::default() };
+            let axis = AXES[axis];
+            let camera = frame_turning(&world, VIEWS[view], axis, lens, aspect, &Workers::single());
+            let view = camera.view_from_world();
+            let reach = |turn: i32| {
+                let turned = DQuat::from_axis_angle(axis.vector(), f64::from(turn) * TAU / 720.0);
+                points.iter().fold(0.0f64, |most, p| {
+                    let p = view.transform_point3(camera.focal_point + turned * (*p - camera.focal_point));
+                    let half = match camera.projection {
+                        Projection::Perspective { view_angle } => func::tan(view_angle * 0.5) * -p.z,
+                        Projection::Parallel { height } => height * 0.5,
+                    };
+                    most.max((p.x / (half * aspect)).abs()).max((p.y / half).abs())
+                })
+            };
+            let reach = (0..720).map(reach).fold(0.0, f64::max);
+            prop_assert!(reach <= FILL + 1e-9 && reach > FILL - 1e-3, "{}", reach);
         }
     }
 }

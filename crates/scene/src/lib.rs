@@ -20,6 +20,7 @@ mod scene;
 mod solidity;
 pub mod spaces;
 pub mod topology;
+mod triangle_buckets;
 pub mod weld;
 mod world;
 

@@ -12,9 +12,10 @@
 
 use crate::Mesh;
 use crate::disjoint_sets::DisjointSets;
-use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge, is_collapsed};
+use crate::edge_table::{MAX_FACES, Use, is_collapsed};
+use crate::triangle_buckets::{Around, TriangleBuckets};
 use crate::weld::Weld;
-use vitral_exec::Workers;
+use vitral_exec::{Spare, Workers};
 use vitral_math::{Fingerprint, mixed};
 
 /// What back-face culling must know. Triangles with two corners at one position are left out: they are invisible.
@@ -39,9 +40,16 @@ impl Solidity {
         }
         let weld = Weld::new(&mesh.positions, workers);
         let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
-        let visit = |seen: &mut Seen, _, _, uses: &[Use]| skins.edge(seen, uses, uses.len() as u32);
-        let seen = for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
-        skins.solidity(&seen, workers)
+        let triangles = TriangleBuckets::new(mesh, &weld, workers);
+        let spare = Spare::<(Around, Seen)>::default();
+        workers.map(triangles.count(), |b| {
+            spare.lend(|(around, seen)| {
+                around.fill(&triangles, b);
+                skins.look_at(seen, around);
+            });
+        });
+        drop(triangles);
+        skins.solidity(spare.into_inner().iter().map(|(_, seen)| seen), workers)
     }
 
     /// Whether back faces can never be seen from a point outside the mesh.
@@ -152,16 +160,9 @@ impl<'a> Skins<'a> {
         }
     }
 
-    /// Looks at the edges whose lower vertex is one of those from `first_vertex` on, of which `degrees` tells how many corners of
-    /// triangles lie there. `faces` are all triangles that have one of these corners, each once; `welded` their welded corners.
-    pub(crate) fn look_at(
-        &self,
-        seen: &mut Seen,
-        first_vertex: u32,
-        degrees: &[u32],
-        faces: &[u32],
-        welded: &[[u32; 3]],
-    ) {
+    /// Looks at the edges whose lower vertex is in a bucket.
+    pub(crate) fn look_at(&self, seen: &mut Seen, around: &Around) {
+        let Around { first_vertex, degrees, faces, welded } = around;
         seen.edges.clear();
         seen.long.clear();
         seen.newest.clear();
@@ -172,7 +173,7 @@ impl<'a> Skins<'a> {
             }
             for (from, to) in [(at[0], at[1]), (at[1], at[2]), (at[2], at[0])] {
                 let (lower, higher) = (from.min(to), from.max(to));
-                let vertex = lower.wrapping_sub(first_vertex) as usize;
+                let vertex = lower.wrapping_sub(*first_vertex) as usize;
                 match degrees.get(vertex) {
                     None => {}
                     Some(&degree) if degree > MANY => seen.long.push((lower, Use::new(higher, face, from > to))),

@@ -172,9 +172,11 @@ impl Renderer {
     }
 
     /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
-    /// from above. A framed camera keeps its distance, far enough for all of them.
+    /// from above. A framed camera keeps its distance, just far enough for
+    /// the whole turn.
     pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {
-        let framed = || framing::frame_turning(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
+        let workers = &self.execution.workers;
+        let framed = || framing::frame_turning(self.world(), self.view, self.up, self.lens, self.aspect(), workers);
         let first = self.camera.unwrap_or_else(framed);
         let turned = |i: usize| {
             let angle = std::f64::consts::TAU * i as f64 / count as f64;

@@ -1,12 +1,13 @@
 //! The corners at a bucket of vertices, and what their faces say to them.
 //!
-//! Idea: triangles are dealt to the buckets that they have corners in, and measured there, into memory that stays in the
-//! cache; measured beforehand, all of them would go through main memory twice. Of other faces each corner is dealt, and they
-//! are measured beforehand: a large one may lie in many buckets.
+//! Idea: triangles are measured in the buckets that they have corners in, into memory that stays in the cache; measured
+//! beforehand, all of them would go through main memory twice. Of other faces each corner is dealt, and they are measured
+//! beforehand: a large one may lie in many buckets.
 
 use super::is_near;
-use crate::buckets::{Buckets, Source};
+use crate::buckets::{Buckets, Source, shift_and_count};
 use crate::normals::{FaceData, face_corner_list, face_data, measure_triangles};
+use crate::triangle_buckets::{Around, TriangleBuckets};
 use crate::weld::Weld;
 use crate::{Faces, Mesh};
 use std::ops::Range;
@@ -15,16 +16,16 @@ use vitral_exec::Workers;
 /// Faces that are looked up together.
 const PIECE: usize = 1 << 14;
 
-/// All faces, dealt by the welded vertices that their corners lie at: triangles once to each bucket, others by their corners.
-pub(super) struct AllFaces<'a> {
-    mesh: &'a Mesh,
-    weld: &'a Weld,
-    polygons: Option<Polygons<'a>>,
-    shift: u32,
+/// All faces, dealt by the welded vertices that their corners lie at.
+pub(super) enum AllFaces<'a> {
+    Triangles(&'a Mesh, TriangleBuckets<'a>),
+    Polygons(Polygons<'a>, Buckets<u32>),
 }
 
 /// Faces that are not all triangles.
-struct Polygons<'a> {
+pub(super) struct Polygons<'a> {
+    weld: &'a Weld,
+    shift: u32,
     corners: &'a [u32],
     data: FaceData,
     /// The face of each corner.
@@ -32,40 +33,30 @@ struct Polygons<'a> {
 }
 
 impl<'a> AllFaces<'a> {
-    /// The faces of `mesh`, for buckets of `1 << shift` vertices.
-    pub(super) fn new(mesh: &'a Mesh, weld: &'a Weld, shift: u32, workers: &Workers) -> Self {
-        let polygons = matches!(mesh.faces, Faces::Polygons { .. }).then(|| {
-            let pieces = workers.map(mesh.face_count().div_ceil(PIECE), |piece| {
-                let faces = piece * PIECE..mesh.face_count().min((piece + 1) * PIECE);
-                faces.flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect::<Vec<_>>()
-            });
-            Polygons { corners: face_corner_list(mesh), data: face_data(mesh, workers), of_corner: pieces.concat() }
+    /// The faces of `mesh`.
+    pub(super) fn new(mesh: &'a Mesh, weld: &'a Weld, workers: &Workers) -> Self {
+        if matches!(mesh.faces, Faces::Triangles) {
+            return Self::Triangles(mesh, TriangleBuckets::new(mesh, weld, workers));
+        }
+        let pieces = workers.map(mesh.face_count().div_ceil(PIECE), |piece| {
+            let faces = piece * PIECE..mesh.face_count().min((piece + 1) * PIECE);
+            faces.flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect::<Vec<_>>()
         });
-        Self { mesh, weld, polygons, shift }
+        let (shift, count) = shift_and_count(mesh.positions.len());
+        let corners = face_corner_list(mesh);
+        let polygons = Polygons { weld, shift, corners, data: face_data(mesh, workers), of_corner: pieces.concat() };
+        let dealt = Buckets::deal(&polygons, count, workers);
+        Self::Polygons(polygons, dealt)
     }
 }
 
-impl Source<u32> for AllFaces<'_> {
+impl Source<u32> for Polygons<'_> {
     fn items(&self) -> usize {
-        self.polygons.as_ref().map_or(self.mesh.triangles.len(), |polygons| polygons.corners.len())
+        self.corners.len()
     }
 
     fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, u32)) {
-        let bucket = |v: u32| (self.weld.of(v) >> self.shift) as usize;
-        if let Some(polygons) = &self.polygons {
-            range.for_each(|c| put(bucket(polygons.corners[c]), c as u32));
-            return;
-        }
-        for t in range {
-            let [a, b, c] = self.mesh.triangles[t].map(bucket);
-            put(a, t as u32);
-            if b != a {
-                put(b, t as u32);
-            }
-            if c != a && c != b {
-                put(c, t as u32);
-            }
-        }
+        range.for_each(|c| put((self.weld.of(self.corners[c]) >> self.shift) as usize, c as u32));
     }
 }
 
@@ -80,18 +71,13 @@ pub(super) struct Corner {
     pub(super) angle: f32,
 }
 
-/// The corners at a bucket's vertices. These are counted from the first one.
+/// The corners at a bucket's vertices.
 #[derive(Default)]
 pub(super) struct Bucket {
-    first_vertex: u32,
-    /// How many corners there are at each vertex.
-    pub(super) degrees: Vec<u32>,
-    /// Faces with a corner here, by their number in the mesh, in order.
-    pub(super) faces: Vec<u32>,
-    /// Their normals, unit; zero without area.
+    pub(super) around: Around,
+    /// The normals of its faces, unit; zero without area.
     pub(super) normals: Vec<[f32; 3]>,
-    /// If they are triangles, their corners' welded vertices, and the angles there.
-    pub(super) welded: Vec<[u32; 3]>,
+    /// If they are triangles, the angles at their corners.
     angles: Vec<f32>,
     /// If they are not, the corners in order of the list, each with its vertex.
     listed: Vec<(u32, Corner)>,
@@ -102,53 +88,50 @@ pub(super) struct Bucket {
 
 impl Bucket {
     /// Fills it with bucket `b`, which has `size` vertices.
-    pub(super) fn gather(&mut self, all: &AllFaces, dealt: &Buckets<u32>, b: usize, size: usize) {
-        self.first_vertex = (b << all.shift) as u32;
-        self.faces.clear();
-        self.listed.clear();
-        self.normals.clear();
-        match &all.polygons {
-            None => {
-                dealt.pieces(b).for_each(|piece| self.faces.extend_from_slice(piece));
-                let welded = |t: &u32| all.mesh.triangles[*t as usize].map(|v| all.weld.of(v));
-                self.welded.clear();
-                self.welded.extend(self.faces.iter().map(welded));
-                self.normals.resize(self.faces.len(), [0.0; 3]);
-                self.angles.resize(3 * self.faces.len(), 0.0);
-                measure_triangles(all.mesh, &self.faces, &mut self.normals, &mut self.angles);
+    pub(super) fn gather(&mut self, all: &AllFaces, b: usize, size: usize) {
+        match all {
+            AllFaces::Triangles(mesh, triangles) => {
+                self.around.fill(triangles, b);
+                let faces = &self.around.faces;
+                self.normals.resize(faces.len(), [0.0; 3]);
+                self.angles.resize(3 * faces.len(), 0.0);
+                measure_triangles(mesh, faces, &mut self.normals, &mut self.angles);
             }
-            Some(polygons) => {
-                for &index in dealt.pieces(b).flatten() {
-                    let face = polygons.of_corner[index as usize];
-                    if self.faces.last() != Some(&face) {
-                        self.faces.push(face);
-                        self.normals.push(polygons.data.normals[face as usize]);
-                    }
-                    let vertex = all.weld.of(polygons.corners[index as usize]) - self.first_vertex;
-                    let angle = polygons.data.weights[index as usize];
-                    self.listed.push((vertex, Corner { index, face: self.faces.len() as u32 - 1, angle }));
-                }
-            }
+            AllFaces::Polygons(polygons, dealt) => self.gather_polygons(polygons, dealt, b, size),
         }
-        let mut degrees = std::mem::take(&mut self.degrees);
-        degrees.clear();
-        degrees.resize(size, 0);
-        self.for_each_corner(size, |vertex, _| degrees[vertex] += 1);
-        self.degrees = degrees;
     }
 
-    /// Calls `visit(vertex, corner)` for the corners at the bucket's `size` vertices, in order of faces.
+    fn gather_polygons(&mut self, all: &Polygons, dealt: &Buckets<u32>, b: usize, size: usize) {
+        let Around { first_vertex, degrees, faces, .. } = &mut self.around;
+        *first_vertex = (b << all.shift) as u32;
+        degrees.clear();
+        degrees.resize(size, 0);
+        faces.clear();
+        self.normals.clear();
+        self.listed.clear();
+        for &index in dealt.pieces(b).flatten() {
+            let face = all.of_corner[index as usize];
+            if faces.last() != Some(&face) {
+                faces.push(face);
+                self.normals.push(all.data.normals[face as usize]);
+            }
+            let vertex = all.weld.of(all.corners[index as usize]) - *first_vertex;
+            degrees[vertex as usize] += 1;
+            let angle = all.data.weights[index as usize];
+            self.listed.push((vertex, Corner { index, face: faces.len() as u32 - 1, angle }));
+        }
+    }
+
+    /// Calls `visit(vertex, corner)` for the corners at the bucket's vertices, in order of faces.
     #[inline(always)]
-    fn for_each_corner(&self, size: usize, mut visit: impl FnMut(usize, Corner)) {
+    fn for_each_corner(&self, mut visit: impl FnMut(usize, Corner)) {
+        let Around { first_vertex, degrees, faces, welded } = &self.around;
         // One of the two is empty.
-        let triangles = if self.listed.is_empty() { self.faces.as_slice() } else { &[] };
-        for (((face, triangle), welded), angles) in
-            (0..).zip(triangles).zip(&self.welded).zip(self.angles.as_chunks().0)
-        {
-            let _: &[f32; 3] = angles;
+        let triangles = faces.iter().zip(welded).zip(self.angles.as_chunks::<3>().0);
+        for (face, ((triangle, welded), angles)) in (0..).zip(triangles) {
             for k in 0..3 {
-                let vertex = welded[k].wrapping_sub(self.first_vertex) as usize;
-                if vertex < size {
+                let vertex = welded[k].wrapping_sub(*first_vertex) as usize;
+                if vertex < degrees.len() {
                     visit(vertex, Corner { index: 3 * triangle + k as u32, face, angle: angles[k] });
                 }
             }
@@ -159,7 +142,7 @@ impl Bucket {
     /// The sums of the normals at each vertex, weighted by their angles.
     pub(super) fn sums(&self, sums: &mut [[f32; 3]]) {
         sums.fill([0.0; 3]);
-        self.for_each_corner(sums.len(), |vertex, corner| {
+        self.for_each_corner(|vertex, corner| {
             let (sum, n) = (&mut sums[vertex], self.normals[corner.face as usize]);
             (0..3).for_each(|k| sum[k] += n[k] * corner.angle);
         });
@@ -167,7 +150,7 @@ impl Bucket {
 
     /// Tells the vertices with a face whose normal is farther from the vertex's mean than `half`, a cosine.
     pub(super) fn for_each_crease(&self, means: &[[f32; 3]], half: f32, mut tell: impl FnMut(usize)) {
-        self.for_each_corner(means.len(), |vertex, corner| {
+        self.for_each_corner(|vertex, corner| {
             if !is_near(means[vertex], self.normals[corner.face as usize], half) {
                 tell(vertex);
             }
@@ -179,14 +162,14 @@ impl Bucket {
         self.starts.clear();
         self.starts.push(0);
         let mut before = 0;
-        self.starts.extend(self.degrees.iter().zip(chosen).map(|(degree, chosen)| {
+        self.starts.extend(self.around.degrees.iter().zip(chosen).map(|(degree, chosen)| {
             before += if *chosen { *degree } else { 0 };
             before
         }));
         self.sorted.resize(before as usize, Corner::default());
         // Each start runs ahead to the next one's, and is put back.
         let (mut starts, mut sorted) = (std::mem::take(&mut self.starts), std::mem::take(&mut self.sorted));
-        self.for_each_corner(chosen.len(), |vertex, corner| {
+        self.for_each_corner(|vertex, corner| {
             if chosen[vertex] {
                 sorted[starts[vertex] as usize] = corner;
                 starts[vertex] += 1;

@@ -3,14 +3,18 @@
 //! `cargo run --release -p vitral --example turntable_bench -- MODEL FRAMES SAMPLES [WIDTHxHEIGHT]`
 //!
 //! Every frame ends as RGBA bytes in memory; nothing is encoded. The camera goes round the model as that of the peers does
-//! (`benches/peers/common.py`): level, starting at the front, so near that the model fits 0.9 of the picture in every frame; `coverage`
-//! is the share of pixels of the last frame that show the model. `parts_ms` is what the parts of a whole run take one by
+//! (`benches/peers/common.py`), with the same angle of view; `coverage` is the share of pixels of the last frame that show the
+//! model. `parts_ms` is what the parts of a whole run take one by
 //! one, the median of five each: reading the file, the first picture of a scene, encoding it as PNG. `VITRAL_THREADS` limits
 //! the threads.
 
+use std::f64::consts::{PI, TAU};
 use std::time::Instant;
+use vitral::math::{DVec3, func};
 use vitral::picture::encode;
-use vitral::{Channel, Error, Execution, LoadOptions, PictureFormat, Renderer, View, default_up, execution, load};
+use vitral::{
+    Camera, Channel, Error, Execution, LoadOptions, PictureFormat, Projection, Renderer, default_up, execution, load,
+};
 
 /// What is to be measured.
 struct Plan {
@@ -41,10 +45,39 @@ fn open(plan: &Plan, execution: &Execution) -> Result<Renderer, Error> {
     let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution.clone())?;
     renderer.up = default_up(&plan.model);
-    renderer.view = View::Front;
     (renderer.settings.width, renderer.settings.height) = plan.size;
     renderer.settings.samples = plan.samples;
     Ok(renderer)
+}
+
+/// The cameras of the peers, those of the first frame last.
+fn cameras(renderer: &Renderer, count: usize) -> Vec<Camera> {
+    let bounds = &renderer.world().bounds;
+    let (aspect, center) = (renderer.aspect(), bounds.center());
+    let distance = 0.5 * bounds.diagonal() / func::sin(PI / 12.0);
+    let turned = |i: usize| {
+        let angle = TAU * i as f64 / count as f64;
+        let position = center + DVec3::new(func::sin(angle), 0.0, func::cos(angle)) * distance;
+        let projection = Projection::Perspective { view_angle: PI / 6.0 };
+        Camera { position, focal_point: center, view_up: DVec3::Y, projection, clip: None }
+    };
+    let mut cameras: Vec<_> = (1..=count).map(turned).collect();
+
+    // The box round the model, as it is seen, fits 0.9 of the widest picture.
+    let fill = |camera: &Camera| {
+        let view = camera.view_from_world();
+        let corners = bounds.corners().map(|corner| view.transform_point3(corner)).map(|p| [p.x / -p.z, p.y / -p.z]);
+        let extent = |axis: usize| {
+            let of =
+                |least: f64, pick: fn(f64, f64) -> f64| corners.iter().fold(least, |so_far, c| pick(so_far, c[axis]));
+            of(f64::NEG_INFINITY, f64::max) - of(f64::INFINITY, f64::min)
+        };
+        extent(1).max(extent(0) / aspect)
+    };
+    let widest = cameras.iter().map(fill).fold(0.0, f64::max);
+    let view_angle = 2.0 * func::atan2(0.5 * widest / 0.9, 1.0);
+    cameras.iter_mut().for_each(|camera| camera.projection = Projection::Perspective { view_angle });
+    cameras
 }
 
 /// Reading, the first picture, encoding: the sum of their medians.
@@ -77,7 +110,7 @@ fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
     let load_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut milliseconds = Vec::with_capacity(plan.frames);
     let (mut bytes, mut coverage) = (0, 0.0);
-    for camera in renderer.turntable_cameras(plan.frames) {
+    for camera in cameras(&renderer, plan.frames) {
         let start = Instant::now();
         let rendered = renderer.render_from(&camera)?;
         milliseconds.push(start.elapsed().as_secs_f64() * 1e3);

@@ -282,4 +282,29 @@ mod tests {
         normals::generate(&mut ball, 1.0, &Workers::single());
         assert!(Solidity::of(&ball, &Workers::single()).is_solid());
     }
+
+    #[test]
+    fn bodies_of_many_buckets_and_corners_with_many_faces_are_solid_unless_something_is_amiss() {
+        // The tip and the middle of the base have 20000 faces each.
+        let mut cone = solids::cone(1.0, 1.0, 20_000);
+        (cone.normals, cone.faces, cone.solidity) = (None, crate::Faces::Triangles, None);
+        let mut ball = solids::sphere(1.0, 160, 80);
+        (ball.normals, ball.faces, ball.solidity) = (None, crate::Faces::Triangles, None);
+        for body in [cone, ball] {
+            let (middle, workers) = (body.triangles.len() / 2, Workers::new(2));
+            assert!(Solidity::of(&body, &workers).is_solid());
+            let mut holed = body.clone();
+            holed.triangles.remove(middle);
+            assert!(!Solidity::of(&holed, &workers).closed && Solidity::of(&holed, &workers).consistent);
+            let mut turned = body.clone();
+            turned.triangles[middle].swap(0, 1);
+            assert!(Solidity::of(&turned, &workers).closed && !Solidity::of(&turned, &workers).consistent);
+            let mut doubled = body.clone();
+            doubled.triangles.push(body.triangles[middle]);
+            assert!(!Solidity::of(&doubled, &workers).closed);
+            let mut with_normals = turned;
+            normals::generate(&mut with_normals, 0.5, &workers);
+            assert!(!Solidity::of(&with_normals, &workers).consistent);
+        }
+    }
 }

@@ -81,6 +81,20 @@ proptest! {
         let solidity = Solidity::of(&mesh, &Workers::single());
         prop_assert_eq!(solidity, Solidity::of(&mesh, &Workers::new(3)));
         prop_assert!(!solidity.outward || solidity.closed && solidity.consistent);
+
+        // The same of sound triangles alone, and what normals find out on the way.
+        let mut sound: BTreeMap<_, Vec<bool>> = BTreeMap::new();
+        for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|i| place(&mesh, i))) {
+            for (a, b) in [(a, b), (b, c), (c, a)].into_iter().filter(|_| a != b && b != c && c != a) {
+                sound.entry((a.min(b), a.max(b))).or_default().push(a < b);
+            }
+        }
+        prop_assert_eq!(solidity.closed, !sound.is_empty() && sound.values().all(|s| s.len() == 2));
+        let opposite = |s: &Vec<bool>| s.len() != 2 || s[0] != s[1];
+        prop_assert_eq!(solidity.consistent, !mesh.triangles.is_empty() && sound.values().all(opposite));
+        let mut triangles = Mesh { faces: Faces::Triangles, smoothing_groups: None, ..mesh.clone() };
+        normals::generate(&mut triangles, 0.5, &Workers::single());
+        prop_assert_eq!(Solidity::of(&triangles, &Workers::single()), solidity);
     }
 
     #[test]

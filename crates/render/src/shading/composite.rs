@@ -12,8 +12,7 @@ use super::points::{FragmentPoint, NO_POINT, Points, Source, visible_part};
 use crate::marks::MarkColors;
 use crate::transparency::{Fragment, MOST_SAMPLES};
 use vitral_math::Vec2;
-use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
+use vitral_math::color::{SrgbBytes, byte_from_unit};
 use vitral_raster::{TILE, Tile};
 
 /// Memory of one tile's composition.
@@ -27,13 +26,11 @@ pub(crate) struct Composer {
 
 impl Composer {
     /// `deep` is the whole picture and the tile's number in it, where there are translucent surfaces.
-    #[inline(always)]
-    pub(crate) fn compose<S: Simd>(
+    pub(crate) fn compose(
         &mut self,
-        simd: S,
         tile: &Tile,
         points: &Points,
-        lit: &mut Lit,
+        lit: &Lit,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
         deep: Option<(&DeepPicture<'_>, usize)>,
@@ -43,11 +40,11 @@ impl Composer {
         if points.mixed.is_empty() && points.fragments.is_empty() {
             // One point fills each pixel, in the order of the pixels.
             self.places.extend(points.pixels.iter().map(|p| p.index));
-            encode(simd, &self.places, &mut lit.colors, constants.raw, out);
+            encode(&self.places, &lit.colors, constants.raw, out);
             return;
         }
         self.mix(tile, points, lit, constants, marks, deep);
-        encode(simd, &self.places, &mut self.colors, constants.raw, out);
+        encode(&self.places, &self.colors, constants.raw, out);
     }
 
     /// Begins a picture with the background.
@@ -67,9 +64,8 @@ impl Composer {
     }
 
     /// Encodes the pixels that were added.
-    #[inline(always)]
-    pub(super) fn end<S: Simd>(&mut self, simd: S, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
-        encode(simd, &self.places, &mut self.colors, constants.raw, out);
+    pub(super) fn end(&self, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
+        encode(&self.places, &self.colors, constants.raw, out);
     }
 
     /// Mixes the samples of every pixel that shows more than the background.
@@ -167,26 +163,30 @@ pub(super) fn fragment<'a>(
     Fragment { facet, mask, depths, far, near, color, passes, behind: None }
 }
 
-/// Premultiplied colours to display bytes with straight alpha, put in their places; two pixels a step.
+/// Premultiplied colours to display bytes with straight alpha, put in their places.
+fn encode(places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
+    if raw {
+        return encode_by(byte_from_unit, places, colors, out);
+    }
+    let table = SrgbBytes::get();
+    encode_by(
+        #[inline(always)]
+        |linear| table.byte(linear),
+        places,
+        colors,
+        out,
+    );
+}
+
 #[inline(always)]
-fn encode<S: Simd>(simd: S, places: &[u32], colors: &mut Vec<[f32; 4]>, raw: bool, out: &mut [[u8; 4]]) {
-    for color in colors.iter_mut().filter(|c| c[3] < 1.0) {
-        let straight = if color[3] > 0.0 { 1.0 / color[3] } else { 0.0 };
-        *color = [color[0] * straight, color[1] * straight, color[2] * straight, color[3]];
-    }
-    if colors.len() % 2 == 1 {
-        colors.push([0.0; 4]);
-    }
-    let alpha = Mask8::from_bitmask(simd, 0b1000_1000);
-    for (places, pair) in places.chunks(2).zip(colors.as_flattened().chunks_exact(LANES)) {
-        let value = lanes::Lanes::saturate(F32x8::from_slice(simd, pair));
-        let curve = if raw { value } else { lanes::Lanes::srgb_from_linear(value) };
-        let bytes: I32x8<S> = (alpha.select(value, curve) * 255.0 + 0.5).to_int();
-        let bytes = bytes.to_array();
-        for (k, &place) in places.iter().enumerate() {
-            let at = 4 * k;
-            out[place as usize] = [bytes[at] as u8, bytes[at + 1] as u8, bytes[at + 2] as u8, bytes[at + 3] as u8];
-        }
+fn encode_by(byte: impl Fn(f32) -> u8, places: &[u32], colors: &[[f32; 4]], out: &mut [[u8; 4]]) {
+    for (&place, &[r, g, b, alpha]) in places.iter().zip(colors) {
+        let straight = match alpha {
+            1.0.. => 1.0,
+            _ if alpha > 0.0 => 1.0 / alpha,
+            _ => 0.0,
+        };
+        out[place as usize] = [byte(r * straight), byte(g * straight), byte(b * straight), byte_from_unit(alpha)];
     }
 }
 
@@ -197,9 +197,7 @@ mod tests {
     #[test]
     fn colors_encode_with_straight_alpha() {
         let mut out = [[9; 4]; 3];
-        lanes::dispatch!(lanes::Level::new(), simd => {
-            encode(simd, &[0, 1, 2], &mut vec![[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out)
-        });
+        encode(&[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out);
         assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
     }
 }

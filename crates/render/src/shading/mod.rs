@@ -173,13 +173,13 @@ impl<'a> ColorSink<'a> {
             return Ok(self.passes);
         };
         let deep = deep.finish()?;
-        let (level, tiles) = (self.level, self.tiles);
+        let tiles = self.tiles;
         let composed = workers.map(tiles.len(), |index| {
             deep.check()?;
-            let Some((tile, points, mut lit)) = deep.tile(index) else { return Ok(()) };
+            let Some((tile, points, lit)) = deep.tile(index) else { return Ok(()) };
             let (mut composer, mut picture) = (Composer::default(), vec![[0; 4]; TILE_PIXELS]);
             let (constants, marks, whole) = (self.constants, self.marks, Some((&deep, index)));
-            dispatch!(level, simd => composer.compose(simd, tile, points, &mut lit, constants, marks, whole, &mut picture));
+            composer.compose(tile, points, &lit, constants, marks, whole, &mut picture);
             tiles.write(index, &picture);
             Ok(())
         });
@@ -256,8 +256,7 @@ impl TileSink for ColorSink<'_> {
             deep.keep(index, tile, std::mem::take(points), std::mem::take(lit));
         } else {
             picture.resize(TILE_PIXELS, [0; 4]);
-            let marks = self.marks;
-            dispatch!(self.level, simd => composer.compose(simd, tile, points, lit, constants, marks, None, picture));
+            composer.compose(tile, points, lit, constants, self.marks, None, picture);
             self.tiles.write(index, picture);
         }
         self.spare.lock().expect("spare scratch").push(scratch);

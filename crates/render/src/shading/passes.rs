@@ -102,7 +102,7 @@ impl ColorSink<'_> {
             of_pixel.extend((0..count).map(|s| canvas.samples[s * TILE_PIXELS + pixel]));
             composer.put(pixel as u32, &of_pixel);
         }
-        dispatch!(self.level, simd => composer.end(simd, constants, &mut picture));
+        composer.end(constants, &mut picture);
         picture
     }
 }

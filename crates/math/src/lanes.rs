@@ -532,6 +532,34 @@ pub fn rows_of_columns<S: Simd>(simd: S, columns: [I32x8<S>; 4], mut row: impl F
     }
 }
 
+/// The coordinates of eight points as doubles, each point in a lane.
+#[inline(always)]
+pub fn wide_points<S: Simd>(simd: S, point: impl Fn(usize) -> [f32; 3]) -> [F64x8<S>; 3] {
+    let columns = columns_of_rows(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [x, y, z] = point(lane);
+            bytemuck::cast([x, y, z, 0.0])
+        },
+    );
+    let wide = inlined(
+        #[inline(always)]
+        |k: usize| {
+            let (low, high) = simd.widen_f32x8(columns[k].bitcast());
+            simd.combine_f64x4(low, high)
+        },
+    );
+    [wide(0), wide(1), wide(2)]
+}
+
+/// Doubles rounded to the nearest single.
+#[inline(always)]
+pub fn narrowed<S: Simd>(simd: S, wide: F64x8<S>) -> F32x8<S> {
+    let (low, high) = simd.split_f64x8(wide);
+    simd.narrow_f64x4(low, high)
+}
+
 /// Rows become columns.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [I32x4<S>; 4]) -> [I32x4<S>; 4] {

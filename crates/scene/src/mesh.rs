@@ -10,6 +10,8 @@
 use crate::KnownSolidity;
 use std::ops::Range;
 use vitral_exec::Workers;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
 use vitral_math::{Aabb, DVec3};
 
 /// Consecutive triangles that share a box of [`Mesh::run_bounds`].
@@ -223,18 +225,42 @@ impl Mesh {
 
     /// The box round the finite ones among these vertices.
     fn bounds_of(&self, vertices: &[u32]) -> Aabb {
-        // f32 throughout: exact, and quicker than widening each point.
-        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for p in vertices.iter().filter_map(|&i| self.positions.get(i as usize)) {
-            if p[0].is_finite() & p[1].is_finite() & p[2].is_finite() {
-                for k in 0..3 {
-                    min[k] = if p[k] < min[k] { p[k] } else { min[k] };
-                    max[k] = if p[k] > max[k] { p[k] } else { max[k] };
-                }
+        dispatch!(Level::new(), simd => self.bounds_in_lanes(simd, vertices))
+    }
+
+    /// [`Self::bounds_of`], in single precision throughout, which is exact.
+    #[inline(always)]
+    fn bounds_in_lanes<S: Simd>(&self, simd: S, vertices: &[u32]) -> Aabb {
+        let splat = lanes::inlined(
+            #[inline(always)]
+            |value: f32| F32x8::splat(simd, value),
+        );
+        let (zero, most) = (splat(0.0), splat(f32::INFINITY));
+        let (mut min, mut max) = ([most; 3], [-most; 3]);
+        for eight in vertices.chunks(LANES) {
+            let columns = lanes::columns_of_rows(
+                simd,
+                #[inline(always)]
+                |lane| {
+                    let vertex = eight[lane.min(eight.len() - 1)] as usize;
+                    let [x, y, z] = self.positions.get(vertex).copied().unwrap_or([f32::NAN; 3]);
+                    bytemuck::cast([x, y, z, 0.0])
+                },
+            );
+            let p: [F32x8<S>; 3] = [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast()];
+            // Only a finite number times 0 is 0.
+            let finite = (p[0] * 0.0 + p[1] * 0.0 + p[2] * 0.0).simd_eq(zero);
+            for k in 0..3 {
+                min[k] = lanes::Lanes::min(finite.select(p[k], most), min[k]);
+                max[k] = lanes::Lanes::max(finite.select(p[k], -most), max[k]);
             }
         }
-        let wide = |v: [f32; 3]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
-        Aabb { min: wide(min), max: wide(max) }
+        let least = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::INFINITY, f32::min));
+        let greatest = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max));
+        Aabb {
+            min: DVec3::new(least(min[0]), least(min[1]), least(min[2])),
+            max: DVec3::new(greatest(max[0]), greatest(max[1]), greatest(max[2])),
+        }
     }
 
     /// The material of triangle `t`.

@@ -10,13 +10,15 @@
 //!       nothing: the mesh keeps the answer, and what it is an answer to.
 //! Source: [Mirtich 1996] and others for the volume as a sum of signed tetrahedra.
 
-use crate::Mesh;
 use crate::disjoint_sets::DisjointSets;
 use crate::edge_table::{MAX_FACES, Use, is_collapsed};
 use crate::triangle_buckets::{Around, TriangleBuckets};
 use crate::weld::Weld;
+use crate::{Corners, Mesh};
 use vitral_exec::{Spare, Workers};
-use vitral_math::{Fingerprint, mixed};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
+use vitral_math::{DVec3, Fingerprint, mixed};
 
 /// What back-face culling must know. Triangles with two corners at one position are left out: they are invisible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -206,19 +208,19 @@ impl<'a> Skins<'a> {
         const BATCH: usize = 1 << 14;
         let mesh = self.mesh;
         // Volumes are taken as seen from some place near.
-        let near = mesh.position(mesh.triangles[0][0]);
+        let (near, level) = (mesh.position(mesh.triangles[0][0]), Level::new());
         let batches = workers.map(mesh.triangles.len().div_ceil(BATCH), |batch| {
+            let first = batch * BATCH;
+            let triangles = &mesh.triangles[first..mesh.triangles.len().min(first + BATCH)];
+            let tetrahedra = dispatch!(level, simd => tetrahedra(simd, mesh, triangles, near));
             // Neighbours in the list are mostly of one body.
             let mut volumes: Vec<Volume> = Vec::new();
-            let first = batch * BATCH;
-            for (t, corners) in (first..).zip(mesh.triangles[first..].iter().take(BATCH)) {
+            for ((t, corners), tetrahedron) in (first as u32..).zip(triangles).zip(tetrahedra) {
                 // What has collapsed is no part of a body: its volume is nothing but rounding.
                 if is_collapsed(self.welded(corners)) {
                     continue;
                 }
-                let [a, b, c] = corners.map(|i| mesh.position(i) - near);
-                let tetrahedron = a.dot(b.cross(c));
-                let body = self.bodies.find(t as u32);
+                let body = self.bodies.find(t);
                 match volumes.last_mut() {
                     Some(last) if last.body == body => {
                         last.signed += tetrahedron;
@@ -236,6 +238,29 @@ impl<'a> Skins<'a> {
             sum(|v| v.signed) >= -1e-9 * sum(|v| v.magnitude)
         })
     }
+}
+
+/// Six times the signed volumes of the tetrahedra between triangles and a point, the last repeated to fill up eight.
+#[inline(always)]
+fn tetrahedra<S: Simd>(simd: S, mesh: &Mesh, triangles: &[Corners], point: DVec3) -> Vec<f64> {
+    let mut volumes = vec![0.0; triangles.len().next_multiple_of(LANES)];
+    for (triangles, volumes) in triangles.chunks(LANES).zip(volumes.chunks_mut(LANES)) {
+        let corner = lanes::inlined(
+            #[inline(always)]
+            |k: usize| {
+                let [x, y, z] = lanes::wide_points(
+                    simd,
+                    #[inline(always)]
+                    |lane| mesh.positions[triangles[lane.min(triangles.len() - 1)][k] as usize],
+                );
+                [x - point.x, y - point.y, z - point.z]
+            },
+        );
+        let (a, [bx, by, bz], [cx, cy, cz]) = (corner(0), corner(1), corner(2));
+        let across = [by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx];
+        (a[0] * across[0] + a[1] * across[1] + a[2] * across[2]).store_slice(volumes);
+    }
+    volumes
 }
 
 /// A body's volume, times six, and the sum of the magnitudes it was added up from, to know what rounding may do.

@@ -14,7 +14,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use vitral_exec::Workers;
 use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F64x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F64x8, LANES, Level, Simd, dispatch};
+
+/// Normals before they are made unit must be longer than this times the largest squared distance between corners.
+const MOST_SLENDER: f64 = 1e-7;
 
 /// What the faces say to their vertices.
 pub(crate) struct FaceData {
@@ -118,17 +121,18 @@ impl Triangles {
             return;
         }
         // Places that are not taken repeat something.
-        let mut places = [[[0.0; LANES]; 3]; 3];
-        for (lane, corners) in self.corners.iter().enumerate() {
-            for (place, &i) in places.iter_mut().zip(corners) {
-                let p = mesh.positions[i as usize];
-                (place[0][lane], place[1][lane], place[2][lane]) = (f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            }
-        }
-        let load = |corner: usize, axis: usize| F64x8::from_slice(simd, &places[corner][axis]);
-        let a = [load(0, 0), load(0, 1), load(0, 2)];
-        let ab = [load(1, 0) - a[0], load(1, 1) - a[1], load(1, 2) - a[2]];
-        let ac = [load(2, 0) - a[0], load(2, 1) - a[1], load(2, 2) - a[2]];
+        let corner = lanes::inlined(
+            #[inline(always)]
+            |k: usize| {
+                lanes::wide_points(
+                    simd,
+                    #[inline(always)]
+                    |lane| mesh.positions[self.corners[lane][k] as usize],
+                )
+            },
+        );
+        let [a, b, c] = [corner(0), corner(1), corner(2)];
+        let (ab, ac) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
         let cross = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
         let length = dot(cross, cross).sqrt();
         let longest = dot(ab, ab).max(dot(ac, ac));
@@ -137,18 +141,41 @@ impl Triangles {
         let at_a = angle_from(simd, length, dot(ab, ac));
         let at_b = angle_from(simd, length, dot(ab, bc));
         let at_c = (F64x8::splat(simd, PI) - at_a - at_b).max(F64x8::splat(simd, 0.0));
-        let mut out = [[0.0f64; LANES]; 8];
-        let results = [cross[0] / length, cross[1] / length, cross[2] / length, at_a, at_b, at_c, length, longest];
-        for (out, value) in out.iter_mut().zip(results) {
-            value.store_slice(out);
-        }
-        for lane in 0..self.count {
-            let value = |k: usize| out[k][lane] as f32;
-            let sound = has_area(out[6][lane], out[7][lane]);
-            normals[self.face[lane]] = if sound { [value(0), value(1), value(2)] } else { [0.0; 3] };
-            let angles = if sound { [value(3), value(4), value(5)] } else { [0.0; 3] };
-            weights[self.at[lane]..self.at[lane] + 3].copy_from_slice(&angles);
-        }
+        let zero = F64x8::splat(simd, 0.0);
+        // As `has_area` says.
+        let sound = length.simd_lt(F64x8::splat(simd, f64::INFINITY)) & length.simd_gt(longest * MOST_SLENDER);
+        let out = lanes::inlined(
+            #[inline(always)]
+            |value: F64x8<S>| lanes::narrowed(simd, sound.select(value, zero)).bitcast(),
+        );
+        let normal = [out(cross[0] / length), out(cross[1] / length), out(cross[2] / length), out(zero)];
+        let three = lanes::inlined(
+            #[inline(always)]
+            |row: [i32; 4]| {
+                let [a, b, c, _]: [f32; 4] = bytemuck::cast(row);
+                [a, b, c]
+            },
+        );
+        lanes::rows_of_columns(
+            simd,
+            normal,
+            #[inline(always)]
+            |lane, normal| {
+                if lane < self.count {
+                    normals[self.face[lane]] = three(normal);
+                }
+            },
+        );
+        lanes::rows_of_columns(
+            simd,
+            [out(at_a), out(at_b), out(at_c), out(zero)],
+            #[inline(always)]
+            |lane, angles| {
+                if lane < self.count {
+                    weights[self.at[lane]..self.at[lane] + 3].copy_from_slice(&three(angles));
+                }
+            },
+        );
         self.count = 0;
     }
 }
@@ -222,7 +249,7 @@ pub(super) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
 /// Whether a normal of this length, before it is made unit, means anything, for the largest squared distance between
 /// corners. A sliver only as wide as the rounding of its coordinates has no direction worth averaging.
 fn has_area(length: f64, longest_squared: f64) -> bool {
-    length.is_finite() && length > 1e-7 * longest_squared
+    length.is_finite() && length > MOST_SLENDER * longest_squared
 }
 
 #[inline(always)]

@@ -20,6 +20,7 @@ pub fn linear_from_srgb_table() -> [f32; 256] {
 }
 
 /// The byte of a value, `0.0 -> 0`, `1.0 -> 255`, rounded to nearest and clamped; NaN gives 0.
+#[inline]
 pub fn byte_from_unit(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }

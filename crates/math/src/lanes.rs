@@ -543,14 +543,14 @@ pub fn wide_points<S: Simd>(simd: S, point: impl Fn(usize) -> [f32; 3]) -> [F64x
             bytemuck::cast([x, y, z, 0.0])
         },
     );
-    let wide = inlined(
-        #[inline(always)]
-        |k: usize| {
-            let (low, high) = simd.widen_f32x8(columns[k].bitcast());
-            simd.combine_f64x4(low, high)
-        },
-    );
-    [wide(0), wide(1), wide(2)]
+    [widened(simd, columns[0].bitcast()), widened(simd, columns[1].bitcast()), widened(simd, columns[2].bitcast())]
+}
+
+/// Singles as doubles.
+#[inline(always)]
+pub fn widened<S: Simd>(simd: S, narrow: F32x8<S>) -> F64x8<S> {
+    let (low, high) = simd.widen_f32x8(narrow);
+    simd.combine_f64x4(low, high)
 }
 
 /// Doubles rounded to the nearest single.

@@ -29,8 +29,8 @@ impl Viewport {
     }
 }
 
-/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`. A new tile is not to be
-/// used until it is [`clear`](Self::clear)ed, so that its memory is first touched by whoever works on it.
+/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`. A new tile has no memory until
+/// it is [`clear`](Self::clear)ed: who works on it touches it first, and tiles that nobody works on cost nothing.
 #[derive(Clone, Debug)]
 pub struct Tile {
     /// Left pixel column of the tile in the picture.
@@ -45,6 +45,8 @@ pub struct Tile {
     pub block_far: [f32; TILE_PIXELS / (BLOCK * BLOCK)],
     /// Whether any sample was written since the tile was cleared.
     pub touched: bool,
+    /// Samples in each plane.
+    planes: usize,
     /// Samples written in each block since `block_far` was computed.
     pub(crate) block_writes: [u32; TILE_PIXELS / (BLOCK * BLOCK)],
 }
@@ -54,18 +56,25 @@ impl Tile {
         Self {
             x,
             y,
-            depth: vec![0.0; samples * TILE_PIXELS],
-            facet: Vec::with_capacity(samples * TILE_PIXELS),
+            depth: Vec::new(),
+            facet: Vec::new(),
+            planes: samples * TILE_PIXELS,
             block_far: [0.0; TILE_PIXELS / (BLOCK * BLOCK)],
             touched: false,
             block_writes: [0; TILE_PIXELS / (BLOCK * BLOCK)],
         }
     }
 
+    /// Samples a pixel.
+    pub fn samples(&self) -> usize {
+        self.planes / TILE_PIXELS
+    }
+
     /// Empties the tile; free if nothing was written.
     pub fn clear(&mut self) {
         if self.facet.is_empty() {
-            self.facet.resize(self.depth.len(), NO_FACET);
+            self.depth.resize(self.planes, 0.0);
+            self.facet.resize(self.planes, NO_FACET);
         }
         if !self.touched {
             return;

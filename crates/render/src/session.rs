@@ -19,7 +19,7 @@ use vitral_frame::Frame;
 use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
 use vitral_math::{Aabb, DMat4, Mat4, Vec3};
-use vitral_raster::{Batch, ScreenVertex, TileGrid, Unsorted};
+use vitral_raster::{Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
 use vitral_scene::{Instance, Scene, Solidity, World};
@@ -65,6 +65,7 @@ pub struct Session {
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
     pub(crate) spare_unsorted: Mutex<Vec<Unsorted>>,
     pub(crate) spare_picture: Mutex<Vec<[u8; 4]>>,
+    pub(crate) spare_tiles: Mutex<Vec<Tile>>,
     pub(crate) spare_scratch: Mutex<Vec<Scratch>>,
     pub(crate) background: KeptFor<BackgroundKey, BackgroundRows>,
     pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
@@ -186,6 +187,7 @@ impl Session {
             spare_batches: Mutex::default(),
             spare_unsorted: Mutex::default(),
             spare_picture: Mutex::default(),
+            spare_tiles: Mutex::default(),
             spare_scratch: Mutex::default(),
             background: Mutex::default(),
             bsp: Mutex::default(),

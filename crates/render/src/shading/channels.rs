@@ -43,6 +43,10 @@ impl<'a> ChannelSink<'a> {
 }
 
 impl TileSink for ChannelSink<'_> {
+    fn keeps_tiles(&self) -> bool {
+        false
+    }
+
     fn tile(&self, index: usize, tile: &Tile, _layers: &mut LayerList) {
         let mut planes = DataPlanes::default();
         if self.wanted.depth {

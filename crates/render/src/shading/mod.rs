@@ -190,6 +190,10 @@ impl<'a> ColorSink<'a> {
 }
 
 impl TileSink for ColorSink<'_> {
+    fn keeps_tiles(&self) -> bool {
+        false
+    }
+
     fn takes_passes(&self) -> bool {
         self.constants.in_passes && self.tracer.is_none()
     }

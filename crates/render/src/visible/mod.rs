@@ -30,6 +30,12 @@ pub trait TileSink: Sync {
     /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
 
+    /// Whether the grid's tiles are wanted when all have been handed on. If not, algorithms may fill each in memory that the next one
+    /// uses again.
+    fn keeps_tiles(&self) -> bool {
+        true
+    }
+
     /// Whether it takes layers as [`LayerList::fragments`] from algorithms that find them so.
     fn takes_fragments(&self) -> bool {
         false
@@ -65,7 +71,7 @@ pub struct Resolved {
 
 /// An algorithm that finds the visible surface at each sample.
 pub trait VisibleSurface: Sync {
-    /// Fills `grid` and hands each finished tile to `sink`. `marks` are lines and points already on the screen, to be
+    /// Fills `grid`, if `sink` keeps its tiles, and hands each finished tile to `sink`. `marks` are lines and points already on the screen, to be
     /// tested against the finished depth. Besides limits, nothing can fail.
     fn resolve(
         &self,

@@ -2,10 +2,10 @@
 //!
 //! Triangles come in any order. For each covered sample their depth is compared with the depth that the sample holds;
 //! the nearer one stays. Here the picture is cut into tiles of 64x64 pixels whose samples fit in the second-level
-//! cache; triangles are sorted into the tiles they touch, a few hundred thousand at a time, and each tile is then
-//! walked by one thread. Blocks of 8x8 pixels remember how far their farthest sample is, so that hidden triangles are
-//! rejected without looking at samples; what seems nearer is drawn first. Transparent facets are not tested against each other but collected, after all
-//! opaque ones.
+//! cache, and stay there if nobody keeps them; triangles are sorted into the tiles they touch, a few hundred thousand at
+//! a time, and each tile is then walked by one thread. Blocks of 8x8 pixels remember how far their farthest sample is, so
+//! that hidden triangles are rejected without looking at samples; what seems nearer is drawn first. Transparent facets
+//! are not tested against each other but collected, after all opaque ones.
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
 //! Cost: linear in vertices, triangles and covered samples; memory: the samples and one round of triangles.
@@ -88,8 +88,7 @@ impl VisibleSurface for ZBuffer {
             if !last {
                 retire_vertices(view, jobs, &mut vertices);
             }
-            execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
-                let tile = &mut tiles[0];
+            let work = |index: usize, tile: &mut Tile| {
                 if number == 0 {
                     tile.clear();
                 }
@@ -118,6 +117,17 @@ impl VisibleSurface for ZBuffer {
                     }
                     layers.finish();
                     sink.tile(index, tile, &mut layers);
+                }
+            };
+            execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
+                let [own] = tiles else { return };
+                if sink.keeps_tiles() || rounds.len() > 1 {
+                    work(index, own);
+                } else {
+                    with_spare(&view.session.spare_tiles, view.pattern.len(), |tile| {
+                        (tile.x, tile.y) = (own.x, own.y);
+                        work(index, tile);
+                    });
                 }
             });
             let mut batches = batches;
@@ -221,7 +231,7 @@ pub(crate) fn tile_place(view: &PreparedView<'_>, index: usize) -> (u32, u32) {
 /// Lends `f` a tile as someone left it, or an empty one.
 pub(crate) fn with_spare(spare: &Mutex<Vec<Tile>>, samples: usize, f: impl FnOnce(&mut Tile)) {
     let used = spare.lock().expect("spare tiles").pop();
-    let mut tile = used.unwrap_or_else(|| {
+    let mut tile = used.filter(|tile| tile.samples() == samples).unwrap_or_else(|| {
         let side = TILE as u32;
         let one = TileGrid::new(Viewport { width: side, height: side }, samples);
         let mut tile = one.tiles.into_iter().next().expect("one tile");

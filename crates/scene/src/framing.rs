@@ -188,13 +188,20 @@ pub fn frame_world(
     fit.camera(need)
 }
 
-/// A camera for pictures in which the model turns about `up` through the middle of its box: what all finite points of the
-/// world sweep fills [`FILL`] of the picture, so that nothing leaves it and the size does not pulse.
-pub fn frame_turning(world: &World, view: View, up: Axis, lens: Lens, aspect: f64, workers: &Workers) -> Camera {
-    let (eye, picture_up) = view.eye_and_up(up);
+/// As [`frame_world`], for pictures in which the model turns about `axis` (unit) through the middle of its box: what all finite
+/// points of the world sweep fills [`FILL`] of the picture, so that nothing leaves it and the size does not pulse.
+pub fn frame_turning(
+    world: &World,
+    eye: DVec3,
+    view_up: DVec3,
+    axis: DVec3,
+    lens: Lens,
+    aspect: f64,
+    workers: &Workers,
+) -> Camera {
     let bounds = presentable(&world.bounds);
-    let fit = Fit::new(&bounds, eye, picture_up, lens, aspect, FILL);
-    let turning = Turning::new(&fit, up.vector());
+    let fit = Fit::new(&bounds, eye, view_up, lens, aspect, FILL);
+    let turning = Turning::new(&fit, axis);
     if bounds != world.bounds {
         return fit.camera(bounds.corners().into_iter().map(|corner| turning.need(corner)).fold(0.0, f64::max));
     }
@@ -457,7 +464,7 @@ mod tests {
         #[test]
         fn what_turns_stays_in_the_picture_and_fills_it(
             size in prop::array::uniform3(0.1f64..9.0), at in prop::array::uniform3(-3.0f64..3.0),
-            view in 0usize..7, axis in 0usize..6, aspect in 0.4f64..2.5, parallel: bool, ball: bool,
+            view in 0usize..7, axis in 0usize..6, aspect in 0.4f64..2.5, parallel: bool, ball: bool, aside in 0.0f64..0.4,
         ) {
             let mut mesh = if ball { solids::sphere(1.0, 24, 12) } else { solids::cuboid(DVec3::ONE) };
             for p in mesh.positions.iter_mut() {
@@ -466,11 +473,11 @@ mod tests {
             let points: Vec<_> = mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
             let world = World::new(&crate::Scene::from_mesh(mesh)).unwrap();
             let lens = if parallel { Lens::Parallel } else { Lens::default() };
-            let axis = AXES[axis];
-            let camera = frame_turning(&world, VIEWS[view], axis, lens, aspect, &Workers::single());
+            let (axis, (eye, up)) = (AXES[axis].vector(), VIEWS[view].eye_and_up(AXES[axis]));
+            let camera = frame_turning(&world, eye + DVec3::splat(aside), up, axis, lens, aspect, &Workers::single());
             let view = camera.view_from_world();
             let reach = |turn: i32| {
-                let turned = DQuat::from_axis_angle(axis.vector(), f64::from(turn) * TAU / 720.0);
+                let turned = DQuat::from_axis_angle(axis, f64::from(turn) * TAU / 720.0);
                 points.iter().fold(0.0f64, |most, p| {
                     let p = view.transform_point3(camera.focal_point + turned * (*p - camera.focal_point));
                     let half = match camera.projection {

@@ -49,7 +49,7 @@ pub use load::{LoadOptions, Normals, default_camera, default_up, load, load_buil
 pub use material_override::{MaterialOverride, override_material};
 pub use panels::panels;
 pub use picture::{Channel, PictureFormat};
-pub use renderer::{Renderer, execution};
+pub use renderer::{Moves, Renderer, execution};
 pub use shadow_polygons::shadow_polygons;
 pub use state::State;
 pub use system_clock::SystemClock;

@@ -22,6 +22,8 @@ pub struct Renderer {
     pub up: Axis,
     /// Projection of a framed camera.
     pub lens: Lens,
+    /// How a framed camera is moved.
+    pub moves: Moves,
     /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has none.
     pub lights: Option<Vec<Light>>,
     /// Multiplies all lights.
@@ -63,6 +65,7 @@ impl Renderer {
             view: View::default(),
             up: Axis::default(),
             lens: Lens::default(),
+            moves: Moves::default(),
             lights: None,
             light_intensity: 1.0,
             ambient: [0.0; 3],
@@ -112,7 +115,11 @@ impl Renderer {
 
     /// The viewer of the next picture: the chosen camera, or the framed one.
     pub fn frame_camera(&self) -> Camera {
-        self.camera.unwrap_or_else(|| self.framed_camera())
+        self.camera.unwrap_or_else(|| self.moved(self.framed_camera()))
+    }
+
+    fn moved(&self, framed: Camera) -> Camera {
+        if self.moves == Moves::default() { framed } else { self.moves.applied(&framed) }
     }
 
     /// Frames the vertices rather than the box round them, which leaves room where the box's corners are empty.
@@ -175,8 +182,15 @@ impl Renderer {
     /// from above. A framed camera keeps its distance, just far enough for
     /// the whole turn.
     pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {
-        let workers = &self.execution.workers;
-        let framed = || framing::frame_turning(self.world(), self.view, self.up, self.lens, self.aspect(), workers);
+        let (aspect, workers, axis) = (self.aspect(), &self.execution.workers, self.up.vector());
+        let framed = || {
+            // From where the moves lead to.
+            let boxed = framing::frame(&self.world().bounds, self.view, self.up, self.lens, aspect);
+            let moved = self.moved(boxed);
+            let eye = moved.position - moved.focal_point;
+            let fitted = framing::frame_turning(self.world(), eye, moved.view_up, axis, self.lens, aspect, workers);
+            fitted.zoomed(self.moves.zoom)
+        };
         let first = self.camera.unwrap_or_else(framed);
         let turned = |i: usize| {
             let angle = std::f64::consts::TAU * i as f64 / count as f64;
@@ -199,6 +213,31 @@ impl Renderer {
             take(i, rendered)?;
         }
         Ok(())
+    }
+}
+
+/// Moves of a framed camera, in this order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moves {
+    /// A walk round the focal point, radians ([`Camera::azimuth`]).
+    pub azimuth: f64,
+    /// A climb over it, radians ([`Camera::elevation`]).
+    pub elevation: f64,
+    /// Larger than 1 enlarges ([`Camera::zoomed`]).
+    pub zoom: f64,
+}
+
+impl Default for Moves {
+    fn default() -> Self {
+        Self { azimuth: 0.0, elevation: 0.0, zoom: 1.0 }
+    }
+}
+
+impl Moves {
+    /// The camera after the moves.
+    #[must_use]
+    pub fn applied(&self, camera: &Camera) -> Camera {
+        camera.azimuth(self.azimuth).elevation(self.elevation).zoomed(self.zoom)
     }
 }
 

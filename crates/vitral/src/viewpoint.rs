@@ -1,7 +1,7 @@
 //! From where a scene is seen, as users say it: a standard side or a place, then moves round the model.
 
 use crate::names::{serde_axis, serde_view};
-use crate::{Axis, Camera, Error, Lens, Projection, Renderer, View};
+use crate::{Axis, Camera, Error, Lens, Moves, Projection, Renderer, View};
 use serde::{Deserialize, Serialize};
 use vitral_math::{Aabb, DVec3};
 
@@ -62,7 +62,8 @@ impl Default for Viewpoint {
 
 impl Viewpoint {
     /// Sets view, axis, lens and camera of `renderer`. `usual_up` is the upward axis where none was chosen. A model
-    /// that is only framed leaves the camera open, so that turntables can choose their distance.
+    /// that is framed, and seen from elsewhere or enlarged at most, leaves the camera open, so that turntables can choose
+    /// their distance.
     ///
     /// # Errors
     /// [`Error::Usage`] for a camera that the scene has not, and for numbers without sense.
@@ -75,20 +76,30 @@ impl Viewpoint {
             (false, Some(angle)) => Lens::Perspective { view_angle: angle.to_radians() },
             (false, None) => Lens::default(),
         };
-        renderer.camera = None;
-        if !self.is_framed() {
+        (renderer.camera, renderer.moves) = (None, Moves::default());
+        if self.is_framed() {
+            renderer.moves = self.moves();
+        } else {
             renderer.camera = Some(self.camera(renderer));
         }
         Ok(())
     }
 
-    /// Whether the model is simply framed.
+    fn moves(&self) -> Moves {
+        let [azimuth, elevation] = [self.azimuth_angle, self.elevation_angle].map(f64::to_radians);
+        Moves { azimuth, elevation, zoom: self.zoom_factor }
+    }
+
+    /// Whether the model is framed, and the camera moved at most.
     fn is_framed(&self) -> bool {
         let framed = Self {
             view: self.view,
             up: self.up,
             view_angle: self.view_angle,
             orthographic: self.orthographic,
+            zoom_factor: self.zoom_factor,
+            azimuth_angle: self.azimuth_angle,
+            elevation_angle: self.elevation_angle,
             ..Self::default()
         };
         *self == framed
@@ -151,10 +162,7 @@ impl Viewpoint {
             camera = camera.orthographic();
         }
         camera.clip = self.clip.or(camera.clip);
-        camera
-            .azimuth(self.azimuth_angle.to_radians())
-            .elevation(self.elevation_angle.to_radians())
-            .zoomed(self.zoom_factor)
+        self.moves().applied(&camera)
     }
 }
 
@@ -188,8 +196,34 @@ mod tests {
         let plain = camera(place.clone()).unwrap();
         assert_eq!((plain.position, plain.focal_point), (DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO));
         let moved = camera(Viewpoint { azimuth_angle: 90.0, zoom_factor: 2.0, ..place }).unwrap();
-        assert!(moved.position.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-12));
+        assert!(moved.position.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-12), "{moved:?}");
         assert_eq!(moved.projection, plain.zoomed(2.0).projection);
+    }
+
+    #[test]
+    fn a_moved_camera_sees_the_whole_model_in_each_view_of_a_turntable() {
+        let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
+        let world = renderer.world();
+        let points = world.instances.iter().flat_map(|i| {
+            i.mesh.positions.iter().map(|p| i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))))
+        });
+        let points: Vec<DVec3> = points.collect();
+        let moved = Viewpoint { azimuth_angle: 30.0, elevation_angle: 25.0, ..Viewpoint::default() };
+        for zoom_factor in [1.0, 0.5] {
+            Viewpoint { zoom_factor, ..moved.clone() }.apply(&mut renderer, Axis::PlusY).unwrap();
+            let single = renderer.frame_camera();
+            let cameras = renderer.turntable_cameras(12);
+            let away = |camera: &Camera| (camera.position - camera.focal_point).normalize();
+            assert!(away(&cameras[0]).abs_diff_eq(away(&single), 1e-12), "the first view is that of the picture");
+            let reach = cameras.iter().map(|camera| {
+                let clip = camera.transform(renderer.aspect(), (0.1, 100.0)).clip_from_world();
+                let seen = points.iter().map(|point| clip * point.extend(1.0));
+                seen.fold(0.0f64, |most, p| most.max((p.x / p.w).abs()).max((p.y / p.w).abs()))
+            });
+            let reach = reach.fold(0.0, f64::max);
+            // Twelve views may miss the place that needs the most room.
+            assert!(reach > 0.8 * zoom_factor && reach < 0.91 * zoom_factor * 1.05, "{reach}");
+        }
     }
 
     #[test]

@@ -119,28 +119,31 @@ impl<'a> Placing<'a> {
         let (mesh, m) = (&self.instance.mesh, &self.instance.world_from_model);
         let axes = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
         let center = self.center.to_array();
-        let corner = lanes::inlined(
+        let mut corners = [[[0.0; LANES]; 3]; 3];
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            for (corner, &vertex) in corners.iter_mut().zip(&mesh.triangles[triangle as usize]) {
+                for (axis, value) in corner.iter_mut().zip(mesh.positions[vertex as usize]) {
+                    axis[lane] = f64::from(value);
+                }
+            }
+        }
+        let load = lanes::inlined(
             #[inline(always)]
-            |c: usize| {
-                let [x, y, z] = lanes::wide_points(
-                    simd,
-                    #[inline(always)]
-                    |lane| mesh.positions[mesh.triangles[triangles[lane] as usize][c] as usize],
-                );
-                let axis = lanes::inlined(
-                    #[inline(always)]
-                    |k: usize| {
-                        let world = (z * axes[2][k] + (y * axes[1][k] + x * axes[0][k])) + axes[3][k];
-                        lanes::widened(simd, lanes::narrowed(simd, world - center[k]))
-                    },
-                );
-                [axis(0), axis(1), axis(2)]
-            },
+            |values: &[f64; LANES]| F64x8::from_slice(simd, values),
         );
-        let places = [corner(0), corner(1), corner(2)];
+        for corner in &mut corners {
+            let [x, y, z] = [load(&corner[0]), load(&corner[1]), load(&corner[2])];
+            for (k, axis) in corner.iter_mut().enumerate() {
+                let world = (z * axes[2][k] + (y * axes[1][k] + x * axes[0][k])) + axes[3][k];
+                (world - center[k]).store_slice(axis);
+                for value in axis {
+                    *value = f64::from(*value as f32);
+                }
+            }
+        }
         let side = lanes::inlined(
             #[inline(always)]
-            |c: usize, k: usize| places[c][k] - places[0][k],
+            |c: usize, k: usize| load(&corners[c][k]) - load(&corners[0][k]),
         );
         let (a, b) = ([side(1, 0), side(1, 1), side(1, 2)], [side(2, 0), side(2, 1), side(2, 2)]);
         let across = [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
@@ -158,10 +161,6 @@ impl<'a> Placing<'a> {
         for (stored, edge) in least.iter_mut().zip([[b[0] - a[0], b[1] - a[1], b[2] - a[2]], b, a]) {
             let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
             (length * scale).store_slice(stored);
-        }
-        let mut corners = [[[0.0; LANES]; 3]; 3];
-        for (stored, value) in corners.as_flattened_mut().iter_mut().zip(places.as_flattened()) {
-            value.store_slice(stored);
         }
         std::array::from_fn(|lane| {
             let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);

@@ -341,11 +341,11 @@ fn comparing_pictures() {
     assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.jpg"])), 0);
     assert_eq!(code(&folder.run(&["compare", "a.ppm", "a.png"])), 0);
     assert_eq!(code(&folder.run(&["compare", "a.ppm", "a.jpg"])), 6);
-    folder.file("a.dds", "DDS ");
-    let output = folder.run(&["compare", "a.dds", "a.png"]);
+    folder.file("a.ktx2", b"\xabKTX 20");
+    let output = folder.run(&["compare", "a.ktx2", "a.png"]);
     assert_eq!(code(&output), 4);
     assert!(
-        errors(&output).contains("DDS is not read; PNG, JPEG, TGA, BMP, GIF, WebP and PPM are"),
+        errors(&output).contains("KTX is not read; PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are"),
         "{}",
         errors(&output)
     );

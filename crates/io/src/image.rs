@@ -1,11 +1,13 @@
-//! Images in: PNG, JPEG, TGA, BMP, GIF and WebP, known by their content, as 8-bit RGBA with straight alpha.
+//! Images in: PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS, known by their content, as 8-bit RGBA with straight alpha.
 //!
 //! In:   the bytes of a file. Out: a plane, the top row first. PNG: every colour type, 16 bits reduced to 8,
-//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive. GIF and WebP: the first picture.
+//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive. GIF, WebP and
+//! TIFF: the first picture. DDS: the largest level of what S3TC packs (DXT1, DXT3, DXT5).
 //! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before anything is allocated.
 
 use crate::{Error, Place};
-use image::codecs::{bmp::BmpDecoder, gif::GifDecoder, jpeg::JpegDecoder, tga::TgaDecoder, webp::WebPDecoder};
+use image::codecs::{bmp::BmpDecoder, dds::DdsDecoder, gif::GifDecoder, jpeg::JpegDecoder, tga::TgaDecoder};
+use image::codecs::{tiff::TiffDecoder, webp::WebPDecoder};
 use image::{DynamicImage, ImageDecoder, ImageResult};
 use std::io::Cursor;
 use vitral_frame::Plane;
@@ -18,7 +20,7 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 const DECODER_MEMORY: usize = 64 << 20;
 
 /// What is read, for messages about other formats.
-const READ: &str = "PNG, JPEG, TGA, BMP, GIF and WebP are";
+const READ: &str = "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are";
 
 /// So many pixels are read however short a file is: one colour all over takes few bytes.
 const SURE_PIXELS: u64 = 1 << 24;
@@ -85,12 +87,14 @@ pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Pl
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
             decode_dense(WebPDecoder::new(Cursor::new(bytes)), "WebP", (bytes, file))
         }
-        [b'D', b'D', b'S', b' ', ..] => Err(unsupported("DDS")),
+        [b'D', b'D', b'S', b' ', ..] => decode_dense(DdsDecoder::new(Cursor::new(bytes)), "DDS", (bytes, file)),
         [0xab, b'K', b'T', b'X', ..] => Err(unsupported("KTX")),
         [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => {
             decode_dense(BmpDecoder::new(Cursor::new(bytes)), "BMP", (bytes, file))
         }
-        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Err(unsupported("TIFF")),
+        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
+            decode_dense(TiffDecoder::new(Cursor::new(bytes)), "TIFF", (bytes, file))
+        }
         _ if has_tga_header(bytes) => decode_dense(TgaDecoder::new(Cursor::new(bytes)), "TGA", (bytes, file)),
         _ => Err(unsupported("this image format")),
     }
@@ -187,7 +191,8 @@ fn decode_by(
     let decoder = decoder.map_err(bad)?;
     let (width, height) = decoder.dimensions();
     check_size(width, height, file)?;
-    if u64::from(width) * u64::from(height) > most {
+    // Pixels of more than four bytes count for as many as they take.
+    if (u64::from(width) * u64::from(height)).max(decoder.total_bytes() / 4) > most {
         let what = format!("{format}: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
         return Err(Error::malformed(file, Place::File, what));
     }
@@ -311,7 +316,15 @@ mod tests {
                     01930efe7c7b9540d2c6e87bf207f0e3458ca9dedb5503810065ac58e68288fec77801";
         let gif = "47494638376103000200820000fa800400ff00090807010203ff00000000ff0000000000002c0000000003000200000809\
                    000904283000808080003b";
-        let files = [(tga, SIX), (runs, SIX), (bmp, opaque), (webp, SIX), (gif, opaque)];
+        let tiff = "49492a00080000000b0000010400010000000300000001010400010000000200000002010300040000009200000003\
+                    010300010000000100000006010300010000000200000011010400010000009a000000150103000100000004000000\
+                    1601040001000000020000001701040001000000180000001c01030001000000010000005201030001000000020000\
+                    00000000000800080008000800ff0000ff00ff00800000ffff010203fffa800400090807ff";
+        let lzw = "49492a0022000000803fc00008140901037fbfc020201bfdf48002000120803bfe020b000001030001000000030000\
+                    000101030001000000020000000201030004000000ac00000003010300010000000500000006010300010000000200\
+                    000011010400010000000800000015010300010000000400000016010300010000000200000017010400010000001a\
+                    0000001c0103000100000001000000520103000100000002000000000000000800080008000800";
+        let files = [(tga, SIX), (runs, SIX), (bmp, opaque), (webp, SIX), (gif, opaque), (tiff, SIX), (lzw, SIX)];
         for (number, (file, colors)) in files.into_iter().enumerate() {
             let bytes = of_hex(file);
             let picture = decode(&bytes, "a").unwrap();
@@ -331,12 +344,42 @@ mod tests {
     }
 
     #[test]
+    fn packed_blocks_of_dds() {
+        // Four by four pixels: red and blue are the ends, the rows below each other are red, blue and the mixtures between.
+        let header = |packing: &[u8; 4]| {
+            let numbers = [124u32, 0x0008_1007, 4, 4, 8, 0, 0];
+            let mut bytes =
+                [b"DDS ".to_vec(), numbers.iter().flat_map(|n| n.to_le_bytes()).collect(), vec![0; 44]].concat();
+            bytes.extend([32u32, 4].iter().flat_map(|n| n.to_le_bytes()));
+            bytes.extend(packing);
+            bytes.resize(128, 0);
+            bytes[109] = 0x10;
+            bytes
+        };
+        let block = [0x00, 0xf8, 0x1f, 0x00, 0b0000_0000, 0b0101_0101, 0b1010_1010, 0b1111_1111];
+        let rows = [[255, 0, 0], [0, 0, 255], [170, 0, 85], [85, 0, 170]];
+        let dxt1 = [header(b"DXT1"), block.to_vec()].concat();
+        let picture = decode(&dxt1, "a.dds").unwrap();
+        for (at, &[r, g, b, a]) in picture.data().iter().enumerate() {
+            assert_eq!(([r, g, b], a), (rows[at / 4], 255), "pixel {at}");
+        }
+        let dxt3 = [header(b"DXT3"), vec![0xf0, 0xf0, 0, 0, 0x88, 0x88, 0xff, 0xff], block.to_vec()].concat();
+        let picture = decode(&dxt3, "a.dds").unwrap();
+        assert_eq!(picture.data()[..2], [[255, 0, 0, 0], [255, 0, 0, 255]]);
+        assert_eq!((picture.data()[4], picture.data()[8]), ([0, 0, 255, 0], [170, 0, 85, 136]));
+        let other = decode(&[header(b"DX9!"), block.to_vec()].concat(), "a.dds").unwrap_err().to_string();
+        assert!(other.starts_with("a.dds: DDS: "), "{other}");
+        assert!(decode(&dxt1[..dxt1.len() - 1], "a.dds").is_err());
+    }
+
+    #[test]
     fn damage_is_an_error_and_strange_formats_are_named() {
         let good = png_of(png::ColorType::Rgb, png::BitDepth::Eight, 4, 4, &[7; 48], |_| {});
         for cut in 0..good.len() - 12 {
             assert!(decode(&good[..cut], "a.png").is_err(), "cut at {cut}");
         }
-        assert!(decode(b"II*\0", "a.tif").unwrap_err().to_string().contains("TIFF is not read; PNG, JPEG, TGA"));
+        assert!(decode(b"\xabKTX 20", "a.ktx2").unwrap_err().to_string().contains("KTX is not read; PNG, JPEG, TGA"));
+        assert!(decode(b"II*\0", "a.tif").unwrap_err().to_string().starts_with("a.tif: TIFF: "));
         assert!(decode(b"\xff\xd8\xff\xe0junk", "a.jpg").is_err());
     }
 }

@@ -288,7 +288,7 @@ impl Context {
             UNSIGNED_BYTE | UNSIGNED_SHORT | FLOAT => self.default_framebuffer.format != OSMESA_RGB_565,
             _ => false,
         };
-        if !fits || buffer == 0 || viewport.width as usize * viewport.height as usize * 16 > 4 * MAX_IMAGE_BYTES {
+        if !fits || buffer == 0 || viewport.width as usize * viewport.height as usize * 4 > MAX_IMAGE_BYTES {
             return false;
         }
         let fb = &self.default_framebuffer;

@@ -30,7 +30,7 @@ pub fn decode_picture(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error>
         [b'P', b'5' | b'6', ..] => ppm::decode(bytes, file),
         _ => {
             crate::image::whole(bytes, file)?;
-            crate::image::decode_else(bytes, file, "PNG, JPEG, TGA, BMP, GIF, WebP and PPM are")
+            crate::image::decode_else(bytes, file, "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are")
         }
     }
 }

@@ -29,11 +29,13 @@ pub(super) struct TinyFacets {
     draw: u32,
 }
 
-/// What a tile's facets are drawn with, kept so that it need not be cleared.
+/// What a tile's facets are drawn with, kept so that it need not be cleared. Colours lie on whole lines of the cache: a row that
+/// is read as soon as it is written would be waited for long if it lay on two.
+#[repr(C, align(64))]
 pub(super) struct FacetMemory {
-    pub(super) scratch: Scratch,
     /// A block's colours.
     pub(super) words: BlockWords,
+    pub(super) scratch: Scratch,
     /// Colours at places of tiny facets, of all eight.
     each: [[u32; LANES]; PLACES],
     /// Pixels of all eight that show.

@@ -78,6 +78,10 @@ enum Cut<'a> {
 }
 
 impl Geometry for DrawGeometry {
+    fn vertices(&self) -> usize {
+        Arc::as_ptr(&self.batch) as usize
+    }
+
     fn pieces(&self) -> usize {
         match self.cut() {
             Cut::Grid(_) | Cut::Small(_) => 1,

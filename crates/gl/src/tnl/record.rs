@@ -1,5 +1,8 @@
 //! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks. Of a long stream of
 //! vertices, what is there already runs while the calling thread takes in more.
+//!
+//! A picture that is left for a shadow map and gone on with is one pass: tiles are visited once, and what they drew without the
+//! light is still at hand when they add it.
 
 use super::geometry::{DrawGeometry, PointSizes};
 use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
@@ -7,7 +10,7 @@ use crate::Context;
 use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Given, Sent, VertexBatch};
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 use vitral_exec::{Started, Workers};
 use vitral_math::Vec4;
 use vitral_math::lanes::Level;
@@ -22,6 +25,8 @@ pub type RunnerSource = fn() -> Arc<Runner>;
 #[derive(Default)]
 pub(crate) struct Recorder {
     pass: Option<Pass>,
+    /// A pass that was left for a shadow map, to be gone on with: so far, neither needs what the other draws.
+    aside: Option<Pass>,
     source: Option<RunnerSource>,
     own: Option<Arc<Runner>>,
     lights: LightCache,
@@ -57,12 +62,44 @@ impl Recorder {
     /// Runs everything.
     fn run(&mut self) {
         (self.waiting, self.images) = (0, 0);
+        self.finish_ahead();
+        for pass in [self.aside.take(), self.pass.take()].into_iter().flatten() {
+            self.runner().run(&pass);
+        }
+    }
+
+    fn finish_ahead(&mut self) {
         if let Some(ahead) = self.ahead.take() {
             ahead.wait();
         }
-        if let Some(pass) = self.pass.take() {
-            self.runner().run(&pass);
+    }
+
+    /// Makes way for commands on another target.
+    fn turn_to(&mut self, target: &Target) {
+        if let Some(aside) = self.aside.take_if(|aside| aside.target.same(target)) {
+            match self.pass.take() {
+                // The map was to show what the picture draws.
+                Some(map) if aside.target.depth.as_ref().is_some_and(|depth| map.samples(depth)) => {
+                    self.runner().run(&aside);
+                    self.runner().run(&map);
+                }
+                map => {
+                    if let Some(map) = map {
+                        self.runner().run(&map);
+                    }
+                    self.pass = Some(aside);
+                }
+            }
+            return;
         }
+        if self.aside.is_none()
+            && let Some(picture) = self.pass.take_if(|pass| may_wait_for(pass, target))
+        {
+            self.finish_ahead();
+            self.aside = Some(picture);
+            return;
+        }
+        self.run();
     }
 
     /// Has what is recorded run while more comes, unless what was recorded before is still running. Depths alone are left to be
@@ -72,10 +109,11 @@ impl Recorder {
             return;
         }
         let runner = self.runner();
-        let Some(pass) = self.pass.as_mut().filter(|pass| pass.target.color.is_some()) else { return };
-        if let Some(ahead) = self.ahead.take() {
-            ahead.wait();
+        if self.pass.as_ref().is_none_or(|pass| pass.target.color.is_none()) {
+            return;
         }
+        self.finish_ahead();
+        let Some(pass) = self.pass.as_mut() else { return };
         let commands = std::mem::take(&mut pass.commands);
         let recorded = Pass { target: pass.target.clone(), commands };
         let workers = runner.workers.clone();
@@ -118,9 +156,11 @@ impl Context {
     }
 
     fn record_on(&mut self, target: Target, command: Command) {
-        let fits = self.recorder.pass.as_ref().is_some_and(|p| p.target.same(&target));
-        if !fits || self.recorder.waiting > MOST_WAITING {
+        if self.recorder.waiting > MOST_WAITING {
             self.recorder.run();
+        }
+        if self.recorder.pass.as_ref().is_some_and(|pass| !pass.target.same(&target)) {
+            self.recorder.turn_to(&target);
         }
         let pass = self.recorder.pass.get_or_insert_with(|| Pass { target, commands: Vec::new() });
         pass.commands.push(command);
@@ -128,7 +168,7 @@ impl Context {
 
     /// Says that an image of that many bytes has come, for a texture or to be drawn.
     pub(crate) fn image_came(&mut self, bytes: usize) {
-        if self.recorder.pass.is_some() {
+        if self.recorder.pass.is_some() || self.recorder.aside.is_some() {
             self.recorder.images = self.recorder.images.saturating_add(bytes);
             if self.recorder.images > MOST_IMAGES {
                 self.recorder.run();
@@ -168,7 +208,7 @@ impl Context {
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
-        let mut layout = if shaded { self.layout(fragment, &units) } else { Layout::default() };
+        let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Sent::Now && batch.is_small();
         let assembled = (!small).then(|| batch.assembled.get(&batch));
@@ -210,8 +250,8 @@ impl Context {
             && (ahead || snapshot.fog != Some(FogSource::Depth))
     }
 
-    /// Where vertex records hold what.
-    fn layout(&self, fragment: &FragmentState, units: &[usize]) -> Layout {
+    /// Where vertex records hold what. `samples`: the target has several a pixel.
+    fn layout(&self, fragment: &FragmentState, units: &[usize], samples: bool) -> Layout {
         let s = &self.state;
         let two_side = s.lighting.enabled && s.lighting.model.two_side;
         let mut next = 1;
@@ -231,7 +271,7 @@ impl Context {
             }
         }
         layout.stride = next;
-        let sharp = s.multisample && self.recorder.pass.as_ref().is_some_and(|p| p.target.samples > 1);
+        let sharp = s.multisample && samples;
         layout.smooth =
             [s.points.smooth && !sharp && !s.points.sprite, s.lines.smooth && !sharp, s.polygons.smooth && !sharp];
         layout.line_stipple = s.lines.stipple.then_some(s.lines.pattern);
@@ -280,6 +320,16 @@ impl Context {
             grid: NO_GRID,
         })
     }
+}
+
+/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need what is there now.
+fn may_wait_for(pass: &Pass, target: &Target) -> bool {
+    let Some(map) = target.depth.as_ref().filter(|_| target.color.is_none()) else { return false };
+    let same = pass.target.depth.as_ref().is_some_and(|depth| Arc::ptr_eq(depth, map));
+    let sampled = map.lock().unwrap_or_else(PoisonError::into_inner).sampled;
+    let stencil = |target: &Target| target.stencil.as_ref().map(Arc::as_ptr);
+    let apart = stencil(target).is_none() || stencil(target) != stencil(&pass.target);
+    pass.target.color.is_some() && sampled && !same && apart && !pass.samples(map)
 }
 
 /// The unit of polygon offset in a fixed-point depth plane: two of its steps, since rounding may swallow part of one. 0 for

@@ -9,10 +9,11 @@ use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::Common;
-use super::shade::Layout;
+use super::shade::{Layout, Seen};
 use super::spare::{Assembly, Places};
 use super::state::FragmentState;
 use super::strips::{TileCopy, cut, rows};
+use super::texture::Texture;
 use super::tile::TileRun;
 use crate::geometry::{Screen, TileLists};
 use crate::{SUBPIXEL, SamplePattern, Viewport};
@@ -126,6 +127,8 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
     fn layout(&self) -> &Layout;
     /// Allowed pixels x0, y0, x1, y1: the viewport.
     fn clip(&self) -> [i32; 4];
+    /// What tells whether another draw of the pass has the same vertices, as they were given.
+    fn vertices(&self) -> usize;
     /// Adds a piece's primitives as draw number `draw` of the job.
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives);
     /// Colours, RGBA, of the vertices of its [`ColorGrid`](super::ColorGrid) from column `8 * eight` of row `row` on; beyond the row's
@@ -171,6 +174,18 @@ pub struct Pass {
     pub commands: Vec<Command>,
 }
 
+impl Pass {
+    /// Whether a command looks a plane up as a texture.
+    pub fn samples(&self, plane: &Arc<Mutex<DepthPlane>>) -> bool {
+        self.commands.iter().any(|command| match command {
+            Command::Draw(_, state) | Command::Image(_, state) => {
+                state.units.iter().any(|unit| unit.texture.planes().any(|other| Arc::ptr_eq(other, plane)))
+            }
+            Command::Clear(_) => false,
+        })
+    }
+}
+
 /// Threads, instruction set and memory that passes use again.
 #[derive(Debug)]
 pub struct Runner {
@@ -181,6 +196,7 @@ pub struct Runner {
     spare: Places,
     spare_pending: Places,
     assemblies: Mutex<Vec<Assembly>>,
+    seen: Mutex<Vec<Seen>>,
 }
 
 /// Triangles of a job.
@@ -188,6 +204,9 @@ const JOB: usize = 4096;
 
 /// Jobs whose primitives wait in memory at a time: so many that caches hold them until tiles have walked them.
 const JOBS_A_ROUND: usize = 16;
+
+/// Tiles of which a runner keeps the memory for what is seen there.
+const MOST_SEEN: usize = 256;
 
 /// What a tile walks, in order.
 pub(crate) enum Item<'a> {
@@ -211,9 +230,14 @@ pub(crate) struct DrawContext<'a> {
     pub constant: bool,
     /// Units with a common kind of texture and no sprites.
     pub plain: Vec<(usize, Common<'a>)>,
+    /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
+    pub again: Option<usize>,
     /// Depth planes that units sample.
     pub planes: [Option<&'a DepthPlane>; UNITS],
 }
+
+/// Depth planes that are held for a pass, with their addresses.
+type Held<'a> = Vec<(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)>;
 
 /// A job before it runs.
 struct Plan {
@@ -236,6 +260,7 @@ impl Runner {
             spare: Places::default(),
             spare_pending: Places::default(),
             assemblies: Mutex::default(),
+            seen: Mutex::default(),
         }
     }
 
@@ -251,10 +276,20 @@ impl Runner {
             let jobs = self.emit_all(&plans, 0..plans.len(), pass, &forward, Some(kind));
             return self.leave_pending(kind, pass, &plans, jobs);
         }
+        let again = shown_again(&pass.commands);
         let sampled = sampled_planes(&pass.commands);
-        let sampled: Vec<(*const Mutex<DepthPlane>, MutexGuard<'_, DepthPlane>)> =
-            sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
-        for round in rounds(&order) {
+        let sampled: Held<'_> = sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
+        let rounds = rounds(&order);
+        // What was seen in a tile is kept from round to round.
+        let mut seen = std::mem::take(&mut *lock(&self.seen));
+        seen.iter_mut().for_each(Seen::clear);
+        if rounds.len() > 1 && !again.is_empty() {
+            let viewport = pass.target.viewport;
+            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, Seen::default);
+        } else {
+            seen.clear();
+        }
+        for round in rounds {
             let numbers = round.iter().filter_map(|item| match item {
                 PlanItem::Job(number) => Some(*number),
                 PlanItem::Command(_) => None,
@@ -263,11 +298,13 @@ impl Runner {
             let numbers = first..first + numbers.count();
             let jobs = self.emit_all(&plans, numbers, pass, &forward, None);
             let items: Vec<Item<'_>> =
-                round.iter().map(|item| self.item(item, pass, &plans, (first, &jobs), &sampled)).collect();
-            self.tiles(&pass.target, &items);
+                round.iter().map(|item| self.item(item, pass, &plans, (first, &jobs), (&sampled, &again))).collect();
+            self.tiles(&pass.target, &items, &mut seen);
             drop(items);
             self.spare.give(jobs);
         }
+        seen.truncate(MOST_SEEN);
+        *lock(&self.seen) = seen;
     }
 
     /// The primitives of some jobs.
@@ -356,7 +393,7 @@ impl Runner {
         pass: &'a Pass,
         plans: &[Plan],
         (first, jobs): (usize, &'a [Primitives]),
-        sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
+        (sampled, again): (&'a Held<'a>, &[Shown]),
     ) -> Item<'a> {
         let samples = pass.target.samples;
         match item {
@@ -367,7 +404,12 @@ impl Runner {
             },
             PlanItem::Job(j) => {
                 let draws = plans[*j].pieces.iter().filter_map(|(command, _)| match &pass.commands[*command] {
-                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass, sampled)),
+                    Command::Draw(geometry, state) => {
+                        let mut draw = draw_context(&**geometry, state, pass, sampled);
+                        draw.again =
+                            textures_of(&**geometry, state).find(|shown| again.contains(shown)).map(|s| s.unit);
+                        Some(draw)
+                    }
                     _ => None,
                 });
                 let draws = draws.collect();
@@ -376,8 +418,8 @@ impl Runner {
         }
     }
 
-    /// Walks all tiles.
-    fn tiles(&self, target: &Target, items: &[Item<'_>]) {
+    /// Walks all tiles. `seen` is what was seen in each before, or empty.
+    fn tiles(&self, target: &Target, items: &[Item<'_>], seen: &mut [Seen]) {
         let mut color = target.color.as_ref().map(|p| lock(p));
         let mut depth = target.depth.as_ref().map(|p| lock(p));
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
@@ -397,14 +439,15 @@ impl Runner {
         let others: Vec<(usize, Range<usize>)> =
             cut.iter().flat_map(|&index| (1..strips).map(move |strip| (index, rows(strip, strips)))).collect();
         let mut copies: Vec<TileCopy> = others.iter().map(|(index, _)| TileCopy::of(&tiles[*index])).collect();
-        let run = |index, rows, planes| TileRun::new(index, rows, target.viewport, planes);
+        let run = |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
         let mut runs = Vec::with_capacity(tiles.len() + copies.len());
+        let mut seen = seen.iter_mut();
         for (index, tile) in tiles.iter_mut().enumerate() {
             let strips = if cut.contains(&index) { strips } else { 1 };
-            runs.push(run(index, rows(0, strips), tile.lend()));
+            runs.push(run(index, rows(0, strips), tile.lend(), seen.next()));
         }
         for ((index, rows), copy) in others.iter().zip(&mut copies) {
-            runs.push(run(*index, rows.clone(), copy.planes(scale, target.samples)));
+            runs.push(run(*index, rows.clone(), copy.planes(scale, target.samples), None));
         }
         let (many, one) = (pattern(target.samples), pattern(1));
         self.workers.for_each(runs, |mut run| run.run(self.level, items, &many, &one));
@@ -447,7 +490,7 @@ fn draw_context<'a>(
     geometry: &'a dyn Geometry,
     state: &'a FragmentState,
     pass: &Pass,
-    sampled: &'a [(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)],
+    sampled: &'a Held<'a>,
 ) -> DrawContext<'a> {
     let mut planes = [None; UNITS];
     for unit in &state.units {
@@ -478,8 +521,40 @@ fn draw_context<'a>(
         constant: geometry.layout().uniform
             || (state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum),
         plain,
+        again: None,
         planes,
     }
+}
+
+/// A draw's vertices with a texture of its.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Shown {
+    vertices: usize,
+    texture: *const Texture,
+    unit: usize,
+}
+
+/// What [`shown_again`] counts of a draw.
+fn textures_of(geometry: &dyn Geometry, state: &FragmentState) -> impl Iterator<Item = Shown> {
+    let vertices = geometry.vertices();
+    let textures = state.units.iter().filter(|unit| unit.texture.planes().next().is_none());
+    textures.map(move |unit| Shown { vertices, texture: Arc::as_ptr(&unit.texture), unit: unit.index })
+}
+
+/// Which vertices are drawn with the same texture more than once, colours being wanted.
+fn shown_again(commands: &[Command]) -> Vec<Shown> {
+    let mut all = Vec::new();
+    for command in commands {
+        if let Command::Draw(geometry, state) = command
+            && state.masked != [true; 4]
+        {
+            all.extend(textures_of(&**geometry, state));
+        }
+    }
+    all.sort_unstable();
+    let mut again: Vec<Shown> = all.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+    again.dedup();
+    again
 }
 
 /// The depth planes that are held for the whole pass, each once, in an order that all threads share: those that draws sample

@@ -1,10 +1,12 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
 
+mod again;
 mod eight_facets;
 mod textures;
 
 pub(crate) use eight_facets::{EightFacets, FacetPixels, go_together};
 
+pub(crate) use self::again::Seen;
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
 use super::color_grid::ColorGrid;
@@ -15,7 +17,7 @@ use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::soft::{disc_coverage, overlap, pieces, polygon_coverage, stipples};
 use super::wide::{Rgba, bits_of, clamp, every, every_rgba, saturate_rgba, splat};
-use crate::{BLOCK, SUBPIXEL, Setup};
+use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F32x16, Floats, I32x8, LANES, Simd, U32x8};
 
@@ -106,6 +108,7 @@ fn last_of(records: &[f32], at: usize) -> [f32; LANES] {
 pub(crate) struct Scratch {
     interpolation: Interpolation,
     differences: Differences,
+    pub(super) seen: Seen,
 }
 
 /// `1 / w` of a facet's corners differs much if it differs by more than this factor.
@@ -235,6 +238,8 @@ struct Groups<'a, V, const N: usize> {
     x: &'a [V; N],
     y: &'a [V; N],
     active: u32,
+    /// The colours of the texture that the draw shows again, at all of these pixels.
+    seen: Option<&'a BlockWords>,
 }
 
 /// A facet, its draw and its job: what a row's colour needs.
@@ -286,6 +291,7 @@ impl<'a> Shader<'a> {
     pub(crate) fn prepare<S: Simd>(&mut self, simd: S, setup: &Setup) {
         if !self.ready {
             self.ready = true;
+            self.scratch.seen.turn();
             let corners = self.facet.corners.map(|slot| slot as usize);
             self.scratch.differences.prepare(simd, &self.primitives.records, corners, self.draw.layout.stride);
             if let Some(Shape::Polygon { x, y, .. }) = self.shape() {
@@ -392,27 +398,18 @@ impl<'a> Shader<'a> {
     /// stipples let pass.
     #[inline(always)]
     pub(crate) fn row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, active: u32) -> (Rgba<S>, u32) {
-        let [color] = self.colors(simd, &[x], &[y], active);
+        let groups = Groups { weights: [self.weights(simd, x, y)], x: &[x], y: &[y], active, seen: None };
+        let [color] = self.colors(simd, &groups);
         self.covered(simd, x, y, color)
     }
 
     /// The colours of groups of pixels, before soft borders. Groups go through each step together, since what a step
     /// needs of the facet is the same for all.
     #[inline(always)]
-    fn colors<S: Simd, V: Floats<S>, const N: usize>(
-        &self,
-        simd: S,
-        x: &[V; N],
-        y: &[V; N],
-        active: u32,
-    ) -> [[V; 4]; N] {
-        let mut groups = Groups { weights: [self.weights(simd, x[0], y[0]); N], x, y, active };
-        for i in 1..N {
-            groups.weights[i] = self.weights(simd, x[i], y[i]);
-        }
+    fn colors<S: Simd, V: Floats<S>, const N: usize>(&self, simd: S, groups: &Groups<'_, V, N>) -> [[V; 4]; N] {
         let mut colors = self.primary(simd, &groups.weights);
         if !self.draw.state.units.is_empty() {
-            self.textured(simd, &groups, &mut colors);
+            self.textured(simd, groups, &mut colors);
         }
         if self.draw.state.color_sum || self.draw.state.fog.is_some() {
             for i in 0..N {
@@ -506,7 +503,7 @@ impl<'a> Shader<'a> {
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
     #[inline(never)]
-    fn whole<S: Simd>(&self, simd: S, (left, bottom): (usize, usize), words: &mut BlockWords) -> u64 {
+    fn whole<S: Simd>(&mut self, simd: S, (left, bottom): (usize, usize), words: &mut BlockWords) -> u64 {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -517,7 +514,18 @@ impl<'a> Shader<'a> {
                 for pair in 1..BLOCK / 2 {
                     rows[pair] = y + (2 * pair) as f32;
                 }
-                self.packed(simd, &[x; BLOCK / 2], &rows, 0xffff, words)
+                let x = [x; BLOCK / 2];
+                let block = bottom % TILE / BLOCK * (TILE / BLOCK) + left % TILE / BLOCK;
+                let mut weights = [self.weights(simd, x[0], rows[0]); BLOCK / 2];
+                for pair in 1..BLOCK / 2 {
+                    weights[pair] = self.weights(simd, x[pair], rows[pair]);
+                }
+                let mut seen = None;
+                if self.draw.again.is_some() {
+                    self.see(simd, block, &weights);
+                    seen = self.scratch.seen.get(block);
+                }
+                self.packed(simd, &Groups { weights, x: &x, y: &rows, active: 0xffff, seen }, words)
             },
         )
     }
@@ -539,7 +547,8 @@ impl<'a> Shader<'a> {
                 let places: I32x8<S> = U32x8::from_slice(simd, places).bitcast();
                 let (column, row): (F32x8<S>, F32x8<S>) = ((places & 7).to_float(), (places >> 3).to_float());
                 let (x, y) = (column + (left as f32 + 0.5), row + (bottom as f32 + 0.5));
-                self.packed(simd, &[x], &[y], active, words) as u32
+                let groups = Groups { weights: [self.weights(simd, x, y)], x: &[x], y: &[y], active, seen: None };
+                self.packed(simd, &groups, words) as u32
             },
         )
     }
@@ -549,12 +558,10 @@ impl<'a> Shader<'a> {
     fn packed<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
-        x: &[V; N],
-        y: &[V; N],
-        active: u32,
+        groups: &Groups<'_, V, N>,
         words: &mut [u32],
     ) -> u64 {
-        let colors = self.colors(simd, x, y, active);
+        let colors = self.colors(simd, groups);
         for (color, words) in colors.iter().zip(words.chunks_exact_mut(V::LEN)) {
             pack::<S, V>(color).store_slice(words);
         }

@@ -9,7 +9,7 @@ use super::hard_line::HardLine;
 use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of, intersection};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::{CENTERS, Shader};
+use super::shade::{CENTERS, Seen, Shader};
 use super::state::{Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
@@ -30,16 +30,24 @@ pub(crate) struct TileRun<'a> {
     /// The rows that are drawn: those of the target, or a strip of them.
     rows: Range<usize>,
     pub(super) planes: TilePlanes<'a>,
+    /// What was seen in the tile before, if that is kept.
+    seen: Option<&'a mut Seen>,
 }
 
 impl<'a> TileRun<'a> {
     /// Of tile number `index` these rows.
-    pub(crate) fn new(index: usize, rows: Range<usize>, viewport: Viewport, planes: TilePlanes<'a>) -> Self {
+    pub(crate) fn new(
+        index: usize,
+        rows: Range<usize>,
+        viewport: Viewport,
+        planes: TilePlanes<'a>,
+        seen: Option<&'a mut Seen>,
+    ) -> Self {
         let (side, across) = (TILE as u32, viewport.tiles_x());
         let (x, y) = (index as u32 % across * side, index as u32 / across * side);
         let width = (viewport.width - x).min(side) as i32;
         let end = rows.end.min((viewport.height - y) as usize);
-        Self { index, x, y, width, rows: rows.start.min(end)..end, planes }
+        Self { index, x, y, width, rows: rows.start.min(end)..end, planes, seen }
     }
 
     /// Everything that happens in this tile. A function of its own: whoever shares tiles among threads calls it at several places.
@@ -50,17 +58,24 @@ impl<'a> TileRun<'a> {
 
     #[inline(always)]
     fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
-        let mut memory = None;
+        let mut memory: Option<Box<FacetMemory>> = None;
         for item in items {
             match item {
                 Item::Clear(clear) => self.clear(clear),
                 Item::Image(image, state, ops) => self.image(simd, image, state, ops),
                 Item::Job { primitives, draws } if !primitives.batch.tile_range(self.index).is_empty() => {
-                    let memory = memory.get_or_insert_with(Box::<FacetMemory>::default);
+                    let memory = memory.get_or_insert_with(|| {
+                        let mut memory = Box::<FacetMemory>::default();
+                        memory.scratch.seen = self.seen.as_deref_mut().map(std::mem::take).unwrap_or_default();
+                        memory
+                    });
                     self.job(simd, &JobContext { primitives, draws, many, one }, memory);
                 }
                 Item::Job { .. } => {}
             }
+        }
+        if let (Some(seen), Some(memory)) = (&mut self.seen, memory) {
+            **seen = memory.scratch.seen;
         }
     }
 

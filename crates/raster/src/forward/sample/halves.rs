@@ -38,6 +38,13 @@ impl<S: Simd, V: Floats<S>> Halves<S, V> {
         }
     }
 
+    /// The bytes of each colour in a word, red the lowest.
+    #[inline(always)]
+    pub(super) fn words(&self) -> V::Words {
+        let (rb, ga): (V::Words, V::Words) = (self.rb.bitcast(), self.ga.bitcast());
+        rb | (ga << 8)
+    }
+
     /// The bytes as numbers of 0..=255.
     #[inline(always)]
     pub(super) fn unpack(&self) -> [V; 4] {

@@ -7,6 +7,7 @@ use super::fetch::{Words, interior, quads};
 use super::halves::{Halves, weight};
 use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
+use crate::forward::fragment_ops::packed::unpack_bytes;
 use crate::forward::texture::{Filter, Level, Sampler, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, bits_of, every, floor, max, min, select_rgba};
 use std::sync::Arc;
@@ -98,15 +99,16 @@ impl<'a> Packed<'a> {
         self.first.finish(color)
     }
 
-    /// What [`Self::at`] gives for groups of places with levels of detail, if all filter linearly and those of a group need the same
-    /// levels, as nearly always. Groups go through each step together: texels take long to come, and none needs wait for another's.
+    /// The bytes of what [`Self::at`] gives for groups of places with levels of detail, see [`Self::meaning`], if all filter
+    /// linearly and those of a group need the same levels, as nearly always. Groups go through each step together: texels take long to
+    /// come, and none needs wait for another's.
     #[inline(always)]
     pub(crate) fn together<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
         places: &[([V; 2], V); N],
         active: u32,
-    ) -> Option<[[V; 4]; N]> {
+    ) -> Option<[V::Words; N]> {
         if self.first.is_encoded() || !self.levels[0].has_columns() {
             return None;
         }
@@ -149,15 +151,21 @@ impl<'a> Packed<'a> {
                 );
             }
         }
-        let mut colors = [[every(simd, 0.0); 4]; N];
+        let mut words = [V::Words::splat(simd, 0); N];
         for i in 0..N {
             let mut color = Halves::filter(simd, texels[i][0], weights[i][0]);
             if several {
                 color = color.mix(&Halves::filter(simd, texels[i][1], weights[i][1]), weight(simd, fractions[i]));
             }
-            colors[i] = self.first.finish(color.unpack());
+            words[i] = color.words();
         }
-        Some(colors)
+        Some(words)
+    }
+
+    /// The colours that [`Self::together`] gave as bytes.
+    #[inline(always)]
+    pub(crate) fn meaning<S: Simd, V: Floats<S>>(&self, words: V::Words) -> [V; 4] {
+        self.first.finish(unpack_bytes::<S, V>(words))
     }
 
     /// Raw colours, all lanes with one filter within a level.

@@ -315,7 +315,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 );
                 let texture = match common {
                     Common::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
-                        Some([texture]) => texture,
+                        Some([words]) => packed.meaning(words),
                         None => packed.at(simd, [a, b], c, active),
                     },
                     Common::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),

@@ -1,7 +1,7 @@
 //! What a facet's textures make of its colour: coordinates, level of detail, lookups and environments, eight pixels at a
 //! time.
 
-use super::{Groups, MOST, Shader, Weights};
+use super::{Groups, MOST, Scratch, Shader, Weights};
 use crate::forward::assemble::Shape;
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
@@ -14,6 +14,7 @@ use crate::forward::sample::{Common, sample};
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::Swizzle;
 use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
+use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Simd};
 
 /// Eight pixels: where, and which of them matter.
@@ -50,7 +51,7 @@ impl<V, const N: usize> Groups<'_, V, N> {
     }
 }
 
-impl Shader<'_> {
+impl<'d> Shader<'d> {
     /// All units' textures and environments: `colors` are the primary colours before.
     #[inline(always)]
     pub(super) fn textured<S: Simd, V: Floats<S>, const N: usize>(
@@ -110,7 +111,7 @@ impl Shader<'_> {
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
     /// bits a component, no border in reach, no anisotropy, no sprites.
     #[inline(always)]
-    fn common(&self, unit: &Unit) -> Option<(&Common<'_>, usize)> {
+    fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
         Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
     }
@@ -238,6 +239,51 @@ impl Shader<'_> {
         steps
     }
 
+    /// Has the colours ready of the texture that the draw shows again, in a block of pixels, if they can be kept: looked up now or
+    /// before.
+    #[inline(always)]
+    pub(super) fn see<S: Simd, V: Floats<S>, const N: usize>(
+        &mut self,
+        simd: S,
+        block: usize,
+        weights: &[Weights<V>; N],
+    ) {
+        let draw = self.draw;
+        let Some(unit) = draw.state.units.iter().find(|unit| draw.again == Some(unit.index)) else { return };
+        let Some((Common::Flat(packed), at)) = self.common(unit) else { return };
+        let Scratch { interpolation, differences, seen } = &mut *self.scratch;
+        seen.look_at(unit, at, interpolation, differences);
+        if seen.get(block).is_some() {
+            return;
+        }
+        let words = self.look::<S, V, N>(simd, (unit, packed, at), weights);
+        let Some(kept) = words.and_then(|_| self.scratch.seen.keep(block)) else { return };
+        for (words, kept) in words.iter().flatten().zip(kept.chunks_exact_mut(V::LEN)) {
+            words.store_slice(kept);
+        }
+    }
+
+    /// The bytes of a texture of the common kind at groups of pixels, if it can be looked up for all together.
+    #[inline(never)]
+    fn look<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        (unit, packed, at): (&Unit, &Packed<'_>, usize),
+        weights: &[Weights<V>; N],
+    ) -> Option<[V::Words; N]> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let slopes = Slopes::new(self, packed, at);
+                let mut places = [self.place(simd, &weights[0], (unit, packed, at), &slopes); N];
+                for i in 1..N {
+                    places[i] = self.place(simd, &weights[i], (unit, packed, at), &slopes);
+                }
+                packed.together(simd, &places, u32::MAX)
+            },
+        )
+    }
+
     /// Modulates colours with a texture of the common kind.
     #[inline(never)]
     fn plain<S: Simd, V: Floats<S>, const N: usize>(
@@ -250,15 +296,22 @@ impl Shader<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
+                if let Some(words) = groups.seen.filter(|_| self.draw.again == Some(unit.index)) {
+                    let format = format_of(&unit.texture);
+                    for (color, words) in colors.iter_mut().zip(words.chunks_exact(V::LEN)) {
+                        *color = modulate(format, &packed.meaning(V::Words::from_slice(simd, words)), *color);
+                    }
+                    return;
+                }
                 let (slopes, format) = (Slopes::new(self, packed, at), format_of(&unit.texture));
                 // Places and levels of all groups come first: each takes long, but they need not wait for each other.
                 let mut places = [self.place(simd, &groups.weights[0], (unit, packed, at), &slopes); N];
                 for i in 1..N {
                     places[i] = self.place(simd, &groups.weights[i], (unit, packed, at), &slopes);
                 }
-                if let Some(textures) = packed.together(simd, &places, groups.active) {
+                if let Some(words) = packed.together(simd, &places, groups.active) {
                     for i in 0..N {
-                        colors[i] = modulate(format, &textures[i], colors[i]);
+                        colors[i] = modulate(format, &packed.meaning(words[i]), colors[i]);
                     }
                     return;
                 }

@@ -18,6 +18,7 @@ use vitral::frame::compare;
 use vitral::picture::EncodeOptions;
 use vitral::render::ColorSpace;
 use vitral::render::trace::Observer;
+use vitral::scene::Camera;
 use vitral::{Frame, Renderer, dump, execution};
 
 /// What each algorithm may take for `--pixel`, if nothing else is said.
@@ -74,8 +75,13 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
         let triangles = renderer.world().facet_count;
         report::line(&format!("read {triangles} triangles in {load_seconds:.3} s"));
     }
+    let cameras = match plan.state.turntable {
+        Some(_) => renderer.turntable_cameras(plan.views as usize),
+        None => vec![renderer.frame_camera()],
+    };
+    let first = &cameras[*plan.frames.start() as usize];
     if let Some(folder) = &args.output.dump {
-        dump::dump_to_folder(&mut renderer, folder)?;
+        dump::dump_to_folder(&mut renderer, first, folder)?;
     }
     if let Some(file) = &args.output.export_shadow_polygons {
         vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes())?;
@@ -85,7 +91,7 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
-        draw(args, plan, &mut renderer)?
+        draw(args, plan, &mut renderer, &cameras)?
     };
 
     if let Some(file) = &args.output.save_radiosity
@@ -97,7 +103,7 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     if let Some(file) = tracing {
         file.finish()?;
     }
-    let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, pixel)).transpose()?;
+    let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, first, pixel)).transpose()?;
 
     warnings.extend(drawn.warnings);
     let stats = json!({
@@ -122,10 +128,14 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
 }
 
 /// Explains a pixel of the first frame.
-fn explain_pixel(args: &RenderArgs, renderer: &Renderer, pixel: [u32; 2]) -> Result<Explanation, Failure> {
-    let camera = renderer.frame_camera();
+fn explain_pixel(
+    args: &RenderArgs,
+    renderer: &Renderer,
+    camera: &Camera,
+    pixel: [u32; 2],
+) -> Result<Explanation, Failure> {
     let limit = args.process.time_limit.unwrap_or(SECONDS_TO_EXPLAIN);
-    Ok(explain(renderer, &camera, pixel, Some(limit))?)
+    Ok(explain(renderer, camera, pixel, Some(limit))?)
 }
 
 /// What came of the frames.
@@ -141,12 +151,8 @@ struct Drawn {
     different: bool,
 }
 
-fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer) -> Result<Drawn, Failure> {
+fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
     let model = model_name(plan.state.models.first().map_or("", String::as_str));
-    let cameras = match plan.state.turntable {
-        Some(_) => renderer.turntable_cameras(plan.views as usize),
-        None => vec![renderer.frame_camera()],
-    };
     let srgb = plan.state.settings.color_space == ColorSpace::Srgb;
     let options = EncodeOptions { srgb, ..EncodeOptions::default() };
     let count = u64::from(plan.frames.end() - plan.frames.start() + 1);

@@ -381,6 +381,11 @@ fn the_stages_can_be_dumped() {
     for file in ["1-scene.json", "2-world.json", "3-cull.json", "4-lights.json", "5-view.json", "8-framebuffer.png"] {
         assert!(folder.has(&format!("stages/{file}")), "{file}");
     }
+    // Those of the turntable's first frame that is made.
+    let frame = ["builtin:scene0", "--turntable", "6", "--frames", "2-2", "--camera-azimuth-angle", "20"];
+    let output = render(&folder, &[&frame[..], &["-o", "f-{frame}.png", "--dump", "turn"]].concat());
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert_eq!(folder.read("turn/8-framebuffer.png"), folder.read("f-2.png"));
 }
 
 #[test]

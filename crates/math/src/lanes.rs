@@ -626,6 +626,24 @@ mod tests {
     }
 
     #[test]
+    fn doubles_are_rounded_as_numbers_are() {
+        let half = f64::from(f32::EPSILON) / 2.0;
+        let x = [1.0 + half, 1.0 + 3.0 * half, -0.0, 1e-42, -1e300, 3.4e38, f64::NAN, 0.1];
+        for (name, level) in available_levels() {
+            let (narrow, wide) = dispatch!(level, simd => {
+                let narrow = narrowed(simd, F64x8::from_slice(simd, &x));
+                let [_, _, z] = wide_points(simd, |lane| [0.0, 1.0, narrow.to_array()[lane]]);
+                (narrow.to_array(), z.to_array())
+            });
+            for lane in (0..8).filter(|lane| *lane != 6) {
+                assert_eq!(narrow[lane].to_bits(), (x[lane] as f32).to_bits(), "{name}: {}", x[lane]);
+                assert_eq!(wide[lane].to_bits(), f64::from(x[lane] as f32).to_bits(), "{name}: {}", x[lane]);
+            }
+            assert!(narrow[6].is_nan() && wide[6].is_nan(), "{name}");
+        }
+    }
+
+    #[test]
     fn sixteen_go_by_eights_in_order() {
         let x: [f32; 16] = std::array::from_fn(|lane| lane as f32);
         for (name, level) in available_levels() {

@@ -305,7 +305,8 @@ fn render_steps(
     Ok(())
 }
 
-/// The session's tiles if they fit, else new ones, charged to the budget.
+/// The session's tiles if they fit, else new ones, charged to the budget: all of them, though the z-buffer often needs but a few
+/// ([`TileSink::keeps_tiles`](crate::visible::TileSink::keeps_tiles)).
 fn take_grid(
     session: &mut Session,
     viewport: Viewport,

@@ -1,7 +1,7 @@
 //! The faces round each vertex, and which of them are smooth together.
 //!
-//! Idea: list the corners of faces at every vertex (dealt into buckets of vertices, then a counting sort). At a vertex, each
-//! face is averaged with those that the rule allows: faces within the crease angle of *it*, or faces of its smoothing
+//! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all their faces; only where one is
+//! far from it are corners listed by vertex (a counting sort) and looked at. There, each face is averaged with those that the rule allows: faces within the crease angle of *it*, or faces of its smoothing
 //! group. Faces that end up with the same sum share one normal.
 //!
 //! In:   a mesh, welded vertices.
@@ -74,12 +74,13 @@ struct Scratch {
 }
 
 /// Gives each vertex the average of all its faces, and tells in `apart` those that need a closer look: where some face is farther
-/// from the average than half the angle, so that not all are within the angle of each other. Whether there are any.
+/// from the average than half the angle, so that not all are within the angle of each other. Whether there are any. By groups, all
+/// vertices with faces need it.
 fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Vec<bool>) -> bool {
-    let sorted = |degree: &u32| *degree > 0;
+    let has_faces = |degree: &u32| *degree > 0;
     let Rule::Angle { half, .. } = rule else {
         apart.clear();
-        apart.extend(bucket.around.degrees.iter().map(sorted));
+        apart.extend(bucket.around.degrees.iter().map(has_faces));
         return apart.contains(&true);
     };
     apart.clear();
@@ -149,7 +150,18 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
         return FanNormals { values: first, of_corner: None, solidity };
     };
 
-    // Further normals follow the first ones.
+    // What was welded to another vertex has no normal of its own. Further normals follow the first ones.
+    let mut own: Vec<u32> = Vec::new();
+    if weld.distinct < vertices {
+        let mut next = 0;
+        let number = |(v, normal): (u32, [f32; 3])| {
+            let is_own = weld.of(v) == v;
+            own.push(next);
+            next += u32::from(is_own);
+            is_own.then_some(normal)
+        };
+        first = (0..).zip(first).filter_map(number).collect();
+    }
     let mut values = first;
     let before: Vec<u32> = further
         .iter()
@@ -163,7 +175,8 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
     workers.for_each_chunk(&mut of_corner, PIECE, |k, part| {
         for (c, index) in part.iter_mut().enumerate() {
             let v = weld.of(list[k * PIECE + c]);
-            *index = index.checked_sub(1).map_or(v, |further| before[(v >> shift) as usize] + further);
+            let first = own.get(v as usize).copied().unwrap_or(v);
+            *index = index.checked_sub(1).map_or(first, |further| before[(v >> shift) as usize] + further);
         }
     });
     FanNormals { values, of_corner: Some(of_corner), solidity }

@@ -255,8 +255,9 @@ impl Mesh {
                 max[k] = lanes::Lanes::max(finite.select(p[k], -most), max[k]);
             }
         }
-        let least = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::INFINITY, f32::min));
-        let greatest = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max));
+        // Which of two zeros is the lesser is left to the processor: plus 0.0, both are 0.0.
+        let least = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::INFINITY, f32::min) + 0.0);
+        let greatest = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max) + 0.0);
         Aabb {
             min: DVec3::new(least(min[0]), least(min[1]), least(min[2])),
             max: DVec3::new(greatest(max[0]), greatest(max[1]), greatest(max[2])),

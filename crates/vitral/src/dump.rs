@@ -24,21 +24,24 @@ use vitral_render::stats::CullCounters;
 use vitral_render::{ColorSpace, PreparedView, Settings};
 use vitral_scene::Camera;
 
-/// Renders the next picture of `renderer` and hands each stage's result to `write`, by file name.
+/// Renders what `camera` sees and hands each stage's result to `write`, by file name.
 ///
 /// # Errors
 /// Those of [`Renderer::render`], and those of `write`.
-pub fn dump(renderer: &mut Renderer, mut write: impl FnMut(&str, &[u8]) -> Result<(), Error>) -> Result<(), Error> {
+pub fn dump(
+    renderer: &mut Renderer,
+    camera: &Camera,
+    mut write: impl FnMut(&str, &[u8]) -> Result<(), Error>,
+) -> Result<(), Error> {
     let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
-    let camera = renderer.frame_camera();
     let mut put = |name: &str, value: &Value| write(name, format!("{value:#}\n").as_bytes());
     put("1-scene.json", &scene_graph(renderer.scene()))?;
     put("2-world.json", &world(renderer))?;
     let cull_counters = {
         let mut counters = CullCounters::default();
-        let view = prepare(renderer, &camera, viewport, &mut counters);
+        let view = prepare(renderer, camera, viewport, &mut counters);
         put("3-cull.json", &culled(&view, &counters))?;
-        put("4-lights.json", &lights_in_view(renderer, &camera, &view))?;
+        put("4-lights.json", &lights_in_view(renderer, camera, &view))?;
         put("5-view.json", &view_matrices(&view))?;
         let facets = facets(&view);
         write("6-facets.csv", facets.as_bytes())?;
@@ -51,7 +54,7 @@ pub fn dump(renderer: &mut Renderer, mut write: impl FnMut(&str, &[u8]) -> Resul
     let channels = &mut renderer.settings.channels;
     [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
-    let rendered = renderer.render_from(&camera);
+    let rendered = renderer.render_from(camera);
     renderer.settings.channels = wanted;
     let rendered = rendered?;
     debug_assert_eq!(rendered.stats.cull.triangles, cull_counters.triangles);
@@ -83,10 +86,10 @@ fn has_passes(settings: &Settings) -> bool {
 ///
 /// # Errors
 /// As [`dump`]; [`Error::Write`].
-pub fn dump_to_folder(renderer: &mut Renderer, folder: impl AsRef<Path>) -> Result<(), Error> {
+pub fn dump_to_folder(renderer: &mut Renderer, camera: &Camera, folder: impl AsRef<Path>) -> Result<(), Error> {
     let folder = folder.as_ref();
     std::fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
-    dump(renderer, |name, bytes| picture::write(folder.join(name), bytes))
+    dump(renderer, camera, |name, bytes| picture::write(folder.join(name), bytes))
 }
 
 fn prepare<'a>(
@@ -253,7 +256,8 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
         (renderer.settings.width, renderer.settings.height) = (64, 48);
         let mut files = BTreeMap::new();
-        dump(&mut renderer, |name, bytes| {
+        let camera = renderer.frame_camera();
+        dump(&mut renderer, &camera, |name, bytes| {
             files.insert(name.to_owned(), bytes.to_vec());
             Ok(())
         })

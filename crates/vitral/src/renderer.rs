@@ -179,8 +179,7 @@ impl Renderer {
     }
 
     /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
-    /// from above. A framed camera keeps its distance, just far enough for
-    /// the whole turn.
+    /// from above. A framed camera keeps its distance, just far enough for the whole turn before [`Moves::zoom`].
     pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {
         let (aspect, workers, axis) = (self.aspect(), &self.execution.workers, self.up.vector());
         let framed = || {

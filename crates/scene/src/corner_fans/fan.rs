@@ -19,9 +19,9 @@ pub(super) struct Fan {
     members: Vec<Member>,
     /// Pairs of a sorting key and a position in the fan.
     keyed: Vec<(u32, u32)>,
-    /// The normals that were made, all different.
+    /// The normals that were made; where few faces meet, all different.
     pub(super) values: Vec<[f32; 3]>,
-    /// For each corner, which value it takes, if there is more than one.
+    /// For each corner, which value it takes.
     pub(super) slots: Vec<u32>,
 }
 

@@ -50,6 +50,16 @@ fn a_crease_angle_below_a_right_angle_keeps_the_cube_sharp() {
         let face = face_normal(&mesh, mesh.face_of_triangle(t));
         assert!(normals(&mesh).at(t, &mesh.triangles).iter().all(|n| close(*n, face)));
     }
+    // Corners that are told apart, as in STL, are welded and make no more.
+    let mut soup = solids::cuboid(DVec3::ONE);
+    soup.positions = soup.triangles.as_flattened().iter().map(|&v| soup.positions[v as usize]).collect();
+    soup.triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    soup.faces = Faces::Triangles;
+    let soup = with_normals(soup, FRAC_PI_6);
+    assert_eq!(normals(&soup).values.len(), 24);
+    for t in 0..12 {
+        assert!(normals(&soup).at(t, &soup.triangles).iter().all(|n| close(*n, face_normal(&soup, t))));
+    }
     let right = with_normals(solids::cuboid(DVec3::ONE), FRAC_PI_2);
     assert!(normals(&right).corners.is_none(), "a right angle is not more than a right angle");
 }

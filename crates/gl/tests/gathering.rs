@@ -2,31 +2,12 @@
 
 mod common;
 
-use common::Stage;
+use common::{Dice, Stage};
 use std::sync::{Arc, OnceLock};
 use vitral_exec::Workers;
 use vitral_gl::enums as gl;
 use vitral_math::lanes::Level;
 use vitral_raster::forward::Runner;
-
-/// Numbers without order.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as u32 % n
-    }
-
-    /// -1 to 1, with few digits.
-    fn number(&mut self) -> f32 {
-        (self.below(65) as f32 - 32.0) / 32.0
-    }
-
-    fn color(&mut self) -> [f32; 4] {
-        [0; 4].map(|_| self.below(9) as f32 / 8.0)
-    }
-}
 
 fn material(c: &mut Stage, d: &mut Dice) {
     let names = [gl::AMBIENT, gl::DIFFUSE, gl::SPECULAR, gl::EMISSION, gl::AMBIENT_AND_DIFFUSE, gl::SHININESS];

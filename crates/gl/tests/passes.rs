@@ -3,22 +3,8 @@
 
 mod common;
 
-use common::Stage;
+use common::{Dice, Stage};
 use vitral_gl::enums as gl;
-
-/// Numbers without order.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as u32 % n
-    }
-
-    fn number(&mut self) -> f32 {
-        (self.below(65) as f32 - 32.0) / 32.0
-    }
-}
 
 const SIZE: i32 = 100;
 /// Depth textures: of the picture, of shadow maps.

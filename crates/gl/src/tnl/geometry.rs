@@ -78,7 +78,7 @@ enum Cut<'a> {
 }
 
 impl Geometry for DrawGeometry {
-    fn vertices(&self) -> usize {
+    fn vertex_source(&self) -> usize {
         Arc::as_ptr(&self.batch) as usize
     }
 

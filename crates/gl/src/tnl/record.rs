@@ -76,20 +76,16 @@ impl Recorder {
 
     /// Makes way for commands on another target.
     fn turn_to(&mut self, target: &Target) {
-        if let Some(aside) = self.aside.take_if(|aside| aside.target.same(target)) {
-            match self.pass.take() {
-                // The map was to show what the picture draws.
-                Some(map) if aside.target.depth.as_ref().is_some_and(|depth| map.samples(depth)) => {
-                    self.runner().run(&aside);
-                    self.runner().run(&map);
-                }
-                map => {
-                    if let Some(map) = map {
-                        self.runner().run(&map);
-                    }
-                    self.pass = Some(aside);
-                }
+        if let Some(aside) = self.aside.as_ref().filter(|aside| aside.target.same(target)) {
+            let asks = |map: &Pass| aside.target.depth.as_ref().is_some_and(|depth| map.samples(depth));
+            if self.pass.as_ref().is_some_and(asks) {
+                // The map is to show what the picture draws.
+                return self.run();
             }
+            if let Some(map) = self.pass.take() {
+                self.runner().run(&map);
+            }
+            self.pass = self.aside.take();
             return;
         }
         if self.aside.is_none()

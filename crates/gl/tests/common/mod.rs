@@ -143,6 +143,25 @@ impl Stage {
     }
 }
 
+/// Numbers without order.
+pub(crate) struct Dice(pub(crate) u64);
+
+impl Dice {
+    pub(crate) fn below(&mut self, n: u32) -> u32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as u32 % n
+    }
+
+    /// -1 to 1, with few digits.
+    pub(crate) fn number(&mut self) -> f32 {
+        (self.below(65) as f32 - 32.0) / 32.0
+    }
+
+    pub(crate) fn color(&mut self) -> [f32; 4] {
+        [0; 4].map(|_| self.below(9) as f32 / 8.0)
+    }
+}
+
 /// Whether bytes agree with colours to one step.
 #[track_caller]
 pub(crate) fn assert_color(found: [u8; 4], expected: [f32; 4]) {

@@ -131,19 +131,18 @@ pub(crate) fn depths<S: Simd>(
                 }
                 return;
             }
-            let full = (0..samples).all(|s| masks[s] == u64::MAX);
+            let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
             // Where nothing was drawn yet, the depths of the whole triangle mostly tell.
-            if let Some(empty) = tile.cleared(block.touched()).filter(|_| full && rule.write && block.is_aligned()) {
+            if let Some(empty) = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned()) {
                 let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
                 if verdict(rule.func, all, [empty; 2]) == Verdict::AllPass {
-                    ranges.forget(block.touched());
+                    ranges.forget(touched);
                     return tile.set_surface(index, surface);
                 }
             }
             let together = pattern.len() != samples && all_alike(masks, samples);
             let slopes = surface.slopes(simd);
             let test = Test::new(simd, &surface, &slopes, rule.write);
-            let touched = block.touched();
             let old = ranges.of(simd, tile, index, samples);
             let new = surface.bounds(&slopes);
             let verdict = verdict(rule.func, new, old);

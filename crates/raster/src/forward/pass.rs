@@ -11,7 +11,7 @@ use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::Common;
 use super::shade::{Layout, Seen};
 use super::spare::{Assembly, Places};
-use super::state::FragmentState;
+use super::state::{EnvironmentMode, FragmentState};
 use super::strips::{TileCopy, cut, rows};
 use super::texture::Texture;
 use super::tile::TileRun;
@@ -128,7 +128,7 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
     /// Allowed pixels x0, y0, x1, y1: the viewport.
     fn clip(&self) -> [i32; 4];
     /// What tells whether another draw of the pass has the same vertices, as they were given.
-    fn vertices(&self) -> usize;
+    fn vertex_source(&self) -> usize;
     /// Adds a piece's primitives as draw number `draw` of the job.
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives);
     /// Colours, RGBA, of the vertices of its [`ColorGrid`](super::ColorGrid) from column `8 * eight` of row `row` on; beyond the row's
@@ -281,13 +281,12 @@ impl Runner {
         let sampled: Held<'_> = sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
         let rounds = rounds(&order);
         // What was seen in a tile is kept from round to round.
-        let mut seen = std::mem::take(&mut *lock(&self.seen));
-        seen.iter_mut().for_each(Seen::clear);
+        let mut seen = Vec::new();
         if rounds.len() > 1 && !again.is_empty() {
+            seen = std::mem::take(&mut *lock(&self.seen));
+            seen.iter_mut().for_each(Seen::clear);
             let viewport = pass.target.viewport;
             seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, Seen::default);
-        } else {
-            seen.clear();
         }
         for round in rounds {
             let numbers = round.iter().filter_map(|item| match item {
@@ -303,8 +302,10 @@ impl Runner {
             drop(items);
             self.spare.give(jobs);
         }
-        seen.truncate(MOST_SEEN);
-        *lock(&self.seen) = seen;
+        if !seen.is_empty() {
+            seen.truncate(MOST_SEEN);
+            *lock(&self.seen) = seen;
+        }
     }
 
     /// The primitives of some jobs.
@@ -404,12 +405,7 @@ impl Runner {
             },
             PlanItem::Job(j) => {
                 let draws = plans[*j].pieces.iter().filter_map(|(command, _)| match &pass.commands[*command] {
-                    Command::Draw(geometry, state) => {
-                        let mut draw = draw_context(&**geometry, state, pass, sampled);
-                        draw.again =
-                            textures_of(&**geometry, state).find(|shown| again.contains(shown)).map(|s| s.unit);
-                        Some(draw)
-                    }
+                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass, (sampled, again))),
                     _ => None,
                 });
                 let draws = draws.collect();
@@ -490,7 +486,7 @@ fn draw_context<'a>(
     geometry: &'a dyn Geometry,
     state: &'a FragmentState,
     pass: &Pass,
-    sampled: &'a Held<'a>,
+    (sampled, again): (&'a Held<'a>, &[Shown]),
 ) -> DrawContext<'a> {
     let mut planes = [None; UNITS];
     for unit in &state.units {
@@ -503,8 +499,11 @@ fn draw_context<'a>(
         .units
         .iter()
         .filter(|unit| unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0);
-    let plain =
+    let plain: Vec<(usize, Common<'_>)> =
         plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
+    let is_flat =
+        |shown: &Shown| plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, Common::Flat(_)));
+    let again = textures_of(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
@@ -520,8 +519,8 @@ fn draw_context<'a>(
         shaded,
         constant: geometry.layout().uniform
             || (state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum),
+        again: again.map(|shown| shown.unit),
         plain,
-        again: None,
         planes,
     }
 }
@@ -534,11 +533,15 @@ struct Shown {
     unit: usize,
 }
 
-/// What [`shown_again`] counts of a draw.
+/// What [`shown_again`] counts of a draw: nothing where textures are not only multiplied with each other.
 fn textures_of(geometry: &dyn Geometry, state: &FragmentState) -> impl Iterator<Item = Shown> {
-    let vertices = geometry.vertices();
-    let textures = state.units.iter().filter(|unit| unit.texture.planes().next().is_none());
-    textures.map(move |unit| Shown { vertices, texture: Arc::as_ptr(&unit.texture), unit: unit.index })
+    let vertices = geometry.vertex_source();
+    let multiplied = state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate);
+    state.units.iter().filter(move |_| multiplied).map(move |unit| Shown {
+        vertices,
+        texture: Arc::as_ptr(&unit.texture),
+        unit: unit.index,
+    })
 }
 
 /// Which vertices are drawn with the same texture more than once, colours being wanted.

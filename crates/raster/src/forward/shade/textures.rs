@@ -274,14 +274,26 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let slopes = Slopes::new(self, packed, at);
-                let mut places = [self.place(simd, &weights[0], (unit, packed, at), &slopes); N];
-                for i in 1..N {
-                    places[i] = self.place(simd, &weights[i], (unit, packed, at), &slopes);
-                }
+                let places = self.places(simd, (unit, packed, at), weights);
                 packed.together(simd, &places, u32::MAX)
             },
         )
+    }
+
+    /// Coordinates of a texture of the common kind at groups of pixels, and their levels of detail.
+    #[inline(always)]
+    fn places<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        (unit, packed, at): (&Unit, &Packed<'_>, usize),
+        weights: &[Weights<V>; N],
+    ) -> [([V; 2], V); N] {
+        let slopes = Slopes::new(self, packed, at);
+        let mut places = [self.place(simd, &weights[0], (unit, packed, at), &slopes); N];
+        for i in 1..N {
+            places[i] = self.place(simd, &weights[i], (unit, packed, at), &slopes);
+        }
+        places
     }
 
     /// Modulates colours with a texture of the common kind.
@@ -296,19 +308,15 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
+                let format = format_of(&unit.texture);
                 if let Some(words) = groups.seen.filter(|_| self.draw.again == Some(unit.index)) {
-                    let format = format_of(&unit.texture);
                     for (color, words) in colors.iter_mut().zip(words.chunks_exact(V::LEN)) {
                         *color = modulate(format, &packed.meaning(V::Words::from_slice(simd, words)), *color);
                     }
                     return;
                 }
-                let (slopes, format) = (Slopes::new(self, packed, at), format_of(&unit.texture));
                 // Places and levels of all groups come first: each takes long, but they need not wait for each other.
-                let mut places = [self.place(simd, &groups.weights[0], (unit, packed, at), &slopes); N];
-                for i in 1..N {
-                    places[i] = self.place(simd, &groups.weights[i], (unit, packed, at), &slopes);
-                }
+                let places = self.places(simd, (unit, packed, at), &groups.weights);
                 if let Some(words) = packed.together(simd, &places, groups.active) {
                     for i in 0..N {
                         colors[i] = modulate(format, &packed.meaning(words[i]), colors[i]);

@@ -9,9 +9,9 @@
 
 use fearless_simd::prelude::*;
 pub use fearless_simd::{
-    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8, i32x4 as I32x4,
-    i32x8 as I32x8, i32x16 as I32x16, mask32x8 as Mask8, mask32x16 as Mask16, u8x16 as U8x16, u16x16 as U16x16,
-    u16x32 as U16x32, u32x8 as U32x8, u32x16 as U32x16,
+    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x4 as F64x4, f64x8 as F64x8,
+    i32x4 as I32x4, i32x8 as I32x8, i32x16 as I32x16, mask32x8 as Mask8, mask32x16 as Mask16, u8x16 as U8x16,
+    u16x16 as U16x16, u16x32 as U16x32, u32x8 as U32x8, u32x16 as U32x16,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 

@@ -15,7 +15,7 @@ use super::patch::Trees;
 use super::targets::Targets;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::DecodeTables;
-use crate::shadow::{Place, Shadows, facet as facet_of, ray::RayShadows, texel};
+use crate::shadow::{Parts, Place, Places, Shadows, facet as facet_of, ray::RayShadows, texel};
 use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
 use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Light, LightKind, Material, PreparedLight, Reflectance};
@@ -190,6 +190,7 @@ impl Enclosure {
 fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Place) -> Color {
     let three = |v: DVec3| V3::splat(0.0f32, v.as_vec3().to_array());
     let (position, normal) = (three(place.position), three(place.normal));
+    let here: Places = std::iter::once(*place).collect();
     let mut sum = [0.0; 3];
     for (number, light) in lights {
         let incident = light.incident(position);
@@ -198,9 +199,9 @@ fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Pl
             None => (incident.intensity, normal.dot(incident.l)),
         };
         if cos > 0.0 && intensity > 0.0 {
-            let mut part = [[0.0; 3]];
-            shadows.arriving(*number, std::slice::from_ref(place), &mut part, &mut 0);
-            let [part] = part;
+            let mut part = Parts::new(1, [0.0; 3]);
+            shadows.arriving(*number, &here, &mut part, &mut 0);
+            let part = part.get(0);
             (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * intensity * cos));
         }
     }

@@ -192,15 +192,10 @@ fn rows<'a>(records: &'a [Record], slots: &Slots) -> [&'a Record; LANES] {
 }
 
 /// [`Surface::weights`] alone.
-pub(super) fn point_weights<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> [[f32; LANES]; 3] {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let (_, values, _) = weighed(simd, &rows(records, slots), slots);
-            let [a, b, c] = on_facet(values);
-            [a.to_array(), b.to_array(), c.to_array()]
-        },
-    )
+#[inline(always)]
+pub(super) fn point_weights<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> [F<S>; 3] {
+    let (_, values, _) = weighed(simd, &rows(records, slots), slots);
+    on_facet(values)
 }
 
 #[inline(always)]

@@ -7,10 +7,9 @@ use super::geometry::{F, Slots, Surface, constant, surface};
 use super::hits::{Along, Hit};
 use super::looks::Looks;
 use super::points::{Group, Points};
-use super::shadowed::Arriving;
 use super::{flat, glow, gouraud, hits, phong, shadowed};
 use crate::radiosity::Solution;
-use crate::shadow::Place;
+use crate::shadow::{Parts, Place, Places};
 use crate::transparency::{filtered, linear};
 use crate::{Shading, Transparency};
 use vitral_light::{
@@ -58,7 +57,7 @@ pub(crate) struct Lighting<'a> {
     /// The rays that see the points, if it is not the eye.
     along: Option<&'a Along>,
     /// Which part of each light arrives at the group's points; empty without shadows.
-    arriving: &'a [Arriving],
+    arriving: &'a [Parts],
     /// The first of the eight points in the group.
     first: usize,
 }
@@ -200,9 +199,9 @@ pub(crate) struct Eight<'a> {
     /// The rays that see them, if it is not the eye.
     pub along: Option<&'a Along>,
     /// What of each light comes to all points of the group; empty without shadows, or if nobody asks.
-    pub arriving: &'a [Arriving],
+    pub arriving: &'a [Parts],
     /// The same for the other side of a translucent sheet.
-    pub arriving_behind: &'a [Arriving],
+    pub arriving_behind: &'a [Parts],
     /// The place of the first point in the group.
     pub first: usize,
 }
@@ -252,7 +251,7 @@ pub(crate) fn shade_hits<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         let [arriving, behind] = if asks(material) {
-            let places = order.iter().map(|&p| hits[p as usize].place).collect();
+            let places: Places = order.iter().map(|&p| hits[p as usize].place).collect();
             shadowed::arriving_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
             [Vec::new(), Vec::new()]
@@ -408,7 +407,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         let mirror = looks.mirror(simd, material).scale(looks.coverage);
         let places = match along {
             Some(along) => along.places,
-            None => shadowed::world_places(simd, constants, subject, slots, shadowed::weights(&surface)),
+            None => shadowed::world_places(simd, constants, subject, slots, &surface.weights),
         };
         let soa = [normal, mirror].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]);
         for (lane, &p) in points.iter().enumerate() {

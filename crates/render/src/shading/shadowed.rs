@@ -10,40 +10,9 @@ use super::geometry::{F, Slots, Surface, blend3, point_weights};
 use super::group::slots;
 use super::phong::interpolated_normal;
 use super::points::Points;
-use crate::shadow::{Place, Placing, grey};
-use vitral_light::Rgb;
+use crate::shadow::{Parts, Place, Places, Placing, grey};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
-
-/// The part of each colour of a light at the points of a group, filled up to whole eights.
-pub(crate) struct Arriving([Vec<f32>; 3]);
-
-impl Arriving {
-    fn new(parts: &[Rgb]) -> Self {
-        let count = parts.len().next_multiple_of(LANES);
-        let channel = |k: usize| {
-            let mut channel: Vec<_> = parts.iter().map(|part| part[k]).collect();
-            channel.resize(count, 0.0);
-            channel
-        };
-        Self([channel(0), channel(1), channel(2)])
-    }
-
-    /// At eight points from the `first` of the group.
-    #[inline(always)]
-    pub(crate) fn eight<S: Simd>(&self, simd: S, first: usize) -> V3<F<S>> {
-        let [r, g, b] = &self.0;
-        let lanes = lanes::inlined(
-            #[inline(always)]
-            |channel: &Vec<f32>| F32x8::from_slice(simd, &channel[first..first + LANES]),
-        );
-        V3::new(lanes(r), lanes(g), lanes(b))
-    }
-
-    fn grey(&self, point: usize) -> f32 {
-        grey([self.0[0][point], self.0[1][point], self.0[2][point]])
-    }
-}
+use vitral_math::lanes::{LANES, Simd, V3};
 
 /// What of each light arrives at the points of a group that the eye sees, and on the other side of a translucent sheet;
 /// empty without shadows. Adds the rays that it took.
@@ -55,22 +24,22 @@ pub(crate) fn arriving<S: Simd>(
     order: &[u32],
     facets: &FacetTable,
     rays: &mut u64,
-) -> [Vec<Arriving>; 2] {
+) -> [Vec<Parts>; 2] {
     if constants.shadows.is_none() {
         return [Vec::new(), Vec::new()];
     }
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
-    let mut all = Vec::with_capacity(order.len());
+    let mut all = Places::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
-        let slots = slots(points, eight, records, subject.first_facet);
-        let weights = point_weights(simd, &facets.records, &slots);
-        let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
         simd.vectorize(
             #[inline(always)]
             || {
-                let place = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
-                all.extend((0..eight.len()).map(place));
+                let slots = slots(points, eight, records, subject.first_facet);
+                let weights = point_weights(simd, &facets.records, &slots);
+                let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
+                let places = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
+                all.push(places, eight.len());
             },
         );
     }
@@ -82,24 +51,23 @@ pub(crate) fn arriving<S: Simd>(
 pub(crate) fn arriving_on_sides(
     constants: &FrameConstants<'_>,
     both: bool,
-    mut places: Vec<Place>,
+    places: Places,
     rays: &mut u64,
-) -> [Vec<Arriving>; 2] {
+) -> [Vec<Parts>; 2] {
     let seen = arriving_at(constants, &places, rays);
     if !both {
         return [seen, Vec::new()];
     }
-    places.iter_mut().for_each(|place| place.normal = -place.normal);
-    [seen, arriving_at(constants, &places, rays)]
+    [seen, arriving_at(constants, &places.turned(), rays)]
 }
 
 /// What of each light arrives at these places; empty without shadows. Adds the rays that it took.
-fn arriving_at(constants: &FrameConstants<'_>, places: &[Place], rays: &mut u64) -> Vec<Arriving> {
+fn arriving_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
-    let mut parts = vec![[0.0; 3]; places.len()];
     let of_light = |&light: &usize| {
+        let mut parts = Parts::new(places.len(), [0.0; 3]);
         shadows.arriving(light, places, &mut parts, rays);
-        Arriving::new(&parts)
+        parts
     };
     constants.light_numbers.iter().map(of_light).collect()
 }
@@ -117,11 +85,12 @@ pub(super) fn world_places<S: Simd>(
     constants: &FrameConstants<'_>,
     subject: &Subject<'_>,
     slots: &Slots,
-    weights: [[f32; LANES]; 3],
+    weights: &[F<S>; 3],
 ) -> [Place; LANES] {
     let placing = placing(constants, subject);
     let facets = placing.eight_facets(simd, &slots.triangle);
-    std::array::from_fn(placing.places(simd, (&slots.triangle, facets.each_ref()), &weights, [&slots.x, &slots.y]))
+    let places = placing.places(simd, (&slots.triangle, facets.each_ref()), weights, [&slots.x, &slots.y]);
+    std::array::from_fn(|lane| places.get(lane))
 }
 
 fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing<'a> {
@@ -136,7 +105,7 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
     surface: &Surface<S>,
-    arriving: &[Arriving],
+    arriving: &[Parts],
     first: usize,
 ) -> [[f32; LANES]; 2] {
     let (position, normal) = (blend3(&surface.weights, &surface.positions), interpolated_normal(surface));
@@ -148,7 +117,7 @@ pub(crate) fn shadow_shares<S: Simd>(
     let mut shares = [[0.0; LANES]; 2];
     for lane in 0..LANES {
         let at = |v: &[[f32; LANES]; 3]| V3::new(v[0][lane], v[1][lane], v[2][lane]);
-        let part = |light: usize| arriving.get(light).map_or(1.0, |parts| parts.grey(first + lane));
+        let part = |light: usize| arriving.get(light).map_or(1.0, |parts| grey(parts.get(first + lane)));
         let [attached, cast] = shares_at(constants, at(&position), [at(&normal), at(&facet)], part);
         (shares[0][lane], shares[1][lane]) = (attached, cast);
     }

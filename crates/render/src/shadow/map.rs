@@ -29,7 +29,7 @@ mod slice;
 
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
-use super::{Place, ShadowAlgorithm, Shadows};
+use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
 use crate::{ColorSpace, Execution, PreparedView, Session, Settings, Transparency};
@@ -265,37 +265,34 @@ struct Prepared {
 }
 
 impl Shadows for Prepared {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
                 lookup::arriving(self.level, map, *towards, places, parts);
             }
             LightMaps::Infinity { towards, map } => {
-                let faces = |place: &Place| place.normal.dot(*towards) > 0.0;
-                let questions: Vec<_> = places.iter().filter(|p| faces(p)).map(|p| (0, p)).collect();
-                let mut answers = self.answers(light, &[map], &questions).into_iter();
-                for (place, part) in places.iter().zip(parts) {
-                    *part = if faces(place) { answers.next().unwrap_or([1.0; 3]) } else { [0.0; 3] };
-                }
+                parts.fill([0.0; 3]);
+                let facing = places.iter().enumerate().filter(|(_, place)| place.normal.dot(*towards) > 0.0);
+                let questions: Vec<_> = facing.map(|(number, _)| (0, number)).collect();
+                let answers = self.answers(light, &[map], &questions, places);
+                questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));
             }
             LightMaps::Places(emitters) => {
                 let mut shares = vec![Shares::default(); places.len()];
                 for (from, maps) in emitters {
                     let maps: Vec<_> = maps.iter().collect();
-                    let weights: Vec<_> = places.iter().map(|place| from.weight(place)).collect();
+                    let weights: Vec<_> = places.iter().map(|place| from.weight(&place)).collect();
                     // What no map sees is lit: nothing has this number.
-                    let seeing = |p: &Place| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
-                    let asking = places.iter().zip(&weights).filter(|(_, weight)| **weight > 0.0);
-                    let questions: Vec<_> = asking.map(|(place, _)| (seeing(place), place)).collect();
-                    let mut answers = self.answers(light, &maps, &questions).into_iter();
+                    let seeing = |p: Place| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
+                    let asking = places.iter().zip(&weights).enumerate().filter(|(_, (_, weight))| **weight > 0.0);
+                    let questions: Vec<_> = asking.map(|(number, (place, _))| (seeing(place), number)).collect();
+                    let mut answers = self.answers(light, &maps, &questions, places).into_iter();
                     for (share, &weight) in shares.iter_mut().zip(&weights) {
                         share.add(weight, || answers.next().unwrap_or([1.0; 3]));
                     }
                 }
-                for (part, share) in parts.iter_mut().zip(&shares) {
-                    *part = share.part();
-                }
+                shares.iter().enumerate().for_each(|(number, share)| parts.set(number, share.part()));
             }
         }
     }
@@ -303,10 +300,10 @@ impl Shadows for Prepared {
 
 impl Prepared {
     /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
-    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
+    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
         match &self.cascades {
-            Some(cascades) => cascades.answers(self.level, light, maps, questions),
-            None => lookup::answers(self.level, maps, questions),
+            Some(cascades) => cascades.answers(self.level, light, maps, questions, places),
+            None => lookup::answers(self.level, maps, questions, places),
         }
     }
 }

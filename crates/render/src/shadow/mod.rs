@@ -16,6 +16,7 @@ pub mod map;
 pub mod object_precision;
 mod occluders;
 mod place;
+mod places;
 pub mod ray;
 pub mod scan_line;
 mod sources;
@@ -24,6 +25,8 @@ pub mod volume;
 pub(crate) use casters::Casters;
 pub(crate) use occluders::{texel, weights};
 pub(crate) use place::{Placing, facet, weighted};
+pub(crate) use places::EightPlaces;
+pub use places::{Parts, Places};
 pub(crate) use ray::clearance;
 pub(crate) use sources::hash;
 
@@ -52,7 +55,7 @@ pub struct Place {
 pub trait Shadows: Sync {
     /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
     /// Other places in the same call do not change the answer. Adds the rays that it took.
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], rays: &mut u64);
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64);
 
     /// Hands on the polygons that it works with; nothing where [`crate::registry::Shadowing::polygons`] says so.
     fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}

@@ -22,7 +22,7 @@ use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
 use super::ray::clearance;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::session::keep_for;
 use crate::{Execution, Session, Settings};
@@ -30,7 +30,7 @@ use clip::{Cutter, Detail};
 use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
 use vitral_exec::Limit;
-use vitral_light::{Light, Rgb};
+use vitral_light::Light;
 use vitral_math::{DVec3, DVec4};
 
 /// See the module.
@@ -207,7 +207,7 @@ impl Details {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {
@@ -215,17 +215,17 @@ impl Shadows for Prepared<'_> {
         }
         let extent = casters.extent();
         let slack = f64::from(extent) * SLACK;
-        for (place, part) in places.iter().zip(parts) {
+        for (number, place) in places.iter().enumerate() {
             let mut shares = Shares::default();
             for l in lights {
-                shares.add(l.from.weight(place), || {
+                shares.add(l.from.weight(&place), || {
                     let filters = l.at(place.facet, place.position, slack);
-                    let at = lifted(place, extent);
+                    let at = lifted(&place, extent);
                     let passing = |filters| casters.filtered(&self.occluders, l.from.at, place.facet, at, filters);
                     filters.map_or([0.0; 3], passing)
                 });
             }
-            *part = shares.part();
+            parts.set(number, shares.part());
         }
     }
 

@@ -6,17 +6,24 @@
 //! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
 //! plane of a wall that begins there, and rounding would say on which side.
 
-use super::{Place, clearance};
+use super::{EightPlaces, clearance};
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F64x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd};
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
-/// Corners and unit normal of a facet, and the least weight of each corner with which a place keeps from the edge opposite.
-pub(crate) type Facet = ([DVec3; 3], DVec3, [f64; 3]);
+/// A facet in the world, less the scene's middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(16))]
+pub(crate) struct Facet {
+    /// Of each corner where it is, and the least weight of it with which a place keeps from the edge opposite.
+    corners: [[f32; 4]; 3],
+    /// Unit normal, and one number of no meaning.
+    normal: [f64; 4],
+}
 
 /// How far places keep from edges, in heights to which they are lifted: enough between walls that meet at 15 degrees.
 const MARGIN: f64 = 4.0;
@@ -60,18 +67,8 @@ pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec
 
 /// The point with these weights of the corners.
 pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
-    let (point, sum) = weighed(corners, weights, [f64::NEG_INFINITY; 3]);
-    point / sum
-}
-
-/// The same times the sum of the weights, and this sum; no weight is less than its least part of the sum.
-#[inline(always)]
-fn weighed(corners: &[DVec3; 3], weights: [f32; 3], least: [f64; 3]) -> (DVec3, f64) {
-    let w = [f64::from(weights[0]), f64::from(weights[1]), f64::from(weights[2])];
-    let sum = w[0] + w[1] + w[2];
-    // Weights may have the other sign, all of them.
-    let w = [0, 1, 2].map(|k| if w[k] * sum < least[k] * sum * sum { least[k] * sum } else { w[k] });
-    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2], w[0] + w[1] + w[2])
+    let w = weights.map(f64::from);
+    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
 }
 
 /// What all points of an object have in common.
@@ -163,56 +160,114 @@ impl<'a> Placing<'a> {
             (length * scale).store_slice(stored);
         }
         std::array::from_fn(|lane| {
-            let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
-            let least = [least[0][lane], least[1][lane], least[2][lane]].map(least_weight);
-            ([at(&corners[0]), at(&corners[1]), at(&corners[2])], at(&normals), least)
+            let [x, y, z] = [normals[0][lane], normals[1][lane], normals[2][lane]];
+            let corner = |c: usize| {
+                let [x, y, z] = [corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]];
+                [x as f32, y as f32, z as f32, least_weight(least[c][lane]) as f32]
+            };
+            Facet { corners: [corner(0), corner(1), corner(2)], normal: [x, y, z, 0.0] }
         })
     }
 
-    /// Eight points of such triangles, asked for by their number: the corners' weights, and where they are on the screen.
+    /// Eight points of such facets, whose triangles these are: by the corners' weights, and where they are on the screen.
     #[inline(always)]
     pub(crate) fn places<S: Simd>(
         &self,
         simd: S,
         (triangles, facets): (&[u32; LANES], [&Facet; LANES]),
-        weights: &[[f32; LANES]; 3],
+        weights: &[F32x8<S>; 3],
         screen: [&[f32; LANES]; 2],
-    ) -> impl Fn(usize) -> Place {
-        // Divisions are what takes long.
-        let (mut sums, mut positions) = ([1.0; LANES], [[0.0; LANES]; 3]);
-        for (lane, (corners, _, least)) in facets.iter().enumerate() {
-            let (point, sum) = weighed(corners, [weights[0][lane], weights[1][lane], weights[2][lane]], *least);
-            (positions[0][lane], positions[1][lane], positions[2][lane]) = (point.x, point.y, point.z);
-            sums[lane] = sum;
+    ) -> EightPlaces {
+        let mut w = lanes::three(
+            #[inline(always)]
+            |c| lanes::widened(simd, weights[c]),
+        );
+        let corners = lanes::three(
+            #[inline(always)]
+            |c| {
+                let columns = lanes::columns_of_rows(
+                    simd,
+                    #[inline(always)]
+                    |lane| bytemuck::cast(facets[lane].corners[c]),
+                );
+                lanes::four(
+                    #[inline(always)]
+                    |k| lanes::widened(simd, columns[k].bitcast()),
+                )
+            },
+        );
+        // Weights may have the other sign, all of them.
+        let sum = w[0] + w[1] + w[2];
+        for c in 0..3 {
+            let least = corners[c][3] * sum;
+            w[c] = (w[c] * sum).simd_lt(least * sum).select(least, w[c]);
         }
-        let sums = F64x8::from_slice(simd, &sums);
-        for axis in &mut positions {
-            (F64x8::from_slice(simd, axis) / sums).store_slice(axis);
-        }
-        let [x, y, z] = positions;
-        #[inline(always)]
-        move |lane| {
-            let position = dvec3(x[lane], y[lane], z[lane]);
-            self.place(triangles[lane], facets[lane].1, position, [screen[0][lane], screen[1][lane]])
-        }
-    }
-
-    #[inline(always)]
-    fn place(&self, triangle: u32, outward: DVec3, position: DVec3, screen: [f32; 2]) -> Place {
-        let behind = self.turns && {
+        let inverse = F64x8::splat(simd, 1.0) / (w[0] + w[1] + w[2]);
+        let position = lanes::three(
+            #[inline(always)]
+            |k| (corners[0][k] * w[0] + corners[1][k] * w[1] + corners[2][k] * w[2]) * inverse,
+        );
+        let mut normal = wide_columns(
+            simd,
+            #[inline(always)]
+            |lane| facets[lane].normal,
+        );
+        if self.turns {
             let (eye, perspective) = self.view.eye();
-            let parallel = || self.view.view.view_from_world.row(2).truncate();
-            outward.dot(if perspective { eye - self.center - position } else { parallel() }) < 0.0
-        };
-        let [x, y] = screen.map(|s| (s * 256.0) as u32);
-        Place {
-            position,
-            normal: if behind { -outward } else { outward },
-            facet: self.instance.first_facet + triangle,
-            seed: x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16),
-            pixel: Some(screen),
+            let towards = if perspective {
+                let eye = (eye - self.center).to_array();
+                lanes::three(
+                    #[inline(always)]
+                    |k| F64x8::splat(simd, eye[k]) - position[k],
+                )
+            } else {
+                let parallel = self.view.view.view_from_world.row(2).truncate().to_array();
+                lanes::three(
+                    #[inline(always)]
+                    |k| F64x8::splat(simd, parallel[k]),
+                )
+            };
+            let cos = normal[0] * towards[0] + normal[1] * towards[1] + normal[2] * towards[2];
+            let behind = cos.simd_lt(F64x8::splat(simd, 0.0));
+            for axis in &mut normal {
+                *axis = behind.select(-*axis, *axis);
+            }
         }
+        let mut places = EightPlaces {
+            position: [[0.0; LANES]; 3],
+            normal: [[0.0; LANES]; 3],
+            facet: triangles.map(|triangle| self.instance.first_facet + triangle),
+            pixel: screen.map(|axis| *axis),
+            seed: [0; LANES],
+        };
+        for k in 0..3 {
+            position[k].store_slice(&mut places.position[k]);
+            normal[k].store_slice(&mut places.normal[k]);
+        }
+        places
     }
+}
+
+/// The first three columns of eight rows of four doubles, each number in the lane of its row.
+#[inline(always)]
+fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>; 3] {
+    let half = lanes::inlined(
+        #[inline(always)]
+        |first: usize| {
+            let at = lanes::inlined(
+                #[inline(always)]
+                |k: usize| F64x4::from_slice(simd, &row(first + k)),
+            );
+            let (even, odd) = (at(0).interleave(at(2)), at(1).interleave(at(3)));
+            let (low, high) = (even.0.interleave(odd.0), even.1.interleave(odd.1));
+            [low.0, low.1, high.0]
+        },
+    );
+    let (low, high) = (half(0), half(4));
+    lanes::three(
+        #[inline(always)]
+        |k| simd.combine_f64x4(low[k], high[k]),
+    )
 }
 
 #[cfg(test)]
@@ -249,7 +304,9 @@ mod tests {
         let triangles: Vec<_> = (0..instance.mesh.triangles.len() as u32).collect();
         let expected = triangles.iter().map(|&t| {
             let (corners, normal) = facet(instance, t, placing.center);
-            (corners, normal, least_weights(&corners, placing.margin))
+            let least = least_weights(&corners, placing.margin);
+            let row = |c: usize| corners[c].as_vec3().extend(least[c] as f32).to_array();
+            Facet { corners: [row(0), row(1), row(2)], normal: normal.extend(0.0).to_array() }
         });
         let expected: Vec<_> = expected.collect();
         for (name, level) in available_levels() {

@@ -19,7 +19,7 @@
 use super::casters::{near, turned, wide};
 use super::occluders::Occluders;
 use super::sources::{Shares, Source, hash};
-use super::{Place, ShadowAlgorithm, Shadows};
+use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::{Counters, Structure, packet};
@@ -70,38 +70,40 @@ impl ShadowAlgorithm for RayShadows {
 const TOGETHER: usize = 64;
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], rays: &mut u64) {
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
-        for (places, parts) in places.chunks(TOGETHER).zip(parts.chunks_mut(TOGETHER)) {
+        for first in (0..places.len()).step_by(TOGETHER) {
+            let mut found = [[1.0; 3]; TOGETHER];
+            let found = &mut found[..TOGETHER.min(places.len() - first)];
+            let asking = (first..first + found.len()).map(|number| places.get(number));
             match &self.sources[light] {
-                Source::Unhindered => parts.fill([1.0; 3]),
+                Source::Unhindered => {}
                 Source::Infinity(towards) => {
-                    let ways = places.iter().map(|place| (place, *towards));
-                    self.passing(&mut feelers, ways, false, parts);
+                    self.passing(&mut feelers, asking.map(|place| (place, *towards)), false, found);
                 }
                 Source::Point(at) => {
-                    let ways = places.iter().map(|place| (place, *at - place.position));
-                    self.passing(&mut feelers, ways, true, parts);
+                    self.passing(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
                 }
                 Source::Area(area) => {
-                    for (place, part) in places.iter().zip(parts) {
+                    for (place, part) in asking.zip(&mut *found) {
                         let seed = hash(place.seed ^ hash(light as u32));
                         let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
-                        let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
+                        let counting: Vec<_> = emitters.filter(|e| e.weight(&place) > 0.0).collect();
                         let ways = counting.iter().map(|e| (place, e.at.truncate() - place.position));
                         let mut passing = vec![[0.0; 3]; counting.len()];
                         self.passing(&mut feelers, ways, true, &mut passing);
                         *rays += feelers.len() as u64;
                         let mut shares = Shares::default();
                         for (emitter, passing) in counting.iter().zip(passing) {
-                            shares.add(emitter.weight(place), || passing);
+                            shares.add(emitter.weight(&place), || passing);
                         }
                         *part = shares.part();
                     }
-                    continue;
+                    feelers.clear();
                 }
             }
             *rays += feelers.len() as u64;
+            found.iter().enumerate().for_each(|(k, part)| parts.set(first + k, *part));
         }
     }
 }
@@ -122,16 +124,16 @@ struct Feeler {
 impl Prepared<'_> {
     /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
     /// `feelers` the rays that were followed for it.
-    fn passing<'p>(
+    fn passing(
         &self,
         feelers: &mut Vec<Feeler>,
-        ways: impl Iterator<Item = (&'p Place, DVec3)>,
+        ways: impl Iterator<Item = (Place, DVec3)>,
         ends: bool,
         parts: &mut [Rgb],
     ) {
         feelers.clear();
         for (of, (place, way)) in ways.enumerate() {
-            match self.feeler(place, way, ends) {
+            match self.feeler(&place, way, ends) {
                 Ok((ray, far)) => {
                     let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
                     feelers.push(Feeler { ray, far, light, own: place.facet, of });

@@ -17,12 +17,12 @@
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
-use super::{Place, ShadowAlgorithm, Shadows};
+use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{Light, Rgb};
+use vitral_light::Light;
 use vitral_math::{DVec3, DVec4};
 
 /// See the module.
@@ -75,7 +75,7 @@ struct Work {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {
             return parts.fill([1.0; 3]);
@@ -86,11 +86,11 @@ impl Shadows for Prepared<'_> {
         for emitter in lights {
             let from = emitter.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, from));
-            let point = |(index, p): (usize, &Place)| Point {
+            let point = |(index, p): (usize, Place)| Point {
                 index,
                 facet: p.facet,
                 pixel: p.pixel,
-                lifted: lifted(p, extent),
+                lifted: lifted(&p, extent),
             };
             // Facet by facet, line by line, from left to right.
             let mut points: Vec<Point> = asked.map(point).collect();
@@ -103,10 +103,9 @@ impl Shadows for Prepared<'_> {
             });
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
-                    let own = places[point.index].facet;
-                    let passing = self.casters.filtered(&self.occluders, from, own, point.lifted, filters);
-                    let weight = emitter.weight(&places[point.index]);
-                    (0..3).for_each(|k| parts[point.index][k] += weight * passing[k]);
+                    let place = places.get(point.index);
+                    let passing = self.casters.filtered(&self.occluders, from, place.facet, point.lifted, filters);
+                    parts.add(point.index, emitter.weight(&place), passing);
                 });
             }
         }

@@ -16,7 +16,7 @@
 //! Cost: one ray for each cell.
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
-use super::Place;
+use super::{Parts, Place, Places};
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
 use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
@@ -133,10 +133,10 @@ impl Shares {
     }
 
     /// Parts from what arrives at each of the places, weighted, and added in the order of the emitters.
-    pub(super) fn normalize(emitters: impl Iterator<Item = Emitter> + Clone, places: &[Place], parts: &mut [Rgb]) {
-        for (place, part) in places.iter().zip(parts) {
-            let whole: f32 = emitters.clone().map(|e| e.weight(place)).sum();
-            *part = Self { lit: *part, whole }.part();
+    pub(super) fn normalize(emitters: impl Iterator<Item = Emitter> + Clone, places: &Places, parts: &mut Parts) {
+        for (number, place) in places.iter().enumerate() {
+            let whole: f32 = emitters.clone().map(|e| e.weight(&place)).sum();
+            parts.set(number, Self { lit: parts.get(number), whole }.part());
         }
     }
 }

@@ -30,7 +30,7 @@ mod paths;
 use super::casters::{Casters, away, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, Place, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::session::keep_for;
@@ -39,7 +39,7 @@ use count::{Batch, Lit};
 pub(crate) use edges::Surface;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{Light, Rgb};
+use vitral_light::Light;
 use vitral_math::lanes::Level;
 use vitral_math::{DVec3, DVec4, Vec3};
 
@@ -169,7 +169,7 @@ impl LightVolumes {
 }
 
 impl Shadows for Counting<'_> {
-    fn arriving(&self, light: usize, places: &[Place], parts: &mut [Rgb], _: &mut u64) {
+    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
             return parts.fill([1.0; 3]);
@@ -181,15 +181,14 @@ impl Shadows for Counting<'_> {
             let (from, extent) = (place_of_light.from, self.volumes.casters.extent());
             let light = from.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
-            batch.reset(asked.map(|(i, p)| (i as u32, lifted(p, extent))));
+            batch.reset(asked.map(|(i, p)| (i as u32, lifted(&p, extent))));
             let lit = self.volumes.lit(place_of_light);
             let start = (self.counting, self.viewer, around_viewer);
             batch.count(self.level, &lit, start, |index, at, count, filters| {
                 if count <= 0 {
-                    let own = places[index].facet;
-                    let passing = self.volumes.casters.filtered(&self.occluders, light, own, at, filters);
-                    let weight = from.weight(&places[index]);
-                    (0..3).for_each(|k| parts[index][k] += weight * passing[k]);
+                    let place = places.get(index);
+                    let passing = self.volumes.casters.filtered(&self.occluders, light, place.facet, at, filters);
+                    parts.add(index, from.weight(&place), passing);
                 }
             });
         }

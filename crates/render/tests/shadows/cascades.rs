@@ -115,10 +115,10 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
     let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    let places: Vec<_> = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
-    let mut parts = vec![[f32::NAN; 3]; places.len()];
+    let places: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
+    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
     ready.arriving(0, &places, &mut parts, &mut 0);
-    parts.iter().map(|part| part[0]).collect()
+    (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 
 /// Places along the ground in front of the viewer, and far behind.

@@ -45,10 +45,10 @@ fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, pla
     let execution = Execution::default();
     let ready = algorithm.prepare(&session, lights, viewer.extend(1.0), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    let moved: Vec<_> = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
-    let mut parts = vec![[f32::NAN; 3]; places.len()];
+    let moved: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
+    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
     ready.arriving(0, &moved, &mut parts, &mut 0);
-    parts.iter().map(|part| part[0]).collect()
+    (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 
 /// Sheets that share an edge, a bent quadrangle, a sheet wound the wrong way, one that is there twice.

@@ -11,7 +11,7 @@ use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
-use vitral_render::shadow::{self, Drawn, Place, Shadows};
+use vitral_render::shadow::{self, Drawn, Parts, Place, Places, Shadows};
 use vitral_render::{Channels, Execution, Session, Settings, Shading, Shot, VolumeCounting, registry, render};
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Camera, Mesh, Part, Projection, Scene};
@@ -63,10 +63,11 @@ fn with_colored_shadows<R>(
     let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
-        let mut part = [[f32::NAN; 3]];
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
-        ready.arriving(0, &[Place { position: place.position - center, facet, ..place }], &mut part, &mut 0);
-        part[0]
+        let places: Places = [Place { position: place.position - center, facet, ..place }].into_iter().collect();
+        let mut parts = Parts::new(1, [f32::NAN; 3]);
+        ready.arriving(0, &places, &mut parts, &mut 0);
+        parts.get(0)
     })
 }
 

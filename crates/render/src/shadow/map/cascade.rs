@@ -21,7 +21,7 @@
 use super::lens::Lens;
 use super::{LightMaps, Map, Maps, lookup, slice};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::Place;
+use crate::shadow::Places;
 use vitral_exec::Limit;
 use vitral_light::Rgb;
 use vitral_math::lanes::Level;
@@ -75,9 +75,16 @@ impl Cascades {
         Ok(Self { depth, cuts, maps: maps? })
     }
 
-    /// What the maps of a light answer to questions, which of those of the whole scene (`maps`) and about which place; sharper
-    /// ones where they hold it.
-    pub(super) fn answers(&self, level: Level, light: usize, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
+    /// What the maps of a light answer to questions, which of those of the whole scene (`maps`) and about which of `places`;
+    /// sharper ones where they hold it.
+    pub(super) fn answers(
+        &self,
+        level: Level,
+        light: usize,
+        maps: &[&Map],
+        questions: &[(usize, usize)],
+        places: &Places,
+    ) -> Vec<Rgb> {
         // The slices' maps are numbered from the end of the others on.
         let slices = &self.maps[light];
         let all: Vec<&Map> = maps.iter().copied().chain(slices.iter().flatten()).collect();
@@ -87,11 +94,12 @@ impl Cascades {
         // How much the next question's answer counts against this one's.
         let mut fades = Vec::with_capacity(questions.len());
         for &(whole, place) in questions {
-            let depth = self.depth.dot(place.position.extend(1.0));
+            let position = places.get(place).position;
+            let depth = self.depth.dot(position.extend(1.0));
             // A little before the first cut is in the first slice, as is what rays find beside the view.
             let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;
             let map = |slice: usize| {
-                let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(place.position));
+                let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(position));
                 if sharper.is_some() { numbers[slice] } else { whole }
             };
             let ends = self.cuts.get(slice).zip(self.cuts.get(slice + 1));
@@ -104,7 +112,7 @@ impl Cascades {
             }
             fades.push(fades_out.then_some(fade.min(1.0) as f32));
         }
-        let mut found = lookup::answers(level, &all, &asked).into_iter();
+        let mut found = lookup::answers(level, &all, &asked, places).into_iter();
         let mut next = || found.next().unwrap_or([1.0; 3]);
         let mut blend = |fade: Option<f32>| {
             let here = next();

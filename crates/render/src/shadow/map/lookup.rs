@@ -6,25 +6,25 @@
 //! In:   places that face the light. Out: the part of the light that passes to each of them.
 //! Cost: a constant number of operations a place.
 
-use super::{BEYOND, DEPTH_BIAS, LIFT, Map, SLOPE_BIAS};
-use crate::shadow::Place;
+use super::{BEYOND, DEPTH_BIAS, LIFT, Map, MapTile, SLOPE_BIAS};
+use crate::shadow::{EightPlaces, Parts, Places};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, F64x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::TILE;
 
 /// Where eight places are on a map, and how deep.
-struct Eight {
+struct Eight<S: Simd> {
     /// In texels; not a number where the map does not tell.
-    at: [[f64; LANES]; 2],
+    at: [F64x8<S>; 2],
     /// The upper left of the four texels whose middles are nearest.
-    first: [[f64; LANES]; 2],
+    first: [F64x8<S>; 2],
     /// Depths of the places' planes in the four texels, row by row, less what they may be wrong by.
-    depths: [[f64; LANES]; 4],
+    depths: [F64x8<S>; 4],
     /// What lies farther in the four texels than this is not the surface that the place is on.
-    ends: [[f64; LANES]; 4],
+    ends: [F64x8<S>; 4],
 }
 
 /// What a texel says about a surface.
@@ -36,145 +36,194 @@ struct Answer {
     beyond: bool,
 }
 
-/// What maps answer to questions: the number of a map, and the place that is asked about, which faces its light.
-pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, &Place)]) -> Vec<Rgb> {
+/// What maps answer to questions: the number of a map, and which of the places is asked about, which faces its light.
+pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
     let mut parts = vec![[1.0; 3]; questions.len()];
     let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
         own.clear();
         own.extend((0..questions.len() as u32).filter(|&q| questions[q as usize].0 == number));
-        dispatch!(level, simd => map.answer(simd, &own, questions, &mut parts));
+        dispatch!(level, simd => map.answer(simd, &own, (questions, places), &mut parts));
     }
     parts
 }
 
 /// What the map of a parallel light tells about places: the part of the light that arrives, none at those that face away.
-pub(super) fn arriving(level: Level, map: &Map, towards: DVec3, places: &[Place], parts: &mut [Rgb]) {
-    parts.fill([0.0; 3]);
-    let faces = |number: &u32| places[*number as usize].normal.dot(towards) > 0.0;
-    let asking: Vec<_> = (0..places.len() as u32).filter(faces).collect();
-    dispatch!(level, simd => map.arriving(simd, &asking, places, parts));
+pub(super) fn arriving(level: Level, map: &Map, towards: DVec3, places: &Places, parts: &mut Parts) {
+    dispatch!(level, simd => map.arriving(simd, towards, places, parts));
 }
 
 impl Map {
-    /// The part of light that arrives at the places of these numbers, which face it.
+    /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, asking: &[u32], places: &[Place], parts: &mut [Rgb]) {
-        for asked in asking.chunks(LANES) {
-            // The last are asked again to fill up.
-            let eight = std::array::from_fn(|lane| &places[asked[lane.min(asked.len() - 1)] as usize]);
-            for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
-                parts[question as usize] = part;
+    fn arriving<S: Simd>(&self, simd: S, towards: DVec3, places: &Places, parts: &mut Parts) {
+        for (places, parts) in places.eights().iter().zip(parts.eights_mut()) {
+            *parts = [[0.0; LANES]; 3];
+            let [x, y, z] = load(simd, &places.normal);
+            let faces = (x * towards.x + y * towards.y + z * towards.z).simd_gt(F64x8::splat(simd, 0.0));
+            let asked = faces.to_bitmask() as u32;
+            if asked != 0 {
+                self.passing(simd, places, asked, parts);
             }
         }
     }
 
     /// Answers the questions of these numbers.
     #[inline(always)]
-    fn answer<S: Simd>(&self, simd: S, own: &[u32], questions: &[(usize, &Place)], parts: &mut [Rgb]) {
+    fn answer<S: Simd>(
+        &self,
+        simd: S,
+        own: &[u32],
+        (questions, places): (&[(usize, usize)], &Places),
+        parts: &mut [Rgb],
+    ) {
         for asked in own.chunks(LANES) {
-            let eight = std::array::from_fn(|lane| questions[asked[lane.min(asked.len() - 1)] as usize].1);
-            for (&question, part) in asked.iter().zip(self.passing(simd, &eight)) {
-                parts[question as usize] = part;
+            let eight = EightPlaces::of(|lane| places.get(questions[asked[lane.min(asked.len() - 1)] as usize].1));
+            let mut passing = [[0.0; LANES]; 3];
+            self.passing(simd, &eight, (1 << asked.len()) - 1, &mut passing);
+            for (lane, &question) in asked.iter().enumerate() {
+                parts[question as usize] = passing.map(|channel| channel[lane]);
             }
         }
     }
 
-    /// The part of light that arrives at each of eight places that face it.
+    /// The part of light that arrives at those of eight places whose bits are set in `asked`, which face it; others keep theirs.
     #[inline(always)]
-    fn passing<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> [Rgb; LANES] {
+    fn passing<S: Simd>(&self, simd: S, places: &EightPlaces, asked: u32, parts: &mut [[f32; LANES]; 3]) {
         let eight = self.locate(simd, places);
-        let mut texels = [[f64::INFINITY; LANES]; 4];
-        let (mut told, mut apart) = ([false; LANES], [false; LANES]);
-        for lane in 0..LANES {
-            let [left, top] = [eight.first[0][lane], eight.first[1][lane]];
-            // Outside of the map, and where it does not tell, all is lit.
-            let near = |first: f64, side: u32| first >= -1.0 && first < f64::from(side);
-            if !near(left, self.lens.width) || !near(top, self.lens.height) {
-                continue;
-            }
-            told[lane] = true;
-            // Most find their texels in one tile without transparent things.
-            match self.four_texels(left as i32, top as i32) {
-                Some(None) => {}
-                Some(Some(found)) => {
-                    for k in 0..4 {
-                        texels[k][lane] = f64::from(found[k]);
-                    }
-                }
-                None => apart[lane] = true,
-            }
-        }
-        let mut lit = [F32x8::splat(simd, 1.0); 4];
+        // Outside of the map, and where it does not tell, all is lit.
+        let near = lanes::inlined(
+            #[inline(always)]
+            |first: F64x8<S>, side: u32| first.simd_ge(splat(simd, -1.0)) & first.simd_lt(splat(simd, f64::from(side))),
+        );
+        let told = (near(eight.first[0], self.lens.width) & near(eight.first[1], self.lens.height)).to_bitmask() as u32;
+        let (texels, apart) = self.texels(simd, &eight, asked & told);
+        let told = lanes_of(simd, told);
+
+        let (one, zero) = (F32x8::splat(simd, 1.0), F32x8::splat(simd, 0.0));
+        let share = lanes::inlined(
+            #[inline(always)]
+            |k: usize| lanes::Lanes::select(told, lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]), zero),
+        );
+        let (right, bottom) = (share(0), share(1));
+        let (mut lit, mut beyond) = ([one; 4], [Mask8::splat(simd, false); 4]);
         for k in 0..4 {
-            let mut each = [0.0f32; LANES];
-            for lane in 0..LANES {
-                each[lane] = if texels[k][lane] < eight.depths[k][lane] { 0.0 } else { 1.0 };
-            }
-            lit[k] = F32x8::from_slice(simd, &each);
+            let texel = lanes::widened(simd, F32x8::from_slice(simd, &texels[k]));
+            let dark = lanes_of(simd, texel.simd_lt(eight.depths[k]).to_bitmask() as u32);
+            lit[k] = lanes::Lanes::select(dark, zero, one);
+            beyond[k] = lanes_of(simd, texel.simd_gt(eight.ends[k]).to_bitmask() as u32) & !dark;
         }
-        let mut shares = [[0.0f32; LANES]; 2];
-        for k in 0..2 {
-            for lane in 0..LANES {
-                let share = (eight.at[k][lane] - 0.5 - eight.first[k][lane]) as f32;
-                shares[k][lane] = if told[lane] { share } else { 0.0 };
+        let mut part = blended(lit, right, bottom);
+        let differ = part.simd_gt(zero) & part.simd_lt(one);
+        let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
+        if beside.to_bitmask() as u32 & asked != 0 {
+            // See `four_apart`, of which these are the operations.
+            let (left, top) = (one - right, one - bottom);
+            let (mut sum, mut all) = (zero, zero);
+            for (k, share) in [left * top, right * top, left * bottom, right * bottom].into_iter().enumerate() {
+                let share = lanes::Lanes::select(beyond[k], zero, share);
+                sum += lit[k] * share;
+                all += share;
             }
+            let rest = lanes::Lanes::select(all.simd_gt(zero), sum / all, zero);
+            part = lanes::Lanes::select(beside, rest, part);
         }
-        let [right, bottom] = [F32x8::from_slice(simd, &shares[0]), F32x8::from_slice(simd, &shares[1])];
-        let mut parts = blended(lit, right, bottom).to_array().map(|part| [part; 3]);
-        for lane in 0..LANES {
-            // Few are answered differently by their texels.
-            let differ = parts[lane][0] > 0.0 && parts[lane][0] < 1.0;
-            if differ || apart[lane] {
-                let [left, top] = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
-                let surface = std::array::from_fn(|k| [eight.depths[k][lane], eight.ends[k][lane]]);
-                parts[lane] = self.four_apart([left, top], surface, [shares[0][lane], shares[1][lane]]);
-            }
+        let asked_lanes = lanes_of(simd, asked);
+        for channel in &mut *parts {
+            lanes::Lanes::select(asked_lanes, part, F32x8::from_slice(simd, channel)).store_slice(channel);
         }
-        parts
+        if apart != 0 {
+            self.eight_apart(&Stored::new(&eight, [right, bottom]), apart, parts);
+        }
     }
 
+    /// The depths of the four texels of each of these places, ∞ where nothing is; and for which of them they are not in one
+    /// tile, or something transparent is in it.
     #[inline(always)]
-    fn locate<S: Simd>(&self, simd: S, places: &[&Place; LANES]) -> Eight {
-        let lens = &self.lens;
+    fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+        let mut texels = [[f32::INFINITY; LANES]; 4];
+        let whole = lanes::inlined(
+            #[inline(always)]
+            |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
+        );
+        let (left, top) = (whole(eight.first[0]), whole(eight.first[1]));
+        let (size, shift) = (TILE as i32, TILE.trailing_zeros());
+        let (x, y) = (left & (size - 1), top & (size - 1));
         let splat = lanes::inlined(
             #[inline(always)]
-            |x: f64| F64x8::splat(simd, x),
+            |number: i32| I32x8::splat(simd, number),
         );
-        let (zero, infinity) = (splat(0.0), splat(f64::INFINITY));
-        let mut inputs = [[0.0; LANES]; 6];
-        for (lane, place) in places.iter().enumerate() {
-            let (p, n) = (place.position, place.normal);
-            for (input, value) in inputs.iter_mut().zip([p.x, p.y, p.z, n.x, n.y, n.z]) {
-                input[lane] = value;
+        let (width, height) = (self.lens.width as i32 - 1, self.lens.height as i32 - 1);
+        let inside = left.simd_ge(splat(0)) & top.simd_ge(splat(0));
+        let inside = inside & left.simd_lt(splat(width)) & top.simd_lt(splat(height));
+        let together = inside & x.simd_lt(splat(size - 1)) & y.simd_lt(splat(size - 1));
+        let tiles = ((top >> shift) * self.columns as i32 + (left >> shift)).to_array();
+        let first = (y * size + x).to_array();
+        let mut apart = asked & !(together.to_bitmask() as u32);
+        asked &= !apart;
+        // Neighbours mostly find theirs in one tile.
+        let mut current: Option<(i32, &MapTile)> = None;
+        while asked != 0 {
+            let lane = asked.trailing_zeros() as usize % LANES;
+            asked &= asked - 1;
+            let tile = match current {
+                Some((number, tile)) if number == tiles[lane] => tile,
+                _ => self.tile(tiles[lane] as usize),
+            };
+            current = Some((tiles[lane], tile));
+            if !tile.layers.is_empty() {
+                apart |= 1 << lane;
+                continue;
+            }
+            let first = first[lane] as usize;
+            if let Some(found) = tile.depth.get(first..first + TILE + 2) {
+                for (k, at) in [0, 1, TILE, TILE + 1].into_iter().enumerate() {
+                    texels[k][lane] = found[at];
+                }
             }
         }
-        let load = lanes::inlined(
-            #[inline(always)]
-            |k: usize| F64x8::from_slice(simd, &inputs[k]),
-        );
+        (texels, apart)
+    }
+
+    /// Answers what is not told by four texels of one tile, place by place.
+    #[inline(never)]
+    fn eight_apart(&self, eight: &Stored, mut apart: u32, parts: &mut [[f32; LANES]; 3]) {
+        while apart != 0 {
+            let lane = apart.trailing_zeros() as usize % LANES;
+            apart &= apart - 1;
+            let first = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
+            let surface = std::array::from_fn(|k| [eight.depths[k][lane], eight.ends[k][lane]]);
+            let part = self.four_apart(first, surface, [eight.shares[0][lane], eight.shares[1][lane]]);
+            parts.iter_mut().zip(part).for_each(|(channel, part)| channel[lane] = part);
+        }
+    }
+
+    #[inline(always)]
+    fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> Eight<S> {
+        let lens = &self.lens;
+        let (zero, infinity) = (splat(simd, 0.0), splat(simd, f64::INFINITY));
         let matrix = &lens.view_from_world;
-        let normal = rotated(matrix, [load(3), load(4), load(5)]);
-        let [px, py, pz] = rotated(matrix, [load(0), load(1), load(2)]);
+        let normal = rotated(matrix, load(simd, &places.normal));
+        let [px, py, pz] = rotated(matrix, load(simd, &places.position));
         let (px, py, pz) = (px + matrix.w_axis.x, py + matrix.w_axis.y, pz + matrix.w_axis.z);
 
         // Lifted along the normal.
-        let texel = if lens.perspective { pz.abs() * lens.side() } else { splat(lens.side()) };
+        let texel = if lens.perspective { pz.abs() * lens.side() } else { splat(simd, lens.side()) };
         let lift = texel * LIFT;
         let point = [px + normal[0] * lift, py + normal[1] * lift, pz + normal[2] * lift];
         let own = -point[2];
 
-        let distance = if lens.perspective { own } else { splat(1.0) };
+        let distance = if lens.perspective { own } else { splat(simd, 1.0) };
         let (width, height) = (f64::from(lens.width), f64::from(lens.height));
         let before = distance.simd_gt(zero);
-        let nowhere = splat(f64::NAN);
+        let nowhere = splat(simd, f64::NAN);
         let [across, down] = if lens.perspective {
             [point[0] / (distance * lens.extent[0]), point[1] / (distance * lens.extent[1])]
         } else {
             [point[0] * (1.0 / lens.extent[0]), point[1] * (1.0 / lens.extent[1])]
         };
         let u = (across + 1.0) * 0.5 * width;
-        let v = (splat(1.0) - down) * 0.5 * height;
+        let v = (splat(simd, 1.0) - down) * 0.5 * height;
         let (u, v) = (before.select(u, nowhere), before.select(v, nowhere));
         let (left, top) = ((u + 0.5).floor() - 1.0, (v + 0.5).floor() - 1.0);
 
@@ -183,14 +232,14 @@ impl Map {
         let step = [normal[0] * 2.0 * lens.extent[0] / width, -normal[1] * 2.0 * lens.extent[1] / height];
         let corner = normal[1] * lens.extent[1] - normal[0] * lens.extent[0];
         let height = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
-        let scale = splat(1.0) / normal[2];
+        let scale = splat(simd, 1.0) / normal[2];
         let (start, step) = if lens.perspective {
             (corner - normal[2], step)
         } else {
             ((corner - height) * scale, [step[0] * scale, step[1] * scale])
         };
         let deep = own.abs() * DEPTH_BIAS;
-        let (mut depths, mut ends) = ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
+        let (mut depths, mut ends) = ([zero; 4], [zero; 4]);
         for (k, (stored, end)) in depths.iter_mut().zip(&mut ends).enumerate() {
             let (x, y) = (left + (k % 2) as f64 + 0.5, top + (k / 2) as f64 + 0.5);
             let value = start + step[0] * x + step[1] * y;
@@ -203,36 +252,11 @@ impl Map {
             // The nearer of the two: the plane may go down further than the facet does.
             let slope = (there - own).abs();
             let nearer = there.simd_lt(own).select(there, own);
-            (nearer - slope * SLOPE_BIAS - deep).store_slice(stored);
+            *stored = nearer - slope * SLOPE_BIAS - deep;
             // The farther of the two, and as much again for a surface that bends away.
-            (nearer + slope * 2.0 + texel * BEYOND).store_slice(end);
+            *end = nearer + slope * 2.0 + texel * BEYOND;
         }
-        let store = lanes::inlined(
-            #[inline(always)]
-            |value: F64x8<S>| {
-                let mut stored = [0.0; LANES];
-                value.store_slice(&mut stored);
-                stored
-            },
-        );
-        Eight { at: [store(u), store(v)], first: [store(left), store(top)], depths, ends }
-    }
-
-    /// The depths of four texels whose upper left one is given, `Some(None)` where nothing is; `None` if they are not in one
-    /// tile, or if something transparent is in it.
-    #[inline(always)]
-    fn four_texels(&self, left: i32, top: i32) -> Option<Option<[f32; 4]>> {
-        let (x, y) = (left as usize % TILE, top as usize % TILE);
-        let inside = left >= 0 && top >= 0 && left + 1 < self.lens.width as i32 && top + 1 < self.lens.height as i32;
-        if !inside || x + 1 >= TILE || y + 1 >= TILE {
-            return None;
-        }
-        let tile = self.tile(top as usize / TILE * self.columns + left as usize / TILE);
-        if !tile.layers.is_empty() {
-            return None;
-        }
-        let texels = tile.depth.get(y * TILE + x..y * TILE + x + TILE + 2);
-        Some(texels.map(|texels| [texels[0], texels[1], texels[TILE], texels[TILE + 1]]))
+        Eight { at: [u, v], first: [left, top], depths, ends }
     }
 
     /// What passes four texels, across tiles, at the map's border, behind transparent things and where not all say the same.
@@ -276,6 +300,57 @@ impl Map {
             Answer { passing: tile.filtered(texel, begin), beyond: false }
         }
     }
+}
+
+/// What [`Map::eight_apart`] needs of [`Eight`].
+struct Stored {
+    first: [[f64; LANES]; 2],
+    depths: [[f64; LANES]; 4],
+    ends: [[f64; LANES]; 4],
+    shares: [[f32; LANES]; 2],
+}
+
+impl Stored {
+    #[inline(always)]
+    fn new<S: Simd>(eight: &Eight<S>, shares: [F32x8<S>; 2]) -> Self {
+        let store = lanes::inlined(
+            #[inline(always)]
+            |value: F64x8<S>| {
+                let mut stored = [0.0; LANES];
+                value.store_slice(&mut stored);
+                stored
+            },
+        );
+        let four = lanes::inlined(
+            #[inline(always)]
+            |values: &[F64x8<S>; 4]| [store(values[0]), store(values[1]), store(values[2]), store(values[3])],
+        );
+        Self {
+            first: [store(eight.first[0]), store(eight.first[1])],
+            depths: four(&eight.depths),
+            ends: four(&eight.ends),
+            shares: [shares[0].to_array(), shares[1].to_array()],
+        }
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, number: f64) -> F64x8<S> {
+    F64x8::splat(simd, number)
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &[[f64; LANES]; 3]) -> [F64x8<S>; 3] {
+    lanes::three(
+        #[inline(always)]
+        |k| F64x8::from_slice(simd, &numbers[k]),
+    )
+}
+
+/// Eight lanes by their bits.
+#[inline(always)]
+fn lanes_of<S: Simd>(simd: S, bits: u32) -> Mask8<S> {
+    Mask8::from_bitmask(simd, u64::from(bits))
 }
 
 /// The answers of four texels, blended. Written so that four equal answers stay what they are.

@@ -1,0 +1,198 @@
+//! Places of a group and what arrives at them, in eights: each number of eight neighbours lies in a row, for algorithms that
+//! answer eight together; others ask for them one by one.
+
+use super::Place;
+use vitral_light::Rgb;
+use vitral_math::dvec3;
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, LANES, Simd, V3};
+
+/// Eight places, by their numbers; see [`Place`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EightPlaces {
+    pub(super) position: [[f64; LANES]; 3],
+    pub(super) normal: [[f64; LANES]; 3],
+    pub(super) facet: [u32; LANES],
+    /// Not numbers where a place is in no pixel.
+    pub(super) pixel: [[f32; LANES]; 2],
+    /// For places in no pixel.
+    pub(super) seed: [u32; LANES],
+}
+
+impl EightPlaces {
+    /// Place by place; the last is repeated where there are not eight.
+    pub(super) fn of(place: impl Fn(usize) -> Place) -> Self {
+        let places: [Place; LANES] = std::array::from_fn(place);
+        let pixel = |place: &Place| place.pixel.unwrap_or([f32::NAN; 2]);
+        Self {
+            position: [0, 1, 2].map(|k| places.map(|place| place.position[k])),
+            normal: [0, 1, 2].map(|k| places.map(|place| place.normal[k])),
+            facet: places.map(|place| place.facet),
+            pixel: [0, 1].map(|k| places.map(|place| pixel(&place)[k])),
+            seed: places.map(|place| place.seed),
+        }
+    }
+
+    /// One of them.
+    pub(crate) fn get(&self, lane: usize) -> Place {
+        let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
+        let pixel = [self.pixel[0][lane], self.pixel[1][lane]];
+        let pixel = (!pixel[0].is_nan()).then_some(pixel);
+        Place {
+            position: at(&self.position),
+            normal: at(&self.normal),
+            facet: self.facet[lane],
+            seed: pixel.map_or(self.seed[lane], seed),
+            pixel,
+        }
+    }
+}
+
+/// The seed of a place that is seen in a pixel.
+fn seed(pixel: [f32; 2]) -> u32 {
+    let [x, y] = pixel.map(|s| (s * 256.0) as u32);
+    x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16)
+}
+
+/// Any number of places.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    eights: Vec<EightPlaces>,
+    count: usize,
+}
+
+impl Places {
+    /// None yet, but memory for `count`.
+    pub(crate) fn with_capacity(count: usize) -> Self {
+        Self { eights: Vec::with_capacity(count.div_ceil(LANES)), count: 0 }
+    }
+
+    /// Adds the first `count` of eight. All before them were whole eights.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, eight: EightPlaces, count: usize) {
+        self.eights.push(eight);
+        self.count += count;
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// One of them.
+    pub fn get(&self, number: usize) -> Place {
+        self.eights[number / LANES].get(number % LANES)
+    }
+
+    /// One after the other.
+    pub fn iter(&self) -> impl Iterator<Item = Place> + Clone + '_ {
+        (0..self.count).map(|number| self.get(number))
+    }
+
+    /// In eights; the last one's repeat a place where there are not eight.
+    pub(super) fn eights(&self) -> &[EightPlaces] {
+        &self.eights
+    }
+
+    /// The same places on the other side of their facets.
+    pub(crate) fn turned(mut self) -> Self {
+        for normal in self.eights.iter_mut().flat_map(|eight| &mut eight.normal) {
+            normal.iter_mut().for_each(|number| *number = -*number);
+        }
+        self
+    }
+}
+
+impl FromIterator<Place> for Places {
+    fn from_iter<I: IntoIterator<Item = Place>>(places: I) -> Self {
+        let places: Vec<Place> = places.into_iter().collect();
+        let eight = |eight: &[Place]| EightPlaces::of(|lane| eight[lane.min(eight.len() - 1)]);
+        Self { eights: places.chunks(LANES).map(eight).collect(), count: places.len() }
+    }
+}
+
+/// The part of each colour of a light that arrives at each of some places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts(Vec<[[f32; LANES]; 3]>);
+
+impl Parts {
+    /// The same for `count` places, filled up to whole eights.
+    pub fn new(count: usize, part: Rgb) -> Self {
+        Self(vec![part.map(|channel| [channel; LANES]); count.div_ceil(LANES)])
+    }
+
+    /// The same for all.
+    pub fn fill(&mut self, part: Rgb) {
+        self.0.fill(part.map(|channel| [channel; LANES]));
+    }
+
+    /// What arrives at one.
+    pub fn get(&self, place: usize) -> Rgb {
+        self.0[place / LANES].map(|channel| channel[place % LANES])
+    }
+
+    /// Sets what arrives at one.
+    pub fn set(&mut self, place: usize, part: Rgb) {
+        for (channel, value) in self.0[place / LANES].iter_mut().zip(part) {
+            channel[place % LANES] = value;
+        }
+    }
+
+    /// Adds something, weighted, to what arrives at one.
+    pub(super) fn add(&mut self, place: usize, weight: f32, part: Rgb) {
+        for (channel, value) in self.0[place / LANES].iter_mut().zip(part) {
+            channel[place % LANES] += weight * value;
+        }
+    }
+
+    /// In eights.
+    pub(super) fn eights_mut(&mut self) -> &mut [[[f32; LANES]; 3]] {
+        &mut self.0
+    }
+
+    /// At eight places from `first` on, which is one of whole eights.
+    #[inline(always)]
+    pub(crate) fn eight<S: Simd>(&self, simd: S, first: usize) -> V3<F32x8<S>> {
+        let [r, g, b] = &self.0[first / LANES];
+        V3::new(F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::DVec3;
+
+    #[test]
+    fn places_and_parts_come_back_one_by_one() {
+        let place = |i: usize| Place {
+            position: dvec3(i as f64, 1.0, 2.0),
+            normal: DVec3::Y * (i as f64 + 1.0),
+            facet: 7 + i as u32,
+            seed: seed([i as f32, 0.5]),
+            pixel: i.is_multiple_of(2).then_some([i as f32, 0.5]),
+        };
+        for count in [0, 1, 8, 11] {
+            let all: Vec<Place> = (0..count).map(place).collect();
+            let places: Places = all.iter().copied().collect();
+            assert_eq!((places.len(), places.is_empty()), (count, count == 0));
+            assert!(places.iter().eq(all.iter().copied()), "{count}");
+            let back = places.turned();
+            assert!(back.iter().zip(&all).all(|(b, a)| b.normal == -a.normal && b.position == a.position));
+
+            let mut parts = Parts::new(count, [0.5; 3]);
+            for i in 0..count {
+                parts.set(i, [i as f32, 0.0, 1.0]);
+                parts.add(i, 2.0, [1.0, 0.25, 0.0]);
+            }
+            assert!((0..count).all(|i| parts.get(i) == [i as f32 + 2.0, 0.5, 1.0]));
+            parts.fill([1.0; 3]);
+            assert_eq!(parts, Parts::new(count, [1.0; 3]));
+        }
+    }
+}

@@ -579,6 +579,11 @@ impl Batch {
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
         range.map(|at| self.item(at))
     }
+
+    /// For each tile, whether a triangle touches it.
+    pub fn touched(&self) -> impl Iterator<Item = bool> {
+        self.starts.windows(2).map(|range| range[0] < range[1])
+    }
 }
 
 /// `clip_from_model * (p, 1)` with the operations in the order of the vertex kernel.

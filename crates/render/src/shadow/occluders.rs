@@ -58,18 +58,27 @@ impl<'a> Occluders<'a> {
         if self.all_opaque { [0.0; 3] } else { self.passing_at(facet, corners, point()) }
     }
 
-    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
+    /// What passes the facet, if it is the same all over.
+    pub(super) fn passing_anywhere(&self, facet: u32) -> Option<Rgb> {
+        let (mesh, _, material) = self.look(facet);
+        let Some(material) = material else { return Some([0.0; 3]) };
+        let differs = mesh.colors.is_some() || material.base_texture.is_some() || material.opacity_texture.is_some();
+        (!differs).then(|| self.let_through(material, 1.0))
+    }
+
+    /// The facet's mesh, its triangle there, and its material if that lets light through.
+    fn look(&self, facet: u32) -> (&Mesh, usize, Option<&Material>) {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
-        let mesh = &*instance.mesh;
         let triangle = (facet - instance.first_facet) as usize;
-        let index = mesh.material_of_triangle(triangle);
-        let Some(material) = index.and_then(|m| self.session.scene.materials.get(m as usize)) else { return [0.0; 3] };
-        if index.is_none_or(|m| self.opaque[m as usize]) {
-            return [0.0; 3];
-        }
+        let index = instance.mesh.material_of_triangle(triangle);
+        let material = index.filter(|&m| self.opaque.get(m as usize).is_some_and(|opaque| !opaque));
+        (&instance.mesh, triangle, material.map(|m| &self.session.scene.materials[m as usize]))
+    }
 
-        // Opacity as shading finds it.
+    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
+        let (mesh, triangle, material) = self.look(facet);
+        let Some(material) = material else { return [0.0; 3] };
         let weights = weights(corners, point);
         let mut coverage = 1.0;
         if let Some(colors) = &mesh.colors {
@@ -81,6 +90,11 @@ impl<'a> Occluders<'a> {
         if let Some(texel) = self.sample(material.opacity_texture, mesh, triangle, weights) {
             coverage *= texel[0];
         }
+        self.let_through(material, coverage)
+    }
+
+    /// What passes a material, of which textures and colours leave so much; opacity as shading finds it.
+    fn let_through(&self, material: &Material, coverage: f32) -> Rgb {
         let alpha = (material.opacity * coverage).clamp(0.0, 1.0);
         match material.alpha_mode {
             AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < cutoff)); 3],

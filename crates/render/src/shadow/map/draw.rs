@@ -16,7 +16,7 @@ use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
 use vitral_math::lanes::{Level, Simd, dispatch};
-use vitral_math::{DVec3, dvec3};
+use vitral_math::{DMat4, DVec3, dvec3};
 use vitral_raster::{Batch, LayerList, NO_FACET, NearestDepths, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
 
 /// Turns tiles into distances and layers.
@@ -71,15 +71,25 @@ impl Map {
             return Ok(Self { lens, columns, tiles, pending: None });
         };
         let spare = Mutex::default();
-        let numbers = (0..sink.tiles.len()).collect();
-        execution.workers.for_each(numbers, |index: usize| {
-            let here = touching(&batches, index);
-            if here.is_empty() {
-                // Nobody need draw it.
-                let _ = sink.tiles[index].set(MapTile::default());
-            } else if when == When::Before || here.iter().any(|(layered, _)| *layered) {
-                sink.draw(&view, index, &here, &spare);
+        // By opaque things, by transparent ones.
+        let mut touched = [vec![false; sink.tiles.len()], vec![false; sink.tiles.len()]];
+        for (layered, batch) in &batches {
+            for (tile, here) in touched[usize::from(*layered)].iter_mut().zip(batch.touched()) {
+                *tile |= here;
             }
+        }
+        let [opaque, layered] = touched;
+        let mut numbers = Vec::new();
+        for (index, tile) in sink.tiles.iter().enumerate() {
+            if !(opaque[index] || layered[index]) {
+                // Nobody need draw it.
+                let _ = tile.set(MapTile::default());
+            } else if when == When::Before || layered[index] {
+                numbers.push(index);
+            }
+        }
+        execution.workers.for_each(numbers, |index: usize| {
+            sink.draw(&view, index, &touching(&batches, index), &spare);
         });
         let tiles = sink.tiles;
         let mut pending = None;
@@ -181,12 +191,19 @@ impl DepthSink<'_> {
     fn layers(&self, tile: &Tile, list: &LayerList) -> Vec<Layer> {
         let lens = self.lens;
         let mut found = Vec::new();
+        let world_from_view = lens.view_from_world.inverse();
+        // Facets come one after the other.
+        let mut last = (NO_FACET, None);
         for layer in list.iter() {
             let [x, y] = [layer.at as usize % TILE, layer.at as usize / TILE].map(|k| k as u32);
             let [x, y] = [tile.x + x, tile.y + y];
             if x < lens.width && y < lens.height {
                 let depth = lens.distance(layer.depth);
-                let passing = self.passing(layer.facet, [x, y], depth);
+                if last.0 != layer.facet {
+                    last = (layer.facet, self.occluders.passing_anywhere(layer.facet));
+                }
+                let there = || self.passing(layer.facet, &world_from_view, [x, y], depth);
+                let passing = last.1.unwrap_or_else(there);
                 found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
         }
@@ -198,7 +215,7 @@ impl DepthSink<'_> {
     }
 
     /// What passes a facet in the middle of a texel.
-    fn passing(&self, facet: u32, texel: [u32; 2], depth: f32) -> Rgb {
+    fn passing(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
@@ -207,7 +224,6 @@ impl DepthSink<'_> {
             (instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center).as_vec3()
         });
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
-        let world_from_view = self.lens.view_from_world.inverse();
         self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
     }
 }

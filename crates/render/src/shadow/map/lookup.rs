@@ -137,8 +137,8 @@ impl Map {
         }
     }
 
-    /// The depths of the four texels of each of these places, ∞ where nothing is; and for which of them they are not in one
-    /// tile, or something transparent is in it.
+    /// The depths of the four texels of each of these places, ∞ where nothing is; and in which of them something transparent may
+    /// be.
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
         let mut texels = [[f32::INFINITY; LANES]; 4];
@@ -159,13 +159,21 @@ impl Map {
         let together = inside & x.simd_lt(splat(size - 1)) & y.simd_lt(splat(size - 1));
         let tiles = ((top >> shift) * self.columns as i32 + (left >> shift)).to_array();
         let first = (y * size + x).to_array();
-        let mut apart = asked & !(together.to_bitmask() as u32);
-        asked &= !apart;
+        let corner = [left.to_array(), top.to_array()];
+        let together = together.to_bitmask() as u32;
+        let mut apart = 0;
         // Neighbours mostly find theirs in one tile.
         let mut current: Option<(i32, &MapTile)> = None;
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize % LANES;
             asked &= asked - 1;
+            if together >> lane & 1 == 0 {
+                match self.texels_of_tiles([corner[0][lane], corner[1][lane]]) {
+                    Some(found) => (0..4).for_each(|k| texels[k][lane] = found[k]),
+                    None => apart |= 1 << lane,
+                }
+                continue;
+            }
             let tile = match current {
                 Some((number, tile)) if number == tiles[lane] => tile,
                 _ => self.tile(tiles[lane] as usize),
@@ -185,7 +193,33 @@ impl Map {
         (texels, apart)
     }
 
-    /// Answers what is not told by four texels of one tile, place by place.
+    /// The depths of four texels that are not in one tile, ∞ outside of the map; `None` if something transparent may be there.
+    #[inline(never)]
+    fn texels_of_tiles(&self, [left, top]: [i32; 2]) -> Option<[f32; 4]> {
+        let mut texels = [f32::INFINITY; 4];
+        for (k, texel) in texels.iter_mut().enumerate() {
+            if let Some((tile, at)) = self.texel([left + (k % 2) as i32, top + (k / 2) as i32]) {
+                if !tile.layers.is_empty() {
+                    return None;
+                }
+                *texel = tile.depth.get(at).copied().unwrap_or(f32::INFINITY);
+            }
+        }
+        Some(texels)
+    }
+
+    /// The tile of a texel, and where in the tile it is; `None` outside of the map.
+    fn texel(&self, [column, row]: [i32; 2]) -> Option<(&MapTile, usize)> {
+        let outside = |k: i32, side: u32| k < 0 || k >= side as i32;
+        if outside(column, self.lens.width) || outside(row, self.lens.height) {
+            return None;
+        }
+        let (column, row) = (column as usize, row as usize);
+        let tile = self.tile(row / TILE * self.columns + column / TILE);
+        Some((tile, row % TILE * TILE + column % TILE))
+    }
+
+    /// Answers what texels with something transparent tell, place by place.
     #[inline(never)]
     fn eight_apart(&self, eight: &Stored, mut apart: u32, parts: &mut [[f32; LANES]; 3]) {
         while apart != 0 {
@@ -259,8 +293,8 @@ impl Map {
         Eight { at: [u, v], first: [left, top], depths, ends }
     }
 
-    /// What passes four texels, across tiles, at the map's border, behind transparent things and where not all say the same.
-    /// `surface` is how deep the place's surface begins and ends in each.
+    /// What passes four texels, some of them behind transparent things. `surface` is how deep the place's surface begins and ends
+    /// in each.
     ///
     /// A texel in which the light sees something far behind that surface tells nothing about it: there, it has come to its
     /// end. Were such a texel lit, light would leak in where two walls of a closed room meet.
@@ -282,14 +316,8 @@ impl Map {
     }
 
     /// What one texel says about a surface that begins and ends at these depths.
-    fn passing_at(&self, [column, row]: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
-        let outside = |k: i32, side: u32| k < 0 || k >= side as i32;
-        if outside(column, self.lens.width) || outside(row, self.lens.height) {
-            return Answer { passing: [1.0; 3], beyond: true };
-        }
-        let (column, row) = (column as usize, row as usize);
-        let tile = self.tile(row / TILE * self.columns + column / TILE);
-        let texel = row % TILE * TILE + column % TILE;
+    fn passing_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
+        let Some((tile, texel)) = self.texel(place) else { return Answer { passing: [1.0; 3], beyond: true } };
         let nearest = f64::from(tile.depth.get(texel).copied().unwrap_or(f32::INFINITY));
         if nearest < begin {
             Answer { passing: [0.0; 3], beyond: false }

@@ -269,7 +269,7 @@ impl Shadows for Prepared {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
-                lookup::arriving(self.level, map, *towards, places, parts);
+                lookup::arriving(self.level, map, towards.extend(0.0), places, parts);
             }
             LightMaps::Infinity { towards, map } => {
                 parts.fill([0.0; 3]);
@@ -277,6 +277,13 @@ impl Shadows for Prepared {
                 let questions: Vec<_> = facing.map(|(number, _)| (0, number)).collect();
                 let answers = self.answers(light, &[map], &questions, places);
                 questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));
+            }
+            LightMaps::Places(emitters)
+                if self.cascades.is_none()
+                    && let [(from, maps)] = &emitters[..]
+                    && let [map] = &maps[..] =>
+            {
+                lookup::arriving(self.level, map, from.at, places, parts);
             }
             LightMaps::Places(emitters) => {
                 let mut shares = vec![Shares::default(); places.len()];

@@ -12,7 +12,7 @@ use std::ops::{Add, Mul, Sub};
 use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
-use vitral_math::{DMat4, DVec3};
+use vitral_math::{DMat4, DVec4};
 use vitral_raster::TILE;
 
 /// Where eight places are on a map, and how deep.
@@ -48,20 +48,25 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
     parts
 }
 
-/// What the map of a parallel light tells about places: the part of the light that arrives, none at those that face away.
-pub(super) fn arriving(level: Level, map: &Map, towards: DVec3, places: &Places, parts: &mut Parts) {
-    dispatch!(level, simd => map.arriving(simd, towards, places, parts));
+/// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
+/// away.
+pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &Places, parts: &mut Parts) {
+    dispatch!(level, simd => map.arriving(simd, light, places, parts));
 }
 
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, towards: DVec3, places: &Places, parts: &mut Parts) {
+    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &Places, parts: &mut Parts) {
+        let at = [light.x, light.y, light.z];
         for (places, parts) in places.eights().iter().zip(parts.eights_mut()) {
             *parts = [[0.0; LANES]; 3];
-            let [x, y, z] = load(simd, &places.normal);
-            let faces = (x * towards.x + y * towards.y + z * towards.z).simd_gt(F64x8::splat(simd, 0.0));
-            let asked = faces.to_bitmask() as u32;
+            let (position, normal) = (load(simd, &places.position), load(simd, &places.normal));
+            let along = lanes::inlined(
+                #[inline(always)]
+                |k: usize| normal[k] * (splat(simd, at[k]) - position[k] * light.w),
+            );
+            let asked = (along(0) + along(1) + along(2)).simd_gt(splat(simd, 0.0)).to_bitmask() as u32;
             if asked != 0 {
                 self.passing(simd, places, asked, parts);
             }

@@ -402,3 +402,76 @@ fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
     let (a, b, c) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     [z * c.x + (y * b.x + x * a.x), z * c.y + (y * b.y + x * a.y), z * c.z + (y * b.z + x * a.z)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::draw::When;
+    use super::super::{Lens, Map};
+    use super::*;
+    use crate::shadow::{Place, occluders::Occluders};
+    use crate::{Execution, Session, Settings};
+    use std::sync::Arc;
+    use vitral_light::AlphaMode;
+    use vitral_math::dvec3;
+    use vitral_math::lanes::available_levels;
+    use vitral_scene::builtin;
+
+    /// What a map tells about eight places that face the light, each by itself.
+    fn one_by_one<S: Simd>(simd: S, map: &Map, places: &EightPlaces) -> [Rgb; LANES] {
+        let eight = map.locate(simd, places);
+        let share = |k: usize| lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]);
+        let stored = Stored::new(&eight, [share(0), share(1)]);
+        std::array::from_fn(|lane| {
+            let first = [stored.first[0][lane], stored.first[1][lane]];
+            let within = |k: usize, side: u32| first[k] >= -1.0 && first[k] < f64::from(side);
+            if !within(0, map.lens.width) || !within(1, map.lens.height) {
+                return [1.0; 3];
+            }
+            let surface = std::array::from_fn(|k| [stored.depths[k][lane], stored.ends[k][lane]]);
+            map.four_apart(first.map(|v| v as i32), surface, [stored.shares[0][lane], stored.shares[1][lane]])
+        })
+    }
+
+    #[test]
+    fn eight_together_are_told_what_each_is_told_alone() {
+        let mut scene = builtin::scene("teapot").expect("there is one");
+        for (transparent, towards) in [(false, dvec3(1.0, 2.0, 3.0)), (true, dvec3(-2.0, 1.0, 0.5))] {
+            if transparent {
+                scene.materials[0].alpha_mode = AlphaMode::Blend;
+                scene.materials[0].opacity = 0.5;
+            }
+            let session = Session::new(Arc::new(scene.clone())).expect("a sound scene");
+            let (settings, execution) = (Settings::default(), Execution::default());
+            let occluders = Occluders::new(&session, &settings);
+            let lens = Lens::parallel(towards, &session.world, 200);
+            let map = Map::draw(lens, &session, &occluders, &settings, &execution, When::Asked).expect("no limit");
+            let extent = session.world.bounds.size() * 0.6;
+            let mut state = 1u32;
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
+            };
+            let place = |_| {
+                let position = dvec3(random(), random(), random()) * extent * 2.0;
+                let normal = dvec3(random(), random(), random()).normalize();
+                Place { position, normal, facet: 0, seed: 0, pixel: None }
+            };
+            let places: Places = (0..20_003).map(place).collect();
+            for (name, level) in available_levels() {
+                let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
+                arriving(level, &map, towards.extend(0.0), &places, &mut parts);
+                let mut partly = 0;
+                for (number, eight) in places.eights().iter().enumerate() {
+                    let expected = dispatch!(level, simd => one_by_one(simd, &map, eight));
+                    for lane in 0..LANES.min(places.len() - number * LANES) {
+                        let faces = eight.get(lane).normal.dot(towards) > 0.0;
+                        let expected = if faces { expected[lane] } else { [0.0; 3] };
+                        assert_eq!(parts.get(number * LANES + lane), expected, "{name}: {:?}", eight.get(lane));
+                        partly += usize::from(expected[0] > 0.0 && expected[0] < 1.0);
+                    }
+                }
+                assert!(partly > 100, "{name}: {partly} places partly lit");
+            }
+        }
+    }
+}

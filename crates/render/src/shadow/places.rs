@@ -3,9 +3,9 @@
 
 use super::Place;
 use vitral_light::Rgb;
-use vitral_math::dvec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd, V3};
+use vitral_math::{DVec3, dvec3};
 
 /// Eight places, by their numbers; see [`Place`].
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ pub(crate) struct EightPlaces {
 
 impl EightPlaces {
     /// Place by place; the last is repeated where there are not eight.
-    pub(super) fn of(place: impl Fn(usize) -> Place) -> Self {
+    fn of(place: impl Fn(usize) -> Place) -> Self {
         let places: [Place; LANES] = std::array::from_fn(place);
         let pixel = |place: &Place| place.pixel.unwrap_or([f32::NAN; 2]);
         Self {
@@ -87,6 +87,30 @@ impl Places {
     /// One of them.
     pub fn get(&self, number: usize) -> Place {
         self.eights[number / LANES].get(number % LANES)
+    }
+
+    /// Where one of them is.
+    #[inline(always)]
+    pub(super) fn position(&self, number: usize) -> DVec3 {
+        let [x, y, z] = self.eights[number / LANES].position.map(|axis| axis[number % LANES]);
+        dvec3(x, y, z)
+    }
+
+    /// Eight of them, by their numbers.
+    #[inline(always)]
+    pub(super) fn pick(&self, numbers: [usize; LANES]) -> EightPlaces {
+        let from = numbers.map(|number| &self.eights[number / LANES]);
+        let mut picked = *from[0];
+        for (lane, (eight, number)) in from.into_iter().zip(numbers).enumerate() {
+            let own = number % LANES;
+            for k in 0..3 {
+                picked.position[k][lane] = eight.position[k][own];
+                picked.normal[k][lane] = eight.normal[k][own];
+            }
+            (picked.facet[lane], picked.seed[lane]) = (eight.facet[own], eight.seed[own]);
+            (0..2).for_each(|k| picked.pixel[k][lane] = eight.pixel[k][own]);
+        }
+        picked
     }
 
     /// One after the other.
@@ -166,7 +190,6 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::DVec3;
 
     #[test]
     fn places_and_parts_come_back_one_by_one() {
@@ -182,6 +205,12 @@ mod tests {
             let places: Places = all.iter().copied().collect();
             assert_eq!((places.len(), places.is_empty()), (count, count == 0));
             assert!(places.iter().eq(all.iter().copied()), "{count}");
+            if let Some(last) = count.checked_sub(1) {
+                let numbers = std::array::from_fn(|lane| (5 * lane).min(last));
+                let picked = places.pick(numbers);
+                assert!((0..LANES).all(|lane| picked.get(lane) == all[numbers[lane]]));
+                assert_eq!(places.position(last), all[last].position);
+            }
             let back = places.turned();
             assert!(back.iter().zip(&all).all(|(b, a)| b.normal == -a.normal && b.position == a.position));
 

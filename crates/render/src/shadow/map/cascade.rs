@@ -94,7 +94,7 @@ impl Cascades {
         // How much the next question's answer counts against this one's.
         let mut fades = Vec::with_capacity(questions.len());
         for &(whole, place) in questions {
-            let position = places.get(place).position;
+            let position = places.position(place);
             let depth = self.depth.dot(position.extend(1.0));
             // A little before the first cut is in the first slice, as is what rays find beside the view.
             let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;

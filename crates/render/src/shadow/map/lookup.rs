@@ -83,7 +83,8 @@ impl Map {
         parts: &mut [Rgb],
     ) {
         for asked in own.chunks(LANES) {
-            let eight = EightPlaces::of(|lane| places.get(questions[asked[lane.min(asked.len() - 1)] as usize].1));
+            let number = |lane: usize| questions[asked[lane.min(asked.len() - 1)] as usize].1;
+            let eight = places.pick(std::array::from_fn(number));
             let mut passing = [[0.0; LANES]; 3];
             self.passing(simd, &eight, (1 << asked.len()) - 1, &mut passing);
             for (lane, &question) in asked.iter().enumerate() {

@@ -433,7 +433,8 @@ fn irradiance<S: Simd>(
     // Which side is seen? The facet's normal was turned to it.
     let [a, b, c] = surface.positions;
     let turned = (b - a).cross(c - a).dot(surface.facet_normal).to_array();
-    let weights = shadowed::weights(surface);
+    let [a, b, c] = surface.weights;
+    let weights = [a.to_array(), b.to_array(), c.to_array()];
     let mut soa = [[0.0; LANES]; 3];
     for lane in 0..LANES {
         let front = (turned[lane] >= 0.0) != subject.instance.mirrored;

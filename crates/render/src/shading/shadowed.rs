@@ -72,12 +72,6 @@ fn arriving_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) 
     constants.light_numbers.iter().map(of_light).collect()
 }
 
-#[inline(always)]
-pub(super) fn weights<S: Simd>(surface: &Surface<S>) -> [[f32; LANES]; 3] {
-    let [a, b, c] = surface.weights;
-    [a.to_array(), b.to_array(), c.to_array()]
-}
-
 /// Where eight points are in the world.
 #[inline(always)]
 pub(super) fn world_places<S: Simd>(

@@ -26,6 +26,8 @@ mod draw;
 mod lens;
 mod lookup;
 mod slice;
+#[cfg(test)]
+mod testing;
 
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};

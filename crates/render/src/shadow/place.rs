@@ -11,7 +11,7 @@ use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd, U32x8};
 use vitral_math::{DVec3, dvec3};
 use vitral_scene::Instance;
 
@@ -238,7 +238,7 @@ impl<'a> Placing<'a> {
             normal: [[0.0; LANES]; 3],
             facet: triangles.map(|triangle| self.instance.first_facet + triangle),
             pixel: screen.map(|axis| *axis),
-            seed: [0; LANES],
+            seed: seeds(simd, screen),
         };
         for k in 0..3 {
             position[k].store_slice(&mut places.position[k]);
@@ -246,6 +246,20 @@ impl<'a> Placing<'a> {
         }
         places
     }
+}
+
+/// What chooses places on area lights for points on the screen.
+#[inline(always)]
+fn seeds<S: Simd>(simd: S, screen: [&[f32; LANES]; 2]) -> [u32; LANES] {
+    let scrambled = lanes::inlined(
+        #[inline(always)]
+        |axis: usize, factor: u32| -> U32x8<S> {
+            let subpixel: U32x8<S> = (F32x8::from_slice(simd, screen[axis]) * 256.0).to_int();
+            subpixel * factor
+        },
+    );
+    let (x, y) = (scrambled(0, 0x9e37_79b9), scrambled(1, 0x85eb_ca6b));
+    (x ^ (y << 16 | y >> 16)).to_array()
 }
 
 /// The first three columns of eight rows of four doubles, each number in the lane of its row.

@@ -15,12 +15,10 @@ pub(crate) struct EightPlaces {
     pub(super) facet: [u32; LANES],
     /// Not numbers where a place is in no pixel.
     pub(super) pixel: [[f32; LANES]; 2],
-    /// For places in no pixel.
     pub(super) seed: [u32; LANES],
 }
 
 impl EightPlaces {
-    /// Place by place; the last is repeated where there are not eight.
     fn of(place: impl Fn(usize) -> Place) -> Self {
         let places: [Place; LANES] = std::array::from_fn(place);
         let pixel = |place: &Place| place.pixel.unwrap_or([f32::NAN; 2]);
@@ -37,21 +35,14 @@ impl EightPlaces {
     pub(crate) fn get(&self, lane: usize) -> Place {
         let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
         let pixel = [self.pixel[0][lane], self.pixel[1][lane]];
-        let pixel = (!pixel[0].is_nan()).then_some(pixel);
         Place {
             position: at(&self.position),
             normal: at(&self.normal),
             facet: self.facet[lane],
-            seed: pixel.map_or(self.seed[lane], seed),
-            pixel,
+            seed: self.seed[lane],
+            pixel: (!pixel[0].is_nan()).then_some(pixel),
         }
     }
-}
-
-/// The seed of a place that is seen in a pixel.
-fn seed(pixel: [f32; 2]) -> u32 {
-    let [x, y] = pixel.map(|s| (s * 256.0) as u32);
-    x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(16)
 }
 
 /// Any number of places.
@@ -197,7 +188,7 @@ mod tests {
             position: dvec3(i as f64, 1.0, 2.0),
             normal: DVec3::Y * (i as f64 + 1.0),
             facet: 7 + i as u32,
-            seed: seed([i as f32, 0.5]),
+            seed: 99 - i as u32,
             pixel: i.is_multiple_of(2).then_some([i as f32, 0.5]),
         };
         for count in [0, 1, 8, 11] {

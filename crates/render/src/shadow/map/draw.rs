@@ -249,25 +249,12 @@ fn distances<S: Simd>(simd: S, lens: &Lens, depths: &mut [f32]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
-    use vitral_light::AlphaMode;
-    use vitral_scene::builtin;
+    use crate::shadow::map::testing::teapot;
 
     #[test]
     fn tiles_drawn_when_they_are_asked_about_are_those_drawn_before() {
-        let mut scene = builtin::scene("teapot").expect("there is one");
         for transparent in [false, true] {
-            if transparent {
-                scene.materials[0].alpha_mode = AlphaMode::Blend;
-                scene.materials[0].opacity = 0.5;
-            }
-            let session = Session::new(Arc::new(scene.clone())).expect("a sound scene");
-            let (settings, execution) = (Settings::default(), Execution::default());
-            let occluders = Occluders::new(&session, &settings);
-            let draw = |when| {
-                let lens = Lens::parallel(dvec3(1.0, 2.0, 3.0), &session.world, 300);
-                Map::draw(lens, &session, &occluders, &settings, &execution, when).expect("no limit")
-            };
+            let draw = |when| teapot(transparent, dvec3(1.0, 2.0, 3.0), 300, when).0;
             let [before, asked] = [When::Before, When::Asked].map(draw);
             assert_eq!((before.pending.is_some(), asked.pending.is_some()), (false, true));
             let waiting = asked.tiles.iter().filter(|tile| tile.get().is_none()).count();

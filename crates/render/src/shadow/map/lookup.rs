@@ -406,16 +406,12 @@ fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::When;
-    use super::super::{Lens, Map};
     use super::*;
-    use crate::shadow::{Place, occluders::Occluders};
-    use crate::{Execution, Session, Settings};
-    use std::sync::Arc;
-    use vitral_light::AlphaMode;
+    use crate::shadow::Place;
+    use crate::shadow::map::draw::When;
+    use crate::shadow::map::testing::teapot;
     use vitral_math::dvec3;
     use vitral_math::lanes::available_levels;
-    use vitral_scene::builtin;
 
     /// What a map tells about eight places that face the light, each by itself.
     fn one_by_one<S: Simd>(simd: S, map: &Map, places: &EightPlaces) -> [Rgb; LANES] {
@@ -435,18 +431,9 @@ mod tests {
 
     #[test]
     fn eight_together_are_told_what_each_is_told_alone() {
-        let mut scene = builtin::scene("teapot").expect("there is one");
         for (transparent, towards) in [(false, dvec3(1.0, 2.0, 3.0)), (true, dvec3(-2.0, 1.0, 0.5))] {
-            if transparent {
-                scene.materials[0].alpha_mode = AlphaMode::Blend;
-                scene.materials[0].opacity = 0.5;
-            }
-            let session = Session::new(Arc::new(scene.clone())).expect("a sound scene");
-            let (settings, execution) = (Settings::default(), Execution::default());
-            let occluders = Occluders::new(&session, &settings);
-            let lens = Lens::parallel(towards, &session.world, 200);
-            let map = Map::draw(lens, &session, &occluders, &settings, &execution, When::Asked).expect("no limit");
-            let extent = session.world.bounds.size() * 0.6;
+            let (map, bounds) = teapot(transparent, towards, 200, When::Asked);
+            let extent = bounds.size() * 0.6;
             let mut state = 1u32;
             let mut random = || {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -178,7 +178,7 @@ fn render_color(
     // The old contents do not matter: every tile is written whole.
     let mut picture = if spare.len() == pixels { spare } else { vec![[0; 4]; pixels] };
     let rows = TileRows::new(viewport, &mut picture);
-    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, execution.level, rows);
+    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, rows);
     if settings.channels.passes {
         sink.show_passes();
     }
@@ -242,7 +242,7 @@ fn render_data(
     let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), None, &tables, execution);
-    let sink = ChannelSink::new(&constants, settings.channels, execution.level, grid.tiles.len());
+    let sink = ChannelSink::new(&constants, settings.channels, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
     (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);

@@ -13,7 +13,7 @@ use crate::visible::TileSink;
 use std::sync::Mutex;
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{Level, Simd, dispatch};
+use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{LayerList, NO_FACET, TILE_PIXELS, Tile};
 
 /// The wanted planes of one tile, row by row; unwanted ones stay empty.
@@ -32,13 +32,12 @@ pub(crate) struct DataPlanes {
 pub(crate) struct ChannelSink<'a> {
     constants: &'a FrameConstants<'a>,
     wanted: Channels,
-    level: Level,
     pub tiles: Vec<Mutex<DataPlanes>>,
 }
 
 impl<'a> ChannelSink<'a> {
-    pub(crate) fn new(constants: &'a FrameConstants<'a>, wanted: Channels, level: Level, tile_count: usize) -> Self {
-        Self { constants, wanted, level, tiles: (0..tile_count).map(|_| Mutex::default()).collect() }
+    pub(crate) fn new(constants: &'a FrameConstants<'a>, wanted: Channels, tile_count: usize) -> Self {
+        Self { constants, wanted, tiles: (0..tile_count).map(|_| Mutex::default()).collect() }
     }
 }
 
@@ -60,12 +59,12 @@ impl TileSink for ChannelSink<'_> {
             points.collect(tile, InFront::Samples(&[]), self.constants, &MarkColors::default());
             if self.wanted.normal {
                 planes.normal = vec![[0.0; 3]; TILE_PIXELS];
-                dispatch!(self.level, simd => normals(simd, &points, self.constants, &mut planes.normal));
+                dispatch!(self.constants.level, simd => normals(simd, &points, self.constants, &mut planes.normal));
             }
             if self.wanted.any_shadow() {
                 planes.attached_shadow = vec![0.0; TILE_PIXELS];
                 planes.cast_shadow = vec![0.0; TILE_PIXELS];
-                dispatch!(self.level, simd => shadows(simd, &points, self.constants, &mut planes));
+                dispatch!(self.constants.level, simd => shadows(simd, &points, self.constants, &mut planes));
             }
         }
         *self.tiles[index].lock().expect("data planes") = planes;

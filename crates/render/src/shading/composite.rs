@@ -13,6 +13,8 @@ use crate::marks::MarkColors;
 use crate::transparency::{Fragment, MOST_SAMPLES};
 use vitral_math::Vec2;
 use vitral_math::color::{SrgbBytes, byte_from_unit};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{F32x8, Level, Simd, dispatch};
 use vitral_raster::{TILE, Tile};
 
 /// Memory of one tile's composition.
@@ -40,11 +42,11 @@ impl Composer {
         if points.mixed.is_empty() && points.fragments.is_empty() {
             // One point fills each pixel, in the order of the pixels.
             self.places.extend(points.pixels.iter().map(|p| p.index));
-            encode(&self.places, &lit.colors, constants.raw, out);
+            encode(constants.level, &self.places, &lit.colors, constants.raw, out);
             return;
         }
         self.mix(tile, points, lit, constants, marks, deep);
-        encode(&self.places, &self.colors, constants.raw, out);
+        encode(constants.level, &self.places, &self.colors, constants.raw, out);
     }
 
     /// Begins a picture with the background.
@@ -65,7 +67,7 @@ impl Composer {
 
     /// Encodes the pixels that were added.
     pub(super) fn end(&self, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
-        encode(&self.places, &self.colors, constants.raw, out);
+        encode(constants.level, &self.places, &self.colors, constants.raw, out);
     }
 
     /// Mixes the samples of every pixel that shows more than the background.
@@ -164,30 +166,47 @@ pub(super) fn fragment<'a>(
 }
 
 /// Premultiplied colours to display bytes with straight alpha, put in their places.
-fn encode(places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
+fn encode(level: Level, places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
     if raw {
-        return encode_by(byte_from_unit, places, colors, out);
+        return places.iter().zip(colors).for_each(|(&place, color)| {
+            let [r, g, b, alpha] = straight(color);
+            out[place as usize] = [r, g, b, alpha].map(byte_from_unit);
+        });
     }
-    let table = SrgbBytes::get();
-    encode_by(
-        #[inline(always)]
-        |linear| table.byte(linear),
-        places,
-        colors,
-        out,
-    );
+    dispatch!(level, simd => encode_srgb(simd, places, colors, out));
 }
 
 #[inline(always)]
-fn encode_by(byte: impl Fn(f32) -> u8, places: &[u32], colors: &[[f32; 4]], out: &mut [[u8; 4]]) {
-    for (&place, &[r, g, b, alpha]) in places.iter().zip(colors) {
-        let straight = match alpha {
-            1.0.. => 1.0,
-            _ if alpha > 0.0 => 1.0 / alpha,
-            _ => 0.0,
-        };
-        out[place as usize] = [byte(r * straight), byte(g * straight), byte(b * straight), byte_from_unit(alpha)];
+fn encode_srgb<S: Simd>(simd: S, places: &[u32], colors: &[[f32; 4]], out: &mut [[u8; 4]]) {
+    let table = SrgbBytes::get();
+    for (places, colors) in places.chunks(2).zip(colors.chunks(2)) {
+        if let ([first, second], &[[_, _, _, a], [_, _, _, b]]) = (places, colors)
+            && a >= 1.0
+            && b >= 1.0
+        {
+            // Nearly all pixels are opaque: no division, no alpha to encode.
+            let bytes = table.eight(F32x8::from_slice(simd, colors.as_flattened())).to_array();
+            let [r, g, b, _, s, h, c, _] = bytes.map(|byte| byte as u8);
+            out[*first as usize] = [r, g, b, u8::MAX];
+            out[*second as usize] = [s, h, c, u8::MAX];
+            continue;
+        }
+        for (&place, color) in places.iter().zip(colors) {
+            let [r, g, b, alpha] = straight(color);
+            out[place as usize] = [table.byte(r), table.byte(g), table.byte(b), byte_from_unit(alpha)];
+        }
     }
+}
+
+/// A premultiplied colour with straight alpha.
+#[inline(always)]
+fn straight(&[r, g, b, alpha]: &[f32; 4]) -> [f32; 4] {
+    let straight = match alpha {
+        1.0.. => 1.0,
+        _ if alpha > 0.0 => 1.0 / alpha,
+        _ => 0.0,
+    };
+    [r * straight, g * straight, b * straight, alpha]
 }
 
 #[cfg(test)]
@@ -196,8 +215,11 @@ mod tests {
 
     #[test]
     fn colors_encode_with_straight_alpha() {
-        let mut out = [[9; 4]; 3];
-        encode(&[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out);
+        let (level, mut out) = (Level::new(), [[9; 4]; 3]);
+        encode(level, &[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out);
         assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
+        let colors = [[0.25, 0.0, 0.5, 1.0], [2.0, f32::NAN, 1.0, 1.0], [0.125, 0.5, 0.25, 0.5]];
+        encode(level, &[2, 0, 1], &colors, false, &mut out);
+        assert_eq!(out, [[255, 0, 255, 255], [137, 255, 188, 128], [137, 0, 188, 255]]);
     }
 }

@@ -18,7 +18,7 @@ use vitral_frame::Texture;
 use vitral_frame::texture::decode_table;
 use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef, Transmission, scattering_exponent};
 use vitral_math::color::byte_from_unit;
-use vitral_math::lanes::Lanes;
+use vitral_math::lanes::{Lanes, Level};
 use vitral_math::{DMat4, DVec4};
 
 /// Matrices of an instance, as rows.
@@ -113,6 +113,8 @@ pub(crate) struct FrameConstants<'a> {
     /// Surfaces are drawn in the background's colour.
     pub surfaces_are_background: bool,
     pub background: Arc<BackgroundRows>,
+    /// Instructions to use.
+    pub level: Level,
 }
 
 /// What the rows of the background depend on: what it is, the picture's height, whether the colour space is raw.
@@ -173,6 +175,7 @@ impl<'a> FrameConstants<'a> {
             in_passes: settings.transparency_order == TransparencyOrder::MultiPass,
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
             background,
+            level: execution.level,
         }
     }
 

@@ -145,7 +145,7 @@ impl Lit {
     /// Makes room for `count` points.
     pub(crate) fn reset(&mut self, count: usize, constants: &FrameConstants<'_>) {
         let filtered = constants.transparency == Transparency::Filtered;
-        self.colors.clear();
+        // What is left from before is written over.
         self.colors.resize(count, [0.0; 4]);
         self.passes.clear();
         self.passes.resize(if filtered { count } else { 0 }, [0.0; 3]);
@@ -300,6 +300,21 @@ pub(crate) fn subject<'a>(
 #[inline(always)]
 pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet: u32) -> Slots {
     let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+    if let (&[first, .., last], Ok(records)) = (eight, records.try_into())
+        && last - first == LANES as u32 - 1
+        && let (Some(facets), Some(places)) = (
+            points.facet[first as usize..].first_chunk::<LANES>(),
+            points.place[first as usize..].first_chunk::<LANES>(),
+        )
+    {
+        // Neighbours, as where a tile shows one object only.
+        slots.triangle = facets.map(|facet| facet - first_facet);
+        slots.record = records;
+        for lane in 0..LANES {
+            [slots.x[lane], slots.y[lane]] = places[lane];
+        }
+        return slots;
+    }
     for lane in 0..LANES {
         let here = lane.min(eight.len() - 1);
         let p = eight[here] as usize;

@@ -39,7 +39,7 @@ pub(crate) use points::{InFront, Points};
 use facets::FacetTable;
 use std::sync::Mutex;
 use vitral_exec::{Limit, Workers};
-use vitral_math::lanes::{Level, dispatch};
+use vitral_math::lanes::dispatch;
 use vitral_raster::{LayerList, TILE, TILE_PIXELS, Tile, Viewport};
 
 use crate::global::{Whitted, whitted::Forest};
@@ -54,7 +54,6 @@ pub(crate) struct ColorSink<'a> {
     tracer: Option<&'a Whitted<'a>>,
     /// Keeps tiles that need the whole picture to be composed.
     deep: Option<DeepImage<'a>>,
-    level: Level,
     /// Where the rows of each tile go.
     tiles: TileRows<'a>,
     /// What each pass made of each tile, the opaque tile first; empty where nobody asked.
@@ -141,7 +140,6 @@ impl<'a> ColorSink<'a> {
         marks: &'a MarkColors,
         tracer: Option<&'a Whitted<'a>>,
         deep: Option<DeepImage<'a>>,
-        level: Level,
         tiles: TileRows<'a>,
     ) -> Self {
         Self {
@@ -149,7 +147,6 @@ impl<'a> ColorSink<'a> {
             marks,
             tracer,
             deep,
-            level,
             tiles,
             passes: Vec::new(),
             spare: &constants.view.session.spare_scratch,
@@ -208,7 +205,7 @@ impl TileSink for ColorSink<'_> {
         let constants = self.constants;
         points.collect(tile, InFront::Samples(&[]), constants, self.marks);
         lit.reset(points.len(), constants);
-        dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
+        dispatch!(constants.level, simd => group::shade_all(simd, points, facets, constants, lit));
         let (covered_pixels, opaque) = (points.covered_pixels, points.len() as u64);
         let shown = !self.passes.is_empty();
         let (mut pictures, layer_samples, shaded) = self.compose_in_passes(tile, &mut scratch, pass, shown);
@@ -243,7 +240,7 @@ impl TileSink for ColorSink<'_> {
         };
         points.collect(tile, seen, constants, self.marks);
         lit.reset(points.len(), constants);
-        dispatch!(self.level, simd => group::shade_all(simd, points, facets, constants, lit));
+        dispatch!(constants.level, simd => group::shade_all(simd, points, facets, constants, lit));
         if let (Some(tracer), Some(front)) = (self.tracer, &front) {
             tracer.follow(front, points, lit, forest);
         }

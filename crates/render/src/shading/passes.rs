@@ -46,7 +46,7 @@ impl ColorSink<'_> {
             let Scratch { points, facets, lit, .. } = &mut *scratch;
             points.collect_pass(tile, &peel, self.constants, self.marks);
             lit.reset(points.len(), self.constants);
-            dispatch!(self.level, simd => group::shade_all(simd, points, facets, self.constants, lit));
+            dispatch!(self.constants.level, simd => group::shade_all(simd, points, facets, self.constants, lit));
             shaded += points.len() as u64;
             for of in &points.fragments {
                 let fragment = fragment(of, tile, points, lit, self.marks);

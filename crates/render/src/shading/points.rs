@@ -37,6 +37,9 @@ pub(crate) struct Points {
     ends: Vec<u32>,
 }
 
+/// Pixels of a row that are looked at together.
+const RUN: usize = 8;
+
 /// A sample without an opaque surface.
 pub(crate) const NO_POINT: u32 = u32::MAX;
 
@@ -166,21 +169,25 @@ impl Points {
     /// [`Self::collect_opaque`] for one sample a pixel and no rays that go on: no pixel is mixed.
     fn collect_single(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
         let (width, height) = visible_part(tile, constants);
-        self.facet.resize(TILE_PIXELS, 0);
-        self.place.resize(TILE_PIXELS, [0.0; 2]);
-        self.pixels.resize(TILE_PIXELS, Pixel { index: 0, source: Source::Point(0) });
         let mut count = 0;
         for y in 0..height {
             let row = y * TILE;
             let down = (tile.y as usize + y) as f32 + 0.5;
-            for (x, &facet) in tile.facet[row..row + width].iter().enumerate() {
-                // Written in any case, kept where something is: no branch to guess.
-                self.facet[count] = facet;
-                self.place[count] = [(tile.x as usize + x) as f32 + 0.5, down];
-                self.pixels[count] = Pixel { index: (row + x) as u32, source: Source::Point(count as u32) };
-                count += usize::from(facet != NO_FACET);
-                if count == TILE_PIXELS {
-                    return;
+            for (facets, first) in tile.facet[row..row + width].chunks(RUN).zip((0..).step_by(RUN)) {
+                if is_empty(facets) {
+                    continue;
+                }
+                if self.facet.len() < count + RUN {
+                    self.facet.resize(count + 16 * RUN, 0);
+                    self.place.resize(count + 16 * RUN, [0.0; 2]);
+                    self.pixels.resize(count + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
+                }
+                for (x, &facet) in (first..).zip(facets) {
+                    // Written in any case, kept where something is: no branch to guess.
+                    self.facet[count] = facet;
+                    self.place[count] = [(tile.x as usize + x) as f32 + 0.5, down];
+                    self.pixels[count] = Pixel { index: (row + x) as u32, source: Source::Point(count as u32) };
+                    count += usize::from(facet != NO_FACET);
                 }
             }
         }
@@ -194,21 +201,27 @@ impl Points {
         let (width, height) = visible_part(tile, constants);
         for y in 0..height {
             let row = y * TILE;
-            for x in 0..width {
-                let pixel = row + x;
-                let first = tile.facet[pixel];
-                let facet_of = |s: usize| tile.facet[s * TILE_PIXELS + pixel];
-                let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                let source = if !constants.follows(first) && (1..samples).all(|s| facet_of(s) == first) {
-                    // The common case: one facet, or none, fills the pixel.
-                    if first == NO_FACET {
-                        continue;
-                    }
-                    Source::Point(self.push(first, [place[0] + 0.5, place[1] + 0.5]))
-                } else {
-                    self.mix(samples, facet_of, place, constants)
-                };
-                self.pixels.push(Pixel { index: pixel as u32, source });
+            for x in (0..width).step_by(RUN) {
+                let run = row + x..row + width.min(x + RUN);
+                if (0..samples).all(|s| is_empty(&tile.facet[s * TILE_PIXELS..][run.clone()])) {
+                    continue;
+                }
+                for pixel in run {
+                    let x = pixel - row;
+                    let first = tile.facet[pixel];
+                    let facet_of = |s: usize| tile.facet[s * TILE_PIXELS + pixel];
+                    let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
+                    let source = if !constants.follows(first) && (1..samples).all(|s| facet_of(s) == first) {
+                        // The common case: one facet, or none, fills the pixel.
+                        if first == NO_FACET {
+                            continue;
+                        }
+                        Source::Point(self.push(first, [place[0] + 0.5, place[1] + 0.5]))
+                    } else {
+                        self.mix(samples, facet_of, place, constants)
+                    };
+                    self.pixels.push(Pixel { index: pixel as u32, source });
+                }
             }
         }
     }
@@ -509,6 +522,13 @@ fn sort_by_slot<T: Copy + Default>(
 pub(crate) fn visible_part(tile: &Tile, constants: &FrameConstants<'_>) -> (usize, usize) {
     let viewport = constants.view.viewport;
     ((viewport.width - tile.x).min(TILE as u32) as usize, (viewport.height - tile.y).min(TILE as u32) as usize)
+}
+
+/// Whether no facet is seen at any of the samples.
+#[inline(always)]
+fn is_empty(samples: &[u32]) -> bool {
+    // All bits are set in `NO_FACET` alone.
+    samples.iter().fold(NO_FACET, |all, facet| all & facet) == NO_FACET
 }
 
 /// Whether a pixel of the tile lies in the picture.

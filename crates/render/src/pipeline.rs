@@ -9,7 +9,9 @@ use crate::stats::{Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::transparency::registry::{ORDERS, order};
 use crate::visible::{Nowhere, charged};
-use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, SettingsError, registry, shadow};
+use crate::{
+    Coherence, Error, Execution, Global, PreparedView, Session, Settings, SettingsError, Transparency, registry, shadow,
+};
 use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
 use vitral_frame::{Frame, Plane};
@@ -108,7 +110,7 @@ fn check_order(material: &str, settings: &Settings) -> Result<(), SettingsError>
 /// What the user has to know about the picture.
 fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
     let mut warnings = Vec::new();
-    if settings.global == Global::RayTrace {
+    if settings.global == Global::RayTrace && settings.transparency != Transparency::None {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
             format!("rays pass straight through the surfaces of material `{name}` that are not closed, whatever its index of refraction")
         }));

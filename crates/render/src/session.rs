@@ -314,10 +314,18 @@ impl Session {
         known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
     }
 
-    /// For each triangle where its body is; asked of transparent materials that bend light.
+    /// For each triangle where its body is; asked of transparent materials where any bends light. One whose index is 1 is a
+    /// medium, too: a bubble in glass.
     pub(crate) fn sides(&self, mesh: u32, workers: &Workers) -> &[Side] {
         let known = &self.meshes[mesh as usize].sides;
-        known.get_or_init(|| bodies::sides(&self.scene.meshes[mesh as usize], |m| self.bends(m), workers))
+        let is_medium = |material: Option<u32>| {
+            let material = material.and_then(|m| self.scene.materials.get(m as usize));
+            material.is_some_and(|m| m.alpha_mode == AlphaMode::Blend)
+        };
+        known.get_or_init(|| {
+            let any = (0..self.scene.materials.len() as u32).any(|m| self.bends(Some(m)));
+            bodies::sides(&self.scene.meshes[mesh as usize], |m| any && is_medium(m), workers)
+        })
     }
 
     fn bends(&self, material: Option<u32>) -> bool {

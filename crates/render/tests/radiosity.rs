@@ -183,6 +183,52 @@ const PATH_TRACED: [[f64; 3]; 5] = [
 ];
 
 #[test]
+fn what_stands_on_a_shining_floor_is_lit_evenly_at_its_foot() {
+    // A wall, askew to the patches of the floor, which it cuts in two.
+    let mut scene = Scene::default();
+    let material = |emission: f32| Material {
+        reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [0.5; 3], ks: [0.0; 3], shininess: 1.0 },
+        emission: [emission; 3],
+        ..Material::default()
+    };
+    let wall = DMat4::from_rotation_y(0.3) * DMat4::from_translation(dvec3(0.0, 0.5, 0.0));
+    let wall = wall * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    for (size, emission, place) in [((4.0, 4.0), 1.0, DMat4::IDENTITY), ((1.0, 1.0), 0.0, wall)] {
+        let mut plane = solids::plane(size.0, size.1, 1, 1);
+        let material = Some(scene.add_material(material(emission)));
+        plane.parts.iter_mut().for_each(|p| p.material = material);
+        scene.add_mesh(plane, place);
+    }
+    let room = enclosure(scene, 0.4);
+    let progress = progressive::solve(&room, &[hemicube()], 1e-4, u64::MAX, &Execution::default()).unwrap();
+    let floor = [dvec3(-2.0, 0.0, 2.0), dvec3(2.0, 0.0, 2.0), dvec3(2.0, 0.0, -2.0), dvec3(-2.0, 0.0, -2.0)];
+    let mut low = 0;
+    for (element, sides) in room.elements.iter().zip(progress.irradiance.chunks(2)) {
+        // The scene's middle is as high as the wall's.
+        let (center, normal) = (element.center + DVec3::Y * 0.5, element.normal);
+        if normal.y.abs() > 0.5 {
+            continue;
+        }
+        for (normal, found) in [(normal, sides[0][0]), (-normal, sides[1][0])] {
+            // The half of the floor that is before the wall.
+            let before = |p: &DVec3| (*p - center).dot(normal) > 0.0;
+            let mut polygon = Vec::new();
+            for (a, b) in floor.iter().zip(floor.iter().cycle().skip(1)) {
+                polygon.extend(before(a).then_some(*a));
+                if before(a) != before(b) {
+                    let [s, t] = [a, b].map(|p| (*p - center).dot(normal));
+                    polygon.push(a.lerp(*b, s / (s - t)));
+                }
+            }
+            let expected = form_factor::from_point(center, normal, &polygon);
+            assert!((found / expected - 1.0).abs() < 0.08, "{center}: {found} for {expected}");
+            low += usize::from(center.y < 0.2);
+        }
+    }
+    assert!(low > 8, "{low}");
+}
+
+#[test]
 fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let scene = builtin::scene("cornell").unwrap();
     let triangles = |i: usize| scene.meshes[i].triangles.len() as u32;

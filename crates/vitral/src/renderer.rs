@@ -6,7 +6,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, Rgb};
 use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
-use vitral_render::{Execution, Rendered, Session, Settings, Shot, render};
+use vitral_render::{Execution, Global, Rendered, Session, Settings, Shot, render};
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -136,6 +136,7 @@ impl Renderer {
     pub fn frame_lights(&self, camera: &Camera) -> Vec<Light> {
         let mut lights = match &self.lights {
             Some(lights) => lights.clone(),
+            None if self.world().lights.is_empty() && self.settings.global == Global::Radiosity => self.fixed_lights(),
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),
         };
@@ -145,6 +146,16 @@ impl Renderer {
             }
         }
         lights
+    }
+
+    /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
+    /// usual view.
+    fn fixed_lights(&self) -> Vec<Light> {
+        if self.scene().materials.iter().any(|material| material.emission != [0.0; 3]) {
+            return Vec::new();
+        }
+        let (view, lens) = (View::default(), Lens::default());
+        default_lights(&framing::frame(&self.world().bounds, view, self.up, lens, 1.0))
     }
 
     /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient).
@@ -265,6 +276,17 @@ mod tests {
         assert_eq!(renderer.frame_lights(&camera), default_lights(&camera));
         renderer.lights = Some(Vec::new());
         assert!(renderer.frame_lights(&camera).is_empty(), "no lights were asked for");
+        // Radiosity does not depend on the camera, and needs no lamps where surfaces shine.
+        let mut fixed = small("teapot");
+        fixed.settings.global = Global::Radiosity;
+        let (near, far) = (Camera { position: DVec3::ONE, ..camera }, Camera { position: -DVec3::ONE, ..camera });
+        assert!(!fixed.frame_lights(&near).is_empty());
+        assert_eq!(fixed.frame_lights(&near), fixed.frame_lights(&far));
+        let mut scene = load_builtin("teapot").unwrap();
+        scene.materials.push(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
+        let mut shining = Renderer::new(scene).unwrap();
+        shining.settings.global = Global::Radiosity;
+        assert!(shining.frame_lights(&near).is_empty());
         let mut lab = small("sphere");
         lab.light_intensity = 0.5;
         let lights = lab.frame_lights(&camera);

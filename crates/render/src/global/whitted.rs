@@ -54,8 +54,10 @@ use vitral_math::{DMat3, DVec3, Vec3, dvec3};
 use vitral_raster::{Layer, Tile};
 use vitral_scene::bodies::Side;
 
-/// A branch whose light counts less is not followed: the steps of a byte are twice as large.
-const LEAST_WEIGHT: f32 = 1.0 / 512.0;
+/// A branch whose light makes less of a byte is not followed: the steps are twice as large.
+const LEAST_SEEN: f32 = 1.0 / 512.0;
+/// How steep the sRGB encoding is in the dark.
+const STEEPEST: f32 = 12.92;
 /// A direction that is in no simple ratio to the axes.
 const ASKEW: Vec3 = Vec3::new(0.531_7, 0.681_9, 0.502_3);
 /// Depths that differ by less may be those of faces that coincide.
@@ -71,6 +73,8 @@ pub(crate) struct Whitted<'a> {
     /// What the eye is in.
     surroundings: Media,
     max_depth: u32,
+    /// What a branch's light must count at least to be followed.
+    least: f32,
     /// The directions in which each sample sees through the first translucent surface.
     strata: Strata,
     sky: Sky,
@@ -129,6 +133,8 @@ struct Rays {
     free: Vec<Branch>,
     /// Those within a pile.
     piled: Vec<Branch>,
+    /// Points, and how opaque what they show becomes where branches end: black, not a hole.
+    ended: Vec<(u32, f32)>,
 }
 
 impl Rays {
@@ -139,6 +145,18 @@ impl Rays {
     fn clear(&mut self) {
         self.free.clear();
         self.piled.clear();
+    }
+
+    /// A branch with this weight ends.
+    fn end(&mut self, target: u32, weight: [f32; 4]) {
+        if weight[3] > 0.0 {
+            self.ended.push((target, weight[3]));
+        }
+    }
+
+    /// Adds what ended to the points' colours.
+    fn settle(&mut self, colors: &mut [[f32; 4]]) {
+        self.ended.drain(..).for_each(|(target, alpha)| colors[target as usize][3] += alpha);
     }
 }
 
@@ -186,6 +204,7 @@ impl<'a> Whitted<'a> {
             tree,
             surroundings: Media::default(),
             max_depth: settings.max_depth,
+            least: least_weight(constants),
             strata: Strata::new(settings.scatter_samples.div_ceil(settings.samples)),
             sky: Sky { stretch, perspective: view.view.perspective },
             view_from_world,
@@ -269,7 +288,7 @@ impl<'a> Whitted<'a> {
                     layer: 1,
                     depth: 0,
                     scattered: false,
-                    least: LEAST_WEIGHT,
+                    least: self.least,
                     travelled: 0.0,
                     row: Some(points.place[target as usize][1] as u32),
                     seed: bounce.place.seed,
@@ -277,6 +296,7 @@ impl<'a> Whitted<'a> {
                 let met = Met { lit, at: target as usize, from_behind };
                 self.branch(&eye_ray, travelled, &met, &forest.piles, &mut forest.rays, &mut counters);
             }
+            forest.rays.settle(&mut lit.colors);
             while !forest.rays.is_empty() {
                 if !self.may_go_on() {
                     return;
@@ -361,6 +381,7 @@ impl<'a> Whitted<'a> {
                 self.branch(ray, travelled, &met, piles, next, counters);
             }
         }
+        next.settle(&mut lit.colors);
         std::mem::swap(rays, next);
     }
 
@@ -435,7 +456,8 @@ impl<'a> Whitted<'a> {
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
         let place = Place { position, normal, facet, seed, pixel: None };
-        (Hit { weights, origin: origin.as_vec3().to_array(), place }, from_behind)
+        let straight = branch.row.is_some();
+        (Hit { weights, origin: origin.as_vec3().to_array(), place, straight }, from_behind)
     }
 
     /// The rays that go on where `ray` meets a surface.
@@ -471,6 +493,7 @@ impl<'a> Whitted<'a> {
             }
         } else if passing != [0.0; 4] {
             counters.stopped_by_weight += 1;
+            rays.end(ray.target, passing);
         }
         if counts(mirrored, ray.least) {
             if ray.depth < self.max_depth {
@@ -480,9 +503,11 @@ impl<'a> Whitted<'a> {
                 rays.free.push(Branch { weight: mirrored, origin, direction, depth, row: None, ..go_on });
             } else {
                 counters.stopped_by_depth += 1;
+                rays.end(ray.target, mirrored);
             }
         } else if mirrored != [0.0; 4] {
             counters.stopped_by_weight += 1;
+            rays.end(ray.target, mirrored);
         }
     }
 
@@ -504,16 +529,18 @@ impl<'a> Whitted<'a> {
             Way::None => return false,
         };
         let branch = Branch { media, ..*branch };
-        if let Some(exponent) = self.scatters(branch.own) {
-            self.scatter(&branch, direction, surface, exponent, &mut rays.free, counters);
-        } else if !bent {
+        let scatters = self.scatters(branch.own);
+        if !bent && scatters.is_none() {
             counters.passed += 1;
             rays.free.push(branch);
-        } else if ray.depth < self.max_depth {
+        } else if ray.depth >= self.max_depth {
+            counters.stopped_by_depth += 1;
+            rays.end(branch.target, branch.weight);
+        } else if let Some(exponent) = scatters {
+            self.scatter(&branch, direction, surface, exponent, &mut rays.free, counters);
+        } else {
             counters.refracted += 1;
             rays.free.push(Branch { direction, depth: ray.depth + 1, row: None, ..branch });
-        } else {
-            counters.stopped_by_depth += 1;
         }
         true
     }
@@ -532,6 +559,11 @@ impl<'a> Whitted<'a> {
             rays.piled.push(*branch);
             return;
         };
+        if branch.depth >= self.max_depth {
+            counters.stopped_by_depth += 1;
+            rays.end(branch.target, branch.weight);
+            return;
+        }
         let first = rays.piled.len();
         self.scatter(branch, branch.direction, surface, exponent, &mut rays.piled, counters);
         // They come to the place from where they would have come without the surface.
@@ -551,10 +583,6 @@ impl<'a> Whitted<'a> {
         rays: &mut Vec<Branch>,
         counters: &mut TracingCounters,
     ) {
-        if branch.depth >= self.max_depth {
-            counters.stopped_by_depth += 1;
-            return;
-        }
         let strata = if branch.scattered { Strata::new(1) } else { self.strata };
         let share = 1.0 / strata.count() as f32;
         let (weight, least) = (branch.weight.map(|w| w * share), branch.least * share);
@@ -668,6 +696,15 @@ enum Way {
     Bent(DVec3, Media),
     /// Total internal reflection.
     None,
+}
+
+/// What a branch's light must count at least to be followed: brighter lights are seen through more, and in sRGB all of it is
+/// seen in the dark.
+fn least_weight(constants: &FrameConstants<'_>) -> f32 {
+    let lights = constants.lights.iter().flat_map(|light| [light.ambient, light.diffuse, light.specular]);
+    let glow = constants.materials.iter().map(|m| m.material.emission);
+    let brightest = lights.chain(glow).flatten().filter(|channel| channel.is_finite()).fold(1.0, f32::max);
+    LEAST_SEEN / brightest / if constants.raw { 1.0 } else { STEEPEST }
 }
 
 fn counts(weight: [f32; 4], least: f32) -> bool {

@@ -11,12 +11,15 @@
 //! Source: \[Goral et al. 1984\].
 
 use super::gather::Row;
-use super::patch::Trees;
+use super::near::Neighbours;
+use super::patch::{NONE, Trees};
 use super::targets::Targets;
+use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::DecodeTables;
 use crate::shadow::{Parts, Place, Places, Shadows, facet as facet_of, ray::RayShadows, texel};
 use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
+use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Light, LightKind, Material, PreparedLight, Reflectance};
 use vitral_math::lanes::V3;
@@ -55,6 +58,8 @@ pub struct Patch {
     pub center: DVec3,
     /// Unit normal of the front.
     pub normal: DVec3,
+    /// Corners, counter-clockwise seen from the front.
+    pub corners: [DVec3; 3],
 }
 
 /// 1 for the front of an element or a patch, -1 for its back, by the number of the side.
@@ -76,6 +81,10 @@ pub struct Enclosure {
     pub emission: Vec<Color>,
     /// The elements as hemicubes find them.
     pub targets: Targets,
+    /// The elements by their places.
+    pub(super) neighbours: Neighbours,
+    /// What stands between them.
+    pub(super) tree: Arc<Bvh>,
 }
 
 /// The lights that light surfaces directly: without ambient light, and without area lights where surfaces shine.
@@ -127,7 +136,12 @@ impl Enclosure {
         let tables = DecodeTables::new(settings.color_space);
         let found = execution.workers.map(leaves.len(), |i| element(&trees, leaves[i], session, &tables));
         let (elements, own): (Vec<Element>, Vec<[Color; 2]>) = found.into_iter().unzip();
-        let mut patches = vec![Patch { center: DVec3::ZERO, normal: DVec3::Z }; trees.patches as usize];
+        let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
+        let mut patches = vec![none; trees.patches as usize];
+        // A patch's own node comes before those of its elements.
+        for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
+            patches[node.patch as usize].corners = trees.places(number as u32);
+        }
         let mut areas = vec![0.0; patches.len()];
         for element in &elements {
             let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
@@ -135,8 +149,10 @@ impl Enclosure {
             *area += element.area;
         }
         patches.iter_mut().zip(areas).for_each(|(patch, area)| patch.center /= area);
-        let targets = Targets::new(&trees);
-        let mut enclosure = Self { trees, elements, patches, emission: own.into_flattened(), targets };
+        let (targets, neighbours) = (Targets::new(&trees), Neighbours::new(&elements));
+        let tree = targets.session.bvh(execution)?;
+        let emission = own.into_flattened();
+        let mut enclosure = Self { trees, elements, patches, emission, targets, neighbours, tree };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
     }

@@ -1,7 +1,7 @@
 //! Radiosity: light that matt surfaces send to each other.
 //!
 //! Surfaces are cut into patches ([`patch`]); form factors say what part of the light of one arrives at another
-//! ([`form_factor`], [`hemicube`]); light is sent from patch to patch until little is left on its way ([`progressive`]),
+//! ([`form_factor`], [`hemicube`], `near`); light is sent from patch to patch until little is left on its way ([`progressive`]),
 //! or all patches gather it from all others, the reference ([`gather`]). Where the light changes fast, elements are cut
 //! again and the solution begins anew. The [`solution`] belongs to the scene, not to a viewer: the session keeps it, and
 //! pictures from other cameras only look it up.
@@ -15,6 +15,7 @@ pub mod enclosure;
 pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
+mod near;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
@@ -33,7 +34,7 @@ use vitral_light::Light;
 use vitral_scene::Attribute;
 
 /// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
-const HEMICUBES: [u32; 11] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
+const HEMICUBES: [u32; 13] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 /// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
 /// The part of the light that may be left: it is missing in the solution, where other errors are some tenths of a percent.

@@ -22,6 +22,7 @@
 use super::enclosure::{Color, Element, Enclosure, turned};
 use super::gather::Row;
 use super::hemicube::Hemicube;
+use super::near::refined;
 use crate::Execution;
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -54,8 +55,10 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Patches that send at least this part of all light use the finest hemicube.
-const STRONG: f64 = 1.0 / 64.0;
+/// Pixels along the edge of a hemicube for a patch that sends at least this part of all light, where elements are few.
+const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
+/// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
+const FEW: usize = 8192;
 
 /// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
@@ -84,7 +87,10 @@ pub fn solve(
     // The sides with the most light, and the hemicubes that they need.
     let choose = |unsent: &[Color], shots: u64| -> Vec<(usize, usize)> {
         let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
-        sides.into_iter().map(|side| (side, fineness(hemicubes, power(&unsent[side]) / emitted))).collect()
+        sides
+            .into_iter()
+            .map(|side| (side, fineness(hemicubes, power(&unsent[side]) / emitted, enclosure.elements.len())))
+            .collect()
     };
     // Whom they see.
     let look = |shooters: &[(usize, usize)], known: &Known| -> Result<Vec<Arc<Seen>>, Limit> {
@@ -150,12 +156,12 @@ fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Colo
     progress.shots += 1;
 }
 
-/// The coarsest hemicube with enough pixels for this part of all light.
-fn fineness(hemicubes: &[Hemicube], part: f64) -> usize {
-    let pixels = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side());
-    let last = hemicubes.len() - 1;
-    let needed = pixels(&hemicubes[last]) * (part / STRONG);
-    hemicubes.iter().position(|hemicube| pixels(hemicube) >= needed).unwrap_or(last)
+/// The coarsest hemicube with enough pixels for this part of all light and so many elements, else the finest.
+fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
+    let (side, strong) = STRONG;
+    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW as f64).max(1.0);
+    let enough = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side()) >= needed;
+    hemicubes.iter().position(enough).unwrap_or(hemicubes.len() - 1)
 }
 
 /// What a side of a patch sees: sides of elements.
@@ -163,7 +169,7 @@ fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &
     let patch = &enclosure.patches[shooter / 2];
     let from = (patch.center, patch.normal * turned(shooter));
     let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
-    Ok(enclosure.sides(seen, patch.center))
+    Ok(refined(enclosure, enclosure.sides(seen, patch.center), shooter, execution))
 }
 
 /// What a side of a patch was found to see.
@@ -253,13 +259,16 @@ mod tests {
 
     #[test]
     fn hemicubes_have_pixels_in_proportion_to_the_light() {
-        let hemicubes = [16, 32, 64].map(|side| Hemicube::new(side, 1.0));
+        let hemicubes = [128, 256, 512].map(|side| Hemicube::new(side, 1.0));
+        let strong = STRONG.1;
         for (part, expected) in
-            [(1.0, 2), (STRONG, 2), (STRONG / 3.9, 2), (STRONG / 4.0, 1), (STRONG / 16.0, 0), (0.0, 0)]
+            [(1.0, 2), (strong, 2), (strong / 3.9, 2), (strong / 4.0, 1), (strong / 16.0, 0), (0.0, 0)]
         {
-            assert_eq!(fineness(&hemicubes, part), expected, "{part}");
+            assert_eq!(fineness(&hemicubes, part, FEW), expected, "{part}");
+            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW), expected, "{part} of smaller elements");
+            assert_eq!(fineness(&hemicubes, part, 1), expected, "{part} of large elements");
         }
-        assert_eq!(fineness(&hemicubes[..1], 1.0), 0, "there is no finer one");
+        assert_eq!(fineness(&hemicubes[..1], 1.0, 9), 0, "there is no finer one");
     }
 
     #[test]

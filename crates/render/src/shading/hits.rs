@@ -22,6 +22,8 @@ pub(crate) struct Hit {
     pub origin: [f32; 3],
     /// The place in the world.
     pub place: Place,
+    /// The ray took no turn since it left the eye.
+    pub straight: bool,
 }
 
 /// What eight hits have in place of a common eye.
@@ -30,6 +32,8 @@ pub(crate) struct Along {
     pub origins: [[f32; LANES]; 3],
     /// Where they hit.
     pub places: [Place; LANES],
+    /// 1 for rays that took no turn, else 0.
+    pub straight: [f32; LANES],
 }
 
 impl Along {
@@ -37,7 +41,8 @@ impl Along {
     fn new(hits: &[Hit]) -> Self {
         let hit = |lane: usize| &hits[lane.min(hits.len() - 1)];
         let origins = [0, 1, 2].map(|k| std::array::from_fn(|lane| hit(lane).origin[k]));
-        Self { origins, places: std::array::from_fn(|lane| hit(lane).place) }
+        let straight = std::array::from_fn(|lane| f32::from(u8::from(hit(lane).straight)));
+        Self { origins, places: std::array::from_fn(|lane| hit(lane).place), straight }
     }
 
     /// Where the rays come from, view space.

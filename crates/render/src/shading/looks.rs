@@ -150,7 +150,10 @@ impl<S: Simd> Looks<S> {
         let facing = match along {
             Some(along) => {
                 let position = blend3(&surface.weights, &surface.positions);
-                n.dot((along.origin(simd) - position).normalize())
+                let towards = n.dot((along.origin(simd) - position).normalize());
+                // As the eye sees it without rays, as long as they come straight from there.
+                let straight = lanes::Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &along.straight));
+                straight.select(n.z, towards)
             }
             None => n.z,
         };

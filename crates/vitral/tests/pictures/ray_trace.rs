@@ -374,6 +374,61 @@ fn total_internal_reflection_and_the_most_turns() {
     assert_eq!(tracing.total_reflections, 256 * 9);
     r.settings.max_depth = 2;
     assert_eq!(r.render().unwrap().stats.tracing.total_reflections, 256 * 3);
+    // What is not followed to its end is black, not a hole in the picture.
+    assert!(colors(&mut r).iter().all(|p| *p == [0, 0, 0, 255]));
+}
+
+#[test]
+fn a_bubble_of_air_in_glass_bends_light() {
+    let picture = |air: f32| {
+        let mut scene = Scene::default();
+        for k in 0..8 {
+            let center = DVec3::new(-3.5 + k as f64, 0.0, -4.0);
+            cuboid(&mut scene, DVec3::new(0.5, 8.0, 0.1), center, poster([1.0, 0.1 * k as f32, 0.1]));
+        }
+        add(&mut scene, solids::sphere(1.0, 48, 24), glass(1.0, 1.5), DMat4::IDENTITY);
+        add(&mut scene, solids::sphere(0.8, 48, 24), glass(1.0, air), DMat4::IDENTITY);
+        let mut r = traced(exact(scene, 80, 60));
+        r.camera = Some(on_z(4.0, 0.6));
+        colors(&mut r)
+    };
+    // An index of exactly 1 is like one next to it, and not like no bubble.
+    assert!(differing(&picture(1.0), &picture(1.0001), 4) < 20);
+    assert!(differing(&picture(1.0), &picture(1.5), 4) > 400);
+}
+
+#[test]
+fn faint_panes_before_a_bright_light_are_seen_through() {
+    let mut scene = panes(12, 1.0);
+    scene.materials.iter_mut().for_each(|m| m.set_kt(0.5));
+    let emission = [50.0; 3];
+    cuboid(
+        &mut scene,
+        DVec3::new(9.0, 9.0, 0.1),
+        DVec3::new(0.0, 0.0, -9.0),
+        Material { emission, ..poster([0.0; 3]) },
+    );
+    let mut sorted = exact(scene.clone(), 8, 8);
+    let mut r = traced(exact(scene, 8, 8));
+    for r in [&mut sorted, &mut r] {
+        r.camera = Some(on_z(4.0, 0.1));
+    }
+    let (a, b) = (colors(&mut sorted), colors(&mut r));
+    assert!(a[9][0] > 2 && largest_difference(&a, &b) <= 1, "{:?} {:?}", a[9], b[9]);
+}
+
+#[test]
+fn kays_sheets_let_the_same_light_through_with_and_without_rays() {
+    let mut scene = panes(3, 1.0);
+    scene.materials.iter_mut().for_each(|m| m.alpha_mode = AlphaMode::Blend);
+    let camera = Camera { position: DVec3::new(3.0, 2.0, 5.0), ..on_z(1.0, 0.9) };
+    let picture = |mut r: Renderer| {
+        r.settings.transparency = Transparency::Kay;
+        r.camera = Some(camera);
+        colors(&mut r)
+    };
+    let (flat, rays) = (picture(exact(scene.clone(), 64, 48)), picture(traced(exact(scene, 64, 48))));
+    assert!(largest_difference(&flat, &rays) <= 1);
 }
 
 #[test]

@@ -1,0 +1,229 @@
+//! Elements so near a patch that it is no point to them.
+//!
+//! The hemicube in the middle of a patch stands for all of it, which is true some sizes of the patch away. An element that is
+//! nearer says itself how much of its sky the patch fills: by Lambert's formula from the element's middle, as far as rays
+//! from there reach the parts of the patch. The light that then arrives is `F_pe = F_ep A_e / A_p` of what the patch sends. What
+//! is farther away shares the rest in the proportions that the hemicube found, so that no light is lost or made.
+//!
+//! In:   what a hemicube sees. Out: the same, with the factors of near elements put right.
+//! Cost: a search for neighbours; for each of those that face the patch up to 16 rays.
+//! Source: \[Wallace, Elmquist & Haines 1989\]. Departs from it: only near elements ask, and for all of the polygon.
+
+use super::enclosure::{Element, Enclosure, turned};
+use super::form_factor::from_point;
+use super::gather::Row;
+use crate::Execution;
+use crate::raytrace::bvh::Bvh;
+use crate::raytrace::intersect::Ray;
+use crate::raytrace::{Counters, Structure};
+use crate::shadow::clearance;
+use vitral_math::DVec3;
+use vitral_math::lanes::{LANES, dispatch};
+
+/// Longest edges of the patch up to which an element is near.
+const NEAR: f64 = 2.0;
+/// Up to which the patch is looked at in 16 parts, not in four.
+const NEXT: f64 = 1.0;
+/// A factor that counts as none.
+const NOTHING: f64 = 1e-9;
+/// By how much farther elements may be lit more, or less, to make up for near ones.
+const MOST_SCALED: f64 = 2.0;
+
+/// Elements by their places: the middle of each range has smaller ones before it and larger ones after it, along x, y and z
+/// in turns.
+#[derive(Debug)]
+pub(super) struct Neighbours(Vec<u32>);
+
+impl Neighbours {
+    pub(super) fn new(elements: &[Element]) -> Self {
+        let mut order: Vec<u32> = (0..elements.len() as u32).collect();
+        sort(elements, &mut order, 0);
+        Self(order)
+    }
+
+    /// Calls `visit` with the elements whose middles are nearer to `point` than `radius`.
+    fn visit(&self, elements: &[Element], point: DVec3, radius: f64, mut visit: impl FnMut(u32)) {
+        let mut waiting = vec![(&self.0[..], 0)];
+        while let Some((range, axis)) = waiting.pop() {
+            if range.is_empty() {
+                continue;
+            }
+            let (before, rest) = range.split_at(range.len() / 2);
+            let center = elements[rest[0] as usize].center;
+            if center.distance_squared(point) < radius * radius {
+                visit(rest[0]);
+            }
+            let (offset, next) = (point[axis] - center[axis], (axis + 1) % 3);
+            if offset <= radius {
+                waiting.push((before, next));
+            }
+            if offset >= -radius {
+                waiting.push((&rest[1..], next));
+            }
+        }
+    }
+}
+
+fn sort(elements: &[Element], order: &mut [u32], axis: usize) {
+    if order.len() < 2 {
+        return;
+    }
+    let along = |e: &u32| elements[*e as usize].center[axis];
+    let middle = order.len() / 2;
+    order.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
+    let (before, rest) = order.split_at_mut(middle);
+    sort(elements, before, (axis + 1) % 3);
+    sort(elements, &mut rest[1..], (axis + 1) % 3);
+}
+
+/// A side of a patch, as elements see it.
+struct Sender {
+    /// Counter-clockwise, seen from this side.
+    corners: [DVec3; 3],
+    normal: DVec3,
+    /// The longest edge.
+    longest: f64,
+    area: f64,
+}
+
+/// Puts the factors of near elements right in what the hemicube on a side of a patch sees.
+pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, execution: &Execution) -> Row {
+    let patch = &enclosure.patches[shooter / 2];
+    let [a, b, c] = patch.corners;
+    let corners = if shooter.is_multiple_of(2) { [a, b, c] } else { [a, c, b] };
+    let sender = Sender {
+        corners,
+        normal: patch.normal * turned(shooter),
+        longest: a.distance(b).max(b.distance(c)).max(c.distance(a)),
+        area: 0.5 * (b - a).cross(c - a).length(),
+    };
+    let mut near = Row::new();
+    enclosure.neighbours.visit(&enclosure.elements, patch.center, NEAR * sender.longest, |number| {
+        let element = &enclosure.elements[number as usize];
+        let cuts = if element.center.distance(patch.center) < NEXT * sender.longest { 2 } else { 1 };
+        for side in [2 * number, 2 * number + 1] {
+            let normal = element.normal * turned(side as usize);
+            let part = sender.seen(element.center, normal, cuts, &enclosure.tree, execution);
+            near.extend(part.map(|part| (side, part * element.area / sender.area)));
+        }
+    });
+    if near.is_empty() {
+        return seen;
+    }
+    near.sort_unstable_by_key(|(side, _)| *side);
+    let own = |side: u32| near.binary_search_by_key(&side, |(near, _)| *near).is_ok();
+    let (mut row, mut replaced) = (Row::with_capacity(seen.len() + near.len()), 0.0);
+    for (side, factor) in seen {
+        if own(side) { replaced += factor } else { row.push((side, factor)) }
+    }
+
+    // What is farther away has the rest, the sky with it.
+    let (sum, rest) = (near.iter().map(|(_, factor)| factor).sum::<f64>(), 1.0 - replaced);
+    let farther = if rest > 0.0 { ((1.0 - sum) / rest).clamp(1.0 / MOST_SCALED, MOST_SCALED) } else { 0.0 };
+    let nearer = if sum > 0.0 { (1.0 - farther * rest) / sum } else { 1.0 };
+    row.iter_mut().for_each(|(_, factor)| *factor *= farther);
+    row.extend(near.into_iter().filter(|(_, part)| *part > 0.0).map(|(side, part)| (side, part * nearer)));
+    row.sort_unstable_by_key(|(side, _)| *side);
+    row
+}
+
+impl Sender {
+    /// The part of the sky above `point` that the side fills, as far as it is seen, cut into 4 to the power `cuts` parts;
+    /// `None` if it would not be seen if nothing were in between.
+    fn seen(&self, point: DVec3, normal: DVec3, cuts: u32, tree: &Bvh, execution: &Execution) -> Option<f64> {
+        let (center, extent) = (tree.triangles().center, f64::from(tree.triangles().extent));
+        let clear = clearance(point, extent);
+        if (point - self.corners[0]).dot(self.normal) <= clear {
+            return None;
+        }
+        if self.corners.iter().all(|corner| (*corner - point).dot(normal) <= clear) {
+            return None;
+        }
+        let polygon = above(&self.corners, point, normal);
+        let whole = from_point(point, normal, &polygon);
+        if polygon.is_empty() || whole <= NOTHING {
+            return None;
+        }
+        let mut parts = vec![self.corners];
+        for _ in 0..cuts {
+            parts = parts.into_iter().flat_map(quarters).collect();
+        }
+        let mut visible = Vec::with_capacity(parts.len());
+        let polygons = parts.iter().map(|part| above(part, point, normal)).filter(|polygon| polygon.len() > 2);
+        let polygons: Vec<Vec<DVec3>> = polygons.collect();
+        for eight in polygons.chunks(LANES) {
+            let from = point + normal * clear;
+            let rays = eight.iter().map(|polygon| {
+                let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64 + self.normal * clear;
+                Ray::new((from - center).as_vec3(), (middle - from).as_vec3())
+            });
+            let rays: Vec<Ray> = rays.collect();
+            let own = [u32::MAX; LANES];
+            let (hits, _) = dispatch!(execution.level, simd => {
+                tree.closest_hits(simd, &rays, &own, &mut Counters::default())
+            });
+            visible.extend(hits[..eight.len()].iter().map(|hit| hit.is_none_or(|(_, t)| t >= 1.0)));
+        }
+        if visible.iter().all(|v| *v) {
+            return Some(whole);
+        }
+        let seen = polygons.iter().zip(visible).filter(|(_, visible)| *visible);
+        Some(seen.map(|(polygon, _)| from_point(point, normal, polygon)).sum())
+    }
+}
+
+/// A triangle's parts between the middles of its edges, all turned as it is.
+fn quarters([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
+    let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
+}
+
+/// What of a triangle is above the horizon of a point: corners in order, none if nothing is.
+fn above(corners: &[DVec3; 3], point: DVec3, normal: DVec3) -> Vec<DVec3> {
+    let mut polygon = Vec::with_capacity(4);
+    for k in 0..3 {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        let (height_a, height_b) = ((a - point).dot(normal), (b - point).dot(normal));
+        if height_a > 0.0 {
+            polygon.push(a);
+        }
+        if (height_a > 0.0) != (height_b > 0.0) {
+            polygon.push(a.lerp(b, height_a / (height_a - height_b)));
+        }
+    }
+    polygon
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::dvec3;
+
+    fn element(center: DVec3) -> Element {
+        Element { node: 0, patch: 0, center, normal: DVec3::Z, area: 1.0, reflectance: [0.0; 3] }
+    }
+
+    #[test]
+    fn neighbours_are_those_within_the_radius() {
+        let place = |i: u32| dvec3(f64::from(i * 37 % 101), f64::from(i * 53 % 89), f64::from(i * 29 % 7));
+        let elements: Vec<Element> = (0..500).map(|i| element(place(i))).collect();
+        let neighbours = Neighbours::new(&elements);
+        for (i, radius) in [(3, 0.5), (40, 9.0), (77, 30.0), (499, 200.0)] {
+            let (point, mut found) = (place(i) + dvec3(0.1, -0.2, 0.3), Vec::new());
+            neighbours.visit(&elements, point, radius, |number| found.push(number));
+            found.sort_unstable();
+            let near = |number: &u32| elements[*number as usize].center.distance(point) < radius;
+            let expected: Vec<u32> = (0..500).filter(near).collect();
+            assert_eq!(found, expected, "{radius}");
+        }
+    }
+
+    #[test]
+    fn what_is_below_the_horizon_is_cut_off() {
+        let corners = [dvec3(0.0, 0.0, -1.0), dvec3(0.0, 0.0, 1.0), dvec3(2.0, 0.0, 1.0)];
+        let polygon = above(&corners, DVec3::ZERO, DVec3::Z);
+        assert_eq!(polygon, [DVec3::ZERO, corners[1], corners[2], dvec3(1.0, 0.0, 0.0)]);
+        assert!(above(&corners, DVec3::ZERO, -DVec3::Z).len() == 3);
+        assert!(above(&corners, DVec3::Z, DVec3::Z).is_empty());
+    }
+}

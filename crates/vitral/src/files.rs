@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use vitral_exec::Workers;
 use vitral_io::{ResolveError, Resolver};
 
-/// The files beside a model. Paths that are absolute, climb with `..`, or pass through a link that leaves the folder
-/// are refused, unless external files were allowed; so are devices, pipes, and files above the limit.
+/// The files beside a model. Paths that are absolute, climb out of the folder with `..`, or pass through a link that
+/// leaves it are refused, unless external files were allowed; so are devices, pipes, and files above the limit.
 #[derive(Clone, Debug)]
 pub struct FolderResolver {
     folder: PathBuf,
@@ -30,11 +30,12 @@ impl FolderResolver {
         let relative = Path::new(path);
         // `C:/x` and `C:x` are absolute for the model's author, wherever this runs.
         let drive = matches!(path.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic());
-        let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-        if !self.allow_external && (drive || path.starts_with('\\') || !plain) {
+        let inside = folded(relative);
+        if !self.allow_external && (drive || path.starts_with('\\') || inside.is_none()) {
             return Err(ResolveError::Outside);
         }
-        let found = fs::canonicalize(self.folder.join(relative)).map_err(|e| told(&e))?;
+        let place = self.folder.join(inside.as_deref().unwrap_or(relative));
+        let found = fs::canonicalize(place).map_err(|e| told(&e))?;
         if !self.allow_external {
             let folder = fs::canonicalize(&self.folder).map_err(|e| told(&e))?;
             if !found.starts_with(folder) {
@@ -43,6 +44,20 @@ impl FolderResolver {
         }
         Ok(found)
     }
+}
+
+/// `path` without `.` and `..`, folded by its words alone; `None` if it leaves the folder that it starts from.
+fn folded(path: &Path) -> Option<PathBuf> {
+    let mut folded = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::Normal(name) => folded.push(name),
+            Component::CurDir => {}
+            Component::ParentDir if folded.pop() => {}
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return None,
+        }
+    }
+    Some(folded)
 }
 
 fn told(error: &std::io::Error) -> ResolveError {
@@ -202,9 +217,10 @@ mod tests {
         let closed = FolderResolver::new(folder.join("model"), false, 100);
         assert_eq!(closed.read("textures/a b.png").unwrap(), b"texture");
         assert_eq!(closed.read("./textures/a b.png").unwrap(), b"texture");
+        assert_eq!(closed.read("textures/../none/../textures/a b.png").unwrap(), b"texture");
         assert_eq!(closed.read("nothing.png"), Err(ResolveError::NotFound));
         let absolute = folder.join("secret.png").to_string_lossy().into_owned();
-        for path in ["../secret.png", "textures/../../secret.png", &absolute, "C:/secret.png", "\\\\host\\x"] {
+        for path in ["../secret.png", "textures/../../secret.png", "../model/textures/a b.png", &absolute, "C:/secret.png", "\\\\host\\x"] {
             assert_eq!(closed.read(path), Err(ResolveError::Outside), "{path}");
         }
         #[cfg(unix)]

@@ -50,6 +50,16 @@ pub(crate) fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | 0x0B | 0x0C)
 }
 
+/// `name` without a comment behind it: a `#` after a blank, unless a digit follows, since 3ds Max calls materials
+/// `Material #25`.
+pub(crate) fn without_comment(name: &[u8]) -> &[u8] {
+    let begins = |k: &usize| {
+        let next = name.get(k + 1).copied().unwrap_or(b' ');
+        name[*k] == b'#' && is_blank(name[k - 1]) && !next.is_ascii_digit()
+    };
+    (1..name.len()).find(begins).map_or(name, |k| name[..k].trim_ascii_end())
+}
+
 /// Cuts `text` into pieces of about `size` bytes, each ending after a line break that no `\` continues.
 pub(crate) fn cut_at_lines(text: &[u8], size: usize) -> Vec<&[u8]> {
     let mut pieces = Vec::with_capacity(text.len() / size + 1);
@@ -397,6 +407,16 @@ mod tests {
         assert!(float("nan").unwrap().is_nan() && float("-1.#IND").unwrap().is_nan());
         assert_eq!((float("-inf"), float("1.#INF00")), (Some(f32::NEG_INFINITY), Some(f32::INFINITY)));
         assert_eq!((float("abc"), float("-"), float("")), (None, None, None));
+    }
+
+    #[test]
+    fn comments_behind_names_begin_after_a_blank() {
+        for (name, plain) in [("a # b", "a"), ("a b #c", "a b"), ("a\t#", "a"), ("a#b # c # d", "a#b")] {
+            assert_eq!(without_comment(name.as_bytes()), plain.as_bytes());
+        }
+        for name in ["", "#", "# a", "a#b", "Material #25", "ä"] {
+            assert_eq!(without_comment(name.as_bytes()), name.as_bytes());
+        }
     }
 
     #[test]

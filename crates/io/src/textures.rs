@@ -2,6 +2,7 @@
 //! used, and all of them at the same time where there are threads.
 
 use crate::Resolver;
+use crate::text::without_comment;
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_frame::{Encoding, Plane, Texture};
@@ -124,11 +125,15 @@ fn folder_of(path: &str) -> &str {
 
 impl Image {
     /// Tries the name beside the library, then as it stands, then its last part alone: exporters like to write the
-    /// paths of the machine they ran on.
+    /// paths of the machine they ran on. Then the same without a comment.
     fn read(&self, resolver: &dyn Resolver) -> Read {
-        let bare = self.path.rsplit('/').next().unwrap_or(&self.path);
         let folder = folder_of(&self.library);
-        let mut names = vec![format!("{folder}{}", self.path), self.path.clone(), format!("{folder}{bare}")];
+        let plain = self.path[..without_comment(self.path.as_bytes()).len()].trim_end_matches('"');
+        let mut names = Vec::new();
+        for path in [self.path.as_str(), plain] {
+            let bare = path.rsplit('/').next().unwrap_or(path);
+            names.extend([format!("{folder}{path}"), path.to_owned(), format!("{folder}{bare}")]);
+        }
         names.dedup();
         let mut why = None;
         for name in &names {

@@ -220,7 +220,14 @@ mod tests {
         assert_eq!(closed.read("textures/../none/../textures/a b.png").unwrap(), b"texture");
         assert_eq!(closed.read("nothing.png"), Err(ResolveError::NotFound));
         let absolute = folder.join("secret.png").to_string_lossy().into_owned();
-        for path in ["../secret.png", "textures/../../secret.png", "../model/textures/a b.png", &absolute, "C:/secret.png", "\\\\host\\x"] {
+        for path in [
+            "../secret.png",
+            "textures/../../secret.png",
+            "../model/textures/a b.png",
+            &absolute,
+            "C:/secret.png",
+            "\\\\host\\x",
+        ] {
             assert_eq!(closed.read(path), Err(ResolveError::Outside), "{path}");
         }
         #[cfg(unix)]

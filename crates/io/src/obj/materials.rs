@@ -2,6 +2,7 @@
 
 use super::chunk::{Change, Chunk};
 use crate::mtl::{self, MtlMaterial};
+use crate::text::without_comment;
 use crate::textures::Requests;
 use crate::warnings::Warnings;
 use crate::{Place, Resolver};
@@ -50,7 +51,7 @@ impl<'a> Events<'a> {
             for event in &chunk.events {
                 let line = event.line + first_line;
                 match &event.change {
-                    Change::Name(range) => name = &text[range.clone()],
+                    Change::Name(range) => name = without_comment(&text[range.clone()]),
                     Change::Material(range) => {
                         let wanted = &text[range.clone()];
                         let chosen = *number.entry(wanted).or_insert_with(|| {
@@ -123,28 +124,60 @@ pub(super) struct Library {
     pub(super) warnings: Vec<String>,
 }
 
+/// The materials of all libraries.
+#[derive(Debug, Default)]
+struct Known {
+    /// With the library that each comes from.
+    materials: Vec<(String, MtlMaterial)>,
+    /// Numbers by names as they stand, and by those that have a comment behind them, without it.
+    whole: HashMap<String, usize>,
+    plain: HashMap<String, usize>,
+}
+
+impl Known {
+    /// Of two materials with one name the first counts.
+    fn add(&mut self, library: &str, material: MtlMaterial) {
+        let number = self.materials.len();
+        let plain = String::from_utf8_lossy(without_comment(material.name.as_bytes())).into_owned();
+        if plain != material.name {
+            self.plain.entry(plain).or_insert(number);
+        }
+        self.whole.entry(material.name.clone()).or_insert(number);
+        self.materials.push((library.to_owned(), material));
+    }
+
+    /// The number of the material `name`, and its name: as it stands, for a name may hold a `#`, else without comments.
+    fn find<'a>(&self, name: &'a str) -> Option<(&'a str, usize)> {
+        let plain = &name[..without_comment(name.as_bytes()).len()];
+        let names = [(name, &self.whole), (name, &self.plain), (plain, &self.whole), (plain, &self.plain)];
+        names.into_iter().find_map(|(name, numbers)| Some((name, *numbers.get(name)?)))
+    }
+}
+
 /// Reads the libraries and makes the materials that are used, with their textures. Materials that no face asks for are
 /// left in their library.
 pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers: &Workers) -> Library {
     let mut library = Library::default();
     let mut warnings = Warnings::default();
-    let mut known: HashMap<String, (String, MtlMaterial)> = HashMap::new();
+    let mut known = Known::default();
     for &(line, names) in &events.libraries {
         for (name, bytes) in read_libraries(line, names, resolver, &mut warnings) {
             let mut own = Warnings::default();
-            for material in mtl::parse(&bytes, &mut own) {
-                known.entry(material.name.clone()).or_insert((name.clone(), material));
-            }
+            mtl::parse(&bytes, &mut own).into_iter().for_each(|m| known.add(&name, m));
             library.warnings.extend(own.into_messages(&name));
         }
     }
 
     let mut requests = Requests::default();
+    let mut built = HashMap::new();
     for &(line, name) in &events.used {
         let name = String::from_utf8_lossy(name);
-        library.index.push(known.get(name.as_ref()).map(|(source, material)| {
-            library.materials.push(material.build(source, &mut requests));
-            library.materials.len() as u32 - 1
+        library.index.push(known.find(&name).map(|(called, number)| {
+            *built.entry(number).or_insert_with(|| {
+                let (source, material) = &known.materials[number];
+                library.materials.push(Material { name: called.to_owned(), ..material.build(source, &mut requests) });
+                library.materials.len() as u32 - 1
+            })
         }));
         if library.index.last() == Some(&None) {
             warnings
@@ -180,10 +213,17 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
     }
 }
 
-/// The libraries of one `mtllib` line: the whole rest of the line as one name, else each of its words, else what is called as
-/// the last part of the path, which may be that of another machine.
+/// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a comment, else each of its
+/// words, else what is called as the last part of the path, which may be that of another machine.
 fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
-    let text = String::from_utf8_lossy(names);
+    let plain = without_comment(names);
+    if plain.len() < names.len() {
+        let whole = mtl::file_name(&String::from_utf8_lossy(names));
+        if let Ok(bytes) = resolver.read(&whole) {
+            return vec![(whole, bytes)];
+        }
+    }
+    let text = String::from_utf8_lossy(plain);
     let whole = &mtl::file_name(&text);
     let mut missing = |name: &str, why: &crate::ResolveError| {
         warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));

@@ -201,6 +201,29 @@ fn names_of_libraries_may_have_blanks_behind_backslashes() {
     }
 }
 
+#[test]
+fn comments_are_no_part_of_names() {
+    let folder = Folder(&[(
+        "m.mtl",
+        "newmtl red one # x\nKd 1 0 0\nnewmtl Material #25\nnewmtl green # y\nmap_Kd gone.png # z",
+    )]);
+    let text = format!(
+        "mtllib m.mtl # library\n{SQUARE}g a#b # c\nusemtl red one\nf 1 2 3\nusemtl red one # again\nf 1 3 4\n\
+        usemtl Material #25\nf 1 2 4\nusemtl green # y\nf 2 3 4\nusemtl Material #26 # none\nf 2 4 1"
+    );
+    let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+    let names: Vec<&str> = s.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["red one", "Material #25", "green # y"]);
+    let parts: Vec<_> = s.meshes[0].parts.iter().map(|p| (p.name.as_str(), p.material)).collect();
+    assert_eq!(parts[0], ("a#b", Some(0)));
+    assert_eq!(parts.iter().filter_map(|p| p.1).collect::<std::collections::BTreeSet<_>>().len(), 3, "{parts:?}");
+    assert!(
+        s.warnings[0].contains("unknown material `Material #26 # none`") && s.warnings.len() == 2,
+        "{:?}",
+        s.warnings
+    );
+}
+
 /// Files by name.
 struct Folder(&'static [(&'static str, &'static str)]);
 

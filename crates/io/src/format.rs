@@ -1,8 +1,9 @@
 //! Which format a file has: by its content first, by its extension second.
 //!
 //! Formats with a magic number are certain. STL has none: a binary one is known by its length, which its triangle count
-//! fixes, an ASCII one by its first word. OBJ is known by its first statement. What nobody claims is refused with the
-//! list of what is read; formats that are known but not read are named.
+//! fixes, an ASCII one by its first word. OBJ is known by its first statement, the two kinds of JSON by the keys of their
+//! outermost object. What nobody claims is refused with the list of what is read; formats that are known but not read are
+//! named.
 
 use crate::text::{Cursor, to_utf8};
 use crate::{Error, Place};
@@ -84,7 +85,10 @@ impl Format {
             return Err(not_read(file, name));
         }
         let head = to_utf8(&bytes[..bytes.len().min(1 << 16)]);
-        if let Some(format) = by_text(&head, file) {
+        if head.trim_ascii_start().first() == Some(&b'{') {
+            return Ok(json_format(&to_utf8(bytes), file));
+        }
+        if let Some(format) = by_text(&head) {
             return Ok(format);
         }
 
@@ -196,12 +200,47 @@ fn foreign_content(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-fn by_text(head: &[u8], file: &str) -> Option<Format> {
-    // JSON: glTF must have an `asset`, which no scene file has.
-    if head.trim_ascii_start().first() == Some(&b'{') {
-        let is_gltf = extension_of(file) == "gltf" || head.windows(7).any(|w| w == b"\"asset\"");
-        return Some(if is_gltf { Format::Gltf } else { Format::SceneJson });
+/// The kind of JSON file: by the first root key that one kind must have and the other cannot, else by the name. One pass
+/// over the text at most.
+fn json_format(text: &[u8], file: &str) -> Format {
+    let by_name = if extension_of(file) == "gltf" { Format::Gltf } else { Format::SceneJson };
+    let (mut depth, mut at) = (0usize, 0);
+    while let Some(step) = text[at..].iter().position(|b| matches!(b, b'"' | b'{' | b'[' | b'}' | b']')) {
+        at += step + 1;
+        match text[at - 1] {
+            b'"' => {
+                let Some(length) = string_length(&text[at..]) else { break };
+                let (string, rest) = (&text[at..at + length], &text[at + length + 1..]);
+                if depth == 1 && rest.trim_ascii_start().first() == Some(&b':') {
+                    match string {
+                        b"vitral-scene" => return Format::SceneJson,
+                        b"asset" => return Format::Gltf,
+                        _ => {}
+                    }
+                }
+                at += length + 1;
+            }
+            b'{' | b'[' => depth += 1,
+            _ if depth <= 1 => break,
+            _ => depth -= 1,
+        }
     }
+    by_name
+}
+
+/// The bytes of a JSON string before the quote that ends it.
+fn string_length(text: &[u8]) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text.get(at..)?.iter().position(|b| matches!(b, b'"' | b'\\'))?;
+        if text[at] == b'"' {
+            return Some(at);
+        }
+        at += 2;
+    }
+}
+
+fn by_text(head: &[u8]) -> Option<Format> {
     let mut cursor = Cursor::new(head);
     if !cursor.next_content() {
         return None;
@@ -261,9 +300,17 @@ pub fn formats() -> Vec<FormatRow> {
         read,
         write: true,
     };
+    let texture =
+        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, true) };
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
     rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
     rows.push(picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", true));
+    rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
+    rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
+    rows.push(texture("GIF", &["gif"], "GIF, the first picture, as textures"));
+    rows.push(texture("WebP", &["webp"], "WebP, the first picture, as textures"));
+    rows.push(texture("TIFF", &["tif", "tiff"], "TIFF, the first picture, as textures"));
+    rows.push(texture("DDS", &["dds"], "DirectDraw surface, packed by S3TC (DXT1, DXT3, DXT5), as textures"));
     rows.push(picture(
         "PPM",
         &["ppm"],
@@ -288,6 +335,19 @@ mod tests {
         assert_eq!(detect(b"glTF\x02\0\0\0", "x"), Format::Glb);
         assert_eq!(detect(b" {\"asset\":{}}", "x"), Format::Gltf);
         assert_eq!(detect(b"{\"nodes\":[]}", "x"), Format::SceneJson);
+        let late = format!("{{\"buffers\": [{{\"uri\": \"{}\"}}], \"asset\": {{}}}}", "A".repeat(1 << 17));
+        assert_eq!(detect(late.as_bytes(), "-"), Format::Gltf);
+        for scene in [
+            r#"{"nodes": [{"name": "asset"}], "vitral-scene": 1}"#,
+            r#"{"nodes": [{"asset": 1}], "x": "asset", "\"": "\\", "vitral-scene": 1, "asset": {}}"#,
+            r#"{"vitral-scene": 1, "meshes": ["#,
+            r#"{"nodes": "asset\": "#,
+            r#"{} "asset": "#,
+        ] {
+            assert_eq!(detect(scene.as_bytes(), "x"), Format::SceneJson, "{scene}");
+        }
+        assert_eq!(detect(br#"{"vitral-scene": 1}"#, "x.gltf"), Format::SceneJson);
+        assert_eq!(detect(b"{\"nodes\":[]}", "x.gltf"), Format::Gltf);
         let mut stl = vec![b' '; 84 + 50];
         stl[..5].copy_from_slice(b"solid");
         stl[80..84].copy_from_slice(&1u32.to_le_bytes());
@@ -306,6 +366,13 @@ mod tests {
         assert!(refuse(b"\x1f\x8b\x08\0", "m.obj").starts_with("m.obj: a gzip file (unpack it first) is not read; "));
         assert!(refuse(b"?", "m.blend").contains("Blender"));
         assert!(refuse(b"hello", "m.txt").starts_with("m.txt: this format is not read"));
+    }
+
+    #[test]
+    fn all_textures_that_are_read_are_listed() {
+        let read = formats().into_iter().filter(|r| r.kind == FormatKind::Picture && r.read);
+        let names: Vec<&str> = read.map(|r| r.name).collect();
+        assert_eq!(names, ["PNG", "JPEG", "TGA", "BMP", "GIF", "WebP", "TIFF", "DDS"]);
     }
 
     #[test]

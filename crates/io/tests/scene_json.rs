@@ -158,7 +158,7 @@ fn full_scene() -> Scene {
             ..Node::default()
         },
         Node { mesh: Some(0), ..Node::default() },
-        Node { name: "hidden".to_owned(), ..Node::default() },
+        Node { name: "hidden".to_owned(), camera: Some(0), ..Node::default() },
     ];
     let triangle = Mesh {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
@@ -229,6 +229,30 @@ fn the_smallest_files() {
     let scene = load(text).unwrap();
     assert_eq!((scene.nodes.len(), scene.roots.as_slice(), scene.meshes[0].parts[0].material), (1, &[0][..], Some(0)));
     assert!(load(r#"{"vitral-scene":1}"#).unwrap().nodes.is_empty());
+}
+
+#[test]
+fn cameras_without_a_node_stand_in_the_world() {
+    let camera = |x: u32| {
+        format!(
+            r#"{{"position":[{x},0,5],"focal-point":[{x},0,0],"view-up":[0,1,0],"projection":{{"type":"parallel","height":1}}}}"#
+        )
+    };
+    let text = format!(
+        r#"{{"vitral-scene":1,"meshes":[{{"builtin":"sphere"}}],"cameras":[{},{},{}],
+        "nodes":[{{"mesh":0}},{{"camera":1,"translation":[0,7,0]}}]}}"#,
+        camera(0),
+        camera(1),
+        camera(2)
+    );
+    let scene = load(&text).unwrap();
+    let seen = World::new(&scene).unwrap().cameras;
+    // The sphere brings a camera of its own, which comes last.
+    assert_eq!(seen.len(), 4);
+    let places = [DVec3::new(0.0, 0.0, 5.0), DVec3::new(1.0, 7.0, 5.0), DVec3::new(2.0, 0.0, 5.0)];
+    assert_eq!(seen[..3].iter().map(|c| c.position).collect::<Vec<_>>(), places);
+    let back = load(&scene_json::write(&scene).unwrap()).unwrap();
+    assert_equal(&scene, &back);
 }
 
 const SQUARE: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\n";

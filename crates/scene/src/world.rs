@@ -34,7 +34,7 @@ pub struct World {
     pub instances: Vec<Instance>,
     /// Lights that are switched on or off, world space: the scene's own first, then the nodes'.
     pub lights: Vec<Light>,
-    /// Cameras in world space, in scene order.
+    /// Cameras in world space, in the order of [`Scene::cameras`]; one that several nodes name, in scene order.
     pub cameras: Vec<Camera>,
     /// The box round all instances.
     pub bounds: Aabb,
@@ -86,6 +86,7 @@ impl World {
         let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
         let mut seen = vec![false; scene.nodes.len()];
         // A stack of our own: a deep graph must not overflow the thread's.
+        let mut cameras: Vec<(u32, Camera)> = Vec::new();
         let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
         let (mut surfaces, mut facets) = (0u64, 0u64);
         while let Some((index, world_from_parent)) = stack.pop() {
@@ -122,10 +123,12 @@ impl World {
             }
             if let Some(c) = node.camera {
                 let camera = scene.cameras.get(c as usize).ok_or(bad("camera", c, scene.cameras.len()))?;
-                world.cameras.push(camera_in_world(camera, &world_from_node));
+                cameras.push((c, camera_in_world(camera, &world_from_node)));
             }
             stack.extend(node.children.iter().rev().map(|&c| (c, world_from_node)));
         }
+        cameras.sort_by_key(|&(c, _)| c);
+        world.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
         (world.surface_count, world.facet_count) = (surfaces as u32, facets as u32);
         Ok(world)
     }

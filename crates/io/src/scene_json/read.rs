@@ -71,6 +71,7 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
         (0..entries.len() as u32).map(|m| NodeForm { mesh: Some(m), ..NodeForm::default() }).collect()
     });
     let used = add_nodes(nodes, form.roots, &mut scene, &entries, &report)?;
+    place_free_cameras(&mut scene);
     for (node, entry) in used {
         if let Entry::Model(model) = &mut entries[entry] {
             let children = place(model, &mut scene, &report)?;
@@ -260,6 +261,15 @@ fn add_nodes(
         scene.nodes.push(node);
     }
     Ok(models)
+}
+
+/// Cameras that no node names stand in the world as they are.
+fn place_free_cameras(scene: &mut Scene) {
+    let mut named = vec![false; scene.cameras.len()];
+    scene.nodes.iter().filter_map(|n| n.camera).for_each(|c| named[c as usize] = true);
+    for free in (0..named.len()).filter(|&c| !named[c]) {
+        scene.add_root(Node { camera: Some(free as u32), ..Node::default() });
+    }
 }
 
 /// Checks that no node has two parents or is its own ancestor; tells which ones have a parent.

@@ -535,7 +535,10 @@ fn lights_shine_along_minus_z() {
     let [sun, lamp, spot] = &world.lights[..] else { panic!("{:?}", world.lights) };
     let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
     assert!((direction - DVec3::Y).length() < 1e-6, "-z turned a quarter about x is +y, not {direction}");
-    assert_eq!((sun.diffuse, sun.specular), ([2.0, 1.0, 0.0], [2.0, 1.0, 0.0]));
+    // One lux on a white Lambert surface reflects 1/pi.
+    let lux = std::f32::consts::FRAC_1_PI;
+    assert_eq!((sun.diffuse, sun.specular), ([2.0 * lux, lux, 0.0], [2.0 * lux, lux, 0.0]));
+    assert_eq!((lamp.diffuse, spot.diffuse), ([lux; 3], [3.0 * lux; 3]));
     assert_eq!(lamp.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
     assert_eq!(lamp.attenuation, Attenuation::Range { range: 7.0 });
     let LightKind::Spot { cutoff, inner, exponent, .. } = spot.kind else { panic!("{spot:?}") };

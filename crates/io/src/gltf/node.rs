@@ -9,6 +9,7 @@ use gltf::json::Node as JsonNode;
 use gltf::json::camera::{Camera as JsonCamera, Type as CameraType};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
 use gltf::json::validation::Checked;
+use std::f32::consts::FRAC_1_PI;
 use vitral_light::{Attenuation, Light, LightKind};
 use vitral_math::{DMat4, DQuat, DVec3, DVec4};
 use vitral_scene::{Camera, NodeTransform, Projection};
@@ -199,15 +200,15 @@ pub(crate) fn camera(
     Some(Camera { position, focal_point, view_up, projection, clip })
 }
 
-/// A light in its node's space, shining along -z. Intensities (candela, lux) become linear RGB as they are. `None` with a
-/// warning for a type that is not known.
+/// A light in its node's space, shining along -z. Candela and lux are divided by pi: that is in the specification's diffuse
+/// reflection, not in ours. `None` with a warning for a type that is not known.
 pub(crate) fn light(source: &Source<'_>, json: &JsonLight, index: usize, warnings: &mut Vec<String>) -> Option<Light> {
     let Checked::Valid(kind) = json.type_ else {
         let path = format!("extensions.KHR_lights_punctual.lights[{index}]");
         warnings.push(format!("{}: {path}: a light of a type that is not known, left out", source.file));
         return None;
     };
-    let intensity = if json.intensity.is_finite() { json.intensity.max(0.0) } else { 0.0 };
+    let intensity = if json.intensity.is_finite() { json.intensity.max(0.0) * FRAC_1_PI } else { 0.0 };
     let color = json.color.map(|c| if c.is_finite() { (c.max(0.0) * intensity).min(f32::MAX) } else { 0.0 });
     let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
     let kind = match (kind, &json.spot) {

@@ -449,7 +449,8 @@ fn materials_and_their_extensions() {
         {"alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,0.5]}},
         {"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"metallicFactor":0,"roughnessFactor":0.3},
          "extensions":{"KHR_materials_unlit":{}}},
-        {"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0}}}],
+        {"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0}},
+         "extensions":{"KHR_materials_ior":{"ior":0}}}],
         "textures":[{"source":0}],"images":[{"uri":"missing.png"}]}"#,
     )
     .unwrap();
@@ -469,6 +470,10 @@ fn materials_and_their_extensions() {
     assert_eq!(
         (told("extensions not read: KHR_materials_clearcoat"), told("missing.png"), told("no nodes")),
         (1, 1, 1)
+    );
+    assert_eq!(
+        (opaque.ior, told("materials[3]: an index of refraction of 0 (no light enters) is not shown, 1.5 is used")),
+        (1.5, 1)
     );
 }
 

@@ -288,6 +288,19 @@ fn references_are_followed_from_folder_to_folder() {
 }
 
 #[test]
+fn what_is_no_object_is_told_in_words() {
+    for (text, what) in [
+        ("[]", "a.json: line 1: column 1: a scene file is an object, `{ \"vitral-scene\": 1, ... }`"),
+        ("{", "a.json: line 1: column 1: EOF while parsing an object"),
+        (r#"{"vitral-scene":1,"nodes":[3]}"#, "nodes[0]: invalid type: integer `3`, expected an object"),
+        (r#"{"vitral-scene":1,"materials":[7]}"#, "materials[0]: invalid type: integer `7`, expected an object"),
+    ] {
+        let error = load(text).unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
+    }
+}
+
+#[test]
 fn circles_depth_and_floods_are_refused() {
     let fails = |files: &Memory, text: &str, part: &str| {
         let error = scene_json::load(text.as_bytes(), "root.json", files, &Workers::single()).unwrap_err().to_string();
@@ -295,7 +308,7 @@ fn circles_depth_and_floods_are_refused() {
     };
     let refer = |to: &str| format!(r#"{{"vitral-scene":1,"meshes":[{{"file":"{to}"}}]}}"#);
     let circle = Memory::with(&[("x/b.json", &refer("../root.json"))]);
-    fails(&circle, &refer("x/b.json"), "x/b.json: meshes[0]: : needs `../root.json`: it refers back to itself");
+    fails(&circle, &refer("x/b.json"), "x/b.json: meshes[0]: needs `../root.json`: it refers back to itself");
     fails(&Memory::default(), &refer("no.obj"), "needs `no.obj`: there is no such file");
     fails(&Memory::default(), &refer("../out.obj"), "outside the model's folder");
 

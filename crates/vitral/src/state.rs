@@ -72,8 +72,10 @@ impl State {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let read: Result<Self, _> = serde_path_to_error::deserialize(&mut deserializer);
         let state = read.map_err(|e| {
-            let path = Some(e.path().to_string()).filter(|p| p != ".");
-            broken(file, path, e.inner())
+            // Where the text breaks off there is no key yet.
+            let path = e.path().to_string();
+            let path = path.trim_end_matches('?').trim_end_matches('.');
+            broken(file, Some(path.to_owned()).filter(|p| !p.is_empty()), e.inner())
         })?;
         deserializer.end().map_err(|e| broken(file, None, &e))?;
         if state.vitral != VERSION {
@@ -247,7 +249,7 @@ mod tests {
         let dark = "{\"lights\": [{\"kind\": {\"type\": \"directional\", \"direction\": [0, 0, 0]}}]}";
         assert!(tell(dark).contains("lights[0]: direction: a direction of some length"));
         assert!(tell("{} x").contains("line 1, column 4"));
-        assert!(tell("{").contains("line 1"));
+        assert_eq!(tell("{"), "s.json: line 1, column 1: EOF while parsing an object");
     }
 
     #[test]

@@ -139,10 +139,14 @@ fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
     })
 }
 
-/// The message without the position, which [`Place`] gives.
+/// The message without the position, which [`Place`] gives, and without names of Rust's types.
 pub(crate) fn plain_message(error: &serde_json::Error) -> String {
     let text = error.to_string();
-    text.split(" at line ").next().unwrap_or_default().to_owned()
+    let text = text.split(" at line ").next().unwrap_or_default();
+    match text.split_once(", expected struct ") {
+        Some((found, _)) => format!("{found}, expected an object"),
+        None => text.to_owned(),
+    }
 }
 
 /// Refuses required extensions that are not read; names the optional ones.

@@ -126,10 +126,10 @@ fn apply_extensions(
     material.emission = json.emissive_factor.0.map(|v| finite(finite(v, 0.0).max(0.0) * strength, 0.0));
     material.unlit = extensions.unlit.is_some();
     if let Some(ior) = extensions.ior {
-        if ior.ior.0 >= 1.0 && ior.ior.0.is_finite() {
-            material.ior = ior.ior.0;
-        } else {
-            warn("an index of refraction below 1, 1.5 is used");
+        match ior.ior.0 {
+            n if n >= 1.0 && n.is_finite() => material.ior = n,
+            0.0 => warn("an index of refraction of 0 (no light enters) is not shown, 1.5 is used"),
+            n => warn(&format!("an index of refraction of {n}, 1 or more is required; 1.5 is used")),
         }
     }
     if let Some(transmission) = extensions.transmission {

@@ -164,6 +164,11 @@ pub(super) struct NodeForm {
 /// Parses the text. What is wrong is told with its line, its column and its JSON path.
 pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    // A list would be taken for the fields in order.
+    if text.trim_ascii_start().first() == Some(&b'[') {
+        let what = format!("column 1: a scene file is an object, `{{ \"vitral-scene\": {}, ... }}`", super::VERSION);
+        return Err(Error::malformed(file, Place::Line(1), what));
+    }
     let form: SceneForm = match serde_json::from_slice(text) {
         Ok(form) => form,
         Err(_) => {
@@ -171,7 +176,9 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
             let mut deserializer = serde_json::Deserializer::from_slice(text);
             let parsed = serde_path_to_error::deserialize(&mut deserializer).map_err(|e| {
                 let (path, inner) = (e.path().to_string(), e.inner());
-                let path = if path == "." { String::new() } else { format!("{path}: ") };
+                // Where the text breaks off there is no key yet.
+                let path = path.trim_end_matches('?').trim_end_matches('.');
+                let path = if path.is_empty() { String::new() } else { format!("{path}: ") };
                 let what = format!("column {}: {path}{}", inner.column(), crate::gltf::plain_message(inner));
                 Error::malformed(file, Place::Line(inner.line() as u64), what)
             });

@@ -50,7 +50,11 @@ impl<'a> Origin<'a> {
         if let Some(scene) = self.known.borrow().get(&full) {
             return Ok(Arc::clone(scene));
         }
-        let missing = |why: String| Error::Missing { file: format!("{file}: {place}"), needed: path.to_owned(), why };
+        let missing = |why: String| Error::Missing {
+            file: format!("{file}: {}", place.to_string().trim_end_matches(": ")),
+            needed: path.to_owned(),
+            why,
+        };
         if self.chain.contains(&full) {
             return Err(missing("it refers back to itself".to_owned()));
         }

@@ -444,7 +444,7 @@ fn materials_and_their_extensions() {
     let scene = load_text(
         r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[]}],"extensionsUsed":["KHR_materials_clearcoat","KHR_materials_ior"],
         "materials":[
-        {"name":"glass","emissiveFactor":[1,0.5,0],"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75},
+        {"name":"glass","emissiveFactor":[1,0.5,0],"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75},
          "KHR_materials_ior":{"ior":1.33},"KHR_materials_emissive_strength":{"emissiveStrength":4}}},
         {"alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,0.5]}},
         {"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"metallicFactor":0,"roughnessFactor":0.3},
@@ -459,6 +459,8 @@ fn materials_and_their_extensions() {
         (glass.opacity, glass.alpha_mode, glass.ior, glass.emission),
         (0.25, AlphaMode::Blend, 1.33, [4.0, 2.0, 0.0])
     );
+    assert_eq!((glass.glass, glass.filter), (true, [1.0, 0.5, 0.25]));
+    assert_eq!((blend.glass, blend.filter), (false, [1.0; 3]), "alpha alone is no glass");
     assert_eq!((mask.alpha_mode, mask.opacity, mask.double_sided), (AlphaMode::Mask { cutoff: 0.25 }, 0.5, true));
     let expected = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 0.3 };
     assert_eq!(

@@ -87,6 +87,7 @@ fn full_materials() -> Vec<Material> {
         opacity: 0.3,
         alpha_mode: AlphaMode::Mask { cutoff: 0.1 },
         transmission: Transmission::Translucent,
+        glass: true,
         filter: [0.9, 0.5, 0.25],
         ior: 1.33,
         mirror: true,

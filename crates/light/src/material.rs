@@ -20,6 +20,9 @@ pub struct Material {
     pub alpha_mode: AlphaMode,
     /// What kind of transparency the surface has.
     pub transmission: Transmission,
+    /// `opacity` is that of glass, not of a surface with holes: highlights stay whole, and what the surface mirrors (Fresnel)
+    /// does not pass, so that clear bodies have a rim.
+    pub glass: bool,
     /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
     pub filter: Rgb,
     /// Index of refraction, above 0; 1 bends no light.
@@ -59,6 +62,7 @@ impl Default for Material {
             opacity: 1.0,
             alpha_mode: AlphaMode::Opaque,
             transmission: Transmission::Transparent,
+            glass: false,
             filter: [1.0; 3],
             ior: 1.5,
             mirror: false,

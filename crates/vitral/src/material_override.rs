@@ -54,7 +54,7 @@ enum Failure {
 }
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 21] = [
+const PROPERTIES: [(&str, &str, Setter); 22] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -68,6 +68,9 @@ const PROPERTIES: [(&str, &str, Setter); 21] = [
     ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
     ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
     ("transmission", "transparent, translucent", set_transmission),
+    ("glass", "true, false: highlights stay whole, and what is mirrored does not pass", |m, v| {
+        put(&mut m.glass, boolean(v))
+    }),
     ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, filter(v))),
     ("ior", "index of refraction, above 0", set_ior),
     ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| put(&mut m.mirror, boolean(v))),

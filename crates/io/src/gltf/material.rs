@@ -3,7 +3,8 @@
 //! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
 //! `specular_glossiness.rs`.
 //! Departs from it: transmission textures are left out (with a warning). A transmissive surface becomes
-//! a blended one whose opacity is what transmission leaves.
+//! glass, a blended one whose opacity is what transmission leaves, with the base colour as the colour of what passes; a base
+//! texture does not colour what passes.
 
 use super::accessor::Source;
 use super::specular_glossiness::SpecularGlossiness;
@@ -138,15 +139,26 @@ fn apply_extensions(
             _ if factor == 0.0 => {}
             AlphaMode::Mask { .. } => warn("a cut-out surface is not transmissive as well, transmission is not used"),
             AlphaMode::Opaque | AlphaMode::Blend => {
-                material.opacity *= 1.0 - factor;
+                let left = material.opacity * (1.0 - factor);
+                material.filter = filter(material, factor);
+                material.opacity = left;
                 material.alpha_mode = AlphaMode::Blend;
                 material.transmission = Transmission::Transparent;
+                material.glass = true;
             }
         }
         if transmission.transmission_texture.is_some() {
             warn("the transmission texture is not used");
         }
     }
+}
+
+/// The colour of all light that passes a material of which the part `factor` is transmissive: what goes through the surface
+/// takes its base colour, what goes past it, where alpha is below 1, stays white.
+fn filter(material: &Material, factor: f32) -> [f32; 3] {
+    let Reflectance::MetallicRoughness { base_color, .. } = material.reflectance else { return material.filter };
+    let (past, through) = (1.0 - material.opacity, material.opacity * factor);
+    if through > 0.0 { base_color.map(|c| (past + through * c) / (past + through)) } else { [1.0; 3] }
 }
 
 /// `value`, or `or` if it is not finite.

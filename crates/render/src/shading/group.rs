@@ -397,21 +397,28 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         Model::Constant(_) => V3::splat(looks.alpha, [0.0; 3]),
         _ => looks.emission,
     };
-    let mut color = (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha);
-    if constants.transparency == Transparency::Filtered && material.blend {
-        color = (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage);
+    let filtered = constants.transparency == Transparency::Filtered;
+    let color = if material.blend && (filtered || material.material.glass) {
+        (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage)
+    } else {
+        (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha)
+    };
+    if filtered && material.blend {
         let passes = filtered::passes(looks.coverage, looks.kt, material.material.filter);
         let soa = [passes.x.to_array(), passes.y.to_array(), passes.z.to_array()];
         for (lane, &p) in points.iter().enumerate() {
             lit.passes[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane]];
         }
-    } else if constants.transparency == Transparency::Filtered {
+    } else if filtered {
         let gap = linear::opacity(looks.alpha).to_array();
         points.iter().enumerate().for_each(|(lane, &p)| lit.passes[p as usize] = [gap[lane]; 3]);
     }
-    if let (Some(_), Model::Empirical(_) | Model::Microfacet) = (material.scatters, material.model) {
-        color = color + glow::glow(simd, eight, &looks, &surface, constants);
-    }
+    let color = match (material.scatters, material.model) {
+        (Some(_), Model::Empirical(_) | Model::Microfacet) => {
+            color + glow::glow(simd, eight, &looks, &surface, constants)
+        }
+        _ => color,
+    };
     if material.follows && !lit.bounces.is_empty() {
         let normal = match constants.shading {
             Shading::Flat => surface.facet_normal,

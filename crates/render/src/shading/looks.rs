@@ -142,7 +142,8 @@ impl<S: Simd> Looks<S> {
         constants: &FrameConstants<'_>,
         along: Option<&Along>,
     ) {
-        if constants.transparency != Transparency::Kay || !material.blend {
+        let kay = constants.transparency == Transparency::Kay;
+        if !material.blend || !(kay || material.material.glass) {
             return;
         }
         let flat = constants.shading == Shading::Flat;
@@ -157,9 +158,14 @@ impl<S: Simd> Looks<S> {
             }
             None => n.z,
         };
-        let least = constant(simd, constants.kay.least);
-        let least = lanes::Lanes::min(least, self.kt);
-        self.kt = kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent));
+        self.kt = if kay {
+            let least = lanes::Lanes::min(constant(simd, constants.kay.least), self.kt);
+            kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent))
+        } else {
+            // Kay's formula with these numbers is what Schlick's leaves.
+            let most = self.kt * (1.0 - DIELECTRIC_F0);
+            kay::transmission(constant(simd, 0.0), most, facing, constant(simd, 5.0))
+        };
         self.alpha = self.coverage * linear::opacity(self.kt);
     }
 

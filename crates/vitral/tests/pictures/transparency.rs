@@ -179,9 +179,9 @@ fn t7_f4_stacks_of_one_to_eight_panes_in_a_picture() {
     }
 }
 
-/// A white glass ball of radius 1 in front of black, the row through its middle: place from -1 to 1 and intensity.
-fn profile(model: Transparency) -> Vec<(f64, f64)> {
-    let mut renderer = exact(one(solids::sphere(1.0, 256, 128), glass([1.0; 3], 0.8)), 201, 201);
+/// A ball of radius 1 in front of black, the row through its middle: place from -1 to 1 and intensity.
+fn profile(material: Material, model: Transparency) -> Vec<(f64, f64)> {
+    let mut renderer = exact(one(solids::sphere(1.0, 256, 128), material), 201, 201);
     let projection = Projection::Parallel { height: 2.01 };
     renderer.camera = Some(Camera { projection, ..on_z(5.0, 1.0) });
     renderer.settings.transparency = model;
@@ -193,10 +193,10 @@ fn profile(model: Transparency) -> Vec<(f64, f64)> {
 #[test]
 fn t8_t9_f5_the_profile_of_a_glass_ball_tells_kays_model_from_the_linear_one() {
     // Two layers of white glass before black: 1 - kt².
-    for (x, seen) in profile(Transparency::Linear) {
+    for (x, seen) in profile(glass([1.0; 3], 0.8), Transparency::Linear) {
         assert!((seen - (1.0 - 0.8 * 0.8)).abs() < 0.01, "linear: flat, {seen} at {x}");
     }
-    for (x, seen) in profile(Transparency::Kay) {
+    for (x, seen) in profile(glass([1.0; 3], 0.8), Transparency::Kay) {
         let nz = (1.0 - x * x).sqrt();
         let kt = 0.8 * (1.0 - (1.0 - nz) * (1.0 - nz) * (1.0 - nz));
         assert!((seen - (1.0 - kt * kt)).abs() < 0.012, "Kay: {seen} at {x}, not {}", 1.0 - kt * kt);
@@ -225,6 +225,25 @@ fn f2_highlights_stay_on_clear_filtered_glass() {
     r.settings.transparency = Transparency::Filtered;
     let seen = i32::from(colors(&mut r)[210][0]);
     assert!((seen - 179).abs() <= 2, "0.2 behind and the highlight of 0.5: {seen}");
+}
+
+#[test]
+fn clear_bodies_of_glass_keep_highlights_and_rim() {
+    let mirror = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.5; 3], shininess: 4.0 };
+    let clear = Material { reflectance: mirror, unlit: false, glass: true, ..glass([0.0; 3], 1.0) };
+    let mut r = exact(one(square(0.0, 0.0), clear), 20, 20);
+    (r.camera, r.lights) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]));
+    r.settings.background = Background::Color { color: [0.2; 3] };
+    let seen = i32::from(colors(&mut r)[210][0]);
+    assert!((seen - 176).abs() <= 2, "0.96 of 0.2 behind and the highlight of 0.5: {seen}");
+
+    let white = Material { glass: true, ..glass([1.0; 3], 1.0) };
+    for (x, seen) in profile(white, Transparency::Linear) {
+        let nz = (1.0 - x * x).sqrt();
+        let away = 1.0 - nz;
+        let kt = 0.96 * (1.0 - away * away * away * away * away);
+        assert!((seen - (1.0 - kt * kt)).abs() < 0.012, "{seen} at {x}, not {}", 1.0 - kt * kt);
+    }
 }
 
 #[test]

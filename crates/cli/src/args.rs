@@ -56,7 +56,7 @@ pub(crate) enum Verb {
 /// Options of `vitral info`.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input
+    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
     #[arg(required = true, value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// One JSON object on standard output
@@ -100,7 +100,7 @@ pub(crate) struct CompareArgs {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct BenchArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input
+    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
     #[arg(required_unless_present = "report", value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md

@@ -14,7 +14,7 @@ use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shad
 #[derive(Args, Debug, Default)]
 #[command(after_help = crate::args::EXIT_CODES)]
 pub(crate) struct RenderArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input
+    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
     #[arg(required_unless_present = "load_state", value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     #[command(flatten)]
@@ -199,7 +199,7 @@ pub(crate) struct CameraArgs {
     /// The side from which the model is framed [default: iso]
     #[arg(long, value_name = "SIDE", value_parser = choices::view())]
     pub(crate) view: Option<View>,
-    /// Which way is up: +X -X +Y -Y +Z -Z [default: +Y, for STL +Z]
+    /// Which way is up: +X -X +Y -Y +Z -Z [default: +Y, or +Z where the first model is STL]
     #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(Axis), allow_hyphen_values = true)]
     pub(crate) up: Option<Axis>,
     /// The model's camera of this number, counted from 0

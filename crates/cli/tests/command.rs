@@ -106,6 +106,21 @@ fn steps_are_traced_and_drawn() {
 }
 
 #[test]
+fn models_on_standard_input_name_files_in_the_current_folder() {
+    let folder = Folder::new("beside");
+    folder.file("m.mtl", "newmtl red\nKd 1 0 0\n");
+    for (text, warnings) in [("mtllib m.mtl\nusemtl red\n", ""), ("mtllib ../m.mtl\n", "outside the model's folder")] {
+        let mut child = folder.command(&["info", "-"]);
+        let mut child = child.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        child.stdin.take().unwrap().write_all(format!("{text}{TRIANGLE}").as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(code(&output), 0);
+        assert_eq!(errors(&output).is_empty(), warnings.is_empty(), "{}", errors(&output));
+        assert!(errors(&output).contains(warnings), "{}", errors(&output));
+    }
+}
+
+#[test]
 fn a_pixel_is_explained() {
     let folder = Folder::new("pixel");
     let told = json(&render(&folder, &["builtin:cubs", "--pixel", "32,20", "--json"]));

@@ -30,7 +30,7 @@ pub use format::{Format, FormatKind, FormatRow, formats};
 pub use resolve::{NoFiles, ResolveError, Resolver};
 
 use vitral_exec::Workers;
-use vitral_scene::{Mesh, Scene};
+use vitral_scene::{Axis, Mesh, Scene};
 
 /// Reads a model or scene file of any readable [`Format`], known by its content first, by its extension second.
 ///
@@ -42,7 +42,8 @@ use vitral_scene::{Mesh, Scene};
 /// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`] names a file that it
 /// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
-    let mut scene = match Format::detect(bytes, file)? {
+    let format = Format::detect(bytes, file)?;
+    let mut scene = match format {
         Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
         Format::Obj => obj::load(bytes, file, resolver, workers),
         Format::Stl => stl::load(bytes, file, workers),
@@ -50,6 +51,7 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         Format::Off => off::load(bytes, file, workers),
         Format::SceneJson => return scene_json::load(bytes, file, resolver, workers),
     }?;
+    scene.ups = vec![if format == Format::Stl { Axis::PlusZ } else { Axis::PlusY }];
     colored::give_materials(&mut scene);
     Ok(scene)
 }

@@ -10,7 +10,9 @@ use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef, Transmission,
 };
 use vitral_math::{DMat4, DQuat, DVec3, func};
-use vitral_scene::{Attribute, Camera, Faces, FreePart, Mesh, Node, NodeTransform, Part, Projection, Scene, World};
+use vitral_scene::{
+    Attribute, Axis, Camera, Faces, FreePart, Mesh, Node, NodeTransform, Part, Projection, Scene, World,
+};
 
 /// Files in memory.
 #[derive(Default)]
@@ -182,6 +184,7 @@ fn full_scene() -> Scene {
             camera(Projection::Perspective { view_angle: 0.1 }, Some((0.1, 1e9))),
         ],
         ambient: [0.1, 0.2, 0.3],
+        ups: Vec::new(),
         warnings: Vec::new(),
     }
 }
@@ -230,6 +233,20 @@ fn the_smallest_files() {
     let scene = load(text).unwrap();
     assert_eq!((scene.nodes.len(), scene.roots.as_slice(), scene.meshes[0].parts[0].material), (1, &[0][..], Some(0)));
     assert!(load(r#"{"vitral-scene":1}"#).unwrap().nodes.is_empty());
+}
+
+#[test]
+fn the_first_model_says_which_way_is_up() {
+    let solid = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a";
+    let files = Memory::with(&[("a.x", solid), ("b.obj", SQUARE)]);
+    let ups = |meshes: &str| {
+        let text = format!(r#"{{"vitral-scene":1,"meshes":[{meshes}]}}"#);
+        vitral_io::load(text.as_bytes(), "-", &files, &Workers::single()).unwrap().ups
+    };
+    assert_eq!(ups(r#"{"file":"a.x"}"#), [Axis::PlusZ], "by content, not by name");
+    assert_eq!(ups(r#"{"file":"b.obj"},{"file":"a.x"}"#), [Axis::PlusY, Axis::PlusZ]);
+    assert_eq!(ups(r#"{"builtin":"cubs"},{"file":"b.obj"}"#), [Axis::PlusY]);
+    assert_eq!(ups(""), [Axis::PlusY]);
 }
 
 #[test]

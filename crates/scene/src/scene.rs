@@ -1,6 +1,6 @@
 //! The scene graph: nodes with transforms, each of which may show a mesh, carry a light or a camera.
 
-use crate::{Camera, Mesh};
+use crate::{Axis, Camera, Mesh};
 use std::sync::Arc;
 use vitral_frame::Texture;
 use vitral_light::{Light, Material};
@@ -25,6 +25,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Global ambient light (Ia of the course), RGB, on top of the lights' own.
     pub ambient: [f32; 3],
+    /// Which ways are up in models of the formats that the scene comes from, each once, that of the first model first.
+    pub ups: Vec<Axis>,
     /// What was odd in the files, for the user to read.
     pub warnings: Vec<String>,
 }
@@ -147,6 +149,16 @@ impl Scene {
         for k in 0..3 {
             self.ambient[k] = self.ambient[k].max(other.ambient[k]);
         }
+        for up in other.ups {
+            if !self.ups.contains(&up) {
+                self.ups.push(up);
+            }
+        }
         self.warnings.extend(other.warnings);
+    }
+
+    /// The upward axis that models such as the first one usually have.
+    pub fn usual_up(&self) -> Axis {
+        self.ups.first().copied().unwrap_or_default()
     }
 }

@@ -3,7 +3,7 @@
 //! `cargo run --release -p vitral --example 02_load_a_model [MODEL] [OUT.png]`
 
 use std::path::PathBuf;
-use vitral::{Channel, Error, LoadOptions, Renderer, View, Workers, default_up, info, load, picture};
+use vitral::{Channel, Error, LoadOptions, Renderer, View, Workers, info, load, picture};
 
 fn main() -> Result<(), Error> {
     let mut arguments = std::env::args().skip(1);
@@ -21,7 +21,6 @@ fn main() -> Result<(), Error> {
 
     // Frame it from the right. Which way is up depends on the format's habits.
     let mut renderer = Renderer::new(scene)?;
-    renderer.up = default_up(&model);
     renderer.view = View::Right;
     let rendered = renderer.render()?;
     picture::save(&out, &rendered.frame, Channel::Color)?;

@@ -3,7 +3,7 @@
 //! `cargo run --release -p vitral --example 06_turntable [MODEL] [FOLDER] [COUNT]`
 
 use std::path::PathBuf;
-use vitral::{Channel, Error, LoadOptions, Renderer, Workers, default_up, load, picture};
+use vitral::{Channel, Error, LoadOptions, Renderer, Workers, load, picture};
 
 fn main() -> Result<(), Error> {
     let mut arguments = std::env::args().skip(1);
@@ -13,7 +13,6 @@ fn main() -> Result<(), Error> {
     std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
 
     let mut renderer = Renderer::new(load(&model, &LoadOptions::default(), &Workers::new(0))?)?;
-    renderer.up = default_up(&model);
     (renderer.settings.width, renderer.settings.height) = (400, 300);
     let mut seconds = 0.0;
     renderer.turntable(count, |i, rendered| {

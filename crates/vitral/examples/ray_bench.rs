@@ -18,7 +18,7 @@ use vitral::render::raytrace::{Counters, Structure, bvh::Bvh, grid::Grid, octree
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
 use vitral::render::{Acceleration, PreparedView, Transparency, registry};
-use vitral::{LoadOptions, Renderer, default_up, execution, load};
+use vitral::{LoadOptions, Renderer, execution, load};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -31,7 +31,6 @@ fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
     let execution = execution(threads)?;
     let scene = load(model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
-    renderer.up = default_up(model);
     let settings = &mut renderer.settings;
     (settings.width, settings.height, settings.samples) = (WIDTH, HEIGHT, 1);
     settings.visibility = "ray-cast".to_owned();

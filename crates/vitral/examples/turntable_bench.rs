@@ -12,9 +12,7 @@ use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vitral::math::{DVec3, func};
 use vitral::picture::encode;
-use vitral::{
-    Camera, Channel, Error, Execution, LoadOptions, PictureFormat, Projection, Renderer, default_up, execution, load,
-};
+use vitral::{Camera, Channel, Error, Execution, LoadOptions, PictureFormat, Projection, Renderer, execution, load};
 
 /// What is to be measured.
 struct Plan {
@@ -44,7 +42,6 @@ impl Plan {
 fn open(plan: &Plan, execution: &Execution) -> Result<Renderer, Error> {
     let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution.clone())?;
-    renderer.up = default_up(&plan.model);
     (renderer.settings.width, renderer.settings.height) = plan.size;
     renderer.settings.samples = plan.samples;
     Ok(renderer)

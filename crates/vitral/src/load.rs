@@ -1,11 +1,11 @@
 //! From a path to a scene: read, understand, and make the normals that the file lacks.
 
 use crate::files::{self, FolderResolver};
-use crate::{Axis, Error, Scene, Workers};
+use crate::{Error, Scene, Workers};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
-use vitral_io::{NoFiles, Resolver};
+use vitral_io::Resolver;
 use vitral_scene::{Mesh, builtin, lab, normals};
 
 /// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by side; larger ones share the
@@ -55,7 +55,8 @@ pub enum Normals {
     None,
 }
 
-/// Reads a model: a file, `builtin:NAME`, or `-` for standard input (which can name no other files).
+/// Reads a model: a file, `builtin:NAME`, or `-` for standard input. Files that it names are looked for beside it, those that a
+/// model from standard input names in the current folder.
 ///
 /// # Errors
 /// A file that is missing, malformed, not of a known format or above the limit.
@@ -68,13 +69,10 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) ->
         return Ok(scene);
     }
     let bytes = files::read_with(path, options.max_file_bytes, workers)?;
-    let mut scene = if name == "-" {
-        vitral_io::load(&bytes, "standard input", &NoFiles, workers)?
-    } else {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
-        vitral_io::load(&bytes, &name, &resolver, workers)?
-    };
+    let name = if name == "-" { "standard input".into() } else { name };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+    let mut scene = vitral_io::load(&bytes, &name, &resolver, workers)?;
     // The file is not needed any more, and normals take room.
     drop(bytes);
     finish(&mut scene, options, workers);
@@ -105,12 +103,6 @@ pub fn load_bytes(
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
     let none = || std::io::Error::new(std::io::ErrorKind::NotFound, "there is no such scene");
     builtin::scene(name).ok_or_else(|| Error::Read { path: format!("builtin:{name}").into(), source: none() })
-}
-
-/// The upward axis that models of this name usually have: +Z for STL, +Y for all others.
-pub fn default_up(path: impl AsRef<Path>) -> Axis {
-    let stl = path.as_ref().extension().is_some_and(|e| e.eq_ignore_ascii_case("stl"));
-    if stl { Axis::PlusZ } else { Axis::PlusY }
 }
 
 /// The camera of the scene from which models of this name are usually seen: figures among the built-in scenes have one.
@@ -151,6 +143,7 @@ fn lacks_normals(mesh: &Mesh) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral_io::NoFiles;
 
     const SQUARE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
@@ -180,14 +173,6 @@ mod tests {
         assert_eq!((error.exit_code(), error.hint().unwrap().contains("teapot")), (3, true));
         let error = load("no/such/file.obj", &LoadOptions::default(), &Workers::single()).unwrap_err();
         assert!(error.to_string().starts_with("no/such/file.obj: ") && error.exit_code() == 3);
-    }
-
-    #[test]
-    fn stl_files_stand_on_z() {
-        assert_eq!(
-            [default_up("a/b.STL"), default_up("b.obj"), default_up("builtin:cubs")],
-            [Axis::PlusZ, Axis::PlusY, Axis::PlusY]
-        );
     }
 
     #[test]

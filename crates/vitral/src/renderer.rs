@@ -18,7 +18,7 @@ pub struct Renderer {
     pub camera: Option<Camera>,
     /// The side from which a framed model is seen.
     pub view: View,
-    /// Which way is up: for framing and turntables.
+    /// Which way is up, for framing and turntables; at first as is usual for the format of the scene's first model.
     pub up: Axis,
     /// Projection of a framed camera.
     pub lens: Lens,
@@ -63,7 +63,7 @@ impl Renderer {
             settings: Settings::default(),
             camera: None,
             view: View::default(),
-            up: Axis::default(),
+            up: scene.usual_up(),
             lens: Lens::default(),
             moves: Moves::default(),
             lights: None,

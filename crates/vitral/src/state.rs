@@ -3,7 +3,7 @@
 //! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
-use crate::load::{default_up, load};
+use crate::load::load;
 use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -144,6 +144,11 @@ impl State {
             scene.append(other?);
         }
         self.materials.iter().try_for_each(|change| change.apply(&mut scene))?;
+        if let ([up, other, ..], None) = (&scene.ups[..], self.viewpoint.up) {
+            let warning =
+                format!("{up} is up, as in the first model; others usually have {other} up (--up says which)");
+            scene.warnings.push(warning);
+        }
         Ok(scene)
     }
 
@@ -156,7 +161,7 @@ impl State {
         renderer.lights.clone_from(&self.lights);
         renderer.light_intensity = self.light_intensity;
         renderer.ambient = self.ambient;
-        let usual_up = self.models.first().map(default_up).unwrap_or_default();
+        let usual_up = renderer.scene().usual_up();
         self.viewpoint.apply(renderer, usual_up)
     }
 }
@@ -265,6 +270,31 @@ mod tests {
         let before = state.clone();
         assert!(state.overlay("{\"models\": 3}", "c").is_err());
         assert_eq!(state, before);
+    }
+
+    #[test]
+    fn the_first_models_format_says_which_way_is_up() {
+        let folder = std::env::temp_dir().join(format!("vitral-up-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("solid.txt");
+        let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet";
+        std::fs::write(&path, format!("solid a\n{facet}\nendsolid a\n")).unwrap();
+        let solid = path.to_string_lossy().into_owned();
+        let up = |models: &[&str], up: Option<Axis>| {
+            let mut state = State { models: models.iter().map(|m| (*m).to_owned()).collect(), ..State::default() };
+            state.viewpoint.up = up;
+            let scene = state.load_scene(&Workers::single()).unwrap();
+            let warnings = scene.warnings.clone();
+            let mut renderer = Renderer::new(scene).unwrap();
+            state.apply(&mut renderer).unwrap();
+            (renderer.up, warnings.join(" "))
+        };
+        assert_eq!(up(&[&solid], None), (Axis::PlusZ, String::new()));
+        let (axis, warnings) = up(&["builtin:cubs", &solid], None);
+        assert_eq!(axis, Axis::PlusY);
+        assert!(warnings.contains("+Y is up, as in the first model; others usually have +Z up"), "{warnings}");
+        assert_eq!(up(&[&solid, "builtin:cubs"], Some(Axis::PlusX)), (Axis::PlusX, String::new()));
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

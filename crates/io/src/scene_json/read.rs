@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use vitral_frame::Texture;
 use vitral_math::{DMat4, DQuat, DVec3, DVec4};
-use vitral_scene::{Camera, Node, NodeTransform, Projection, Scene};
+use vitral_scene::{Axis, Camera, Node, NodeTransform, Projection, Scene};
 
 /// Most nodes, meshes, materials, textures or cameras of a scene.
 const MAX_ENTRIES: usize = 1 << 20;
@@ -77,6 +77,9 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
             let children = place(model, &mut scene, &report)?;
             scene.nodes[node].children.extend(children);
         }
+    }
+    if scene.ups.is_empty() {
+        scene.ups.push(Axis::PlusY);
     }
     Ok(scene)
 }

@@ -12,7 +12,7 @@ use vitral_scene::{Node, NodeTransform, Scene};
 
 /// Writes a scene as a scene file that holds all of it: meshes with their arrays, textures as PNG data.
 ///
-/// Reading it back gives an equal scene, but for its warnings, for nodes that place cameras that none did, for coordinates that are not finite (they come back as
+/// Reading it back gives an equal scene, but for its warnings and usual upward axes, for nodes that place cameras that none did, for coordinates that are not finite (they come back as
 /// NaN), and for other numbers that are not finite (normals and the like become 0).
 ///
 /// # Errors

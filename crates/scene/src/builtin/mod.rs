@@ -12,7 +12,7 @@ mod teapot;
 
 pub use teapot::teapot;
 
-use crate::Scene;
+use crate::{Axis, Scene};
 
 /// How a scene is made, and from where it is meant to be seen.
 struct Recipe {
@@ -78,5 +78,5 @@ pub fn is_figure(name: &str) -> bool {
 
 /// The built-in scene of this name (without `builtin:`).
 pub fn scene(name: &str) -> Option<Scene> {
-    recipe(name).map(|r| (r.make)())
+    recipe(name).map(|r| Scene { ups: vec![Axis::PlusY], ..(r.make)() })
 }

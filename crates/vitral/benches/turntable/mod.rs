@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 use std::time::Instant;
-use vitral::{Error, Execution, LoadOptions, Renderer, Scene, default_up, execution, load};
+use vitral::{Error, Execution, LoadOptions, Renderer, Scene, execution, load};
 
 /// Frames of the turntable.
 pub(crate) const FRAMES: usize = 8;
@@ -55,7 +55,6 @@ impl Arguments {
     /// Renders the model, or what was made of it.
     pub(crate) fn renderer(&self, scene: Scene) -> Result<Renderer, Error> {
         let mut renderer = Renderer::with_execution(scene, threads()?)?;
-        renderer.up = default_up(&self.model);
         (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (1024, 768, 4);
         Ok(renderer)
     }

@@ -122,13 +122,16 @@ impl Renderer {
         if self.moves == Moves::default() { framed } else { self.moves.applied(&framed) }
     }
 
-    /// Frames the vertices rather than the box round them, which leaves room where the box's corners are empty.
     fn framed_camera(&self) -> Camera {
-        let world = self.world();
-        let boxed = framing::frame(&world.bounds, self.view, self.up, self.lens, self.aspect());
-        let eye = boxed.position - boxed.focal_point;
+        let boxed = framing::frame(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
+        self.framed_from(boxed.position - boxed.focal_point, boxed.view_up)
+    }
+
+    /// The camera that frames the model from the direction `eye` (towards the viewer, any length). It frames the vertices rather
+    /// than the box round them, which leaves room where the box's corners are empty.
+    pub(crate) fn framed_from(&self, eye: DVec3, view_up: DVec3) -> Camera {
         let (lens, aspect) = (self.lens, self.aspect());
-        framing::frame_world(world, eye, boxed.view_up, lens, aspect, framing::FILL, &self.execution.workers)
+        framing::frame_world(self.world(), eye, view_up, lens, aspect, framing::FILL, &self.execution.workers)
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with

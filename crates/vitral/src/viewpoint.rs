@@ -24,7 +24,8 @@ pub struct Viewpoint {
     pub focal_point: Option<[f64; 3]>,
     /// Upwards in the picture.
     pub view_up: Option<[f64; 3]>,
-    /// The direction of view; the viewer keeps the distance from the focal point.
+    /// The direction of view. Alone it frames the model from there; with a focal point or the scene's camera, the viewer keeps the
+    /// distance.
     pub direction: Option<[f64; 3]>,
     /// Vertical angle of view, degrees between 0 and 180.
     pub view_angle: Option<f64>,
@@ -80,7 +81,11 @@ impl Viewpoint {
         if self.is_framed() {
             renderer.moves = self.moves();
         } else {
-            renderer.camera = Some(self.camera(renderer));
+            let camera = self.camera(renderer);
+            if camera.position == camera.focal_point {
+                return Err(Error::usage("the camera stands at its focal point", "a direction of view is required"));
+            }
+            renderer.camera = Some(camera);
         }
         Ok(())
     }
@@ -136,11 +141,16 @@ impl Viewpoint {
 
     /// The camera: a framed one or the scene's, its parts replaced, then moved.
     fn camera(&self, renderer: &Renderer) -> Camera {
+        let point = DVec3::from_array;
         let mut camera = match self.camera_index {
             Some(index) => aimed_at(&renderer.world().bounds, renderer.world().cameras[index]),
-            None => renderer.frame_camera(),
+            None => match self.direction {
+                Some(direction) if self.position.is_none() && self.focal_point.is_none() => {
+                    renderer.framed_from(-point(direction), self.view_up.map_or(renderer.up.vector(), point))
+                }
+                _ => renderer.frame_camera(),
+            },
         };
-        let point = DVec3::from_array;
         if let Some(focal_point) = self.focal_point.map(point) {
             // Alone, a new focal point takes the viewer along.
             camera.position += focal_point - camera.focal_point;
@@ -198,6 +208,20 @@ mod tests {
         let moved = camera(Viewpoint { azimuth_angle: 90.0, zoom_factor: 2.0, ..place }).unwrap();
         assert!(moved.position.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-12), "{moved:?}");
         assert_eq!(moved.projection, plain.zoomed(2.0).projection);
+    }
+
+    #[test]
+    fn a_direction_alone_frames_the_model() {
+        let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
+        let mut of = |viewpoint: Viewpoint| {
+            viewpoint.apply(&mut renderer, Axis::PlusY).unwrap();
+            renderer.frame_camera()
+        };
+        let front = of(Viewpoint { view: View::Front, ..Viewpoint::default() });
+        let along = of(Viewpoint { direction: Some([0.0, 0.0, -3.0]), ..Viewpoint::default() });
+        assert!(along.position.abs_diff_eq(front.position, 1e-9), "{along:?} is not {front:?}");
+        let below = of(Viewpoint { direction: Some([0.0, 1.0, 0.0]), ..Viewpoint::default() });
+        assert!(below.position.is_finite() && below.position.y < below.focal_point.y, "{below:?}");
     }
 
     #[test]
@@ -261,6 +285,7 @@ mod tests {
             Viewpoint { view_angle: Some(180.0), ..Viewpoint::default() },
             Viewpoint { position: Some([f64::NAN; 3]), ..Viewpoint::default() },
             Viewpoint { clip: Some((2.0, 1.0)), ..Viewpoint::default() },
+            Viewpoint { position: Some([1.0; 3]), focal_point: Some([1.0; 3]), ..Viewpoint::default() },
         ] {
             assert_eq!(camera(bad).unwrap_err().exit_code(), 2);
         }

@@ -5,7 +5,7 @@ use std::fmt;
 use vitral_exec::Workers;
 use vitral_light::{AlphaMode, LightKind, Material, Reflectance};
 use vitral_math::{Aabb, DVec3};
-use vitral_scene::{Instance, Mesh, Projection, Scene, Topology, World};
+use vitral_scene::{Instance, Mesh, Node, Projection, Scene, Topology, World};
 
 /// A scene in numbers. Meshes are counted once, however many instances they have, except where it says otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -299,28 +299,58 @@ fn camera_info(camera: &vitral_scene::Camera) -> CameraInfo {
 /// The loader's warnings, and what the numbers say.
 fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
     let mut warnings = scene.warnings.clone();
-    for mesh in meshes {
-        let mut warn = |count: usize, what: &str| {
+    let mut found: Vec<(String, usize)> = Vec::new();
+    for (index, mesh) in meshes.iter().enumerate() {
+        let name = called(scene, index, mesh);
+        let mut warn = |count: usize, (one, many): (&str, &str), what: &str| {
             if count > 0 {
-                warnings.push(format!("mesh `{}`: {count} {what}", mesh.name));
+                let warning = format!("{name}: {} {what}", counted(count, one, many));
+                match found.iter_mut().find(|(known, _)| *known == warning) {
+                    Some((_, times)) => *times += 1,
+                    None => found.push((warning, 1)),
+                }
             }
         };
-        warn(mesh.degenerate_triangles, "triangles without area");
-        warn(mesh.duplicate_triangles, "triangles that repeat another one");
-        warn(mesh.non_manifold_edges, "edges with more than two triangles");
-        warn(mesh.inconsistent_edges, "edges at which neighbours disagree about the outside");
-        warn(mesh.boundary_edges, "boundary edges: it is open, so its back faces are drawn too");
+        let (triangle, edge) = (("triangle", "triangles"), ("edge", "edges"));
+        warn(mesh.degenerate_triangles, triangle, "without area");
+        warn(mesh.duplicate_triangles, ("triangle that repeats", "triangles that repeat"), "another one");
+        warn(mesh.non_manifold_edges, edge, "with more than two triangles");
+        warn(mesh.inconsistent_edges, edge, "at which neighbours disagree about the outside");
+        let boundary = ("boundary edge:", "boundary edges:");
+        warn(mesh.boundary_edges, boundary, "it is open, so its back faces are drawn too");
     }
+    // Meshes of one name that are odd in the same way.
+    let told = |(warning, times)| if times > 1 { format!("{warning} ({times} such meshes)") } else { warning };
+    warnings.extend(found.into_iter().map(told));
     warnings
+}
+
+/// A mesh by its name, else by that of a node that shows it, else by its number.
+fn called(scene: &Scene, index: usize, mesh: &MeshInfo) -> String {
+    let shows = |node: &&Node| node.mesh == Some(index as u32) && !node.name.is_empty();
+    match scene.nodes.iter().find(shows) {
+        _ if !mesh.name.is_empty() => format!("mesh `{}`", mesh.name),
+        Some(node) => format!("mesh of node `{}`", node.name),
+        None => format!("mesh {index}"),
+    }
+}
+
+/// A number of things.
+fn counted(count: impl TryInto<u64>, one: &str, many: &str) -> String {
+    let count = count.try_into().unwrap_or(u64::MAX);
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} triangles in {} faces, {} vertices", self.triangles, self.faces, self.vertices)?;
+        writeln!(f, "{}", surfaces(self.triangles, self.faces, self.vertices))?;
         if self.lines + self.points > 0 {
-            writeln!(f, "{} lines, {} points", self.lines, self.points)?;
+            let (lines, points) = (counted(self.lines, "line", "lines"), counted(self.points, "point", "points"));
+            writeln!(f, "{lines}, {points}")?;
         }
-        writeln!(f, "{} meshes, {} instances, {} nodes", self.meshes.len(), self.instances, self.nodes)?;
+        let instances = counted(self.instances, "instance", "instances");
+        let (meshes, nodes) = (counted(self.meshes.len(), "mesh", "meshes"), counted(self.nodes, "node", "nodes"));
+        writeln!(f, "{meshes}, {instances}, {nodes}")?;
         if let Some(bounds) = &self.bounds {
             let size = [0, 1, 2].map(|k| bounds.max[k] - bounds.min[k]);
             writeln!(f, "bounds {} to {}, size {}", triple(bounds.min), triple(bounds.max), triple(size))?;
@@ -335,7 +365,8 @@ impl fmt::Display for Info {
             if m.alpha_mode != "opaque" {
                 write!(f, ", {} with opacity {}", m.alpha_mode, m.opacity)?;
             }
-            writeln!(f, "{}", if m.textures > 0 { format!(", {} textures", m.textures) } else { String::new() })?;
+            let textures = counted(m.textures, "texture", "textures");
+            writeln!(f, "{}", if m.textures > 0 { format!(", {textures}") } else { String::new() })?;
         }
         for t in &self.textures {
             writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
@@ -352,18 +383,27 @@ impl fmt::Display for Info {
 }
 
 fn write_mesh(f: &mut fmt::Formatter<'_>, m: &MeshInfo) -> fmt::Result {
-    write!(f, "mesh {}: {} triangles in {} faces, {} vertices", quoted(&m.name), m.triangles, m.faces, m.vertices)?;
+    write!(f, "mesh {}: {}", quoted(&m.name), surfaces(m.triangles, m.faces, m.vertices))?;
     if m.instances != 1 {
         write!(f, ", shown {} times", m.instances)?;
     }
     if m.triangles > 0 {
-        let closed = if m.closed { "closed".to_owned() } else { format!("{} boundary edges", m.boundary_edges) };
-        write!(f, "; {closed}, {} {}", m.bodies, if m.bodies == 1 { "body" } else { "bodies" })?;
+        let boundary = counted(m.boundary_edges, "boundary edge", "boundary edges");
+        let closed = if m.closed { "closed".to_owned() } else { boundary };
+        write!(f, "; {closed}, {}", counted(m.bodies, "body", "bodies"))?;
     }
     if m.non_finite_vertices > 0 {
-        write!(f, ", {} vertices with a NaN or infinite coordinate", m.non_finite_vertices)?;
+        let bad = counted(m.non_finite_vertices, "vertex", "vertices");
+        write!(f, ", {bad} with a NaN or infinite coordinate")?;
     }
     writeln!(f)
+}
+
+/// How many triangles in how many faces, with how many vertices.
+fn surfaces<T: TryInto<u64>>(triangles: T, faces: T, vertices: T) -> String {
+    let triangles = counted(triangles, "triangle", "triangles");
+    let (faces, vertices) = (counted(faces, "face", "faces"), counted(vertices, "vertex", "vertices"));
+    format!("{triangles} in {faces}, {vertices}")
 }
 
 fn quoted(name: &str) -> String {
@@ -423,7 +463,28 @@ mod tests {
         mesh.positions[0][1] = f32::NAN;
         let info = info(&Scene::from_mesh(mesh), &Workers::single()).unwrap();
         assert!(!info.closed && info.meshes[0].non_finite_vertices == 1);
-        assert!(info.to_string().contains("1 vertices with a NaN") && info.warnings[0].contains("open"));
+        assert!(info.to_string().contains("1 vertex with a NaN") && info.warnings[0].contains("open"));
         assert!(super::info(&Scene::default(), &Workers::single()).unwrap().bounds.is_none());
+    }
+
+    #[test]
+    fn meshes_without_names_are_told_apart_and_equal_warnings_once() {
+        let open = Mesh { name: String::new(), ..vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1) };
+        let named = Mesh { name: "sheet".to_owned(), ..open.clone() };
+        let mut scene = Scene::default();
+        for mesh in [open.clone(), open, named.clone(), named] {
+            scene.add_mesh(mesh, DMat4::IDENTITY);
+        }
+        scene.nodes[1].name = "roof".to_owned();
+        let info = info(&scene, &Workers::single()).unwrap();
+        let open = "4 boundary edges: it is open, so its back faces are drawn too";
+        assert_eq!(
+            info.warnings,
+            [
+                format!("mesh 0: {open}"),
+                format!("mesh of node `roof`: {open}"),
+                format!("mesh `sheet`: {open} (2 such meshes)")
+            ]
+        );
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Renders 3D models to pictures, without GPU, display or GL driver.
 ///
-/// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`.
+/// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`, `vitral help VERB` for `vitral VERB --help`.
 #[derive(Debug, Parser)]
 #[command(
     name = "vitral",
@@ -65,9 +65,9 @@ pub(crate) struct InfoArgs {
     /// Let models name files outside their folder
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
-    pub(crate) threads: usize,
+    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<usize>,
     /// No warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -114,10 +114,10 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
     pub(crate) resolution: [u32; 2],
     /// Samples a pixel
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole(1..=16u32))]
     pub(crate) samples: u32,
     /// Pictures that the median is taken of, after a first one
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole(1..=1000u32))]
     pub(crate) frames: u32,
     /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
     #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
@@ -128,9 +128,9 @@ pub(crate) struct BenchArgs {
     /// Let models name files outside their folder
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
-    pub(crate) threads: usize,
+    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<usize>,
     /// One JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
@@ -155,12 +155,21 @@ pub(crate) struct OsmesaEnvArgs {
     pub(crate) lib: Option<PathBuf>,
 }
 
-/// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`.
+/// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
+/// a model stays, to be refused as a verb. `help VERB` becomes `VERB --help`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
+    if arguments.get(1).is_some_and(|a| a == "help") {
+        arguments.remove(1);
+        arguments.truncate(2);
+        arguments.push("--help".into());
+        return arguments;
+    }
     let Some(first) = arguments.get(1).and_then(|a| a.to_str()) else { return arguments };
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
     let is_verb = crate::unbuilt::verb(first) || Cli::command().get_subcommands().any(|c| c.get_name() == first);
-    if !general && !is_verb {
+    let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic()) && !first.contains(['.', '/', '\\', ':', '{']);
+    let is_model = !is_word || std::path::Path::new(first).exists();
+    if !general && !is_verb && is_model {
         arguments.insert(1, "render".into());
     }
     arguments
@@ -188,6 +197,11 @@ mod tests {
             (&["-"], "render"),
             (&["info", "a.obj"], "info"),
             (&["draw", "a.obj"], "draw"),
+            (&["inof", "a.obj"], "inof"),
+            (&["src", "-o", "b.png"], "render"),
+            (&["builtin:teapot"], "render"),
+            (&["help"], "--help"),
+            (&["help", "info"], "info"),
             (&["--help"], "--help"),
         ] {
             assert_eq!(with(words).as_deref(), Some(expected));

@@ -4,6 +4,7 @@ use crate::args::BenchArgs;
 use crate::bench_report;
 use crate::interrupt::{self, INTERRUPTED};
 use crate::report::{self, Failure};
+use crate::values;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::atomic::Ordering;
@@ -16,7 +17,7 @@ pub(crate) type Row = (Entrant, Result<Measured, Limit>);
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
-    let execution = execution(args.threads)?;
+    let execution = execution(values::threads_or_environment(args.threads)?)?;
     let cancelled = execution.budget.cancel_flag();
     interrupt::listen(cancelled.clone());
     let result = match &args.report {

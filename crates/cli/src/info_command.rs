@@ -2,21 +2,23 @@
 
 use crate::args::InfoArgs;
 use crate::report::{self, Failure};
+use crate::values;
 use serde_json::{Value, json};
 use vitral::{LoadOptions, Workers, info, load};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
-    let workers = Workers::new(args.threads);
+    let workers = Workers::new(values::threads_or_environment(args.threads)?);
     // Normals that the file has not would be told as if it had.
     let options = LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
     let mut models = Vec::new();
     for model in &args.models {
         let scene = load(model, &options, &workers)?;
-        if !args.quiet {
-            report::warnings(&scene.warnings);
+        // Warnings are results here: told once, and not in words if nobody wants them.
+        let mut found = info::info(&scene, &workers)?;
+        if args.quiet && !args.json {
+            found.warnings.clear();
         }
-        let found = info::info(&scene, &workers)?;
         if args.json {
             let mut value = serde_json::to_value(&found).map_err(|e| Failure::other(e.to_string()))?;
             if let Value::Object(fields) = &mut value {

@@ -10,13 +10,14 @@
 //! | `spot` | `position`, `direction`, `cutoff` and `inner` (half angles in degrees), `exponent` |
 //! | `area` | `center`, `normal`, `radius` for a disc; `corners` (three numbers each) for a polygon |
 //!
-//! All: `name`, `ambient`, `diffuse`, `specular` (one number or three), `shadow`; those with a place: `attenuation`,
+//! All: `name`, `ambient`, `diffuse`, `specular` (one number, three, or a colour's name), `shadow`; those with a place: `attenuation`,
 //! which is `none`, `inverse-square`, `c1,c2,c3` for the course's `min(1 / (c1 + c2 d + c3 d²), 1)`,
 //! `gl,constant,linear,quadratic`, or `range,distance`.
 
 use crate::values::{direction, not_negative, number, numbers, positive, switch, vector};
 use vitral::light::{AreaShape, Attenuation, Light, LightKind};
 use vitral::math::DVec3;
+use vitral::names;
 
 /// Half angle of a spot light's cone in degrees where none is given.
 const CUTOFF: f64 = 30.0;
@@ -133,8 +134,11 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// One number for grey light, or red, green and blue.
+/// One number for grey light, red, green and blue, or a colour's name.
 fn intensity(text: &str) -> Result<[f32; 3], String> {
+    if let Some(named) = names::linear_color(text) {
+        return Ok(named);
+    }
     let rgb = if text.contains(',') { numbers::<3>(text)? } else { [number(text)?; 3] };
     if rgb.iter().any(|&c| c < 0.0) {
         return Err("intensities of at least 0 are required".to_owned());
@@ -190,6 +194,7 @@ mod tests {
     #[test]
     fn every_kind() {
         assert_eq!(parse("ambient:ambient=0.3").unwrap().ambient, [0.3; 3]);
+        assert_eq!(parse("point:position=0,0,0,diffuse=red").unwrap().specular, [1.0, 0.0, 0.0]);
         let light = parse("spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off").unwrap();
         let LightKind::Spot { cutoff, inner, exponent, .. } = light.kind else { panic!("a spot light") };
         assert_eq!((cutoff, inner, exponent), (std::f64::consts::FRAC_PI_4, cutoff, 8.0));

@@ -45,7 +45,7 @@ pub(crate) struct OutputArgs {
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
     pub(crate) channel: Vec<Channel>,
     /// N views around the model; --output needs {frame} [default: one picture]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=1_000_000u32), allow_negative_numbers = true)]
     pub(crate) turntable: Option<u32>,
     /// Only these frames of the turntable, counted from 0: 3 or 0-9
     #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "turntable")]
@@ -79,10 +79,10 @@ pub(crate) struct OutputArgs {
 #[command(next_help_heading = "Picture")]
 pub(crate) struct PictureArgs {
     /// Width and height in pixels, 1024x768 or 1024,768 [default: 1024x768]
-    #[arg(long, value_name = "WxH", value_parser = values::resolution)]
+    #[arg(long, value_name = "WxH", value_parser = values::resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[u32; 2]>,
     /// Samples a pixel; 1 means no anti-aliasing [default: 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=16u32), allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
     /// A name, #rrggbb, or r,g,b from 0 to 1 [default: a soft gradient]
     #[arg(long, value_name = "COLOR", value_parser = values::color, conflicts_with = "no_background")]
@@ -128,20 +128,20 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
     /// Rays a pixel, about, that a translucent surface scatters, 1 to 4096 [default: 32]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=4096u32), allow_negative_numbers = true)]
     pub(crate) scatter_samples: Option<u32>,
     /// How shadows are found [default: none; with --global: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
     pub(crate) shadows: Option<String>,
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=4096u32), allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,
     /// Texels along the longer side of a shadow map, 16 to 8192; with --shadows map [default: 2048]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(16..=8192u32), allow_negative_numbers = true)]
     pub(crate) shadow_map_size: Option<u32>,
     /// Shadow maps for each light, 1 to 8, cut in depth: the sharper the nearer, for large scenes; with --shadows map
     /// [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=8u32), allow_negative_numbers = true)]
     pub(crate) shadow_cascades: Option<u32>,
     /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
     #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
@@ -150,13 +150,13 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "NAME", value_parser = choices::global())]
     pub(crate) global: Option<Global>,
     /// How often a ray may be mirrored or bent, 1 to 64; with --global ray-trace [default: 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=64u32), allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
     /// Longest edge of a patch, with --global radiosity [default: 1/16 of the scene's diagonal]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) patch_size: Option<f64>,
     /// Patches that may send light, with --global radiosity [default: until 0.2 % of it is left]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
@@ -203,7 +203,7 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(Axis), allow_hyphen_values = true)]
     pub(crate) up: Option<Axis>,
     /// The model's camera of this number, counted from 0
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(0..=u32::MAX as usize), allow_negative_numbers = true)]
     pub(crate) camera_index: Option<usize>,
     /// Where the viewer is
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
@@ -217,7 +217,7 @@ pub(crate) struct CameraArgs {
     /// Vertical angle of view in degrees [default: 30]
     #[arg(long, value_name = "DEGREES", value_parser = values::view_angle, allow_negative_numbers = true)]
     pub(crate) camera_view_angle: Option<f64>,
-    /// The direction in which the viewer looks, from the usual distance
+    /// The direction in which the viewer looks; without --camera-focal-point the model is framed from there
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with = "camera_position")]
     pub(crate) camera_direction: Option<DVec3>,
@@ -254,9 +254,9 @@ pub(crate) struct ProcessArgs {
     /// Take all choices from this file; options override it
     #[arg(long, value_name = "FILE")]
     pub(crate) load_state: Option<PathBuf>,
-    /// Threads; 0 means as many as the process may use
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
-    pub(crate) threads: usize,
+    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<usize>,
     /// Seconds until the work stops with exit code 7
     #[arg(long, value_name = "S", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,

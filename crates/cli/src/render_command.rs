@@ -8,6 +8,7 @@ use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
 use crate::resolve::{Plan, resolve};
 use crate::trace_file::TraceFile;
+use crate::values;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -41,7 +42,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
         }
         report::write(file, state.to_json().as_bytes())?;
     }
-    let mut execution = execution(args.process.threads)?;
+    let mut execution = execution(values::threads_or_environment(args.process.threads)?)?;
     execution.budget =
         execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
     let one_frame = plan.frames.end() == plan.frames.start();

@@ -13,6 +13,12 @@ const USAGE: u8 = 2;
 /// Exit code for pictures that differ.
 pub(crate) const DIFFERENT: u8 = 6;
 
+/// The hint where there is no better one.
+const HELP: &str = "`vitral --help` and `vitral VERB --help` tell what there is";
+
+/// What other programs call `--resolution`.
+const SIZES: [&str; 3] = ["--size", "--width", "--height"];
+
 /// Why `vitral` ends early.
 #[derive(Debug)]
 pub(crate) struct Failure {
@@ -91,6 +97,20 @@ impl From<clap::Error> for Failure {
                 let verb = context(ContextKind::InvalidSubcommand);
                 return Self::usage(format!("{verb}: this verb is not there yet"));
             }
+            ErrorKind::InvalidSubcommand => {
+                let word = context(ContextKind::InvalidSubcommand);
+                let similar = match error.get(ContextKind::SuggestedSubcommand) {
+                    Some(ContextValue::Strings(names)) => names.first(),
+                    _ => None,
+                };
+                let hint = similar.map_or(HELP.to_owned(), |name| format!("there is the verb `{name}`"));
+                return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
+            }
+            ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
+                let option = context(ContextKind::InvalidArg);
+                return Self::usage(format!("there is no option {option}"))
+                    .with_hint("--resolution 1024x768 gives the size of the picture");
+            }
             _ => {}
         }
 
@@ -100,7 +120,7 @@ impl From<clap::Error> for Failure {
         let (message, rest) = text.split_once("\n\n").unwrap_or((text, ""));
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
         let tip = rest.lines().find_map(|l| l.trim().strip_prefix("tip: "));
-        let hint = tip.unwrap_or("`vitral --help` and `vitral VERB --help` tell what there is");
+        let hint = tip.unwrap_or(HELP);
         Self::usage(message).with_hint(hint)
     }
 }

@@ -224,6 +224,9 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     }
     settings.patch_size = args.patch_size.or(settings.patch_size);
     settings.iterations = args.iterations.or(settings.iterations);
+    if args.light_samples.is_some() && settings.shadows == "none" {
+        return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
+    }
     settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
     let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
     if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows != "map") {

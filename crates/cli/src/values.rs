@@ -1,9 +1,13 @@
 //! Values as users type them: sizes, colours, vectors, numbers with a range. Each parser says what it requires.
 
+use crate::report::Failure;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
-use vitral::MaterialOverride;
+use std::str::FromStr;
 use vitral::math::DVec3;
 use vitral::render::{Coherence, Culling};
+use vitral::{MaterialOverride, names};
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
@@ -41,9 +45,26 @@ const MOST_THREADS: usize = 1024;
 
 /// A number of threads; 0 lets the machine decide.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(count) if count <= MOST_THREADS => Ok(count),
-        _ => Err(format!("a whole number from 0 to {MOST_THREADS} is required")),
+    whole(0..=MOST_THREADS)(text)
+}
+
+/// The number of threads that was asked for, else what `VITRAL_THREADS` says, else 0.
+pub(crate) fn threads_or_environment(asked: Option<usize>) -> Result<usize, Failure> {
+    match (asked, std::env::var("VITRAL_THREADS")) {
+        (Some(count), _) => Ok(count),
+        (None, Ok(text)) => threads(&text).map_err(|e| Failure::usage(format!("VITRAL_THREADS={text}: {e}"))),
+        (None, Err(_)) => Ok(0),
+    }
+}
+
+/// A parser of whole numbers from a range.
+pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| match text.trim().parse() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        _ => Err(format!("a whole number from {} to {} is required", range.start(), range.end())),
     }
 }
 
@@ -75,50 +96,15 @@ pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Names of colours that everybody knows, with their bytes: the sixteen of HTML 4 and orange.
-const COLORS: [(&str, u32); 18] = [
-    ("aqua", 0x00ffff),
-    ("black", 0x000000),
-    ("blue", 0x0000ff),
-    ("fuchsia", 0xff00ff),
-    ("gray", 0x808080),
-    ("green", 0x008000),
-    ("grey", 0x808080),
-    ("lime", 0x00ff00),
-    ("maroon", 0x800000),
-    ("navy", 0x000080),
-    ("olive", 0x808000),
-    ("orange", 0xffa500),
-    ("purple", 0x800080),
-    ("red", 0xff0000),
-    ("silver", 0xc0c0c0),
-    ("teal", 0x008080),
-    ("white", 0xffffff),
-    ("yellow", 0xffff00),
-];
-
 /// A colour in the display's encoding, `0..=1`: a name, `#rgb`, `#rrggbb` or `r,g,b`.
 pub(crate) fn color(text: &str) -> Result<[f32; 3], String> {
-    let name = text.to_ascii_lowercase();
-    if let Some((_, bytes)) = COLORS.iter().find(|c| c.0 == name) {
-        return Ok(from_bytes(*bytes));
-    }
-    if let Some(hex) = name.strip_prefix('#') {
-        let value = if hex.starts_with('+') { None } else { u32::from_str_radix(hex, 16).ok() };
-        return match (hex.len(), value) {
-            (6, Some(v)) => Ok(from_bytes(v)),
-            (3, Some(v)) => Ok(from_bytes((v >> 8 & 15) * 0x11_0000 + (v >> 4 & 15) * 0x1100 + (v & 15) * 0x11)),
-            _ => Err(format!("`{text}` is no colour: #rgb or #rrggbb is required")),
-        };
+    if let Some(named) = names::color(text) {
+        return Ok(named);
     }
     match numbers::<3>(text) {
         Ok(rgb) if rgb.iter().all(|c| (0.0..=1.0).contains(c)) => Ok(rgb.map(|c| c as f32)),
         _ => Err(format!("`{text}` is no colour: a name, #rrggbb or r,g,b from 0 to 1 is required")),
     }
-}
-
-fn from_bytes(rgb: u32) -> [f32; 3] {
-    [rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255].map(|byte| byte as f32 / 255.0)
 }
 
 /// A number of bytes: `1000000`, `512M`, `1.5G` (powers of 1024).
@@ -192,7 +178,7 @@ pub(crate) fn switch(text: &str) -> Result<bool, String> {
 }
 
 /// Frames of a turntable: `3` or `0-9`, both ends included.
-pub(crate) fn frames(text: &str) -> Result<std::ops::RangeInclusive<u32>, String> {
+pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u32>, String> {
     let (first, last) = text.split_once('-').unwrap_or((text, text));
     match (first.parse(), last.parse()) {
         (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
@@ -259,6 +245,8 @@ mod tests {
     fn threads_are_some() {
         assert_eq!((threads("0"), threads("1024")), (Ok(0), Ok(1024)));
         assert!(["1025", "1000000", "-1", "two", ""].iter().all(|t| threads(t).is_err()));
+        assert_eq!(whole(1..=16u32)("x"), Err("a whole number from 1 to 16 is required".to_owned()));
+        assert_eq!(threads_or_environment(Some(3)).ok(), Some(3));
     }
 
     #[test]

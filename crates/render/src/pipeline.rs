@@ -119,6 +119,11 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }
+    let picture = &stats.picture;
+    let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
+    if settings.channels.color && !shown && !session.world.bounds.is_empty() {
+        warnings.push("nothing is in view".to_owned());
+    }
     if stats.picture.lost_layers > 0 {
         let allowed = settings.layer_memory >> 20;
         warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));

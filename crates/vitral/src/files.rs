@@ -165,7 +165,14 @@ fn read_standard_input(limit: u64) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// [`Error::Write`]; nothing is left behind then.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let failed = |source| Error::Write { path: path.to_owned(), source };
+    let failed = |source: std::io::Error| {
+        let folder = path.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
+        let source = match folder.filter(|f| !f.exists()) {
+            Some(folder) => std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display())),
+            None => source,
+        };
+        Error::Write { path: path.to_owned(), source }
+    };
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     match fs::metadata(&target) {
         Ok(old) if old.is_dir() => return Err(failed(std::io::Error::from(ErrorKind::IsADirectory))),
@@ -281,7 +288,8 @@ mod tests {
         write(&path, b"first").unwrap();
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
-        assert!(matches!(write(&folder.join("none/a.png"), b"x"), Err(Error::Write { .. })));
+        let lost = write(&folder.join("none/a.png"), b"x").unwrap_err();
+        assert!(matches!(lost, Error::Write { .. }) && lost.to_string().contains("there is no folder `"), "{lost}");
         assert!(matches!(write(&folder, b"x"), Err(Error::Write { .. })));
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "the folder `model` and the picture");
         fs::remove_dir_all(folder).unwrap();

@@ -1,11 +1,10 @@
 //! Changing one property of one material by name: `glass.ior=1.5`.
 
 use crate::Error;
-use crate::names::list;
+use crate::names::{self, list};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use vitral_light::{AlphaMode, Material, Reflectance, Transmission};
-use vitral_math::color::linear_from_srgb;
 use vitral_scene::Scene;
 
 /// One change of a material.
@@ -53,7 +52,7 @@ enum Failure {
     Form,
 }
 
-/// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` in sRGB.
+/// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in sRGB.
 const PROPERTIES: [(&str, &str, Setter); 22] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
@@ -166,14 +165,13 @@ fn boolean(text: &str) -> Result<bool, Failure> {
 }
 
 /// What is required of a colour.
-const COLOR: &str = "a colour, r,g,b from 0 to 1 or #rrggbb,";
+const COLOR: &str = "a colour, r,g,b from 0 to 1, #rrggbb or a name,";
 
-/// One number for all channels, three numbers, or `#rrggbb`.
+/// One number for all channels, three numbers, `#rrggbb`, or a name.
 fn color(text: &str) -> Result<[f32; 3], Failure> {
     const REQUIRED: Failure = Failure::Value(COLOR);
-    if let Some(hex) = text.strip_prefix('#') {
-        let value = u32::from_str_radix(hex, 16).ok().filter(|_| hex.len() == 6).ok_or(REQUIRED)?;
-        return Ok([16, 8, 0].map(|shift| linear_from_srgb((value >> shift & 255) as f32 / 255.0)));
+    if let Some(named) = names::linear_color(text) {
+        return Ok(named);
     }
     let numbers: Result<Vec<f32>, Failure> = text.split(',').map(number).collect();
     match numbers.map_err(|_| REQUIRED)?[..] {
@@ -297,7 +295,7 @@ mod tests {
             "*.shininess=5",
             "ball.kt=0.25",
             "ball.filter=0,1,0.5",
-            "ball.emission=#ff0000",
+            "ball.emission=red",
         ] {
             change(&mut scene, text).unwrap();
         }

@@ -1,6 +1,7 @@
-//! Names of choices that have none below: standard views and axes, as the command line and files spell them.
+//! Names of choices that have none below: standard views, axes and colours, as the command line and files spell them.
 
 use crate::Error;
+use vitral_math::color::linear_from_srgb;
 use vitral_scene::{Axis, View};
 
 /// All standard views, the default first.
@@ -36,6 +37,51 @@ pub fn view(name: &str) -> Result<View, Error> {
 /// [`Error::Usage`] for any other name.
 pub fn axis(name: &str) -> Result<Axis, Error> {
     name.parse().map_err(|e: vitral_scene::framing::AxisError| Error::usage(e.to_string(), ""))
+}
+
+/// Names of colours that everybody knows, with their bytes: the sixteen of HTML 4 and orange.
+const COLORS: [(&str, u32); 18] = [
+    ("aqua", 0x00ffff),
+    ("black", 0x000000),
+    ("blue", 0x0000ff),
+    ("fuchsia", 0xff00ff),
+    ("gray", 0x808080),
+    ("green", 0x008000),
+    ("grey", 0x808080),
+    ("lime", 0x00ff00),
+    ("maroon", 0x800000),
+    ("navy", 0x000080),
+    ("olive", 0x808000),
+    ("orange", 0xffa500),
+    ("purple", 0x800080),
+    ("red", 0xff0000),
+    ("silver", 0xc0c0c0),
+    ("teal", 0x008080),
+    ("white", 0xffffff),
+    ("yellow", 0xffff00),
+];
+
+/// The colour of this name, `#rgb` or `#rrggbb`, in the display's encoding (sRGB), `0..=1`.
+pub fn color(name: &str) -> Option<[f32; 3]> {
+    let name = name.to_ascii_lowercase();
+    let bytes = match name.strip_prefix('#') {
+        Some(hex) if hex.bytes().all(|b| b.is_ascii_hexdigit()) => {
+            let value = u32::from_str_radix(hex, 16).ok()?;
+            match hex.len() {
+                6 => value,
+                3 => (value >> 8 & 15) * 0x11_0000 + (value >> 4 & 15) * 0x1100 + (value & 15) * 0x11,
+                _ => return None,
+            }
+        }
+        Some(_) => return None,
+        None => COLORS.iter().find(|c| c.0 == name)?.1,
+    };
+    Some([16, 8, 0].map(|shift| (bytes >> shift & 255) as f32 / 255.0))
+}
+
+/// [`color`] in linear light, for materials and lights.
+pub fn linear_color(name: &str) -> Option<[f32; 3]> {
+    color(name).map(|rgb| rgb.map(linear_from_srgb))
 }
 
 /// Names with commas between them.

@@ -116,7 +116,10 @@ impl PictureFormat {
         let path = path.as_ref();
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         Self::from_extension(&extension).ok_or_else(|| Error::Unsupported {
-            what: format!("{}: pictures are not written as `.{extension}`", path.display()),
+            what: match extension.as_str() {
+                "" => format!("{}: the name has no extension that tells the format", path.display()),
+                _ => format!("{}: pictures are not written as `.{extension}`", path.display()),
+            },
             hint: format!(
                 "choose .{}",
                 Self::ALL.iter().flat_map(|f| f.2.iter().copied()).collect::<Vec<_>>().join(", .")
@@ -330,6 +333,8 @@ mod tests {
         assert_eq!(PictureFormat::from_path("a/b.JPG").unwrap(), PictureFormat::Jpeg);
         let error = PictureFormat::from_path("a.bmp").unwrap_err();
         assert_eq!((error.exit_code(), error.hint().unwrap().contains(".npy")), (4, true));
+        let bare = PictureFormat::from_path("/dev/null").unwrap_err().to_string();
+        assert_eq!(bare, "/dev/null: the name has no extension that tells the format");
     }
 
     #[test]

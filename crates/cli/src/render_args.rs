@@ -180,8 +180,9 @@ pub(crate) struct LightArgs {
     #[arg(long, value_name = "on|off", value_parser = values::switch, action = ArgAction::Set)]
     pub(crate) lighting: Option<bool>,
     /// A light, instead of the model's and the default ones; repeatable: KIND:key=value,... with KIND ambient,
-    /// directional, point, spot or area and the keys name, ambient, diffuse, specular, attenuation (c1,c2,c3 or
-    /// inverse-square), shadow, position, direction, cutoff (degrees), exponent, center, normal, radius, corners
+    /// directional, point, spot or area and the keys name, ambient, diffuse, specular (a number, r,g,b or a colour's
+    /// name), attenuation (c1,c2,c3 or inverse-square), shadow, position, direction, cutoff (degrees), exponent, center,
+    /// normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
     pub(crate) light: Vec<Light>,
     /// Multiplies all lights [default: 1]

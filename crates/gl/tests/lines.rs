@@ -54,6 +54,90 @@ fn halves_of_point_sizes_are_rounded_down() {
     }
 }
 
+/// The viewport bounds the places of points and the middles of lines, not what is drawn round them.
+#[test]
+fn wide_points_and_lines_reach_over_the_viewport() {
+    type Draw = fn(&mut Stage);
+    let point: Draw = |c| draw(c, gl::POINTS, &[[4.5, 4.5]]);
+    let line: Draw = |c| draw(c, gl::LINES, &[[4.5, 4.5], [8.5, 4.5]]);
+    let triangle: Draw = |c| draw(c, gl::TRIANGLES, &[[4.5, 4.5], [8.5, 4.5], [4.5, 8.5]]);
+    let outline = |mode: u32, c: &mut Stage| c.polygon_mode(gl::FRONT_AND_BACK, mode);
+    let fill: Draw = |c| draw(c, gl::TRIANGLES, &[[-9.0, 4.5], [40.0, 4.5], [4.5, 60.0]]);
+    for (enabled, figure) in [
+        (0, point),
+        (gl::POINT_SMOOTH, point),
+        (gl::POINT_SPRITE_ARB, point),
+        (0, line),
+        (gl::LINE_SMOOTH, line),
+        (gl::LINE_STIPPLE, line),
+        (gl::POINT, triangle),
+        (gl::LINE, triangle),
+    ] {
+        // What the whole window shows, as if it were the viewport, a scissor, and the viewport with a filled triangle.
+        let picture = |view: bool, scissor: bool, filled: bool| {
+            let mut c = paper(16, 16);
+            match enabled {
+                0 => {}
+                gl::POINT | gl::LINE => outline(enabled, &mut c),
+                _ => c.enable(enabled),
+            }
+            c.point_size(5.0);
+            c.line_width(5.0);
+            if scissor {
+                c.scissor(4, 4, 8, 8);
+                c.enable(gl::SCISSOR_TEST);
+            }
+            if view {
+                c.viewport(4, 4, 8, 8);
+                c.load_identity();
+                c.ortho(4.0, 12.0, 4.0, 12.0, -1.0, 1.0);
+            }
+            figure(&mut c);
+            if filled {
+                c.polygon_mode(gl::FRONT_AND_BACK, gl::FILL);
+                fill(&mut c);
+            }
+            rows(&mut c)
+        };
+        let whole = picture(false, false, false);
+        assert!(whole[2].contains('#'), "{enabled:#x}: {whole:#?}");
+        assert_eq!(picture(true, false, false), whole, "{enabled:#x}");
+        assert_eq!(picture(true, true, false), picture(false, true, false), "{enabled:#x}");
+        // Filled polygons end with it.
+        let both = picture(true, false, true);
+        let outside = |x: usize, y: usize| !(4..12).contains(&x) || !(4..12).contains(&y);
+        for (y, (row, alone)) in both.iter().zip(&whole).enumerate() {
+            let differ = |x: usize| row.as_bytes()[x] != alone.as_bytes()[x];
+            assert!(!(0..16).any(|x| outside(x, y) && differ(x)), "{enabled:#x}: {both:#?}");
+        }
+    }
+}
+
+/// A pass that draws depths alone into a texture may wait until someone looks.
+#[test]
+fn wide_points_reach_over_the_viewport_of_a_shadow_map() {
+    let mut c = paper(16, 16);
+    c.bind_texture(gl::TEXTURE_2D, 1);
+    let internal = gl::DEPTH_COMPONENT24 as i32;
+    c.tex_image_2d(gl::TEXTURE_2D, 0, internal, 16, 16, 0, gl::DEPTH_COMPONENT, gl::FLOAT, 0);
+    c.bind_framebuffer_ext(gl::FRAMEBUFFER, 1);
+    c.framebuffer_texture_2d(gl::FRAMEBUFFER, gl::DEPTH_ATTACHMENT, gl::TEXTURE_2D, 1, 0);
+    c.draw_buffer(gl::NONE);
+    c.read_buffer(gl::NONE);
+    c.clear(gl::DEPTH_BUFFER_BIT);
+    c.enable(gl::DEPTH_TEST);
+    c.point_size(5.0);
+    c.viewport(4, 4, 8, 8);
+    c.load_identity();
+    c.ortho(4.0, 12.0, 4.0, 12.0, -1.0, 1.0);
+    draw(&mut c, gl::POINTS, &[[4.5, 4.5]]);
+    draw(&mut c, gl::TRIANGLES, &[[-9.0, 9.5], [40.0, 9.5], [4.5, 60.0]]);
+    let depths = c.depths();
+    c.no_error();
+    let drawn = |x: usize, y: usize| depths[16 * y + x] < 1.0;
+    assert!(drawn(2, 2) && drawn(6, 2) && !drawn(1, 2) && drawn(5, 11) && !drawn(5, 12) && !drawn(3, 11));
+}
+
 #[test]
 fn edges_along_a_clip_plane_are_drawn() {
     let mut c = paper(8, 8);

@@ -38,7 +38,6 @@ pub(crate) struct DrawGeometry {
     pub snapshot: VertexSnapshot,
     pub primitive: PrimitiveState,
     pub layout: Layout,
-    pub clip: [i32; 4],
     pub points: PointSizes,
 }
 
@@ -105,7 +104,13 @@ impl Geometry for DrawGeometry {
     }
 
     fn clip(&self) -> [i32; 4] {
-        self.clip
+        self.primitive.clip
+    }
+
+    fn has_strokes(&self) -> bool {
+        let stroke = |primitive: &Primitive| primitive.mode < gl::TRIANGLES;
+        let others = || self.batch.primitives.iter().any(stroke);
+        self.primitive.polygon_mode != [2, 2] || self.assembled.as_ref().map_or_else(others, |all| all.others)
     }
 
     fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives) {

@@ -228,9 +228,8 @@ impl Context {
             attenuation: s.points.attenuation,
             fade: multisample.then_some(s.points.fade_threshold),
         };
-        let clip = primitive.clip;
         let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
-        Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, clip, points })
+        Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, points })
     }
 
     /// Whether everything that varies on a flat grid is linear, but the colours of one side.
@@ -312,6 +311,7 @@ impl Context {
             point_sprite: s.points.sprite,
             point_smooth: s.points.smooth && !multisample && !s.points.sprite,
             clip,
+            stroke_clip: c,
             draw: 0,
             grid: NO_GRID,
         })

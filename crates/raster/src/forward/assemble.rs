@@ -156,8 +156,10 @@ pub struct PrimitiveState {
     pub point_sprite: bool,
     /// Polygons are smooth.
     pub polygon_smooth: bool,
-    /// Allowed pixels x0, y0, x1, y1 for polygons and lines: scissor, target and viewport.
+    /// Allowed pixels x0, y0, x1, y1 for filled polygons: scissor, target and viewport.
     pub clip: [i32; 4],
+    /// The same for lines and points: scissor and target. Of them the viewport bounds the centres alone.
+    pub stroke_clip: [i32; 4],
     /// The draw's number in its job.
     pub draw: u32,
     /// See [`Facet::grid`]; [`NO_GRID`] for colours of corners.
@@ -345,11 +347,15 @@ impl<'a> Assembler<'a> {
         (area > 0) != (self.state.counter_clockwise != self.state.flipped)
     }
 
-    /// The pixels a triangle may cover, if any are allowed.
+    /// The pixels a filled triangle may cover, if any are allowed.
     #[inline(always)]
     fn pixels(&self, positions: &[CornerPosition; 3]) -> Option<[u32; 4]> {
+        self.pixels_within(positions, self.state.clip)
+    }
+
+    #[inline(always)]
+    fn pixels_within(&self, positions: &[CornerPosition; 3], clip: [i32; 4]) -> Option<[u32; 4]> {
         let [x0, y0, x1, y1] = covered_pixels(positions, self.screen)?;
-        let clip = self.state.clip;
         let (x0, y0) = ((x0 as i32).max(clip[0]), (y0 as i32).max(clip[1]));
         let (x1, y1) = ((x1 as i32).min(clip[2] - 1), (y1 as i32).min(clip[3] - 1));
         (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])

@@ -125,8 +125,10 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
     fn weight(&self, piece: usize) -> usize;
     /// Where its vertex records hold what.
     fn layout(&self) -> &Layout;
-    /// Allowed pixels x0, y0, x1, y1: the viewport.
+    /// Allowed pixels x0, y0, x1, y1 of filled polygons: the viewport.
     fn clip(&self) -> [i32; 4];
+    /// Whether it may have lines or points, which the viewport does not cut.
+    fn has_strokes(&self) -> bool;
     /// What tells whether another draw of the pass has the same vertices, as they were given.
     fn vertex_source(&self) -> usize;
     /// Adds a piece's primitives as draw number `draw` of the job.
@@ -221,6 +223,7 @@ pub(crate) struct DrawContext<'a> {
     pub state: &'a FragmentState,
     pub layout: &'a Layout,
     pub ops: FragmentOps,
+    /// Allowed pixels of filled polygons; those of lines and points are the state's.
     pub clip: [i32; 4],
     /// All samples of the target get tests of their own.
     pub multisample: bool,

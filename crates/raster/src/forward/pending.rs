@@ -132,7 +132,7 @@ fn origin(viewport: Viewport, tile: u32) -> [u32; 2] {
 
 /// What a pass keeps whose target has this scale, if it can be left pending.
 pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
-    use super::pass::Command;
+    use super::pass::{Command, intersection};
     let (first, rest) = pass.commands.split_first()?;
     let Command::Clear(clear) = first else { return None };
     let whole = [0, 0, pass.target.viewport.width as i32, pass.target.viewport.height as i32];
@@ -141,7 +141,11 @@ pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
     }
     let mut sign = 0.0;
     for command in rest {
-        let Command::Draw(_, state) = command else { return None };
+        let Command::Draw(geometry, state) = command else { return None };
+        // What waits has one clip a draw.
+        if geometry.has_strokes() && intersection(geometry.clip(), state.clip) != state.clip {
+            return None;
+        }
         let test = state.depth.filter(|t| t.write)?;
         let colorless = pass.target.color.is_none() || state.masked == [true; 4];
         let plain = state.stencil.is_none() && state.alpha_test.is_none() && state.query.is_none();

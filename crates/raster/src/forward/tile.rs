@@ -114,7 +114,7 @@ impl<'a> TileRun<'a> {
             #[inline(always)]
             || {
                 let (x, y) = (self.x, self.y);
-                let (mut clip, mut window, mut tiny) = ([0; 4], [0..0, 0..0], false);
+                let (mut clips, mut windows, mut tiny) = ([[0; 4]; 2], [[0..0, 0..0], [0..0, 0..0]], false);
                 let mut known = u32::MAX;
                 let batch = &job.primitives.batch;
                 for entry in batch.tile_range(self.index) {
@@ -124,11 +124,13 @@ impl<'a> TileRun<'a> {
                     let pattern = job.pattern(draw);
                     if known != facet.draw {
                         known = facet.draw;
-                        clip = self.part(draw.clip);
-                        window = self::window(clip);
+                        // Of filled polygons, of lines and points.
+                        clips = [self.part(draw.clip), self.part(draw.state.clip)];
+                        windows = clips.map(window);
                         tiny = by_eights(draw, self);
                     }
-                    let (mut clip, mut window) = (clip, &window);
+                    let stroke = usize::from(facet.kind != FacetKind::Polygon);
+                    let (mut clip, mut window) = (clips[stroke], &windows[stroke]);
                     let own;
                     match facet.extent(job.primitives) {
                         Extent::Whole => {}

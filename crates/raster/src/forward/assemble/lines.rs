@@ -185,7 +185,7 @@ impl Assembler<'_> {
         let [low, high] = [quad[0], quad[2]].map(|corner| corner.map(snapped));
         let corner = |x: i32, y: i32| CornerPosition { x, y, z };
         let square = [corner(low[0], low[1]), corner(high[0], high[1]), corner(low[0], high[1])];
-        let Some(pixels) = self.pixels(&square) else { return };
+        let Some(pixels) = self.stroke_pixels(&square) else { return };
         // One over a pixel's centre covers no other, and needs no box.
         let alone = kind == FacetKind::Plain && half == 0.5;
         let (near, far) = if alone { (SUBPIXEL / 4, SUBPIXEL) } else { (0, 2 * (high[0] - low[0])) };
@@ -221,11 +221,16 @@ impl Assembler<'_> {
         let low = [a[0].min(b[0]), a[1].min(b[1])];
         let high = [a[0].max(b[0]) + over[0], a[1].max(b[1]) + over[1]];
         let extent = [corner(low), corner(high), corner([low[0], high[1]])];
-        let Some(pixels) = self.pixels(&extent).filter(|_| area != 0) else { return };
+        let Some(pixels) = self.stroke_pixels(&extent).filter(|_| area != 0) else { return };
         let plane = self.stroke_plane(*plane, stroke.offset);
         let facet = self.push_facet(area, [from, to, to], stroke.provoking, kind, stroke.back, shape);
         let setup = Setup::with_plane(triangle, area, &plane, facet);
         self.out.batch.push_where(setup, pixels, self.screen, |tx, ty| line.touches([tx, ty]));
+    }
+
+    /// The pixels a line's or point's triangle may cover, if any are allowed.
+    fn stroke_pixels(&self, positions: &[CornerPosition; 3]) -> Option<[u32; 4]> {
+        self.pixels_within(positions, self.state.stroke_clip)
     }
 
     /// The depth plane of a line or point after polygon offset.
@@ -256,7 +261,7 @@ impl Assembler<'_> {
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
-            let Some(pixels) = self.pixels(&positions).filter(|_| area != 0) else { continue };
+            let Some(pixels) = self.stroke_pixels(&positions).filter(|_| area != 0) else { continue };
             self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
         }
     }

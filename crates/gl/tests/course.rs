@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Stage, assert_color};
-use vitral_gl::{Context, enums as gl};
+use vitral_gl::{Context, OSMESA_RGB_565, enums as gl};
 
 const WHOLE: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
 
@@ -32,6 +32,54 @@ fn t14_alpha_functions_times_less_equal_greater() {
     // The reference is clamped.
     c.alpha_func(gl::GEQUAL, 7.0);
     assert_eq!(c.get(gl::ALPHA_TEST_REF), [1.0]);
+}
+
+#[test]
+fn t14_alphas_are_compared_as_stored() {
+    let functions = [
+        (gl::LESS, false),
+        (gl::EQUAL, true),
+        (gl::LEQUAL, true),
+        (gl::GREATER, false),
+        (gl::NOTEQUAL, false),
+        (gl::GEQUAL, true),
+    ];
+    // Both are 128 in 8 bits; of the others the alpha is larger.
+    for (format, kind, equal) in [
+        (gl::RGBA, gl::UNSIGNED_BYTE, true),
+        (gl::RGB, gl::UNSIGNED_BYTE, true),
+        (OSMESA_RGB_565, gl::UNSIGNED_SHORT_5_6_5, true),
+        (gl::RGBA, gl::UNSIGNED_SHORT, false),
+        (gl::RGBA, gl::FLOAT, false),
+    ] {
+        // All facets of a kind: large ones, tiny ones, a point, an image.
+        for figure in 0..4 {
+            let mut c = Stage::with_buffer(16, 16, format, kind);
+            c.enable(gl::ALPHA_TEST);
+            c.color_4f(1.0, 1.0, 1.0, 128.0 / 255.0);
+            let image = c.put(&[[1.0f32, 1.0, 1.0, 128.0 / 255.0]]);
+            for (func, passes) in functions {
+                c.clear(gl::COLOR_BUFFER_BIT);
+                c.alpha_func(func, 0.5);
+                match figure {
+                    0 => c.rectangle(WHOLE, 0.0),
+                    1 => c.rectangle([-0.1, -0.1, 0.1, 0.1], 0.0),
+                    2 => {
+                        c.begin(gl::POINTS);
+                        c.vertex_2f(0.01, 0.01);
+                        c.end();
+                    }
+                    _ => {
+                        c.raster_pos_2f(0.0, 0.0);
+                        c.draw_pixels(1, 1, gl::RGBA, gl::FLOAT, image);
+                    }
+                }
+                let larger = matches!(func, gl::GREATER | gl::NOTEQUAL | gl::GEQUAL);
+                let expected = if equal { passes } else { larger };
+                assert_eq!(c.pixel(8, 8)[0] == 255, expected, "{format:#x} {kind:#x} {func:#x} {figure}");
+            }
+        }
+    }
 }
 
 #[test]

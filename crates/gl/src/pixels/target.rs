@@ -233,6 +233,15 @@ impl Context {
         }
     }
 
+    /// What the draw buffer stores a component of 1 as, if it stores whole numbers.
+    pub(crate) fn stored_one(&mut self) -> Option<f32> {
+        match self.resolve().surfaces.color.as_ref().map(|c| c.format.storage) {
+            Some(Storage::Half | Storage::Float) => None,
+            Some(Storage::Unorm16) => Some(65_535.0),
+            _ => Some(255.0),
+        }
+    }
+
     /// Whether colours are sRGB-encoded on their way to the draw buffer.
     pub(crate) fn encodes_srgb(&mut self) -> bool {
         let enabled = self.state.framebuffer_srgb;

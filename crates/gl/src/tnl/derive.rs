@@ -6,9 +6,9 @@ use crate::state::{self, State};
 use std::sync::Arc;
 use vitral_raster::forward as raster;
 use vitral_raster::forward::{
-    Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare, DepthTest,
-    EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp, Target,
-    Unit,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare,
+    DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp,
+    Target, Unit,
 };
 
 /// A comparison's token.
@@ -194,7 +194,7 @@ impl Context {
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
         let units = self.sampled_units(target);
         let missing = self.missing_components();
-        let (clamping, srgb) = (self.clamping(), self.encodes_srgb());
+        let (clamping, srgb, one) = (self.clamping(), self.encodes_srgb(), self.stored_one());
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -205,8 +205,8 @@ impl Context {
             alpha_test: s
                 .alpha_test
                 .0
-                .then(|| (compare(s.alpha_test.1), s.alpha_test.2.clamp(0.0, 1.0)))
-                .filter(|(func, _)| *func != Compare::Always),
+                .then(|| AlphaTest::new(compare(s.alpha_test.1), s.alpha_test.2.clamp(0.0, 1.0), one))
+                .flatten(),
             stencil: s
                 .stencil
                 .enabled

@@ -39,8 +39,8 @@ pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, Resolve, StencilPlane}
 pub use project::{WindowTransform, project};
 pub use shade::Layout;
 pub use state::{
-    Blend, BlendEquation, BlendFactor, Clamping, Combine, CombineFunction, CombineOperand, CombineSource, Compare,
-    DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp,
-    Unit,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Clamping, Combine, CombineFunction, CombineOperand, CombineSource,
+    Compare, DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace,
+    StencilOp, Unit,
 };
 pub use texture::{BaseFormat, Filter, Level, Sampler, Swizzle, Texels, Texture, TextureKind, Wrap};

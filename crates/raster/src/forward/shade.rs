@@ -12,7 +12,7 @@ use super::block::BlockWords;
 use super::color_grid::ColorGrid;
 use super::environment::UNITS;
 use super::environment::fog::{color_sum, fog};
-use super::fragment_ops::compare::{alpha_test, holds};
+use super::fragment_ops::compare::alpha_test;
 use super::fragment_ops::packed::pack;
 use super::pass::DrawContext;
 use super::soft::{disc_coverage, overlap, pieces, polygon_coverage, stipples};
@@ -586,7 +586,7 @@ impl<'a> Shader<'a> {
     pub(crate) fn constant_of(draw: &DrawContext<'_>, facet: &Facet, primitives: &Primitives) -> (u32, bool) {
         let from = facet.provoking as usize + Self::color_of(draw, facet);
         let color = primitives.records[from..].first_chunk::<4>().map_or([0.0; 4], |c| c.map(|c| c.clamp(0.0, 1.0)));
-        let passes = draw.state.alpha_test.is_none_or(|(func, reference)| holds(func, color[3], reference));
+        let passes = draw.state.alpha_test.is_none_or(|test| test.passes(color[3]));
         let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
         (word, passes)
     }

@@ -69,6 +69,61 @@ pub struct DepthTest {
     pub write: bool,
 }
 
+/// Alpha test, as the alphas that pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlphaTest {
+    /// The lowest and the highest alpha of a range.
+    pub range: [f32; 2],
+    /// Whether those in the range pass, or all others.
+    pub inside: bool,
+}
+
+impl AlphaTest {
+    /// `alpha func reference`, or `None` if all pass. Where the buffer stores an alpha of 1 as the whole number `one`, both are
+    /// rounded to what it would store.
+    pub fn new(func: Compare, reference: f32, one: Option<f32>) -> Option<Self> {
+        let [low, high] = one.map_or([reference; 2], |one| stored_alike(reference, one));
+        let (range, inside) = match func {
+            Compare::Never => ([f32::INFINITY, f32::NEG_INFINITY], true),
+            Compare::Less => ([f32::NEG_INFINITY, low.next_down()], true),
+            Compare::Equal => ([low, high], true),
+            Compare::LessOrEqual => ([f32::NEG_INFINITY, high], true),
+            Compare::Greater => ([high.next_up(), f32::INFINITY], true),
+            Compare::NotEqual => ([low, high], false),
+            Compare::GreaterOrEqual => ([low, f32::INFINITY], true),
+            Compare::Always => return None,
+        };
+        Some(Self { range, inside })
+    }
+
+    /// Whether an alpha passes.
+    #[inline(always)]
+    pub(crate) fn passes(&self, alpha: f32) -> bool {
+        (self.range[0] <= alpha && alpha <= self.range[1]) == self.inside
+    }
+}
+
+/// The lowest and the highest number that are stored as `value` is, as whole numbers of which `one` means 1.
+fn stored_alike(value: f32, one: f32) -> [f32; 2] {
+    let stored = |value: f32| (value.clamp(0.0, 1.0) * one + 0.5).floor();
+    // The lowest number that is stored as `whole`, 1 or more: next to the half below, where rounding puts it.
+    let first = |whole: f32| {
+        let mut first = (whole - 0.5) / one;
+        while stored(first) < whole {
+            first = first.next_up();
+        }
+        while stored(first.next_down()) >= whole {
+            first = first.next_down();
+        }
+        first
+    };
+    let whole = stored(value);
+    [
+        if whole > 0.0 { first(whole) } else { f32::MIN },
+        if whole < one { first(whole + 1.0).next_down() } else { f32::MAX },
+    ]
+}
+
 /// Blend factors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
@@ -260,8 +315,8 @@ pub struct FragmentState {
     pub color_sum: bool,
     /// Fog.
     pub fog: Option<Fog>,
-    /// Alpha test: function and reference, 0..=1.
-    pub alpha_test: Option<(Compare, f32)>,
+    /// Alpha test.
+    pub alpha_test: Option<AlphaTest>,
     /// Stencil test.
     pub stencil: Option<Stencil>,
     /// Depth test; without one depth is not written either.

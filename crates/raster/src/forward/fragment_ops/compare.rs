@@ -1,6 +1,6 @@
 //! Comparisons: alpha test, depth test, shadow look-ups.
 
-use crate::forward::state::{Compare, DepthTest};
+use crate::forward::state::{AlphaTest, Compare, DepthTest};
 use crate::forward::wide::every;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Floats, Mask8, MaskOf, Simd};
@@ -22,8 +22,10 @@ pub(crate) fn compare<S: Simd, V: Floats<S>>(simd: S, func: Compare, incoming: V
 
 /// Which fragments pass the alpha test.
 #[inline(always)]
-pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(simd: S, (func, reference): (Compare, f32), alpha: V) -> MaskOf<S, V> {
-    compare(simd, func, alpha, every(simd, reference))
+pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(simd: S, test: AlphaTest, alpha: V) -> MaskOf<S, V> {
+    let [low, high]: [V; 2] = [every(simd, test.range[0]), every(simd, test.range[1])];
+    let inside = low.simd_le(alpha) & alpha.simd_le(high);
+    if test.inside { inside } else { !inside }
 }
 
 /// Which samples pass the depth test; both depths in the plane's units.
@@ -80,16 +82,61 @@ mod tests {
         }
     }
 
+    const FUNCTIONS: [Compare; 8] = [
+        Compare::Never,
+        Compare::Less,
+        Compare::Equal,
+        Compare::LessOrEqual,
+        Compare::Greater,
+        Compare::NotEqual,
+        Compare::GreaterOrEqual,
+        Compare::Always,
+    ];
+
+    fn passes(func: Compare, reference: f32, one: Option<f32>, alpha: f32) -> bool {
+        AlphaTest::new(func, reference, one).is_none_or(|test| test.passes(alpha))
+    }
+
+    #[test]
+    fn alphas_are_compared_as_they_would_be_stored() {
+        for one in [255.0f32, 65_535.0] {
+            let step = if one == 255.0 { 1 } else { 257 };
+            for func in FUNCTIONS {
+                for reference in (0..=one as u32).step_by(step).map(|r| r as f32) {
+                    // The number itself, both ends of what is rounded to it, and its neighbours.
+                    for (away, number) in [(0.0, 0.0), (-0.49, 0.0), (0.49, 0.0), (-0.51, -1.0), (0.51, 1.0)] {
+                        let alpha = (reference + away) / one;
+                        let expected = holds(func, (reference + number).clamp(0.0, one), reference);
+                        assert_eq!(
+                            passes(func, reference / one, Some(one), alpha),
+                            expected,
+                            "{func:?} {reference} {away}"
+                        );
+                        assert_eq!(passes(func, reference / one, Some(one), reference / one), holds(func, 0.0, 0.0));
+                    }
+                }
+            }
+        }
+        // Halves are rounded up, as when they are stored.
+        assert!(passes(Compare::Equal, 0.5, Some(255.0), 128.0 / 255.0));
+        assert!(passes(Compare::Greater, 0.499, Some(255.0), 0.5) && !passes(Compare::Greater, 0.5, Some(255.0), 0.5));
+        // Floating-point buffers store them as they are.
+        for func in FUNCTIONS {
+            for alpha in [-1.0, 0.0, 0.5f32.next_down(), 0.5, 0.5f32.next_up(), 7.0, f32::INFINITY, f32::NAN] {
+                assert_eq!(passes(func, 0.5, None, alpha), holds(func, alpha, 0.5), "{func:?} {alpha}");
+            }
+        }
+    }
+
     #[test]
     fn alpha_and_depth_put_the_fragment_on_the_left() {
         for (_, level) in available_levels() {
-            let alpha = [0.0, 0.98, 0.99, 1.0, 0.5, 0.2, 0.3, 0.4];
-            let bits = dispatch!(level, simd => bits_of(alpha_test(
-                simd,
-                (Compare::GreaterOrEqual, 0.99),
-                F32x8::from_slice(simd, &alpha)
-            )));
-            assert_eq!(bits, 0b1100);
+            let alpha = [0.0, 0.98, 0.99, 1.0, 0.5, 0.2, f32::NAN, 0.4];
+            for func in FUNCTIONS {
+                let Some(test) = AlphaTest::new(func, 0.99, Some(255.0)) else { continue };
+                let bits = dispatch!(level, simd => bits_of(alpha_test(simd, test, F32x8::from_slice(simd, &alpha))));
+                (0..8).for_each(|lane| assert_eq!(bits >> lane & 1 == 1, test.passes(alpha[lane]), "{func:?} {lane}"));
+            }
             let test = DepthTest { func: Compare::Less, write: true };
             let bits = dispatch!(level, simd => bits_of(depth_test(
                 simd,
@@ -97,7 +144,7 @@ mod tests {
                 F32x8::from_slice(simd, &alpha),
                 splat(simd, 0.5)
             )));
-            assert_eq!(bits, 0b1110_0001);
+            assert_eq!(bits, 0b1010_0001);
         }
     }
 }

@@ -62,10 +62,8 @@ pub(crate) struct LightingSnapshot {
 /// Where fog coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FogSource {
-    /// The distance from the eye's plane.
+    /// The depth before the eye's plane, negative behind it.
     Depth,
-    /// How far it lies ahead of the eye: as `Depth` for what is seen, but linear.
-    Ahead,
     Given,
 }
 

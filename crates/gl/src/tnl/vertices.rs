@@ -278,8 +278,7 @@ pub(crate) fn colors<S: Simd>(
             }
             None => splat(simd, snapshot.current.fog),
         },
-        Some(FogSource::Ahead) => -eye[2],
-        _ => lanes::Lanes::abs(eye[2]),
+        _ => -eye[2],
     };
     let Some(lighting) = &snapshot.lighting else {
         let secondary = if snapshot.color_sum {

@@ -418,6 +418,42 @@ fn fog_reaches_images_by_the_raster_distance() {
 }
 
 #[test]
+fn zoomed_pixels_have_their_left_and_lower_boundaries() {
+    for (zoom, origin) in [(-1.5f32, 20.0f32), (-0.5, 20.0), (-1.0, 20.5), (-1.0, 20.0), (1.0, 4.5), (1.5, 4.0)] {
+        // What columns show is the same for rows, and for pixels that are copied.
+        for (axis, copied) in [(0, false), (1, false), (0, true), (1, true)] {
+            let mut c = Stage::new(32, 32);
+            c.clear(gl::COLOR_BUFFER_BIT);
+            let size = if axis == 0 { [8, 1] } else { [1, 8] };
+            let pixels = c.put(&std::array::from_fn::<[u8; 4], 8, _>(|i| [10 * (i as u8 + 1), 0, 0, 255]));
+            let start = |c: &mut Stage, origin: f32| {
+                c.window_pos_2f(if axis == 0 { origin } else { 28.0 }, if axis == 0 { 28.0 } else { origin });
+            };
+            if copied {
+                start(&mut c, 22.0);
+                c.draw_pixels(size[0], size[1], gl::RGBA, gl::UNSIGNED_BYTE, pixels);
+            }
+            start(&mut c, origin);
+            c.pixel_zoom(if axis == 0 { zoom } else { 1.0 }, if axis == 0 { 1.0 } else { zoom });
+            if copied {
+                let from = if axis == 0 { [22, 28] } else { [28, 22] };
+                c.copy_pixels(from[0], from[1], size[0], size[1], gl::COLOR);
+            } else {
+                c.draw_pixels(size[0], size[1], gl::RGBA, gl::UNSIGNED_BYTE, pixels);
+            }
+            for at in 0..22 {
+                let center = at as f32 + 0.5;
+                let ends = |i: usize| [origin + zoom * i as f32, origin + zoom * (i + 1) as f32];
+                let holds = |i: &usize| ends(*i)[0].min(ends(*i)[1]) <= center && center < ends(*i)[0].max(ends(*i)[1]);
+                let expected = (0..8).find(holds).map_or(0, |i| 10 * (i as u8 + 1));
+                let found = if axis == 0 { c.pixel(at, 28) } else { c.pixel(28, at) };
+                assert_eq!(found[0], expected, "zoom {zoom} from {origin}, axis {axis}, copied {copied}, {at}");
+            }
+        }
+    }
+}
+
+#[test]
 fn luminance_of_unsigned_integers_is_scaled_by_their_largest() {
     let mut c = Stage::new(2, 1);
     let pixels = c.put(&[u32::MAX / 5, u32::MAX]);

@@ -285,7 +285,8 @@ impl ImageFragments {
     /// Which source column (row) the pixel in window column (row) `at` shows.
     fn source(&self, axis: usize, at: i32) -> Option<usize> {
         let place = (at as f32 + 0.5 - self.origin[axis]) / self.zoom[axis];
-        let index = place.floor();
+        // The left and the lower boundary belong to a pixel's rectangle, whichever way the image runs.
+        let index = if self.zoom[axis] < 0.0 { place.ceil() - 1.0 } else { place.floor() };
         (index >= 0.0 && index < self.size[axis] as f32).then_some(index as usize)
     }
 }

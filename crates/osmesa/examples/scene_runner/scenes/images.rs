@@ -70,11 +70,12 @@ fn index(gl: &mut Stage<'_>) {
     gl.glDrawPixels(8, 8, COLOR_INDEX, UNSIGNED_BYTE, at(&indices));
 }
 
+/// No centre lies on a border where the image runs backwards: Mesa takes it for the wrong pixel's there.
 fn zoom(gl: &mut Stage<'_>) {
     pixels(gl);
     let image = checks(8, 2);
     for (x, y, zx, zy) in
-        [(2, 2, 2.0, 3.0), (60, 4, -2.5, 1.5), (4, 60, 0.5, -3.0), (62, 62, -3.0, -3.0), (26, 34, 1.3, 0.7)]
+        [(2, 2, 2.0, 3.0), (60, 4, -2.4, 1.5), (4, 60, 0.5, -3.0), (62, 62, -3.0, -3.0), (26, 34, 1.3, 0.7)]
     {
         gl.glRasterPos2i(x, y);
         gl.glPixelZoom(zx, zy);

@@ -8,15 +8,21 @@ use vitral_math::lanes::{Level, Simd, U8x16, dispatch, orders_bytes};
 
 /// A number in 0..=1 as an unsigned integer up to `largest`.
 #[inline]
-fn unsigned(value: f32, largest: f64) -> u32 {
-    (f64::from(clamp_unit(value)) * largest + 0.5) as u32
+fn unsigned(value: f64, largest: f64) -> u32 {
+    (value.clamp(0.0, 1.0) * largest + 0.5) as u32
 }
 
 /// A number in -1..=1 as a signed integer: (largest * c - 1) / 2.
 #[inline]
-fn signed(value: f32, largest: f64) -> i64 {
-    let c = f64::from(if value.is_nan() { 0.0 } else { value.clamp(-1.0, 1.0) });
+fn signed(value: f64, largest: f64) -> i64 {
+    let c = if value.is_nan() { 0.0 } else { value.clamp(-1.0, 1.0) };
     ((largest * c - 1.0) / 2.0 + 0.5).floor() as i64
+}
+
+/// The quotient that a number may have been, of 8 or 16 bits and their largest: integers of 32 bits show how it was rounded.
+fn quotient(value: f32) -> f64 {
+    let quotient = (f64::from(value) * 65535.0).round() / 65535.0;
+    if quotient as f32 == value { quotient } else { f64::from(value) }
 }
 
 /// Appends the components at `places` of each colour, as `f` makes them bytes.
@@ -42,11 +48,11 @@ pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: 
     const WHOLE: f64 = u32::MAX as f64;
     match kind {
         UNSIGNED_BYTE => spread(colors, places, out, |v| [(clamp_unit(v) * 255.0 + 0.5) as u8]),
-        BYTE => spread(colors, places, out, |v| [signed(v, 255.0) as i8 as u8]),
-        UNSIGNED_SHORT => spread(colors, places, out, |v| (unsigned(v, 65535.0) as u16).to_ne_bytes()),
-        SHORT => spread(colors, places, out, |v| (signed(v, 65535.0) as i16).to_ne_bytes()),
-        UNSIGNED_INT => spread(colors, places, out, |v| unsigned(v, WHOLE).to_ne_bytes()),
-        INT => spread(colors, places, out, |v| (signed(v, WHOLE) as i32).to_ne_bytes()),
+        BYTE => spread(colors, places, out, |v| [signed(v.into(), 255.0) as i8 as u8]),
+        UNSIGNED_SHORT => spread(colors, places, out, |v| (unsigned(v.into(), 65535.0) as u16).to_ne_bytes()),
+        SHORT => spread(colors, places, out, |v| (signed(v.into(), 65535.0) as i16).to_ne_bytes()),
+        UNSIGNED_INT => spread(colors, places, out, |v| unsigned(quotient(v), WHOLE).to_ne_bytes()),
+        INT => spread(colors, places, out, |v| (signed(quotient(v), WHOLE) as i32).to_ne_bytes()),
         HALF_FLOAT_ARB => spread(colors, places, out, |v| half_from_float(v).to_ne_bytes()),
         _ if *places == [0, 1, 2, 3] => out.extend_from_slice(bytemuck::cast_slice(colors)),
         _ => spread(colors, places, out, f32::to_ne_bytes),
@@ -205,6 +211,19 @@ mod tests {
         assert_eq!(encoded([2.0; 4], RED, UNSIGNED_INT), u32::MAX.to_ne_bytes());
         assert_eq!(encoded([0.25, 0.5, 0.125, 1.0], LUMINANCE, FLOAT), 0.875f32.to_ne_bytes());
         assert_eq!(encoded([1.0, 0.0, 0.0, 0.0], RGB, UNSIGNED_SHORT_5_6_5), 0xf800u16.to_ne_bytes());
+    }
+
+    #[test]
+    fn bytes_repeat_in_larger_integers() {
+        for byte in 0..=255u8 {
+            let color = [f32::from(byte) / 255.0; 4];
+            let whole = u32::from_ne_bytes([byte; 4]);
+            assert_eq!(encoded(color, RED, UNSIGNED_SHORT), [byte; 2]);
+            assert_eq!(encoded(color, RED, UNSIGNED_INT), [byte; 4]);
+            // (2^32 - 1) c - 1 is halved; halves may go either way.
+            let found = i32::from_ne_bytes(encoded(color, RED, INT).try_into().unwrap());
+            assert!((i64::from(found) * 2 + 1 - i64::from(whole)).abs() <= 1, "{byte}: {found}");
+        }
     }
 
     #[test]

@@ -44,12 +44,15 @@ impl Context {
 
     /// `glClipPlane`.
     pub fn clip_plane(&mut self, plane: u32, equation: usize) {
-        let Some(given) = self.take_arguments::<f64, 4>("glClipPlane", equation, 4) else { return };
+        let index = index_in(plane, gl::CLIP_PLANE0, MAX_CLIP_PLANES);
+        // Of what is no plane the equation is not read: it may be nowhere.
+        let given = index.map_or(Some([0.0; 4]), |_| self.take_arguments("glClipPlane", equation, 4));
+        let Some(given) = given else { return };
         self.listable(move |c| {
             if !c.may_set("glClipPlane") {
                 return;
             }
-            match index_in(plane, gl::CLIP_PLANE0, MAX_CLIP_PLANES) {
+            match index {
                 Some(i) => c.state.clip_planes[i] = c.eye_plane(given),
                 None => c.refuse_enum("glClipPlane", "plane", plane),
             }
@@ -99,8 +102,12 @@ mod tests {
         c.get_clip_plane(gl::CLIP_PLANE0 + 7, RESULT);
         // z >= -2 in the model is z >= -7 for the eye.
         assert_eq!(take::<f64, 4>(&c), [0.0, 0.0, 1.0, 7.0]);
-        c.clip_plane(gl::CLIP_PLANE0 + 8, at);
-        assert_eq!(c.get_error(), gl::INVALID_ENUM);
+        for at in [at, 0] {
+            c.clip_plane(gl::CLIP_PLANE0 + 8, at);
+            assert_eq!(c.get_error(), gl::INVALID_ENUM);
+        }
+        c.clip_plane(gl::CLIP_PLANE0, 0);
+        assert_eq!(c.get_error(), gl::INVALID_VALUE);
         c.scalef(0.0, 0.0, 0.0);
         c.clip_plane(gl::CLIP_PLANE0, at);
         assert_eq!(c.state.clip_planes[0], [0.0, 0.0, 1.0, 2.0]);

@@ -195,6 +195,7 @@ impl DefaultFramebuffer {
         let (token, storage) = match kind {
             UNSIGNED_SHORT => (if base == RGB { RGB16 } else { RGBA16 }, Storage::Unorm16),
             FLOAT => (if base == RGB { RGB32F_ARB } else { RGBA32F_ARB }, Storage::Float),
+            UNSIGNED_SHORT_5_6_5 => (RGB565, Storage::Unorm8),
             _ => (if base == RGB { RGB8 } else { RGBA8 }, Storage::Unorm8),
         };
         let mut color = surface(InternalFormat { token, base, storage }, viewport);
@@ -557,6 +558,7 @@ mod tests {
         fill(&mut c, 0, 0, 0xff00_00ff);
         c.store_default_framebuffer();
         assert_eq!(get(&c, BASE), 0xf800u16.to_ne_bytes());
+        assert_eq!(c.framebuffer_bits().color, [5, 6, 5, 0]);
         c.configure_default_framebuffer(OSMESA_BGR, 0, 0, 0);
         assert!(c.make_current(BASE, UNSIGNED_SHORT, 1, 1));
         fill(&mut c, 0, 0, 0xff00_00ff);

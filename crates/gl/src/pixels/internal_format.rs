@@ -186,6 +186,8 @@ impl InternalFormat {
             INTENSITY => Bits { intensity: size, ..none },
             RED => Bits { rgba: [size, 0, 0, 0], ..none },
             RG => Bits { rgba: [size, size, 0, 0], ..none },
+            // Kept in 8 bits, but not by the client.
+            RGB if self.token == RGB565 => Bits { rgba: [5, 6, 5, 0], ..none },
             RGB => Bits { rgba: [size, size, size, 0], ..none },
             RGBA => Bits { rgba: [size; 4], ..none },
             DEPTH_COMPONENT => Bits { depth: size, ..none },

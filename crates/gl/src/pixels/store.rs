@@ -233,8 +233,8 @@ pub(crate) fn drawable([width, height]: [i32; 2]) -> Option<[usize; 3]> {
 }
 
 impl Context {
-    /// Reads an image with the unpacking state. `None` without an address, or if the memory is not the client's. What a bound
-    /// buffer does not hold is an error.
+    /// Reads an image with the unpacking state. `None` without an address, between Begin and End, where no image belongs, or if
+    /// the memory is not the client's. What a bound buffer does not hold is an error.
     pub(crate) fn read_image(
         &self,
         format: PixelFormat,
@@ -243,7 +243,7 @@ impl Context {
         address: usize,
     ) -> Result<Option<ClientImage>, Failure> {
         let bound = self.client.unpack.buffer != 0;
-        if address == 0 && !bound {
+        if (address == 0 && !bound) || (self.inside_begin() && !self.lists.recording) {
             return Ok(None);
         }
         let (memory, address) = self.unpack_memory(address, format.element_bytes())?;

@@ -154,7 +154,10 @@ impl Context {
             return;
         }
         let image = match (&pair, &checked) {
-            (Ok(pair), Ok(checked)) if formats_agree(*pair, &checked.format).is_ok() => {
+            (Ok(pair), Ok(checked))
+                if formats_agree(*pair, &checked.format).is_ok()
+                    && (self.lists.recording || self.may_get_image(checked.target).is_ok()) =>
+            {
                 plausible(size).map_or(Ok(None), |s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
             }
             _ => Ok(None),

@@ -63,6 +63,16 @@ impl Context {
         Ok(CheckedBox { target, level, format: image.format, origin, size })
     }
 
+    /// Checks a box, and pixels of `format` for it.
+    fn check_sub_image(
+        &mut self,
+        arguments: &BoxArguments,
+        format: Result<PixelFormat, Failure>,
+    ) -> Result<CheckedBox, Failure> {
+        let checked = self.check_box(arguments)?;
+        formats_agree(format?, &checked.format).map(|()| checked)
+    }
+
     /// Puts texels into a checked box.
     pub(crate) fn write_box(&mut self, checked: &CheckedBox, data: &TexelData) {
         if checked.size.contains(&0) {
@@ -93,10 +103,11 @@ impl Context {
 
     fn tex_sub_image(&mut self, arguments: BoxArguments, format: u32, kind: u32, pixels: usize) {
         let pair = PixelFormat::new(format, kind);
-        let image = match pair {
-            Ok(pair) => plausible(arguments.size)
-                .map_or(Ok(None), |size| self.read_image(pair, size, arguments.dimensions == 3, pixels)),
-            Err(_) => Ok(None),
+        // What a list holds is checked when it is executed; nothing else is read for a call that is an error.
+        let good = self.lists.recording || self.check_sub_image(&arguments, pair).is_ok();
+        let image = match (pair, plausible(arguments.size)) {
+            (Ok(pair), Some(size)) if good => self.read_image(pair, size, arguments.dimensions == 3, pixels),
+            _ => Ok(None),
         };
         let image = match image {
             Ok(image) => image,
@@ -117,8 +128,7 @@ impl Context {
         if !self.outside_begin(arguments.call) {
             return;
         }
-        let checked = self.check_box(arguments).and_then(|c| formats_agree(format?, &c.format).map(|()| c));
-        match (checked, image) {
+        match (self.check_sub_image(arguments, format), image) {
             (Err((error, why)), _) => self.record_error(error, arguments.call, why),
             (Ok(_), None) => {}
             (Ok(checked), Some(image)) => {
@@ -294,6 +304,9 @@ impl Context {
 mod tests {
     use super::super::testing::{BASE, context};
     use super::*;
+    use crate::memory::ClientMemory;
+    use crate::objects::Shared;
+    use std::sync::Arc;
 
     #[test]
     fn boxes_must_lie_inside() {
@@ -315,6 +328,52 @@ mod tests {
         assert_eq!(error(0, 6), INVALID_VALUE);
         assert_eq!(error(0, -1), INVALID_VALUE);
         assert_eq!(error(i32::MAX, i32::MAX), INVALID_VALUE);
+    }
+
+    /// Memory that nobody may touch.
+    #[derive(Debug)]
+    struct Forbidden;
+
+    impl ClientMemory for Forbidden {
+        fn read(&self, _address: usize, _out: &mut [u8]) -> bool {
+            panic!("the client's memory is read")
+        }
+        fn write(&self, _address: usize, _bytes: &[u8]) -> bool {
+            panic!("the client's memory is written")
+        }
+        fn map(&self, _bytes: Vec<u8>) -> usize {
+            0
+        }
+        fn unmap(&self, _address: usize) -> Option<Vec<u8>> {
+            None
+        }
+    }
+
+    #[test]
+    fn wrong_calls_read_nothing() {
+        let mut c = Context::new(Arc::new(Forbidden), Arc::new(Shared::default()));
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, 0);
+        let mut error = |target, level, size, format| {
+            c.error = NO_ERROR;
+            c.tex_sub_image_2d(target, level, 0, 0, size, size, format, UNSIGNED_BYTE, BASE);
+            c.error
+        };
+        assert_eq!(error(TEXTURE_2D, 0, 100, RGBA), INVALID_VALUE);
+        assert_eq!(error(TEXTURE_2D, 3, 4, RGBA), INVALID_OPERATION);
+        assert_eq!(error(TEXTURE_2D, 0, 4, DEPTH_COMPONENT), INVALID_OPERATION);
+        assert_eq!(error(PROXY_TEXTURE_2D, 0, 4, RGBA), INVALID_ENUM);
+        c.error = NO_ERROR;
+        c.begin(POINTS);
+        c.tex_sub_image_2d(TEXTURE_2D, 0, 0, 0, 4, 4, RGBA, UNSIGNED_BYTE, BASE);
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, BASE);
+        c.draw_pixels(4, 4, RGBA, UNSIGNED_BYTE, BASE);
+        c.end();
+        assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
+        c.bind_texture(TEXTURE_2D, 1);
+        c.tex_storage_2d(TEXTURE_2D, 1, RGBA8, 4, 4);
+        assert_eq!(c.error, NO_ERROR);
+        c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, BASE);
+        assert_eq!(c.error, INVALID_OPERATION);
     }
 
     #[test]

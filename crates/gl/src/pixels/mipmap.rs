@@ -188,16 +188,16 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
 /// Makes the levels after the base level of some faces. What is recorded must have run if the texture is stale.
 pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
     let Some(base) = texture.base_level() else { return };
+    let used = texture.dimensions();
     for face in faces {
         let Some(image) = texture.image(face, base) else { continue };
-        if image.size.contains(&0) {
+        let (format, border, mut inner) = (image.format, image.border, image.size);
+        inner[..used].iter_mut().for_each(|s| *s -= 2 * border);
+        // There is nothing to filter between borders that meet.
+        if inner.contains(&0) {
             continue;
         }
-        let (format, border) = (image.format, image.border);
         let mut level = image.level();
-        let mut inner = texture.image(face, base).map_or([1; 3], |i| std::array::from_fn(|k| i.size[k]));
-        let used = texture.dimensions();
-        inner[..used].iter_mut().for_each(|s| *s -= 2 * border);
         let largest = inner[..used].iter().max().map_or(1, |&s| s.max(1));
         let limit = usize::try_from(texture.parameters.levels[1]).unwrap_or(0);
         let last = (base + largest.ilog2() as usize).min(limit);
@@ -302,6 +302,17 @@ mod tests {
         lock(&texture).set_image(0, 1, None);
         c.call_list(1);
         assert!(lock(&texture).image(0, 1).is_none());
+    }
+
+    #[test]
+    fn borders_without_an_interior_have_no_levels() {
+        let mut c = super::super::testing::context();
+        for (width, height) in [(2, 6), (6, 2), (2, 2)] {
+            c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, width, height, 1, RGBA, UNSIGNED_BYTE, 0);
+            c.generate_mipmap(TEXTURE_2D);
+        }
+        assert_eq!(c.error, NO_ERROR);
+        assert!(lock(&c.bound_texture(0, slot::TWO)).image(0, 1).is_none());
     }
 
     #[test]

@@ -332,12 +332,9 @@ impl Context {
     pub(crate) fn set_object_buffer(&mut self, draw: bool, buffer: u32) {
         let name = if draw { self.framebuffers.draw } else { self.framebuffers.read };
         if let Some(Some(object)) = self.framebuffers.objects.get_mut(&name) {
-            if draw {
-                object.draw_buffer = buffer;
-                self.framebuffers.changed();
-            } else {
-                object.read_buffer = buffer;
-            }
+            // A read buffer that is missing makes a framebuffer incomplete, too.
+            *(if draw { &mut object.draw_buffer } else { &mut object.read_buffer }) = buffer;
+            self.framebuffers.changed();
         }
     }
 }

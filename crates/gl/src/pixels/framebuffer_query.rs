@@ -187,6 +187,23 @@ mod tests {
     }
 
     #[test]
+    fn a_read_buffer_that_is_missing_is_noticed() {
+        let mut c = context();
+        bind_new(&mut c);
+        c.bind_renderbuffer_ext(RENDERBUFFER, 1);
+        c.renderbuffer_storage(RENDERBUFFER, RGBA8, 4, 4);
+        c.framebuffer_renderbuffer(FRAMEBUFFER, COLOR_ATTACHMENT0, RENDERBUFFER, 1);
+        let mut error = |buffer| {
+            c.read_buffer(buffer);
+            c.clear(COLOR_BUFFER_BIT);
+            std::mem::take(&mut c.error)
+        };
+        assert_eq!(error(COLOR_ATTACHMENT0), NO_ERROR);
+        assert_eq!(error(COLOR_ATTACHMENT0 + 1), INVALID_FRAMEBUFFER_OPERATION);
+        assert_eq!(error(COLOR_ATTACHMENT0), NO_ERROR);
+    }
+
+    #[test]
     fn attachments_are_checked() {
         let mut c = context();
         c.framebuffer_renderbuffer(FRAMEBUFFER, COLOR_ATTACHMENT0, RENDERBUFFER, 0);

@@ -2,7 +2,8 @@
 
 use super::Failure;
 use super::copy_plane::{
-    Axis, Job, average_colors, average_words, converted, copy, first_sample, resolved, scale_linear, scale_nearest,
+    Axis, Job, average_colors, average_words, converted, copy, first_sample, kept, resolved, scale_linear,
+    scale_nearest,
 };
 use super::image::{Shared, lock};
 use super::target::Surfaces;
@@ -199,7 +200,9 @@ impl Context {
         if let (true, Some(from), Some(to)) = (wants(COLOR_BUFFER_BIT), &read.color, &draw.color)
             && let (Some(a), Some(b)) = (&from.color, &to.color)
         {
-            with_both(a, b, |a, b| plan.colors(a, b));
+            // Of equal formats nothing needs to change.
+            let other = to.format.missing() != from.format.missing();
+            with_both(a, b, |a, b| if other { plan.colors(&kept(a, &to.format), b) } else { plan.colors(a, b) });
         }
         if let (true, Some(from), Some(to)) = (wants(DEPTH_BUFFER_BIT), &read.depth, &draw.depth)
             && let (Some(a), Some(b)) = (&from.depth, &to.depth)
@@ -283,6 +286,27 @@ mod tests {
         assert_eq!([4, 5, 6, 7].map(|x| pixel(&mut c, x, 1)), [30, 30, 10, 10]);
         assert_eq!([0, 1, 2, 3].map(|x| pixel(&mut c, x, 6)), [10, 15, 25, 30]);
         assert_eq!([0, 1].map(|x| pixel(&mut c, x, 7)), [30, 0]);
+    }
+
+    #[test]
+    fn components_that_are_not_stored_are_not_copied() {
+        let mut c = context_with(4, 4);
+        let source = framebuffer(&mut c, 0, 2, 2);
+        draw(&mut c, 0, 0, &[0x4030_2010]);
+        for (format, kept) in [(RGB8, 0xff30_2010), (R8, 0xff00_0010), (LUMINANCE8_ALPHA8, 0x4000_0010)] {
+            framebuffer(&mut c, 0, 2, 2);
+            c.gen_renderbuffers(1, BASE);
+            let renderbuffer = read_u32(&c, BASE);
+            c.bind_renderbuffer(RENDERBUFFER, renderbuffer);
+            c.renderbuffer_storage(RENDERBUFFER, format, 2, 2);
+            c.framebuffer_renderbuffer(FRAMEBUFFER, COLOR_ATTACHMENT0, RENDERBUFFER, renderbuffer);
+            c.bind_framebuffer(READ_FRAMEBUFFER, source);
+            c.blit_framebuffer(0, 0, 1, 1, 1, 1, 2, 2, COLOR_BUFFER_BIT, NEAREST);
+            let (plane, _) = c.draw_color().unwrap();
+            let ColorPlane::Rgba8(plane) = &*lock(&plane) else { panic!() };
+            assert_eq!(plane.get(1, 1, 0), kept);
+        }
+        assert_eq!(c.error, NO_ERROR);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Copies of plane to plane: equal rectangles tile by tile, with the resolve of samples, and scaled ones.
 
+use super::internal_format::InternalFormat;
 use super::mipmap::average4;
 use super::texels::{color_from_word, word_from_color};
 use vitral_exec::Workers;
@@ -117,16 +118,25 @@ fn copy_rows<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, job: Job, resolve: R
     }
 }
 
+fn map<T: Copy, U: Copy>(plane: &Plane<T>, f: impl Fn(T) -> U) -> Plane<U> {
+    let first = plane.get(0, 0, 0);
+    let mut out = Plane::new(plane.viewport(), plane.samples(), f(first));
+    for (tile, source) in out.tiles.iter_mut().zip(&plane.tiles) {
+        *tile = source.map(&f);
+    }
+    out
+}
+
+/// A plane's colours as a framebuffer of `format` keeps them.
+pub(crate) fn kept(plane: &ColorPlane, format: &InternalFormat) -> ColorPlane {
+    match plane {
+        ColorPlane::Rgba8(p) => ColorPlane::Rgba8(map(p, |w| format.kept_word(w))),
+        ColorPlane::RgbaF32(p) => ColorPlane::RgbaF32(map(p, |c| format.kept(c))),
+    }
+}
+
 /// A plane of the other kind with the same colours.
 pub(crate) fn converted(plane: &ColorPlane, bytes: bool) -> ColorPlane {
-    fn map<T: Copy, U: Copy>(plane: &Plane<T>, f: impl Fn(T) -> U) -> Plane<U> {
-        let first = plane.get(0, 0, 0);
-        let mut out = Plane::new(plane.viewport(), plane.samples(), f(first));
-        for (tile, source) in out.tiles.iter_mut().zip(&plane.tiles) {
-            *tile = source.map(&f);
-        }
-        out
-    }
     match plane {
         ColorPlane::Rgba8(p) if !bytes => ColorPlane::RgbaF32(map(p, color_from_word)),
         ColorPlane::RgbaF32(p) if bytes => ColorPlane::Rgba8(map(p, word_from_color)),

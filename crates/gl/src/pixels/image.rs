@@ -6,7 +6,7 @@
 
 use super::internal_format::{InternalFormat, Storage};
 use super::store::MAX_IMAGE_BYTES;
-use super::texels::{self, TexelData, color_from_word, stored_depth, word_from_color};
+use super::texels::{self, TexelData, color_from_word, stored_depth};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_raster::Viewport;
@@ -22,13 +22,9 @@ pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// A new plane for colours of `format`, as a framebuffer stores them.
 pub(crate) fn new_color_plane(format: &InternalFormat, viewport: Viewport, samples: usize) -> ColorPlane {
-    // What the format does not store reads as 0, alpha as 1.
-    let alpha = if format.missing()[3] { 1.0 } else { 0.0 };
     match format.storage {
-        Storage::Unorm8 | Storage::Srgb8 => {
-            ColorPlane::Rgba8(Plane::new(viewport, samples, word_from_color([0.0, 0.0, 0.0, alpha])))
-        }
-        _ => ColorPlane::RgbaF32(Plane::new(viewport, samples, [0.0, 0.0, 0.0, alpha])),
+        Storage::Unorm8 | Storage::Srgb8 => ColorPlane::Rgba8(Plane::new(viewport, samples, format.kept_word(0))),
+        _ => ColorPlane::RgbaF32(Plane::new(viewport, samples, format.kept([0.0; 4]))),
     }
 }
 
@@ -183,7 +179,7 @@ impl TextureImage {
         let Some(level) = &self.level else { return };
         for (layer, plane) in self.colors.iter().enumerate() {
             if let Some(plane) = plane {
-                fill_color_plane(&mut lock(plane), level, layer);
+                fill_color_plane(&mut lock(plane), &self.format, level, layer);
             }
         }
     }
@@ -200,7 +196,7 @@ impl TextureImage {
         }
         let mut plane = new_color_plane(&self.format, viewport, 1);
         if let Some(level) = &self.level {
-            fill_color_plane(&mut plane, level, layer);
+            fill_color_plane(&mut plane, &self.format, level, layer);
         }
         let plane = Arc::new(Mutex::new(plane));
         self.colors[layer] = Some(plane.clone());
@@ -340,17 +336,19 @@ impl TextureImage {
     }
 }
 
-/// Copies layer `layer` of a level into a plane.
-fn fill_color_plane(plane: &mut ColorPlane, level: &Level, layer: usize) {
+/// Copies layer `layer` of a level into a plane: texels are expanded, a framebuffer keeps what its format stores.
+fn fill_color_plane(plane: &mut ColorPlane, format: &InternalFormat, level: &Level, layer: usize) {
     let [width, height] = [level.size[0] as usize, level.size[1] as usize];
     for y in 0..height {
         let first = (layer * height + y) * width;
         match (&mut *plane, level.texels()) {
             (ColorPlane::Rgba8(plane), Texels::Rgba8(texels) | Texels::Srgb8(texels)) => {
-                plane.write_row(0, y as u32, &texels[first..first + width]);
+                let row: Vec<_> = texels[first..first + width].iter().map(|&w| format.kept_word(w)).collect();
+                plane.write_row(0, y as u32, &row);
             }
             (ColorPlane::RgbaF32(plane), Texels::RgbaF32(texels)) => {
-                plane.write_row(0, y as u32, &texels[first..first + width]);
+                let row: Vec<_> = texels[first..first + width].iter().map(|&c| format.kept(c)).collect();
+                plane.write_row(0, y as u32, &row);
             }
             _ => {}
         }
@@ -410,6 +408,17 @@ mod tests {
         image.write([0; 3], [1, 1, 1], &TexelData::Words(vec![0xff00_0001]));
         let ColorPlane::Rgba8(samples) = &*lock(&plane) else { panic!() };
         assert_eq!(samples.get(0, 0, 0), 0xff00_0001);
+    }
+
+    #[test]
+    fn planes_keep_what_their_format_stores() {
+        for (token, kept) in [(INTENSITY, 0xff00_0010), (LUMINANCE_ALPHA, 0x1000_0010), (ALPHA, 0x1000_0000)] {
+            let mut image = image(token, [1, 1, 1]);
+            image.replace(TexelData::Words(vec![0x1010_1010]));
+            let plane = image.color_plane(0).unwrap();
+            let ColorPlane::Rgba8(plane) = &*lock(&plane) else { panic!() };
+            assert_eq!(plane.get(0, 0, 0), kept);
+        }
     }
 
     #[test]

@@ -170,6 +170,20 @@ impl InternalFormat {
         }
     }
 
+    /// A colour as a framebuffer of this format keeps it: what is not stored is 0, alpha 1, for blending reads it.
+    pub(crate) fn kept(&self, color: [f32; 4]) -> [f32; 4] {
+        let missing = self.missing();
+        std::array::from_fn(|c| if missing[c] { f32::from(u8::from(c == 3)) } else { color[c] })
+    }
+
+    /// As [`Self::kept`], of a word with red in the lowest byte.
+    pub(crate) fn kept_word(&self, word: u32) -> u32 {
+        let missing = self.missing();
+        let byte = |c: usize, byte: u8| if missing[c] { if c == 3 { 255 } else { 0 } } else { byte };
+        let bytes = word.to_le_bytes();
+        u32::from_le_bytes(std::array::from_fn(|c| byte(c, bytes[c])))
+    }
+
     /// Sizes of the components.
     pub(crate) fn bits(&self) -> Bits {
         let size = match self.storage {
@@ -322,6 +336,9 @@ mod tests {
             let color = format.expand([51.0, 102.0, 153.0, 204.0].map(|v| v / 255.0));
             let word = u32::from_le_bytes(color.map(|v| (v * 255.0 + 0.5) as u8));
             assert_eq!(format.expand_word(u32::from_le_bytes([51, 102, 153, 204])), word);
+            let kept = format.kept([51.0, 102.0, 153.0, 204.0].map(|v| v / 255.0));
+            let word = u32::from_le_bytes(kept.map(|v| (v * 255.0 + 0.5) as u8));
+            assert_eq!(format.kept_word(u32::from_le_bytes([51, 102, 153, 204])), word);
         }
     }
 }

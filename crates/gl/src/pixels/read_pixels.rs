@@ -55,12 +55,8 @@ pub(crate) fn read_colors(plane: &ColorPlane, format: &InternalFormat, r: &Recta
             ColorPlane::RgbaF32(plane) => plane.read_row(r.x, r.y + y as u32, 0, row),
         }
     }
-    let missing = format.missing();
-    if missing != [false; 4] {
-        let constant = [0.0, 0.0, 0.0, 1.0];
-        for color in &mut out {
-            (0..4).filter(|&c| missing[c]).for_each(|c| color[c] = constant[c]);
-        }
+    if format.missing() != [false; 4] {
+        out.iter_mut().for_each(|color| *color = format.kept(*color));
     }
     out
 }

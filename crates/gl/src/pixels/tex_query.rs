@@ -7,7 +7,7 @@ use super::image::lock;
 use super::internal_format::Bits;
 use super::store::{Region, write_region};
 use super::texture::{ImageTarget, TextureObject};
-use super::transfer::{Transfer, clamp_colors, clamp_unit};
+use super::transfer::clamp_colors;
 use crate::Context;
 use crate::enums::*;
 
@@ -128,11 +128,10 @@ impl Context {
         if (pixels == 0 && self.client.pack.buffer == 0) || full.contains(&0) {
             return Ok(());
         }
-        let transfer = Transfer::new(&self.state.pixel);
+        // No pixel transfer here, unlike in `ReadPixels`.
         let mut bytes = Vec::new();
         if format.content() == Content::Color {
             let mut colors = image.colors();
-            transfer.colors(&mut colors);
             if image.format.component_type() != FLOAT || !matches!(kind, FLOAT | HALF_FLOAT_ARB) {
                 clamp_colors(&mut colors);
             }
@@ -142,17 +141,11 @@ impl Context {
             }
             encode::colors(&colors, format, &mut bytes);
         } else {
-            let mut depths = image.depths();
-            transfer.depths(&mut depths);
-            if !transfer.keeps_depths() {
-                depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
-            }
+            let depths = image.depths();
             if format.content() == Content::Depth {
                 encode::depths(&depths, format, &mut bytes);
             } else {
-                let mut stencils = image.stencils();
-                stencils.iter_mut().for_each(|s| *s = (transfer.stencil(i64::from(*s)) & 255) as u8);
-                encode::depth_stencils(&depths, &stencils, kind, &mut bytes);
+                encode::depth_stencils(&depths, &image.stencils(), kind, &mut bytes);
             }
         }
         let region = Region::whole(full, dimensions == 3);
@@ -204,6 +197,24 @@ mod tests {
         c.tex_image_1d(TEXTURE_1D, 0, RGB32F_ARB as i32, 1, 0, RGB, FLOAT, BASE);
         c.get_tex_image(TEXTURE_1D, 0, RGB, FLOAT, BASE + 64);
         assert_eq!(read_floats(&c, BASE + 64), [-2.5, 1000.0, 0.1]);
+    }
+
+    #[test]
+    fn pixel_transfer_leaves_texels_alone() {
+        let mut c = context();
+        put(&c, BASE, &[10, 20, 30, 40]);
+        c.tex_image_1d(TEXTURE_1D, 0, RGBA as i32, 1, 0, RGBA, UNSIGNED_BYTE, BASE);
+        c.pixel_transferf(RED_SCALE, 2.0);
+        c.pixel_transferf(GREEN_BIAS, 0.5);
+        c.get_tex_image(TEXTURE_1D, 0, RGBA, UNSIGNED_BYTE, BASE + 64);
+        assert_eq!(get(&c, BASE + 64), [10, 20, 30, 40]);
+        put(&c, BASE, &0x1234_5678u32.to_ne_bytes());
+        c.tex_image_1d(TEXTURE_1D, 0, DEPTH24_STENCIL8 as i32, 1, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE);
+        c.pixel_transferf(DEPTH_SCALE, 0.5);
+        c.pixel_transferi(INDEX_OFFSET, 1);
+        c.get_tex_image(TEXTURE_1D, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE + 64);
+        assert_eq!(get(&c, BASE + 64), 0x1234_5678u32.to_ne_bytes());
+        assert_eq!(c.error, NO_ERROR);
     }
 
     #[test]

@@ -141,6 +141,7 @@ impl Context {
         for name in self.read_names("glDeleteTextures", n, textures) {
             let removed = if name == 0 { None } else { lock(&self.shared.textures).remove(&name) };
             let Some(removed) = removed else { continue };
+            self.forget_label(TEXTURE, name);
             for unit in &mut self.state.units {
                 unit.bindings.iter_mut().filter(|bound| **bound == name).for_each(|bound| *bound = 0);
             }

@@ -120,6 +120,7 @@ impl Context {
             if name == 0 || self.framebuffers.objects.remove(&name).is_none() {
                 continue;
             }
+            self.forget_label(FRAMEBUFFER, name);
             if self.framebuffers.draw == name {
                 self.framebuffers.draw = 0;
             }

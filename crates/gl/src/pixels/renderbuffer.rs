@@ -73,6 +73,7 @@ impl Context {
         for name in self.read_names("glDeleteRenderbuffers", n, renderbuffers) {
             let removed = if name == 0 { None } else { lock(&self.shared.renderbuffers).remove(&name) };
             let Some(removed) = removed else { continue };
+            self.forget_label(RENDERBUFFER, name);
             if self.framebuffers.renderbuffer == name {
                 self.framebuffers.renderbuffer = 0;
             }

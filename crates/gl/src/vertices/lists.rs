@@ -233,6 +233,7 @@ impl Context {
         let lists: Vec<_> = doomed.iter().filter_map(|name| names.remove(name)).collect();
         drop(names);
         drop(lists);
+        doomed.iter().for_each(|&name| self.forget_label(enums::DISPLAY_LIST, name));
     }
 
     /// `glIsList`.

@@ -132,6 +132,38 @@ mod tests {
     }
 
     #[test]
+    fn labels_go_with_their_objects() {
+        let mut c = context();
+        let name = put(&c, b"\x03\0\0\0old\0");
+        let make = |c: &mut Context| {
+            c.bind_texture(gl::TEXTURE_2D, 3);
+            c.bind_buffer(gl::ARRAY_BUFFER, 3);
+            c.bind_framebuffer_ext(gl::FRAMEBUFFER, 3);
+            c.bind_renderbuffer_ext(gl::RENDERBUFFER, 3);
+            c.gen_vertex_arrays(3, RESULT);
+            c.bind_vertex_array(3);
+            c.new_list(3, gl::COMPILE);
+            c.end_list();
+        };
+        make(&mut c);
+        let kinds = [gl::TEXTURE, gl::BUFFER, gl::FRAMEBUFFER, gl::RENDERBUFFER, gl::VERTEX_ARRAY, gl::DISPLAY_LIST];
+        for kind in kinds {
+            c.object_label(kind, 3, -1, name + 4);
+        }
+        c.delete_textures(1, name);
+        c.delete_buffers(1, name);
+        c.delete_framebuffers(1, name);
+        c.delete_renderbuffers(1, name);
+        c.delete_vertex_arrays(1, name);
+        c.delete_lists(3, 1);
+        make(&mut c);
+        for kind in kinds {
+            c.get_object_label(kind, 3, 4, RESULT, 0);
+            assert_eq!((take::<i32, 1>(&c), c.get_error()), ([0], gl::NO_ERROR), "{kind:#x}");
+        }
+    }
+
+    #[test]
     fn errors() {
         let mut c = context();
         c.object_label(gl::QUERY, 4, 0, 0);

@@ -10,6 +10,7 @@ mod repeats;
 
 use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::Context;
+use crate::enums::BUFFER;
 use crate::objects::Names;
 use crate::state::{ArrayPointer, ClientState};
 
@@ -62,6 +63,7 @@ impl ClientState {
 impl Context {
     /// A buffer is deleted: it is no longer bound anywhere.
     pub(super) fn forget_buffer(&mut self, name: u32) {
+        self.forget_label(BUFFER, name);
         let client = &mut self.client;
         let (pack, unpack) = (&mut client.pack.buffer, &mut client.unpack.buffer);
         let [read, write] = &mut client.copy_buffers;

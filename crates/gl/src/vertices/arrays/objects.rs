@@ -65,6 +65,7 @@ impl Context {
                     self.bind_vertex_array(0);
                 }
                 self.arrays.objects.remove(&name);
+                self.forget_label(enums::VERTEX_ARRAY, name);
             }
         }
     }

@@ -52,6 +52,8 @@ impl RenderbufferStorage {
 pub(crate) struct Renderbuffer {
     /// Its name.
     pub name: u32,
+    /// What was asked for: format, width, height, samples.
+    asked: Option<(InternalFormat, [i32; 2], usize)>,
     /// `None` if no storage was asked for, or of size 0.
     pub storage: Option<RenderbufferStorage>,
 }
@@ -113,7 +115,7 @@ impl Context {
                 self.record_error(INVALID_OPERATION, call, "the name was not generated");
                 return;
             }
-            let new = || Arc::new(Mutex::new(Renderbuffer { name, storage: None }));
+            let new = || Arc::new(Mutex::new(Renderbuffer { name, ..Renderbuffer::default() }));
             names.entry(name).or_default().get_or_insert_with(new);
         }
         self.framebuffers.renderbuffer = name;
@@ -184,7 +186,9 @@ impl Context {
         let Some(renderbuffer) = self.bound_renderbuffer(call) else { return };
         let samples = if samples == 0 { 0 } else { MAX_SAMPLES };
         let viewport = Viewport::new(width as u32, height as u32);
-        lock(&renderbuffer).storage = viewport.map(|v| RenderbufferStorage::new(format, v, samples));
+        let mut renderbuffer = lock(&renderbuffer);
+        renderbuffer.asked = Some((format, [width, height], samples));
+        renderbuffer.storage = viewport.map(|v| RenderbufferStorage::new(format, v, samples));
         self.shared.storage_changed();
     }
 
@@ -195,13 +199,14 @@ impl Context {
             return;
         }
         let Some(renderbuffer) = self.bound_renderbuffer(CALL) else { return };
-        let storage = lock(&renderbuffer).storage.clone();
-        let bits = storage.as_ref().map_or(Bits::default(), |s| s.format.bits());
+        let asked = lock(&renderbuffer).asked;
+        let (token, bits) = asked.map_or((RGBA, Bits::default()), |(format, ..)| (format.token, format.bits()));
+        let ([width, height], samples) = asked.map_or(([0; 2], 0), |(_, size, samples)| (size, samples));
         let value = match pname {
-            RENDERBUFFER_WIDTH => storage.map_or(0, |s| s.viewport.width as i32),
-            RENDERBUFFER_HEIGHT => storage.map_or(0, |s| s.viewport.height as i32),
-            RENDERBUFFER_INTERNAL_FORMAT => storage.map_or(RGBA, |s| s.format.token) as i32,
-            RENDERBUFFER_SAMPLES => storage.map_or(0, |s| s.samples as i32),
+            RENDERBUFFER_WIDTH => width,
+            RENDERBUFFER_HEIGHT => height,
+            RENDERBUFFER_INTERNAL_FORMAT => token as i32,
+            RENDERBUFFER_SAMPLES => samples as i32,
             RENDERBUFFER_RED_SIZE => bits.rgba[0],
             RENDERBUFFER_GREEN_SIZE => bits.rgba[1],
             RENDERBUFFER_BLUE_SIZE => bits.rgba[2],
@@ -242,6 +247,14 @@ mod tests {
         assert_eq!(get(RENDERBUFFER_DEPTH_SIZE), 32);
         assert_eq!(get(RENDERBUFFER_STENCIL_SIZE), 8);
         assert_eq!(get(RENDERBUFFER_WIDTH), 640);
+        // Nothing to draw to is something to ask about.
+        c.renderbuffer_storage(RENDERBUFFER, DEPTH_COMPONENT24, 0, 5);
+        let mut get = |pname| {
+            c.get_renderbuffer_parameteriv(RENDERBUFFER, pname, BASE);
+            read_u32(&c, BASE)
+        };
+        assert_eq!([RENDERBUFFER_WIDTH, RENDERBUFFER_HEIGHT, RENDERBUFFER_DEPTH_SIZE].map(&mut get), [0, 5, 24]);
+        assert_eq!(get(RENDERBUFFER_INTERNAL_FORMAT), DEPTH_COMPONENT24);
         let mut error = |samples, format, width| {
             c.error = NO_ERROR;
             c.renderbuffer_storage_multisample(RENDERBUFFER, samples, format, width, 1);

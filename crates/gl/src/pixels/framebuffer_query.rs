@@ -74,13 +74,17 @@ impl Context {
             _ if colors.contains(&attachment) => (attachment - COLOR_ATTACHMENT0) as usize,
             _ => return Err((INVALID_ENUM, "attachment is not an attachment point")),
         };
+        if attachment == DEPTH_STENCIL_ATTACHMENT && pname == FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE {
+            return Err((INVALID_OPERATION, "depth and stencil have types of their own"));
+        }
         let Some(attached) = &object.attachments[point] else {
             return if pname == FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE { Ok(NONE as i32) } else { no_object(pname) };
         };
         object_parameter(attached, pname)
-            .or_else(|| {
-                let format = attached.surface(point)?.format;
-                format_parameter(pname, format.bits(), format.component_type(), format.storage)
+            .or_else(|| match attached.surface(point).map(|surface| surface.format) {
+                Some(format) => format_parameter(pname, format.bits(), format.component_type(), format.storage),
+                // An attachment that is not complete has no components.
+                None => format_parameter(pname, Bits::default(), NONE, Storage::Unorm8),
             })
             .ok_or((INVALID_ENUM, "pname is not a parameter of this attachment"))
     }
@@ -184,6 +188,31 @@ mod tests {
         assert_eq!(c.error, NO_ERROR);
         c.bind_framebuffer_ext(FRAMEBUFFER, 0);
         c.delete_textures(1, BASE);
+    }
+
+    #[test]
+    fn attachments_without_an_image_have_no_components() {
+        let mut c = context();
+        bind_new(&mut c);
+        c.bind_texture(TEXTURE_2D, 5);
+        c.framebuffer_texture_2d(FRAMEBUFFER, COLOR_ATTACHMENT0, TEXTURE_2D, 5, 1);
+        let get = |c: &mut Context, attachment, pname| {
+            c.get_framebuffer_attachment_parameteriv(FRAMEBUFFER, attachment, pname, BASE);
+            (read_u32(c, BASE), std::mem::take(&mut c.error))
+        };
+        for (pname, value) in [
+            (FRAMEBUFFER_ATTACHMENT_RED_SIZE, 0),
+            (FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, LINEAR),
+            (FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE, NONE),
+        ] {
+            assert_eq!(get(&mut c, COLOR_ATTACHMENT0, pname), (value, NO_ERROR));
+        }
+        c.bind_renderbuffer_ext(RENDERBUFFER, 1);
+        c.renderbuffer_storage(RENDERBUFFER, DEPTH24_STENCIL8, 4, 4);
+        c.framebuffer_renderbuffer(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, RENDERBUFFER, 1);
+        let pname = FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE;
+        assert_eq!(get(&mut c, DEPTH_ATTACHMENT, pname), (UNSIGNED_NORMALIZED, NO_ERROR));
+        assert_eq!(get(&mut c, DEPTH_STENCIL_ATTACHMENT, pname).1, INVALID_OPERATION);
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub(crate) enum Storage {
     Srgb8,
     /// Floats rounded to 16-bit integers.
     Unorm16,
-    /// Floats rounded to half precision.
+    /// Floats, of textures rounded to half precision.
     Half,
     /// Floats.
     Float,
@@ -80,13 +80,7 @@ impl InternalFormat {
         if matches!(token, 1..=4) {
             return None;
         }
-        let format = Self::of_texture(token).filter(|f| f.token == token)?;
-        let storage = match format.storage {
-            // Samples of 16 bits are floats that nobody rounds: they resolve no less, and half floats are whole ones.
-            Storage::Half => Storage::Float,
-            other => other,
-        };
-        Some(Self { storage, ..format })
+        Self::of_texture(token).filter(|f| f.token == token)
     }
 
     /// Whether samples hold a depth.
@@ -327,6 +321,7 @@ mod tests {
         assert_eq!(InternalFormat::of_renderbuffer(LUMINANCE8).unwrap().bits().luminance, 8);
         assert!(InternalFormat::of_renderbuffer(COMPRESSED_RGB).is_none());
         assert_eq!(InternalFormat::of_renderbuffer(RGBA16).unwrap().bits().rgba, [16; 4]);
+        assert_eq!(InternalFormat::of_renderbuffer(RGB16F_ARB).unwrap().bits().rgba, [16, 16, 16, 0]);
     }
 
     #[test]

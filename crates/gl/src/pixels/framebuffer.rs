@@ -5,7 +5,7 @@ use super::image::lock;
 use super::names;
 use super::renderbuffer::RenderbufferHandle;
 use super::target::Resolved;
-use super::texture::{ImageTarget, MAX_LEVELS, TextureHandle, slot};
+use super::texture::{ImageTarget, TextureHandle, slot};
 use crate::Context;
 use crate::enums::*;
 use crate::objects::Names;
@@ -288,7 +288,7 @@ impl Context {
                 Some(t) => t.face,
             },
         };
-        let levels = if kind == slot::RECTANGLE { 1 } else { MAX_LEVELS };
+        let levels = ImageTarget { slot: kind, face, proxy: false }.max_levels();
         let Some(level) = usize::try_from(level).ok().filter(|&l| l < levels) else {
             return self.record_error(INVALID_VALUE, call, "level is negative or larger than the target allows");
         };

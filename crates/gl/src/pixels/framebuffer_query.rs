@@ -254,8 +254,10 @@ mod tests {
         c.framebuffer_texture_2d(FRAMEBUFFER, COLOR_ATTACHMENT0, TEXTURE_2D, 5, 0);
         assert_eq!(c.error, INVALID_OPERATION);
         c.error = NO_ERROR;
-        c.framebuffer_texture_3d(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_3D, 5, -1, 0);
-        assert_eq!(c.error, INVALID_VALUE);
+        for (level, error) in [(-1, INVALID_VALUE), (11, NO_ERROR), (12, INVALID_VALUE)] {
+            c.framebuffer_texture_3d(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_3D, 5, level, 0);
+            assert_eq!(std::mem::take(&mut c.error), error);
+        }
         c.delete_framebuffers(1, BASE);
     }
 }

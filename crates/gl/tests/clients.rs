@@ -209,6 +209,32 @@ fn levels_of_a_depth_texture_are_drawn_to_and_sampled() {
 }
 
 #[test]
+fn a_negative_q_turns_to_the_opposite_face() {
+    let mut c = Stage::new(32, 32);
+    for face in 0..6u8 {
+        let at = c.put(&[[40 * face, 0, 0, 255]; 4]);
+        let target = gl::TEXTURE_CUBE_MAP_POSITIVE_X + u32::from(face);
+        c.tex_image_2d(target, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, at);
+    }
+    c.enable(gl::TEXTURE_CUBE_MAP);
+    for filter in [gl::NEAREST, gl::LINEAR] {
+        c.tex_parameteri(gl::TEXTURE_CUBE_MAP, gl::TEXTURE_MIN_FILTER, filter as i32);
+        for (q, face) in [(1.0, 4), (-1.0, 5), (0.5, 4), (-0.5, 5)] {
+            for size in [1.0, 0.1] {
+                c.begin(gl::QUADS);
+                c.tex_coord_4f(0.0, 0.0, 1.0, q);
+                for [x, y] in [[-size, -size], [size, -size], [size, size], [-size, size]] {
+                    c.vertex_2f(x, y);
+                }
+                c.end();
+                assert_eq!(c.pixel(16, 16)[0], 40 * face, "{q}");
+            }
+        }
+    }
+    c.no_error();
+}
+
+#[test]
 fn cube_maps_may_hold_depths() {
     let mut c = Stage::new(4, 4);
     c.bind_texture(gl::TEXTURE_CUBE_MAP, 1);

@@ -268,7 +268,9 @@ fn triangles(c: &mut Stage, with: With) {
             if !matches!(with, With::OneColor) {
                 c.color_4f(color[0], color[1], color[2], color[3]);
             }
-            c.tex_coord_3f(random(2.0), random(2.0), if matches!(with, With::Cube) { random(2.0) - 1.0 } else { 0.0 });
+            let cube = matches!(with, With::Cube);
+            let (s, t, r) = (random(2.0), random(2.0), if cube { random(2.0) - 1.0 } else { 0.0 });
+            c.tex_coord_4f(s, t, r, if cube && k % 3 == 0 { random(2.0) - 1.0 } else { 1.0 });
             if matches!(with, With::Shadow) {
                 c.multi_tex_coord_4f(gl::TEXTURE1, random(1.6), random(1.6), random(1.6), 1.0 + random(0.6));
             }

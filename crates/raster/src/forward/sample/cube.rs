@@ -28,13 +28,14 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let chart = Chart::new(simd, [coords[0], coords[1], coords[2]]);
+            let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
+            let direction = [coords[0], coords[1], coords[2]];
+            let chart = Chart::new(simd, if is_depth { direction } else { turned(simd, direction, coords[3]) });
             let (face, point) = (chart.face(simd), chart.point());
             if let Some(packed) = PackedCube::new(texture) {
                 return packed.at(simd, (face, point), lod);
             }
             let face = face.bitcast::<U32x8<S>>().to_array();
-            let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let color = mipped(
                 simd,
                 texture,
@@ -47,6 +48,16 @@ pub(super) fn sample<S: Simd>(
             );
             if is_depth { by_mode(simd, texture.depth_mode, color[0]) } else { color }
         },
+    )
+}
+
+/// A vector divided by q, but for its length: a negative q turns it round.
+#[inline(always)]
+fn turned<S: Simd, V: Floats<S>>(simd: S, v: [V; 3], q: V) -> [V; 3] {
+    let turn = q.simd_lt(every::<S, V>(simd, 0.0));
+    lanes::three(
+        #[inline(always)]
+        |k| select(turn, -v[k], v[k]),
     )
 }
 

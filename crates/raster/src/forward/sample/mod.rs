@@ -52,8 +52,8 @@ impl<'a> Common<'a> {
     }
 }
 
-/// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here, but for
-/// cube maps, where s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus
+/// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here; of cube
+/// maps' q the sign matters alone, for s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus
 /// the bias; see [`mip::needs_lod`]. Lanes without their bit in `active` yield something harmless.
 ///
 /// `plane` is that of a depth texture whose texels are one, where the caller holds it already.

@@ -135,7 +135,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             let own = Numbers::of_corners(simd, records, facets, |_| at);
             let undivided =
                 own.base[3].simd_eq(splat(simd, 1.0)) & own.d1[3].simd_eq(own.d2[3]) & own.d1[3].simd_eq(zero[3]);
-            if matches!(common, Common::Flat(_)) && !undivided.all_true() {
+            if !matches!(common, Common::Shadow(_)) && !undivided.all_true() {
                 return None;
             }
             coordinates[i % MOST_UNITS] = own;

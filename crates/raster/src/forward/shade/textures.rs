@@ -109,11 +109,20 @@ impl<'d> Shader<'d> {
     }
 
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
-    /// bits a component, no border in reach, no anisotropy, no sprites.
+    /// bits a component, no border in reach, no anisotropy, no sprites, no q of a cube's that could turn directions round.
     #[inline(always)]
     fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
-        Some((packed, self.draw.layout.tex[unit.index % UNITS]?))
+        let at = self.draw.layout.tex[unit.index % UNITS]?;
+        let turns = matches!(packed, Common::Cube(_)) && self.is_divided(at);
+        (!turns).then_some((packed, at))
+    }
+
+    /// Whether the coordinates at `at` must be divided by q: it is not 1 all over the facet.
+    #[inline(always)]
+    fn is_divided(&self, at: usize) -> bool {
+        let (d, q_at) = (&self.scratch.differences, (at + 3) % MOST);
+        d.varies >> q_at & 1 == 1 || d.base[q_at] != 1.0
     }
 
     /// A unit's texture at group `i`.
@@ -490,7 +499,7 @@ impl Slopes {
     #[inline(always)]
     fn new(shader: &Shader<'_>, packed: &Packed<'_>, at: usize) -> Self {
         let (i, d) = (&shader.scratch.interpolation, &shader.scratch.differences);
-        let (size, q_at) = (packed.size(), (at + 3) % MOST);
+        let size = packed.size();
         let (mut numerator, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
         for axis in 0..2 {
             for k in 0..2 {
@@ -504,7 +513,7 @@ impl Slopes {
             sum,
             base: [d.base[at % MOST], d.base[(at + 1) % MOST]],
             flat: i.flat_w.is_some(),
-            divided: d.varies >> q_at & 1 == 1 || d.base[q_at] != 1.0,
+            divided: shader.is_divided(at),
         }
     }
 

@@ -45,6 +45,16 @@ fn all_six_faces_are_turned_as_specified() {
 }
 
 #[test]
+fn a_negative_q_turns_the_direction_round() {
+    for t in [cube(2, NEAREST), cube(2, linear(Wrap::ClampToEdge))] {
+        for [x, y, z] in [[1.0, 0.5, 0.5], [-0.5, 1.0, -0.5], [0.5, 0.5, -1.0]] {
+            assert_eq!(at(&t, [x, y, z, -2.0], -1.0), at(&t, [-x, -y, -z, 1.0], -1.0));
+            assert_eq!(at(&t, [x, y, z, 2.0], -1.0), at(&t, [x, y, z, 1.0], -1.0));
+        }
+    }
+}
+
+#[test]
 fn a_seam_is_half_of_each_face() {
     let seamless = Sampler { seamless: true, ..linear(Wrap::Repeat) };
     let t = cube(2, seamless);

@@ -209,6 +209,26 @@ fn levels_of_a_depth_texture_are_drawn_to_and_sampled() {
 }
 
 #[test]
+fn floating_point_depths_are_compared_with_any_number() {
+    let mut c = Stage::new(4, 4);
+    c.enable(gl::TEXTURE_2D);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
+    c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_COMPARE_MODE, gl::COMPARE_R_TO_TEXTURE as i32);
+    for (format, passes) in [(gl::DEPTH_COMPONENT24, 255), (gl::DEPTH_COMPONENT32F, 0)] {
+        let at = c.put(&[1.0f32]);
+        c.tex_image_2d(gl::TEXTURE_2D, 0, format as i32, 1, 1, 0, gl::DEPTH_COMPONENT, gl::FLOAT, at);
+        c.begin(gl::QUADS);
+        c.tex_coord_3f(0.5, 0.5, 1.5);
+        for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+            c.vertex_2f(x, y);
+        }
+        c.end();
+        assert_eq!(c.pixel(2, 1)[0], passes);
+    }
+    c.no_error();
+}
+
+#[test]
 fn a_negative_q_turns_to_the_opposite_face() {
     let mut c = Stage::new(32, 32);
     for face in 0..6u8 {

@@ -317,6 +317,7 @@ impl TextureObject {
         let swizzle = Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
         let mut texture = Texture::new(kind, format.base_format(), faces, sampler);
         (texture.depth_mode, texture.swizzle) = (depth_mode, swizzle);
+        texture.float_depth = depth && format.component_type() == FLOAT;
         Some(Arc::new(texture))
     }
 }

@@ -197,6 +197,8 @@ pub struct Texture {
     pub format: BaseFormat,
     /// For depth textures: `Luminance`, `Intensity`, `Alpha`, or `Rgb` for the depth in red alone.
     pub depth_mode: BaseFormat,
+    /// Depths are floating-point numbers: what they are compared with is not clamped.
+    pub float_depth: bool,
     /// Faces (one, or six in the order +x -x +y -y +z -z) of levels; level 0 here is `TEXTURE_BASE_LEVEL`. Without
     /// mipmapping only the first is there.
     pub faces: Vec<Vec<Arc<Level>>>,
@@ -212,7 +214,7 @@ impl Texture {
     /// A texture of one face or six of levels, looked up as `sampler` says. Depth textures yield depths as luminance.
     pub fn new(kind: TextureKind, format: BaseFormat, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Self {
         let depth_mode = BaseFormat::Luminance;
-        Self { kind, format, depth_mode, faces, sampler, swizzle: None, cube: CubeFaces::default() }
+        Self { kind, format, depth_mode, float_depth: false, faces, sampler, swizzle: None, cube: CubeFaces::default() }
     }
 
     /// The depth planes among its levels.

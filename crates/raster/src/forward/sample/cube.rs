@@ -5,7 +5,7 @@
 //!
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
-use super::depth::{by_mode, compared};
+use super::depth::{by_mode, compared, reference};
 use super::fetch::{Image, Words, columns, interior, level_of, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
@@ -36,15 +36,17 @@ pub(super) fn sample<S: Simd>(
                 return packed.at(simd, (face, point), lod);
             }
             let face = face.bitcast::<U32x8<S>>().to_array();
+            let reference = is_depth.then(
+                #[inline(always)]
+                || reference(texture, coords[3]),
+            );
             let color = mipped(
                 simd,
                 texture,
                 lod,
                 active,
                 #[inline(always)]
-                |level, linear, lanes| {
-                    lookup(simd, texture, level, linear, &face, point, lanes, is_depth.then_some(coords[3]))
-                },
+                |level, linear, lanes| lookup(simd, texture, level, linear, &face, point, lanes, reference),
             );
             if is_depth { by_mode(simd, texture.depth_mode, color[0]) } else { color }
         },

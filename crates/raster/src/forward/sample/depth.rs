@@ -14,7 +14,7 @@ use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, Floats, Simd};
+use vitral_math::lanes::{self, F32x8, Floats, Lanes, Simd};
 
 /// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one texel a lookup, and a comparison
 /// that bounds of depths can settle.
@@ -49,7 +49,7 @@ impl<'a> PackedShadow<'a> {
                 min(floor(position_in(simd, coordinate / q, size, Wrap::ClampToEdge)), size - 1.0)
             },
         );
-        [texel(s, self.size[0]), texel(t, self.size[1]), saturate(r / q)]
+        [texel(s, self.size[0]), texel(t, self.size[1]), reference(self.texture, r / q)]
     }
 
     /// The colours at such places.
@@ -86,6 +86,12 @@ impl<'a> PackedShadow<'a> {
     }
 }
 
+/// What depths are compared with, from r or a cube's q.
+#[inline(always)]
+pub(super) fn reference<V: Lanes>(texture: &Texture, r: V) -> V {
+    if texture.float_depth { r } else { saturate(r) }
+}
+
 /// As [`super::sample`].
 #[inline(never)]
 pub(super) fn sample<S: Simd>(
@@ -100,7 +106,7 @@ pub(super) fn sample<S: Simd>(
         #[inline(always)]
         || {
             let [s, t, r, q] = coords;
-            let point = [s / q, t / q, r / q];
+            let point = [s / q, t / q, reference(texture, r / q)];
             let [value] = mipped(
                 simd,
                 texture,
@@ -138,7 +144,7 @@ pub(super) fn compared<S: Simd, V: Floats<S>>(simd: S, texture: &Texture, refere
     match texture.sampler.compare {
         None => depth,
         Some(func) => {
-            let passes = compare(simd, func, saturate(reference), depth);
+            let passes = compare(simd, func, reference, depth);
             select(passes, every(simd, 1.0), every(simd, 0.0))
         }
     }
@@ -158,10 +164,7 @@ fn settles(func: Option<Compare>, sign: f32) -> bool {
 /// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
 #[inline(always)]
 fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
-    settles(texture.sampler.compare, depths.pending()?).then(
-        #[inline(always)]
-        || saturate(reference),
-    )
+    settles(texture.sampler.compare, depths.pending()?).then_some(reference)
 }
 
 /// One level, filtered.

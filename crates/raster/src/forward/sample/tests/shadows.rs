@@ -40,8 +40,11 @@ fn every_comparison_has_the_reference_on_the_left() {
 #[test]
 fn the_reference_is_clamped() {
     let image = level([1, 1, 1], 0, Texels::Depth(vec![1.0]));
-    let t = texture(TextureKind::Two, vec![vec![image]], Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST });
+    let mut t =
+        texture(TextureKind::Two, vec![vec![image]], Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST });
     assert_eq!([0.9, 1.0, 1.5].map(|r| at(&t, [0.5, 0.5, r, 1.0], 0.0)[0]), [1.0; 3]);
+    t.float_depth = true;
+    assert_eq!([0.9, 1.0, 1.5].map(|r| at(&t, [0.5, 0.5, r, 1.0], 0.0)[0]), [1.0, 1.0, 0.0]);
 }
 
 #[test]

@@ -322,6 +322,35 @@ fn colours_of_fragments_may_be_clamped_on_their_way_to_floats() {
 }
 
 #[test]
+fn logic_operations_combine_16_bits() {
+    let mut c = Stage::new(2, 2);
+    framebuffer(&mut c);
+    for (format, combined) in [(gl::RGBA8, true), (gl::RGBA16, true), (gl::RGBA32F_ARB, false)] {
+        attach(&mut c, gl::COLOR_ATTACHMENT0, format, [2, 2], 1);
+        for (op, expected) in
+            [(gl::INVERT, [0.8, 0.6, 0.0, 1.0]), (gl::SET, [1.0; 4]), (gl::NOOP, [0.2, 0.4, 1.0, 0.0])]
+        {
+            c.clear_color(0.2, 0.4, 1.0, 0.0);
+            c.clear(gl::COLOR_BUFFER_BIT);
+            c.enable(gl::COLOR_LOGIC_OP);
+            c.logic_op(op);
+            c.fill([0.5; 4], 0.0);
+            c.disable(gl::COLOR_LOGIC_OP);
+            assert_color(c.pixel(1, 1), if combined { expected } else { [0.5; 4] });
+        }
+        // Both are rounded alike.
+        c.clear_color(0.4, 0.4, 0.4, 0.4);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.enable(gl::COLOR_LOGIC_OP);
+        c.logic_op(gl::XOR);
+        c.fill([0.4; 4], 0.0);
+        c.disable(gl::COLOR_LOGIC_OP);
+        assert_color(c.pixel(1, 1), [if combined { 0.0 } else { 0.4 }; 4]);
+    }
+    c.no_error();
+}
+
+#[test]
 fn framebuffers_of_srgb_colours_encode_them_on_demand() {
     // EXT_framebuffer_sRGB: 0.5 is stored as 188 of 255; blending works on what is stored, decoded.
     let mut c = Stage::new(2, 2);

@@ -8,7 +8,7 @@ use super::depth_ranges::DepthRanges;
 use super::fragment_ops::blend::blend;
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
-use super::fragment_ops::logic::{logic_op, protected_bits, write_unprotected};
+use super::fragment_ops::logic::{logic_op, logic_op_of_16_bits, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
@@ -391,7 +391,7 @@ fn write_packed<S: Simd>(
         new = srgb_packed(simd, state, color, stored);
     }
     if let Some(op) = state.logic_op {
-        new = logic_op(simd, op, packed, stored);
+        new = logic_op(op, packed, stored);
     }
     if ops.protected != 0 {
         new = write_unprotected(new, stored, ops.protected);
@@ -457,7 +457,12 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                 ];
                 new = blend(simd, b, color, stored, state.clamping == Clamping::Results);
             }
-            let new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
+            let mut new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
+            // Floating-point colours have no bits to combine.
+            if let (Some(op), Clamping::Results) = (state.logic_op, state.clamping) {
+                let both = new.as_flattened_mut().iter_mut().zip(soa.as_flattened());
+                both.for_each(|(new, &stored)| *new = logic_op_of_16_bits(op, *new, stored));
+            }
             for lane in 0..LANES {
                 for k in 0..4 {
                     if bits >> lane & 1 == 1 && !state.masked[k] {

@@ -1,14 +1,17 @@
 //! Logical operations on stored pixels, and the colour mask.
 
 use crate::forward::state::LogicOp;
-use vitral_math::lanes::prelude::*;
+use std::ops::{BitAnd, BitOr, BitXor, Not};
 use vitral_math::lanes::{Simd, U32x8};
 
 /// What a logical operation stores: bit by bit of incoming `s` and stored `d`.
 #[inline(always)]
-pub(crate) fn logic_op<S: Simd>(simd: S, op: LogicOp, s: U32x8<S>, d: U32x8<S>) -> U32x8<S> {
+pub(crate) fn logic_op<T>(op: LogicOp, s: T, d: T) -> T
+where
+    T: Copy + Not<Output = T> + BitAnd<Output = T> + BitOr<Output = T> + BitXor<Output = T>,
+{
     match op {
-        LogicOp::Clear => U32x8::splat(simd, 0),
+        LogicOp::Clear => s & !s,
         LogicOp::And => s & d,
         LogicOp::AndReverse => s & !d,
         LogicOp::Copy => s,
@@ -23,8 +26,15 @@ pub(crate) fn logic_op<S: Simd>(simd: S, op: LogicOp, s: U32x8<S>, d: U32x8<S>) 
         LogicOp::CopyInverted => !s,
         LogicOp::OrInverted => !s | d,
         LogicOp::Nand => !(s & d),
-        LogicOp::Set => U32x8::splat(simd, u32::MAX),
+        LogicOp::Set => s | !s,
     }
+}
+
+/// A logical operation on a component that stands for 16 bits.
+pub(crate) fn logic_op_of_16_bits(op: LogicOp, color: f32, stored: f32) -> f32 {
+    const ONE: f32 = 65_535.0;
+    let [s, d] = [color, stored].map(|v| (v * ONE + 0.5) as u16);
+    f32::from(logic_op(op, s, d)) / ONE
 }
 
 /// The bits of a packed pixel that a colour mask protects.
@@ -41,6 +51,7 @@ pub(crate) fn write_unprotected<S: Simd>(new: U32x8<S>, old: U32x8<S>, protected
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral_math::lanes::prelude::*;
     use vitral_math::lanes::{available_levels, dispatch};
 
     /// Bit `2 * s + d` of each is the result for source bit `s` and destination bit `d` (table 4.2 of the specification).
@@ -70,7 +81,6 @@ mod tests {
         for (name, level) in available_levels() {
             for (op, truth) in TRUTH {
                 let out = dispatch!(level, simd => logic_op(
-                    simd,
                     op,
                     U32x8::from_slice(simd, &s),
                     U32x8::from_slice(simd, &d)

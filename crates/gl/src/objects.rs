@@ -1,7 +1,7 @@
 //! Objects that contexts may share.
 
 use crate::pixels::{RenderbufferHandle, SamplerHandle, TextureHandle};
-pub use crate::vertices::{Buffer, List, ListNames};
+pub use crate::vertices::{Buffer, BufferHandle, List, ListNames};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,7 +12,7 @@ pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
 #[derive(Debug, Default)]
 pub struct Shared {
     /// Buffer objects.
-    pub buffers: Mutex<Names<Buffer>>,
+    pub buffers: Mutex<Names<BufferHandle>>,
     /// Display lists.
     pub lists: Mutex<ListNames>,
     /// Labels of shared objects.

@@ -81,7 +81,7 @@ impl Context {
             Err((error, why)) => return self.record_error(error, call, why),
             Ok((memory, at)) => at != 0 && memory.read(at, bytemuck::cast_slice_mut(&mut given)),
         };
-        if !there && self.client.unpack.buffer != 0 {
+        if !there && !self.client.unpack.buffer.is_none() {
             return self.refuse_operation(call, "the map does not lie in the buffer");
         } else if !there {
             return self.refuse_value(call, "the map is not in readable memory");
@@ -102,7 +102,7 @@ impl Context {
         let Some(index) = index_in(map, gl::PIXEL_MAP_I_TO_I, 10) else { return self.refuse_enum(call, "map", map) };
         let entry = |v: &f32| if holds_indices(index) { T::from_index(*v) } else { T::from_color(*v) };
         let entries: Vec<T> = self.state.pixel.maps[index].values.iter().map(entry).collect();
-        if self.client.pack.buffer == 0 {
+        if self.client.pack.buffer.is_none() {
             self.give_results(call, values, &entries);
             return;
         }

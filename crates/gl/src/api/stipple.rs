@@ -51,7 +51,7 @@ impl Context {
             Ok((memory, at)) => read_stipple(&self.client.unpack, &*memory, at),
         };
         let Some(pattern) = pattern else {
-            return match self.client.unpack.buffer {
+            return match self.client.unpack.buffer.name {
                 0 => self.refuse_value(CALL, "the pattern is not in readable memory"),
                 _ => self.refuse_operation(CALL, "the pattern does not lie in the buffer"),
             };

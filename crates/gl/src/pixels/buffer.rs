@@ -7,6 +7,7 @@ use super::Failure;
 use crate::Context;
 use crate::enums::*;
 use crate::memory::ClientMemory;
+use crate::objects::BufferHandle;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Where the store begins: an offset of 0 must not look like no address.
@@ -48,6 +49,14 @@ impl ClientMemory for Store {
     }
 }
 
+/// The data store of a buffer.
+fn store_of(buffer: &BufferHandle) -> Result<Store, Failure> {
+    match buffer.lock() {
+        Some(buffer) if !buffer.is_mapped() => Ok(Store(Mutex::new(buffer.bytes.clone()))),
+        _ => Err((INVALID_OPERATION, "the buffer of pixels is mapped")),
+    }
+}
+
 /// Where an offset lies in a store of elements of `unit` bytes.
 fn place(offset: usize, unit: usize) -> Result<usize, Failure> {
     let whole = offset.is_multiple_of(unit).then(|| offset.saturating_add(START));
@@ -55,19 +64,13 @@ fn place(offset: usize, unit: usize) -> Result<usize, Failure> {
 }
 
 impl Context {
-    fn pixel_store_of(&self, name: u32) -> Result<Store, Failure> {
-        match self.buffers().get(&name) {
-            Some(Some(buffer)) if !buffer.is_mapped() => Ok(Store(Mutex::new(buffer.bytes.clone()))),
-            _ => Err((INVALID_OPERATION, "the buffer of pixels is mapped")),
-        }
-    }
-
     /// Where pixels of elements of `unit` bytes are unpacked from: a memory, and the address there.
     pub(crate) fn unpack_memory(&self, address: usize, unit: usize) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
-        match self.client.unpack.buffer {
-            0 => Ok((self.memory.clone(), address)),
-            name => Ok((Arc::new(self.pixel_store_of(name)?), place(address, unit)?)),
+        let buffer = &self.client.unpack.buffer;
+        if buffer.is_none() {
+            return Ok((self.memory.clone(), address));
         }
+        Ok((Arc::new(store_of(buffer)?), place(address, unit)?))
     }
 
     /// Runs `write` with the memory that pixels of elements of `unit` bytes are packed into and the address there. `false`
@@ -78,17 +81,17 @@ impl Context {
         unit: usize,
         write: impl FnOnce(&dyn ClientMemory, usize) -> bool,
     ) -> Result<(), Failure> {
-        let name = self.client.pack.buffer;
-        if name == 0 {
+        let buffer = &self.client.pack.buffer;
+        if buffer.is_none() {
             write(&*self.memory, address);
             return Ok(());
         }
-        let store = self.pixel_store_of(name)?;
+        let store = store_of(buffer)?;
         if !write(&store, place(address, unit)?) {
             return Err((INVALID_OPERATION, "the pixels do not fit in the buffer"));
         }
         let bytes = store.bytes().clone();
-        if let Some(Some(buffer)) = self.buffers().get_mut(&name) {
+        if let Some(mut buffer) = buffer.lock() {
             buffer.replace(bytes);
         }
         Ok(())

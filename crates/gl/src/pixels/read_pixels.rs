@@ -248,7 +248,7 @@ impl Context {
             return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
         }
         let r = inside(&surfaces, x, y, width, height);
-        if (pixels == 0 && self.client.pack.buffer == 0)
+        if (pixels == 0 && self.client.pack.buffer.is_none())
             || r.size.contains(&0)
             || r.size[0] * r.size[1] > MAX_IMAGE_BYTES / 4
         {

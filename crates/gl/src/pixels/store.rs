@@ -242,7 +242,7 @@ impl Context {
         volume: bool,
         address: usize,
     ) -> Result<Option<ClientImage>, Failure> {
-        let bound = self.client.unpack.buffer != 0;
+        let bound = !self.client.unpack.buffer.is_none();
         if (address == 0 && !bound) || (self.inside_begin() && !self.lists.recording) {
             return Ok(None);
         }

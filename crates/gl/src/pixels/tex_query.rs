@@ -125,7 +125,7 @@ impl Context {
             return Err((INVALID_OPERATION, "the texture does not hold what format asks for"));
         }
         let full = image.full();
-        if (pixels == 0 && self.client.pack.buffer == 0) || full.contains(&0) {
+        if (pixels == 0 && self.client.pack.buffer.is_none()) || full.contains(&0) {
             return Ok(());
         }
         // No pixel transfer here, unlike in `ReadPixels`.

@@ -2,9 +2,10 @@
 
 use super::MAX_TEXTURE_UNITS;
 use crate::enums;
+use crate::objects::BufferHandle;
 
 /// One vertex array.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct ArrayPointer {
     /// Client state enable.
     pub enabled: bool,
@@ -16,20 +17,28 @@ pub struct ArrayPointer {
     pub stride: i32,
     /// Address in client memory, or offset in `buffer`.
     pub pointer: usize,
-    /// Buffer object bound when the pointer was given; 0 is none.
-    pub buffer: u32,
+    /// Buffer object bound when the pointer was given.
+    pub buffer: BufferHandle,
     /// The number of static elements, of EXT_vertex_array.
     pub count: i32,
 }
 
 impl ArrayPointer {
     const fn new(size: i32) -> Self {
-        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: 0, count: 0 }
+        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: BufferHandle::NONE, count: 0 }
+    }
+}
+
+impl Clone for ArrayPointer {
+    // Client states have many.
+    #[inline(never)]
+    fn clone(&self) -> Self {
+        Self { buffer: self.buffer.clone(), ..*self }
     }
 }
 
 /// `PixelStore` of one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PixelStore {
     /// `SWAP_BYTES`.
     pub swap_bytes: bool,
@@ -47,8 +56,8 @@ pub struct PixelStore {
     pub skip_images: i32,
     /// `ALIGNMENT`: 1, 2, 4 or 8.
     pub alignment: i32,
-    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, unless it is 0.
-    pub buffer: u32,
+    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, if there is one.
+    pub buffer: BufferHandle,
 }
 
 impl Default for PixelStore {
@@ -62,7 +71,7 @@ impl Default for PixelStore {
             skip_pixels: 0,
             skip_images: 0,
             alignment: 4,
-            buffer: 0,
+            buffer: BufferHandle::NONE,
         }
     }
 }
@@ -89,11 +98,11 @@ pub struct ClientState {
     /// `CLIENT_ACTIVE_TEXTURE - TEXTURE0`.
     pub active_unit: usize,
     /// `ARRAY_BUFFER_BINDING`.
-    pub array_buffer: u32,
+    pub array_buffer: BufferHandle,
     /// `ELEMENT_ARRAY_BUFFER_BINDING`.
-    pub element_buffer: u32,
+    pub element_buffer: BufferHandle,
     /// `COPY_READ_BUFFER` and `COPY_WRITE_BUFFER`: the buffers that are bound there.
-    pub copy_buffers: [u32; 2],
+    pub copy_buffers: [BufferHandle; 2],
     /// How pixels are read from the client.
     pub unpack: PixelStore,
     /// How pixels are written to the client.
@@ -112,11 +121,11 @@ impl Default for ClientState {
             index: ArrayPointer::new(1),
             edge: ArrayPointer::new(1),
             fog: ArrayPointer::new(1),
-            tex: [ArrayPointer::new(4); MAX_TEXTURE_UNITS],
+            tex: [const { ArrayPointer::new(4) }; MAX_TEXTURE_UNITS],
             active_unit: 0,
-            array_buffer: 0,
-            element_buffer: 0,
-            copy_buffers: [0; 2],
+            array_buffer: BufferHandle::NONE,
+            element_buffer: BufferHandle::NONE,
+            copy_buffers: [BufferHandle::NONE; 2],
             unpack: PixelStore::default(),
             pack: PixelStore::default(),
             vertex_array: 0,

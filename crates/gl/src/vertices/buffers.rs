@@ -9,7 +9,7 @@ use crate::memory::ClientMemory;
 use crate::objects::Names;
 use crate::{Context, enums};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A buffer object.
 #[derive(Debug)]
@@ -41,6 +41,51 @@ struct Mapping {
 
 /// The largest data store. More is out of memory, so that a wild size does no harm.
 const MAX_SIZE: usize = 1 << 31;
+
+/// A buffer object as its name, bindings and arrays have it. Whatever has it keeps the object, even without the name.
+#[derive(Clone, Debug)]
+pub struct BufferHandle {
+    /// Its name; 0 is no buffer.
+    pub name: u32,
+    id: u64,
+    buffer: Option<Arc<Mutex<Buffer>>>,
+}
+
+/// Names are used again, buffers are not.
+impl PartialEq for BufferHandle {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl BufferHandle {
+    /// No buffer.
+    pub const NONE: Self = Self { name: 0, id: 0, buffer: None };
+
+    pub(crate) fn new(name: u32) -> Self {
+        Self { name, id: new_version(), buffer: Some(Arc::default()) }
+    }
+
+    /// Whether it is no buffer.
+    pub fn is_none(&self) -> bool {
+        self.id == 0
+    }
+
+    /// Differs between buffers; 0 is no buffer.
+    pub(crate) fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// The same, for comparisons alone: it does not keep the object.
+    pub(crate) fn mark(&self) -> Self {
+        Self { buffer: None, ..*self }
+    }
+
+    /// The object.
+    pub(crate) fn lock(&self) -> Option<MutexGuard<'_, Buffer>> {
+        Some(self.buffer.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
 
 type Refusal = (u32, &'static str);
 
@@ -221,11 +266,16 @@ impl Buffer {
 }
 
 impl Context {
-    pub(crate) fn buffers(&self) -> MutexGuard<'_, Names<Buffer>> {
+    pub(crate) fn buffers(&self) -> MutexGuard<'_, Names<BufferHandle>> {
         self.shared.buffers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn buffer_binding(&mut self, call: &str, target: u32) -> Option<&mut u32> {
+    /// Whether a buffer still has its name.
+    pub(crate) fn is_named(&self, buffer: &BufferHandle) -> bool {
+        self.buffers().get(&buffer.name).is_some_and(|named| named.as_ref() == Some(buffer))
+    }
+
+    fn buffer_binding(&mut self, call: &str, target: u32) -> Option<&mut BufferHandle> {
         match target {
             enums::ARRAY_BUFFER => Some(&mut self.client.array_buffer),
             enums::ELEMENT_ARRAY_BUFFER => Some(&mut self.client.element_buffer),
@@ -250,10 +300,10 @@ impl Context {
         if self.refused_inside_begin(call) {
             return None;
         }
-        let name = *self.buffer_binding(call, target)?;
-        let result = match self.buffers().get_mut(&name) {
-            Some(Some(buffer)) => work(buffer, &*self.memory),
-            _ => Err((enums::INVALID_OPERATION, "no buffer is bound")),
+        let bound = self.buffer_binding(call, target)?.clone();
+        let result = match bound.lock() {
+            Some(mut buffer) => work(&mut buffer, &*self.memory),
+            None => Err((enums::INVALID_OPERATION, "no buffer is bound")),
         };
         result.map_err(|(error, why)| self.record_error(error, call, why)).ok()
     }
@@ -263,10 +313,17 @@ impl Context {
         if self.refused_inside_begin("glBindBuffer") {
             return;
         }
-        let Some(binding) = self.buffer_binding("glBindBuffer", target) else { return };
-        *binding = buffer;
-        if buffer != 0 {
-            self.buffers().entry(buffer).or_default().get_or_insert_default();
+        const CALL: &str = "glBindBuffer";
+        if self.buffer_binding(CALL, target).is_none() {
+            return;
+        }
+        let new = || BufferHandle::new(buffer);
+        let handle = match buffer {
+            0 => BufferHandle::NONE,
+            name => self.buffers().entry(name).or_default().get_or_insert_with(new).clone(),
+        };
+        if let Some(binding) = self.buffer_binding(CALL, target) {
+            *binding = handle;
         }
     }
 
@@ -278,12 +335,13 @@ impl Context {
     /// `glDeleteBuffers`.
     pub fn delete_buffers(&mut self, n: i32, buffers: usize) {
         for name in self.doomed_names("glDeleteBuffers", n, buffers) {
-            let removed = self.buffers().remove(&name);
-            if let Some(mut buffer) = removed.flatten() {
-                buffer.release(&*self.memory);
-            }
-            if name != 0 {
-                self.forget_buffer(name);
+            let removed = self.buffers().remove(&name).flatten();
+            if let Some(handle) = removed {
+                // Whoever still has it finds its data.
+                if let Some(mut buffer) = handle.lock() {
+                    buffer.unmap(&*self.memory).ok();
+                }
+                self.forget_buffer(&handle);
             }
         }
     }
@@ -324,8 +382,8 @@ impl Context {
         if self.refused_inside_begin(CALL) {
             return;
         }
-        let Some(source) = self.buffer_binding(CALL, read).copied() else { return };
-        let Some(target) = self.buffer_binding(CALL, write).copied() else { return };
+        let Some(source) = self.buffer_binding(CALL, read).map(|b| b.id) else { return };
+        let Some(target) = self.buffer_binding(CALL, write).map(|b| b.id) else { return };
         let part = self.with_buffer(CALL, read, |buffer, _| {
             let range = buffer.range(read_offset, size)?;
             match buffer.is_mapped() {
@@ -425,18 +483,19 @@ mod tests {
         assert_eq!((read(&c, BASE, 8), c.is_buffer(1)), (vec![1, 0, 0, 0, 2, 0, 0, 0], 0));
         c.bind_buffer(TARGET, 1);
         c.buffer_data(TARGET, 8, BASE, enums::STATIC_DRAW);
-        let version = c.buffers()[&1].as_ref().unwrap().version;
+        let version = |c: &Context| c.client.array_buffer.lock().unwrap().version;
+        let before = version(&c);
         c.buffer_sub_data(TARGET, 2, 4, BASE + 4);
         c.get_buffer_sub_data(TARGET, 0, 8, BASE + 100);
         assert_eq!(read(&c, BASE + 100, 8), [1, 0, 2, 0, 0, 0, 0, 0]);
-        assert_ne!(c.buffers()[&1].as_ref().unwrap().version, version);
+        assert_ne!(version(&c), before);
         assert_eq!((c.error, c.is_buffer(1)), (0, 1));
         c.buffer_sub_data(TARGET, 6, 4, BASE);
         assert_eq!(std::mem::take(&mut c.error), enums::INVALID_VALUE);
         c.buffer_data(TARGET, isize::MAX, 0, enums::STATIC_DRAW);
         assert_eq!(std::mem::take(&mut c.error), enums::OUT_OF_MEMORY);
         c.delete_buffers(1, BASE);
-        assert_eq!((c.client.array_buffer, c.is_buffer(1)), (0, 0));
+        assert_eq!((c.client.array_buffer.name, c.is_buffer(1)), (0, 0));
     }
 
     #[test]
@@ -456,7 +515,7 @@ mod tests {
         c.get_buffer_sub_data(TARGET, 0, 1, BASE);
         assert_eq!(std::mem::take(&mut c.error), enums::INVALID_OPERATION);
         assert_eq!(c.unmap_buffer(TARGET), 1);
-        assert_eq!(*c.buffers()[&9].as_ref().unwrap().bytes, [0, 0, 0, 0, 5, 5, 5, 5]);
+        assert_eq!(*c.client.array_buffer.lock().unwrap().bytes, [0, 0, 0, 0, 5, 5, 5, 5]);
         assert_eq!((c.unmap_buffer(TARGET), c.error), (0, enums::INVALID_OPERATION));
     }
 

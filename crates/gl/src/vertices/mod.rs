@@ -18,7 +18,7 @@ mod quick;
 mod rect;
 
 pub(crate) use arrays::Arrays;
-pub use buffers::Buffer;
+pub use buffers::{Buffer, BufferHandle};
 pub(crate) use builder::Builder;
 pub(crate) use feedback::Feedback;
 pub(crate) use lists::Lists;

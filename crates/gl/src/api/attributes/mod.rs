@@ -74,7 +74,8 @@ impl Context {
         } else {
             let client = &self.client;
             self.stacks.client.push(ClientGroups {
-                pixel_store: (mask & gl::CLIENT_PIXEL_STORE_BIT != 0).then_some([client.unpack, client.pack]),
+                pixel_store: (mask & gl::CLIENT_PIXEL_STORE_BIT != 0)
+                    .then(|| [&client.unpack, &client.pack].map(Clone::clone)),
                 arrays: (mask & gl::CLIENT_VERTEX_ARRAY_BIT != 0).then(|| Box::new(client.clone())),
             });
         }

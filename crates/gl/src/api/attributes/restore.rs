@@ -4,6 +4,7 @@ use super::groups::{
     ColorGroup, Enables, EvalGroup, Groups, MultisampleGroup, PointGroup, TextureGroup, TransformGroup,
 };
 use crate::api::capabilities::saved_capabilities;
+use crate::objects::BufferHandle;
 use crate::state::{ClientState, ColorBuffer, PixelMode, PixelTransfer, Polygons};
 use crate::{Context, enums as gl};
 
@@ -152,20 +153,14 @@ impl Context {
             }
             self.switch_vertex_array(saved.vertex_array);
         }
-        let (unpack, pack) = (self.client.unpack, self.client.pack);
-        self.client = ClientState { unpack, pack, ..saved };
-        for binding in [saved.array_buffer, saved.element_buffer] {
-            if binding != 0 && !self.object_exists(gl::BUFFER, binding) {
-                self.drop_buffer_binding(binding);
-            }
+        let old = std::mem::replace(&mut self.client, saved);
+        (self.client.unpack, self.client.pack) = (old.unpack, old.pack);
+        // Buffers deleted since are not bound.
+        if !self.is_named(&self.client.array_buffer) {
+            self.client.array_buffer = BufferHandle::NONE;
         }
-    }
-
-    fn drop_buffer_binding(&mut self, name: u32) {
-        for binding in [&mut self.client.array_buffer, &mut self.client.element_buffer] {
-            if *binding == name {
-                *binding = 0;
-            }
+        if !self.is_named(&self.client.element_buffer) {
+            self.client.element_buffer = BufferHandle::NONE;
         }
     }
 }

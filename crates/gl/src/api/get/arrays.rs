@@ -47,24 +47,25 @@ impl Context {
 
     pub(super) fn get_array_buffers(&mut self, pname: u32) -> Option<Value> {
         let client = &self.client;
-        Some(Value::token(match pname {
-            gl::VERTEX_ARRAY_BINDING => client.vertex_array,
-            gl::ARRAY_BUFFER_BINDING => client.array_buffer,
-            gl::ELEMENT_ARRAY_BUFFER_BINDING => client.element_buffer,
-            gl::COPY_READ_BUFFER => client.copy_buffers[0],
-            gl::COPY_WRITE_BUFFER => client.copy_buffers[1],
-            gl::PIXEL_PACK_BUFFER_BINDING => client.pack.buffer,
-            gl::PIXEL_UNPACK_BUFFER_BINDING => client.unpack.buffer,
-            gl::VERTEX_ARRAY_BUFFER_BINDING => client.vertex.buffer,
-            gl::NORMAL_ARRAY_BUFFER_BINDING => client.normal.buffer,
-            gl::COLOR_ARRAY_BUFFER_BINDING => client.color.buffer,
-            gl::SECONDARY_COLOR_ARRAY_BUFFER_BINDING => client.secondary.buffer,
-            gl::INDEX_ARRAY_BUFFER_BINDING => client.index.buffer,
-            gl::EDGE_FLAG_ARRAY_BUFFER_BINDING => client.edge.buffer,
-            gl::FOG_COORD_ARRAY_BUFFER_BINDING => client.fog.buffer,
-            gl::TEXTURE_COORD_ARRAY_BUFFER_BINDING => self.texture_array().buffer,
+        let buffer = match pname {
+            gl::VERTEX_ARRAY_BINDING => return Some(Value::token(client.vertex_array)),
+            gl::ARRAY_BUFFER_BINDING => &client.array_buffer,
+            gl::ELEMENT_ARRAY_BUFFER_BINDING => &client.element_buffer,
+            gl::COPY_READ_BUFFER => &client.copy_buffers[0],
+            gl::COPY_WRITE_BUFFER => &client.copy_buffers[1],
+            gl::PIXEL_PACK_BUFFER_BINDING => &client.pack.buffer,
+            gl::PIXEL_UNPACK_BUFFER_BINDING => &client.unpack.buffer,
+            gl::VERTEX_ARRAY_BUFFER_BINDING => &client.vertex.buffer,
+            gl::NORMAL_ARRAY_BUFFER_BINDING => &client.normal.buffer,
+            gl::COLOR_ARRAY_BUFFER_BINDING => &client.color.buffer,
+            gl::SECONDARY_COLOR_ARRAY_BUFFER_BINDING => &client.secondary.buffer,
+            gl::INDEX_ARRAY_BUFFER_BINDING => &client.index.buffer,
+            gl::EDGE_FLAG_ARRAY_BUFFER_BINDING => &client.edge.buffer,
+            gl::FOG_COORD_ARRAY_BUFFER_BINDING => &client.fog.buffer,
+            gl::TEXTURE_COORD_ARRAY_BUFFER_BINDING => &self.texture_array().buffer,
             _ => return None,
-        }))
+        };
+        Some(Value::token(buffer.name))
     }
 
     pub(super) fn get_lists(&mut self, pname: u32) -> Option<Value> {

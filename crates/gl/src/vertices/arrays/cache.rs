@@ -9,8 +9,8 @@ use std::sync::Arc;
 pub(super) enum Vertices {
     /// In order.
     Range { first: usize, count: usize },
-    /// By indices of a type, at an address (or offset in a buffer), plus `base`.
-    Elements { count: usize, kind: u32, pointer: usize, buffer: u32, base: i32 },
+    /// By indices of a type, at an address (or offset in the buffer of that number), plus `base`.
+    Elements { count: usize, kind: u32, pointer: usize, buffer: u64, base: i32 },
 }
 
 /// Everything that a batch depends on.
@@ -18,7 +18,7 @@ pub(super) enum Vertices {
 pub(super) struct Key {
     pub(super) mode: u32,
     pub(super) vertices: Vertices,
-    /// Enabled arrays, with what they are for.
+    /// Enabled arrays, with what they are for; their buffers are only marked, not kept.
     pub(super) arrays: Vec<(usize, ArrayPointer)>,
     /// Version of each buffer in use.
     pub(super) versions: Vec<u64>,
@@ -30,9 +30,9 @@ impl Key {
         self.mode == other.mode && self.vertices == other.vertices && self.arrays == other.arrays
     }
 
-    pub(super) fn uses(&self, buffer: u32) -> bool {
+    pub(super) fn uses(&self, buffer: u64) -> bool {
         let element = matches!(self.vertices, Vertices::Elements { buffer: b, .. } if b == buffer);
-        element || self.arrays.iter().any(|(_, array)| array.buffer == buffer)
+        element || self.arrays.iter().any(|(_, array)| array.buffer.id() == buffer)
     }
 }
 
@@ -76,7 +76,7 @@ impl Cache {
     }
 
     /// Drops what was built from a buffer.
-    pub(super) fn forget(&mut self, buffer: u32) {
+    pub(super) fn forget(&mut self, buffer: u64) {
         self.remove_if(|key| key.uses(buffer));
     }
 

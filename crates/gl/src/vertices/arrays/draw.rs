@@ -2,7 +2,7 @@
 
 use super::POSITION;
 use super::cache::{Key, Vertices};
-use super::fetch::{Reader, Refusal, Run, store};
+use super::fetch::{Reader, Refusal, Run, Store, store};
 use crate::state::ArrayPointer;
 use crate::vertex::{Given, Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
@@ -85,7 +85,7 @@ impl Context {
             self.draw_error(enums::INVALID_ENUM, call, format!("type {kind:#x} is not one of indices"));
             return;
         }
-        let buffer = self.client.element_buffer;
+        let buffer = self.client.element_buffer.id();
         self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer, base });
     }
 
@@ -248,8 +248,9 @@ impl Context {
 
     /// Enabled arrays, with what they are for.
     fn enabled_arrays(&self) -> Vec<(usize, ArrayPointer)> {
-        let all = (0..=POSITION).map(|which| (which, *self.client.array(which)));
-        all.filter(|(_, array)| array.enabled).collect()
+        let all = (0..=POSITION).map(|which| (which, self.client.array(which)));
+        let enabled = all.filter(|(_, array)| array.enabled);
+        enabled.map(|(which, array)| (which, ArrayPointer { buffer: array.buffer.mark(), ..*array })).collect()
     }
 
     fn array_batch(&mut self, mode: u32, vertices: Vertices) -> Result<Arc<VertexBatch>, Refusal> {
@@ -260,8 +261,8 @@ impl Context {
             Vertices::Elements { buffer, .. } => Some(buffer),
             Vertices::Range { .. } => None,
         };
-        let reader = self.array_reader(&arrays, element_buffer.unwrap_or(0))?;
-        let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| array.buffer != 0);
+        let reader = self.array_reader(&arrays, element_buffer.is_some())?;
+        let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| !array.buffer.is_none());
         let versions = reader.stores.iter().map(|store| store.version).collect();
         let key = Key { mode, vertices, arrays, versions };
         if !constant {
@@ -275,14 +276,15 @@ impl Context {
         Ok(batch)
     }
 
-    fn array_reader(&self, arrays: &[(usize, ArrayPointer)], element_buffer: u32) -> Result<Reader, Refusal> {
-        let mut names: Vec<u32> = arrays.iter().map(|(_, array)| array.buffer).collect();
-        names.push(element_buffer);
-        names.sort_unstable();
-        names.dedup();
-        let buffers = self.buffers();
-        let stores = names.into_iter().filter(|name| *name != 0).map(|name| store(&buffers, name));
-        Ok(Reader { memory: self.memory.clone(), stores: stores.collect::<Result<_, _>>()? })
+    fn array_reader(&self, arrays: &[(usize, ArrayPointer)], indexed: bool) -> Result<Reader, Refusal> {
+        let buffers = arrays.iter().map(|(which, _)| &self.client.array(*which).buffer);
+        let mut stores: Vec<Store> = Vec::new();
+        for buffer in buffers.chain(indexed.then_some(&self.client.element_buffer)) {
+            if !buffer.is_none() && stores.iter().all(|store| store.buffer != buffer.id()) {
+                stores.push(store(buffer)?);
+            }
+        }
+        Ok(Reader { memory: self.memory.clone(), stores })
     }
 
     /// `glArrayElement`.
@@ -300,7 +302,7 @@ impl Context {
             };
             arrays.iter().map(one).collect()
         };
-        match self.array_reader(&arrays, 0).and_then(read) {
+        match self.array_reader(&arrays, false).and_then(read) {
             Err(why) => self.listable(move |c| c.record_error(enums::INVALID_OPERATION, CALL, why)),
             // The position is the last.
             Ok(values) => {

@@ -3,7 +3,7 @@
 use super::cache::Vertices;
 use crate::enums;
 use crate::memory::ClientMemory;
-use crate::objects::{Buffer, Names};
+use crate::objects::BufferHandle;
 use crate::pixels::float_from_half;
 use crate::state::ArrayPointer;
 use crate::vertices::client::{self, Component};
@@ -43,17 +43,17 @@ const ROOM: usize = 1 << 20;
 /// A buffer's data, as they are now.
 #[derive(Clone, Debug)]
 pub(super) struct Store {
-    name: u32,
+    pub(super) buffer: u64,
     pub(super) version: u64,
     bytes: Arc<Vec<u8>>,
 }
 
-/// The data of buffer `name`.
-pub(super) fn store(buffers: &Names<Buffer>, name: u32) -> Result<Store, Refusal> {
-    match buffers.get(&name) {
-        Some(Some(buffer)) if buffer.is_mapped() => Err("a buffer is mapped"),
-        Some(Some(buffer)) => Ok(Store { name, version: buffer.version, bytes: buffer.bytes.clone() }),
-        _ => Err("a buffer was deleted"),
+/// The data of a buffer.
+pub(super) fn store(handle: &BufferHandle) -> Result<Store, Refusal> {
+    match handle.lock() {
+        Some(buffer) if buffer.is_mapped() => Err("a buffer is mapped"),
+        Some(buffer) => Ok(Store { buffer: handle.id(), version: buffer.version, bytes: buffer.bytes.clone() }),
+        None => Err("a buffer was deleted"),
     }
 }
 
@@ -68,8 +68,8 @@ pub(super) struct Reader {
 }
 
 impl Reader {
-    fn bytes(&self, name: u32) -> Result<&[u8], Refusal> {
-        let store = self.stores.iter().find(|store| store.name == name);
+    fn bytes(&self, buffer: u64) -> Result<&[u8], Refusal> {
+        let store = self.stores.iter().find(|store| store.buffer == buffer);
         Ok(store.ok_or("a buffer was deleted")?.bytes.as_slice())
     }
 
@@ -89,10 +89,10 @@ impl Reader {
         for &(first, count) in runs {
             let start = first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
             let mut start = start.ok_or(OUTSIDE)?;
-            if array.buffer != 0 {
+            if !array.buffer.is_none() {
                 let span = layout.span(count).ok_or(OUTSIDE)?;
                 let end = start.checked_add(span).ok_or(OUTSIDE)?;
-                let bytes = self.bytes(array.buffer)?.get(start..end).ok_or(OUTSIDE)?;
+                let bytes = self.bytes(array.buffer.id())?.get(start..end).ok_or(OUTSIDE)?;
                 layout.convert(bytes, count, unit, default, &mut elements);
                 continue;
             }
@@ -119,7 +119,7 @@ impl Reader {
     /// them one by one, or not at all.
     pub(super) fn fingerprint(&self, arrays: &[(usize, ArrayPointer)], runs: &[Run]) -> Option<Fingerprint> {
         let mut ranges: Vec<Range<usize>> = Vec::new();
-        for (_, array) in arrays.iter().filter(|(_, array)| array.buffer == 0) {
+        for (_, array) in arrays.iter().filter(|(_, array)| array.buffer.is_none()) {
             let layout = Layout::of(array);
             if layout.is_sparse() || array.pointer == 0 {
                 return None;
@@ -168,7 +168,7 @@ impl Reader {
     }
 
     /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
-    pub(super) fn indices(&self, buffer: u32, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
+    pub(super) fn indices(&self, buffer: u64, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
         let size = type_size(kind);
         let owned;
         let bytes = if buffer == 0 {
@@ -298,7 +298,7 @@ mod tests {
     use crate::memory::Arena;
 
     fn array(size: i32, kind: u32, stride: i32, pointer: usize) -> ArrayPointer {
-        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: 0, count: 0 }
+        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: BufferHandle::NONE, count: 0 }
     }
 
     #[test]
@@ -337,14 +337,16 @@ mod tests {
     fn wild_ranges_are_refused() {
         let arena = Arc::new(Arena::new(16, 64));
         let bytes = Arc::new(vec![0; 64]);
-        let reader = Reader { memory: arena, stores: vec![Store { name: 1, version: 0, bytes }] };
+        let buffer = BufferHandle::new(1);
+        let id = buffer.id();
+        let reader = Reader { memory: arena, stores: vec![Store { buffer: id, version: 0, bytes }] };
         let mut from = array(3, enums::FLOAT, i32::MAX, 16);
         assert_eq!(reader.elements(&from, &[(usize::MAX, 1)], false, [0.0; 3]), Err(OUTSIDE));
         assert_eq!(reader.elements(&from, &[(0, i32::MAX as usize)], false, [0.0; 3]), Err(NOT_THERE));
-        from.buffer = 1;
+        from.buffer = buffer;
         assert!(reader.elements(&from, &[(0, 1)], false, [0.0; 3]).is_ok());
         assert_eq!(reader.elements(&from, &[(0, 2)], false, [0.0; 3]), Err(OUTSIDE));
-        assert_eq!(reader.indices(1, enums::UNSIGNED_INT, 16, 1), Err(OUTSIDE));
-        assert_eq!(reader.indices(1, enums::UNSIGNED_INT, 15, 1).map(|v| v.len()), Ok(15));
+        assert_eq!(reader.indices(id, enums::UNSIGNED_INT, 16, 1), Err(OUTSIDE));
+        assert_eq!(reader.indices(id, enums::UNSIGNED_INT, 15, 1).map(|v| v.len()), Ok(15));
     }
 }

@@ -61,7 +61,7 @@ impl Context {
             self.record_error(enums::INVALID_VALUE, CALL, &format!("stride {stride} is negative"));
             return;
         }
-        if self.client.vertex_array != 0 && self.client.array_buffer == 0 && pointer != 0 {
+        if self.client.vertex_array != 0 && self.client.array_buffer.is_none() && pointer != 0 {
             let why = "a vertex array object takes no arrays in client memory";
             self.record_error(enums::INVALID_OPERATION, CALL, why);
             return;

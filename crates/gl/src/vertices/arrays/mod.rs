@@ -11,7 +11,7 @@ mod repeats;
 use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::Context;
 use crate::enums::BUFFER;
-use crate::objects::Names;
+use crate::objects::{BufferHandle, Names};
 use crate::state::{ArrayPointer, ClientState};
 
 /// Positions, beside the attributes.
@@ -61,25 +61,25 @@ impl ClientState {
 }
 
 impl Context {
-    /// A buffer is deleted: it is no longer bound anywhere.
-    pub(super) fn forget_buffer(&mut self, name: u32) {
-        self.forget_label(BUFFER, name);
+    /// A buffer is deleted: it is no longer bound here. Array objects that are not bound keep it, and so do other contexts.
+    pub(super) fn forget_buffer(&mut self, buffer: &BufferHandle) {
+        self.forget_label(BUFFER, buffer.name);
         let client = &mut self.client;
         let (pack, unpack) = (&mut client.pack.buffer, &mut client.unpack.buffer);
         let [read, write] = &mut client.copy_buffers;
         for binding in [&mut client.array_buffer, &mut client.element_buffer, pack, unpack, read, write] {
-            if *binding == name {
-                *binding = 0;
+            if binding == buffer {
+                *binding = BufferHandle::NONE;
             }
         }
         for which in 0..=POSITION {
             let array = client.array_mut(which);
-            if array.buffer == name {
+            if array.buffer == *buffer {
                 // What was an offset must not become an address.
-                (array.buffer, array.pointer) = (0, 0);
+                (array.buffer, array.pointer) = (BufferHandle::NONE, 0);
             }
         }
-        self.arrays.cache.forget(name);
-        self.arrays.repeats.forget(name);
+        self.arrays.cache.forget(buffer.id());
+        self.arrays.repeats.forget(buffer.id());
     }
 }

@@ -1,5 +1,6 @@
 //! Vertex array objects. The arrays of the bound object are in the client state; all others are kept here.
 
+use crate::objects::BufferHandle;
 use crate::state::{ArrayPointer, ClientState, MAX_TEXTURE_UNITS};
 use crate::vertices::names::generate;
 use crate::{Context, enums};
@@ -9,24 +10,24 @@ use crate::{Context, enums};
 pub(super) struct VertexArray {
     arrays: [ArrayPointer; 7],
     tex: [ArrayPointer; MAX_TEXTURE_UNITS],
-    element_buffer: u32,
+    element_buffer: BufferHandle,
 }
 
 impl VertexArray {
-    fn of(client: &ClientState) -> Self {
-        let c = client;
-        Self {
-            arrays: [c.vertex, c.normal, c.color, c.secondary, c.index, c.edge, c.fog],
-            tex: c.tex,
-            element_buffer: c.element_buffer,
-        }
+    /// A new object's arrays.
+    fn new() -> Self {
+        let ClientState { vertex, normal, color, secondary, index, edge, fog, tex, element_buffer, .. } =
+            ClientState::default();
+        Self { arrays: [vertex, normal, color, secondary, index, edge, fog], tex, element_buffer }
     }
 
-    fn put(self, client: &mut ClientState) {
-        let c = client;
-        [c.vertex, c.normal, c.color, c.secondary, c.index, c.edge, c.fog] = self.arrays;
-        c.tex = self.tex;
-        c.element_buffer = self.element_buffer;
+    /// Changes places with the arrays of the object that is bound.
+    fn swap(&mut self, c: &mut ClientState) {
+        let bound =
+            [&mut c.vertex, &mut c.normal, &mut c.color, &mut c.secondary, &mut c.index, &mut c.edge, &mut c.fog];
+        self.arrays.iter_mut().zip(bound).for_each(|(kept, bound)| std::mem::swap(kept, bound));
+        std::mem::swap(&mut self.tex, &mut c.tex);
+        std::mem::swap(&mut self.element_buffer, &mut c.element_buffer);
     }
 }
 
@@ -41,13 +42,11 @@ impl Context {
             let why = format!("{array} was not generated, or is deleted");
             self.record_error(enums::INVALID_OPERATION, "glBindVertexArray", &why);
         } else if array != bound {
-            self.arrays.objects.insert(bound, Some(VertexArray::of(&self.client)));
-            let kept = self.arrays.objects.get_mut(&array).and_then(Option::take);
             // Bound objects count as existing even though their arrays are elsewhere.
-            let fresh = || VertexArray::of(&ClientState::default());
-            let object = kept.unwrap_or_else(fresh);
-            self.arrays.objects.insert(array, Some(object.clone()));
-            object.put(&mut self.client);
+            let kept = self.arrays.objects.insert(array, Some(VertexArray::new())).flatten();
+            let mut object = kept.unwrap_or_else(VertexArray::new);
+            object.swap(&mut self.client);
+            self.arrays.objects.insert(bound, Some(object));
             self.client.vertex_array = array;
         }
     }
@@ -85,6 +84,39 @@ mod tests {
     use super::*;
 
     #[test]
+    fn objects_keep_buffers_that_are_deleted() {
+        let mut c = context();
+        let line = |c: &mut Context, x: f32| {
+            c.memory.write(BASE, bytemuck::cast_slice(&[[x, 0.0f32], [1.0, 0.0]]));
+            c.bind_buffer(enums::ARRAY_BUFFER, 3);
+            c.buffer_data(enums::ARRAY_BUFFER, 16, BASE, enums::STATIC_DRAW);
+        };
+        c.gen_vertex_arrays(1, BASE);
+        c.bind_vertex_array(1);
+        line(&mut c, 5.0);
+        c.vertex_pointer(2, enums::FLOAT, 0, 0);
+        c.enable_client_state(enums::VERTEX_ARRAY);
+        c.memory.write(BASE, &[0, 1]);
+        c.bind_buffer(enums::ELEMENT_ARRAY_BUFFER, 4);
+        c.buffer_data(enums::ELEMENT_ARRAY_BUFFER, 2, BASE, enums::STATIC_DRAW);
+        c.bind_vertex_array(0);
+        c.map_buffer(enums::ARRAY_BUFFER, enums::READ_ONLY);
+        c.memory.write(BASE, bytemuck::cast_slice(&[3u32, 4]));
+        c.delete_buffers(2, BASE);
+        assert_eq!((c.is_buffer(3), c.client.array_buffer.name), (0, 0));
+        // A new buffer of the name is another one.
+        line(&mut c, 7.0);
+        c.bind_vertex_array(1);
+        c.draw_elements(enums::LINES, 2, enums::UNSIGNED_BYTE, 0);
+        assert_eq!((c.error, c.builder.log[0].positions[0][0]), (0, 5.0));
+        // Deleted while the object is bound, a buffer leaves it.
+        c.vertex_pointer(2, enums::FLOAT, 0, 0);
+        c.memory.write(BASE, bytemuck::cast_slice(&[3u32]));
+        c.delete_buffers(1, BASE);
+        assert!(c.client.vertex.buffer.is_none());
+    }
+
+    #[test]
     fn each_object_has_its_arrays() {
         let mut c = context();
         c.enable_client_state(enums::VERTEX_ARRAY);
@@ -97,9 +129,9 @@ mod tests {
         c.bind_buffer(enums::ELEMENT_ARRAY_BUFFER, 5);
         c.enable_client_state(enums::COLOR_ARRAY);
         c.bind_vertex_array(0);
-        assert_eq!((c.client.vertex.enabled, c.client.color.enabled, c.client.element_buffer), (true, false, 0));
+        assert_eq!((c.client.vertex.enabled, c.client.color.enabled, c.client.element_buffer.name), (true, false, 0));
         c.bind_vertex_array(1);
-        assert_eq!((c.client.color.enabled, c.client.element_buffer), (true, 5));
+        assert_eq!((c.client.color.enabled, c.client.element_buffer.name), (true, 5));
         c.delete_vertex_arrays(1, BASE);
         assert_eq!((c.client.vertex_array, c.client.vertex.enabled, c.is_vertex_array(1)), (0, true, 0));
         c.bind_vertex_array(7);

@@ -45,7 +45,6 @@ impl Context {
             return;
         }
         let (sizes, kinds) = allowed(which);
-        let buffer = self.client.array_buffer;
         // EXT_vertex_array_bgra: the order is a size.
         let bgra = matches!(which, COLOR | SECONDARY) && size == BGRA;
         let trouble = if bgra && kind != enums::UNSIGNED_BYTE {
@@ -58,7 +57,7 @@ impl Context {
             Some((enums::INVALID_VALUE, format!("stride {stride} is negative")))
         } else if count < 0 {
             Some((enums::INVALID_VALUE, format!("count {count} is negative")))
-        } else if self.client.vertex_array != 0 && buffer == 0 && pointer != 0 {
+        } else if self.client.vertex_array != 0 && self.client.array_buffer.is_none() && pointer != 0 {
             let why = "a vertex array object takes no arrays in client memory".to_owned();
             Some((enums::INVALID_OPERATION, why))
         } else {
@@ -74,7 +73,7 @@ impl Context {
 
     /// Sets an array's pointer, which is valid.
     pub(super) fn place_array(&mut self, which: usize, size: i32, kind: u32, stride: i32, pointer: usize) {
-        let buffer = self.client.array_buffer;
+        let buffer = self.client.array_buffer.clone();
         let array = self.client.array_mut(which);
         *array = ArrayPointer { enabled: array.enabled, size, kind, stride, pointer, buffer, count: 0 };
     }
@@ -241,7 +240,7 @@ mod tests {
         c.client_active_texture(enums::TEXTURE0 + 2);
         c.tex_coord_pointer(2, enums::SHORT, 12, 16);
         c.enable_client_state(enums::TEXTURE_COORD_ARRAY);
-        let array = c.client.tex[2];
+        let array = &c.client.tex[2];
         assert_eq!((array.size, array.stride, array.pointer, array.enabled), (2, 12, 16, true));
     }
 }

@@ -115,7 +115,7 @@ impl Repeats {
     }
 
     /// Drops what was built from a buffer.
-    pub(super) fn forget(&mut self, buffer: u32) {
+    pub(super) fn forget(&mut self, buffer: u64) {
         self.entries.retain(|entry| !entry.key.uses(buffer));
     }
 }

@@ -4,7 +4,7 @@ use crate::api::{AttribStacks, DebugState, Queries};
 use crate::enums;
 use crate::memory::ClientMemory;
 use crate::objects::Shared;
-use crate::pixels::{DefaultFramebuffer, FramebufferBindings, UnnamedTextures};
+use crate::pixels::{DefaultFramebuffer, FramebufferBindings, TextureBindings};
 use crate::state::{ClientState, State};
 use crate::tnl::Recorder;
 use crate::vertices::{Arrays, Builder, Feedback, Lists};
@@ -37,8 +37,8 @@ pub struct Context {
     pub(crate) lists: Lists,
     /// Feedback and selection.
     pub(crate) feedback: Feedback,
-    /// Default and proxy textures.
-    pub(crate) textures: UnnamedTextures,
+    /// Textures that are bound, default and proxy ones.
+    pub(crate) textures: TextureBindings,
     /// Framebuffer objects and their bindings.
     pub(crate) framebuffers: FramebufferBindings,
     /// What the window system (OSMesa) gave.
@@ -64,7 +64,7 @@ impl Context {
             builder: Builder::default(),
             lists: Lists::default(),
             feedback: Feedback::default(),
-            textures: UnnamedTextures::default(),
+            textures: TextureBindings::default(),
             framebuffers: FramebufferBindings::default(),
             default_framebuffer: DefaultFramebuffer::default(),
             recorder: Recorder::default(),

@@ -25,9 +25,11 @@ pub(crate) struct FramebufferBits {
     pub double_buffer: bool,
 }
 
-/// Parameters of the textures bound to all units, kept by `PushAttrib(TEXTURE_BIT)`.
+/// Textures bound to all units and their parameters, kept by `PushAttrib(TEXTURE_BIT)`.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct BoundTextures {
+pub(crate) struct SavedTextures {
+    /// Unit by unit.
+    bound: Vec<Option<TextureHandle>>,
     textures: Vec<(TextureHandle, TextureParameters)>,
 }
 
@@ -44,7 +46,7 @@ impl Context {
 
     /// `RENDERBUFFER_BINDING`.
     pub(crate) fn renderbuffer_name(&self) -> u32 {
-        self.framebuffers.renderbuffer
+        self.framebuffers.renderbuffer.as_ref().map_or(0, |renderbuffer| lock(renderbuffer).name)
     }
 
     /// `FRAMEBUFFER_SRGB_CAPABLE_EXT`: whether the draw buffer holds sRGB-encoded colours.
@@ -117,8 +119,8 @@ impl Context {
         self.framebuffers.object(name).is_some()
     }
 
-    /// Keeps the parameters of all bound textures.
-    pub(crate) fn save_bound_textures(&mut self) -> BoundTextures {
+    /// Keeps all bound textures and their parameters.
+    pub(crate) fn save_bound_textures(&mut self) -> SavedTextures {
         let mut textures: Vec<(TextureHandle, TextureParameters)> = Vec::new();
         for unit in 0..MAX_TEXTURE_UNITS {
             for slot in 0..5 {
@@ -129,11 +131,16 @@ impl Context {
                 }
             }
         }
-        BoundTextures { textures }
+        SavedTextures { bound: self.textures.bound.as_flattened().to_vec(), textures }
     }
 
-    /// Gives the textures that were bound then their parameters back. Of those deleted since nobody will know.
-    pub(crate) fn restore_bound_textures(&mut self, saved: &BoundTextures) {
+    /// Binds textures again, and gives those that were bound then their parameters back. Ones deleted since are replaced by
+    /// the default one, as in the binding when they were deleted.
+    pub(crate) fn restore_bound_textures(&mut self, saved: SavedTextures) {
+        for (i, texture) in saved.bound.into_iter().enumerate() {
+            let texture = texture.filter(|texture| self.is_named_texture(texture));
+            self.textures.bound.as_flattened_mut()[i] = texture;
+        }
         for (texture, parameters) in &saved.textures {
             let mut texture = lock(texture);
             if texture.parameters != *parameters {
@@ -164,7 +171,7 @@ mod tests {
         let mut c = context_with(4, 4);
         let saved = c.save_bound_textures();
         c.tex_parameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST as i32);
-        c.restore_bound_textures(&saved);
+        c.restore_bound_textures(saved);
         assert_eq!(lock(&c.bound_texture(0, crate::state::target::TWO)).parameters.mag, LINEAR);
     }
 

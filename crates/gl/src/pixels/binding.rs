@@ -6,23 +6,27 @@ use super::sampler::SamplerHandle;
 use super::texture::{ImageTarget, TextureHandle, TextureObject, slot_of};
 use crate::Context;
 use crate::enums::*;
+use crate::state::MAX_TEXTURE_UNITS;
 use std::sync::{Arc, Mutex};
 use vitral_raster::forward::Texture;
 
-/// Textures of a context that have no names: the default ones and the proxies.
+/// Textures of a context: what is bound, and the default ones and the proxies, which have no names.
 #[derive(Debug)]
-pub(crate) struct UnnamedTextures {
+pub(crate) struct TextureBindings {
+    /// By unit and slot; `None` is the default texture. Names may be deleted elsewhere.
+    pub bound: [[Option<TextureHandle>; 5]; MAX_TEXTURE_UNITS],
     /// By slot.
     pub defaults: [TextureHandle; 5],
     /// By slot: images without texels.
     pub proxies: [TextureObject; 5],
     /// By unit: the sampler object that is bound.
-    pub samplers: [Option<SamplerHandle>; crate::state::MAX_TEXTURE_UNITS],
+    pub samplers: [Option<SamplerHandle>; MAX_TEXTURE_UNITS],
 }
 
-impl Default for UnnamedTextures {
+impl Default for TextureBindings {
     fn default() -> Self {
         Self {
+            bound: Default::default(),
             defaults: std::array::from_fn(|slot| Arc::new(Mutex::new(TextureObject::new(0, slot)))),
             proxies: std::array::from_fn(|slot| TextureObject::new(0, slot)),
             samplers: Default::default(),
@@ -33,18 +37,19 @@ impl Default for UnnamedTextures {
 impl Context {
     /// The texture bound to a slot of a unit.
     pub(crate) fn bound_texture(&self, unit: usize, slot: usize) -> TextureHandle {
-        let name = self.state.units[unit].bindings[slot];
-        if name != 0
-            && let Some(Some(texture)) = lock(&self.shared.textures).get(&name)
-        {
-            return texture.clone();
-        }
-        self.textures.defaults[slot].clone()
+        self.textures.bound[unit][slot].as_ref().unwrap_or(&self.textures.defaults[slot]).clone()
     }
 
-    /// Whether there is a texture of that name that belongs to a slot.
-    pub(crate) fn is_texture_of(&self, name: u32, slot: usize) -> bool {
-        lock(&self.shared.textures).get(&name).is_some_and(|t| t.as_ref().is_some_and(|t| lock(t).slot == slot))
+    /// The name of the texture bound to a slot of a unit; 0 is the default one.
+    pub(crate) fn texture_name(&self, unit: usize, slot: usize) -> u32 {
+        self.textures.bound[unit][slot].as_ref().map_or(0, |texture| lock(texture).name)
+    }
+
+    /// Whether a texture still has its name.
+    pub(crate) fn is_named_texture(&self, texture: &TextureHandle) -> bool {
+        let name = lock(texture).name;
+        let named = lock(&self.shared.textures).get(&name).cloned().flatten();
+        named.is_some_and(|named| Arc::ptr_eq(&named, texture))
     }
 
     /// The texture bound to the active unit that an image call names.
@@ -142,10 +147,10 @@ impl Context {
             let removed = if name == 0 { None } else { lock(&self.shared.textures).remove(&name) };
             let Some(removed) = removed else { continue };
             self.forget_label(TEXTURE, name);
-            for unit in &mut self.state.units {
-                unit.bindings.iter_mut().filter(|bound| **bound == name).for_each(|bound| *bound = 0);
-            }
             if let Some(texture) = removed {
+                for bound in self.textures.bound.as_flattened_mut() {
+                    bound.take_if(|bound| Arc::ptr_eq(bound, &texture));
+                }
                 self.detach_texture(&texture);
             }
         }
@@ -184,21 +189,17 @@ impl Context {
             self.record_error(INVALID_ENUM, CALL, "target is not a texture target");
             return;
         };
-        if name != 0 {
-            let mut textures = lock(&self.shared.textures);
-            let entry = textures.entry(name).or_default();
-            let object = entry.get_or_insert_with(|| Arc::new(Mutex::new(TextureObject::new(name, slot))));
-            let fits = lock(object).slot == slot;
-            drop(textures);
-            if !fits {
-                self.record_error(INVALID_OPERATION, CALL, "the texture was bound to another target before");
-                return;
-            }
+        let new = || Arc::new(Mutex::new(TextureObject::new(name, slot)));
+        let texture =
+            (name != 0).then(|| lock(&self.shared.textures).entry(name).or_default().get_or_insert_with(new).clone());
+        if texture.as_ref().is_some_and(|texture| lock(texture).slot != slot) {
+            self.record_error(INVALID_OPERATION, CALL, "the texture was bound to another target before");
+            return;
         }
         let unit = self.state.active_unit;
-        if self.state.units[unit].bindings[slot] != name {
+        if self.textures.bound[unit][slot].as_ref().map(Arc::as_ptr) != texture.as_ref().map(Arc::as_ptr) {
             self.flush_vertices();
-            self.state.units[unit].bindings[slot] = name;
+            self.textures.bound[unit][slot] = texture;
         }
     }
 
@@ -256,7 +257,7 @@ impl Context {
     /// Whether `name` is bound anywhere here.
     #[cfg(test)]
     pub(crate) fn is_bound(&self, name: u32) -> bool {
-        self.state.units.iter().any(|unit| unit.bindings.contains(&name))
+        self.textures.bound.as_flattened().iter().flatten().any(|texture| lock(texture).name == name)
     }
 }
 
@@ -283,6 +284,40 @@ mod tests {
         assert_eq!(c.is_texture(a), 0);
         c.bind_texture(TEXTURE_CUBE_MAP_POSITIVE_X, 0);
         assert_eq!(c.error, INVALID_ENUM);
+    }
+
+    #[test]
+    fn what_is_deleted_elsewhere_stays_bound() {
+        let mut c = context();
+        let mut other = Context::new(c.memory.clone(), c.shared.clone());
+        c.bind_texture(TEXTURE_CUBE_MAP, 5);
+        c.tex_image_2d(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, RGBA as i32, 2, 2, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.bind_renderbuffer_ext(RENDERBUFFER, 5);
+        c.renderbuffer_storage(RENDERBUFFER, RGBA8, 7, 7);
+        c.bind_buffer(ARRAY_BUFFER, 5);
+        c.buffer_data(ARRAY_BUFFER, 9, 0, STATIC_DRAW);
+        super::super::testing::put(&c, BASE, &5u32.to_ne_bytes());
+        other.delete_textures(1, BASE);
+        other.delete_renderbuffers(1, BASE);
+        other.delete_buffers(1, BASE);
+        // Another texture, of another target, gets the name.
+        other.bind_texture(TEXTURE_2D, 5);
+        other.bind_renderbuffer_ext(RENDERBUFFER, 5);
+        other.bind_buffer(ARRAY_BUFFER, 5);
+        c.get_tex_level_parameteriv(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, TEXTURE_WIDTH, BASE);
+        assert_eq!(read_u32(&c, BASE), 2);
+        c.tex_image_2d(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.get_renderbuffer_parameteriv(RENDERBUFFER, RENDERBUFFER_WIDTH, BASE);
+        assert_eq!(read_u32(&c, BASE), 7);
+        c.get_buffer_parameteriv(ARRAY_BUFFER, BUFFER_SIZE, BASE);
+        assert_eq!((read_u32(&c, BASE), c.texture_name(0, target::CUBE)), (9, 5));
+        // Bound again, the name is the new texture.
+        c.bind_texture(TEXTURE_CUBE_MAP, 5);
+        assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
+        c.bind_texture(TEXTURE_CUBE_MAP, 0);
+        c.bind_texture(TEXTURE_2D, 5);
+        assert!(Arc::ptr_eq(&c.bound_texture(0, target::TWO), &other.bound_texture(0, target::TWO)));
+        assert_eq!(c.error, NO_ERROR);
     }
 
     #[test]

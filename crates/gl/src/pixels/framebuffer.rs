@@ -68,8 +68,8 @@ pub(crate) struct FramebufferBindings {
     pub draw: u32,
     /// `READ_FRAMEBUFFER_BINDING`.
     pub read: u32,
-    /// `RENDERBUFFER_BINDING`.
-    pub renderbuffer: u32,
+    /// The renderbuffer that is bound: itself, for its name may be deleted elsewhere.
+    pub renderbuffer: Option<RenderbufferHandle>,
     /// Grows with every change of bindings and attachments.
     pub version: u64,
     /// Where draws go, as long as nothing changes.

@@ -42,8 +42,8 @@ mod texture;
 mod transfer;
 
 #[allow(unused_imports)]
-pub(crate) use answers::{BoundTextures, FramebufferBits};
-pub(crate) use binding::UnnamedTextures;
+pub(crate) use answers::{FramebufferBits, SavedTextures};
+pub(crate) use binding::TextureBindings;
 pub(crate) use default::DefaultFramebuffer;
 pub use default::{BufferInfo, DepthCopy, OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, OSMESA_RGB_565};
 pub(crate) use format::float_from_half;

@@ -76,10 +76,8 @@ impl Context {
             let removed = if name == 0 { None } else { lock(&self.shared.renderbuffers).remove(&name) };
             let Some(removed) = removed else { continue };
             self.forget_label(RENDERBUFFER, name);
-            if self.framebuffers.renderbuffer == name {
-                self.framebuffers.renderbuffer = 0;
-            }
             if let Some(renderbuffer) = removed {
+                self.framebuffers.renderbuffer.take_if(|bound| Arc::ptr_eq(bound, &renderbuffer));
                 self.detach_renderbuffer(&renderbuffer);
             }
         }
@@ -108,6 +106,7 @@ impl Context {
         if !self.renderbuffer_target(call, target) {
             return;
         }
+        let mut bound = None;
         if name != 0 {
             let shared = self.shared.clone();
             let mut names = lock(&shared.renderbuffers);
@@ -116,9 +115,9 @@ impl Context {
                 return;
             }
             let new = || Arc::new(Mutex::new(Renderbuffer { name, ..Renderbuffer::default() }));
-            names.entry(name).or_default().get_or_insert_with(new);
+            bound = Some(names.entry(name).or_default().get_or_insert_with(new).clone());
         }
-        self.framebuffers.renderbuffer = name;
+        self.framebuffers.renderbuffer = bound;
     }
 
     fn renderbuffer_target(&mut self, call: &str, target: u32) -> bool {
@@ -132,8 +131,7 @@ impl Context {
     }
 
     fn bound_renderbuffer(&mut self, call: &str) -> Option<RenderbufferHandle> {
-        let name = self.framebuffers.renderbuffer;
-        let bound = lock(&self.shared.renderbuffers).get(&name).cloned().flatten();
+        let bound = self.framebuffers.renderbuffer.clone();
         if bound.is_none() {
             self.record_error(INVALID_OPERATION, call, "no renderbuffer is bound");
         }

@@ -99,7 +99,7 @@ pub struct State {
     pub cube_map_seamless: bool,
     /// `CLIP_ORIGIN`, `CLIP_DEPTH_MODE` (ARB_clip_control).
     pub clip_control: (u32, u32),
-    /// Texture units: bindings are names in `bindings`, see [`TextureUnit`].
+    /// Texture units.
     pub units: [TextureUnit; MAX_TEXTURE_UNITS],
     /// `ACTIVE_TEXTURE - TEXTURE0`.
     pub active_unit: usize,

@@ -67,7 +67,7 @@ impl Default for TextureEnvironment {
     }
 }
 
-/// Indices of [`TextureUnit::enabled`] and [`TextureUnit::bindings`], lowest priority first.
+/// Indices of [`TextureUnit::enabled`], lowest priority first.
 pub mod target {
     /// `TEXTURE_1D`.
     pub const ONE: usize = 0;
@@ -86,8 +86,6 @@ pub mod target {
 pub struct TextureUnit {
     /// Enables by [`target`].
     pub enabled: [bool; 5],
-    /// Names of the bound textures by [`target`]; 0 is the default texture of that target.
-    pub bindings: [u32; 5],
     /// Generation of s, t, r, q.
     pub generation: [TexGen; 4],
     /// Environment.
@@ -103,7 +101,6 @@ impl Default for TextureUnit {
         };
         Self {
             enabled: [false; 5],
-            bindings: [0; 5],
             generation: std::array::from_fn(|i| TexGen {
                 enabled: false,
                 mode: enums::EYE_LINEAR,

@@ -1,7 +1,7 @@
 //! The groups of server state, and how they are saved.
 
 use crate::api::capabilities::saved_capabilities;
-use crate::pixels::BoundTextures;
+use crate::pixels::SavedTextures;
 use crate::state::{
     Blend, ColorBuffer, Current, DepthState, Fog, Lighting, Lines, MAX_CLIP_PLANES, MAX_TEXTURE_UNITS, PixelMode,
     PixelTransfer, Points, Polygons, RasterPosition, Scissor, StencilState, TextureUnit, Viewport,
@@ -66,7 +66,7 @@ pub(super) struct TextureGroup {
     pub(super) units: [TextureUnit; MAX_TEXTURE_UNITS],
     pub(super) active: usize,
     pub(super) cube_map_seamless: bool,
-    pub(super) parameters: BoundTextures,
+    pub(super) bound: SavedTextures,
 }
 
 #[derive(Debug)]
@@ -145,13 +145,13 @@ impl Context {
     }
 
     fn save_texture_group(&mut self) -> Box<TextureGroup> {
-        let parameters = self.save_bound_textures();
+        let bound = self.save_bound_textures();
         let s = &self.state;
         Box::new(TextureGroup {
             units: s.units.clone(),
             active: s.active_unit,
             cube_map_seamless: s.cube_map_seamless,
-            parameters,
+            bound,
         })
     }
 

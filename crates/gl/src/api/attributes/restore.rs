@@ -122,21 +122,14 @@ impl Context {
         s.sample_coverage_value = saved.coverage_value;
     }
 
-    /// Textures deleted since are replaced by the default one, as in the binding when they were deleted; so is a name that
-    /// has become another target's texture.
     fn restore_texture_group(&mut self, saved: TextureGroup) {
         for (i, mut unit) in saved.units.into_iter().enumerate() {
-            for (slot, name) in unit.bindings.iter_mut().enumerate() {
-                if *name != 0 && !self.is_texture_of(*name, slot) {
-                    *name = 0;
-                }
-            }
             unit.environment.coord_replace = self.state.units[i].environment.coord_replace;
             self.state.units[i] = unit;
         }
         self.state.active_unit = saved.active;
         self.state.cube_map_seamless = saved.cube_map_seamless;
-        self.restore_bound_textures(&saved.parameters);
+        self.restore_bound_textures(saved.bound);
     }
 
     fn restore_point_group(&mut self, saved: &PointGroup) {

@@ -8,15 +8,15 @@ use crate::{Context, enums as gl};
 
 impl Context {
     pub(super) fn get_texturing(&mut self, pname: u32) -> Option<Value> {
-        let bindings = &self.state.units[self.state.active_unit].bindings;
+        let bound = |slot| Value::token(self.texture_name(self.state.active_unit, slot));
         Some(match pname {
             gl::SAMPLER_BINDING => Value::token(self.sampler_name(self.state.active_unit)),
             gl::ACTIVE_TEXTURE => Value::token(gl::TEXTURE0 + self.state.active_unit as u32),
-            gl::TEXTURE_BINDING_1D => Value::token(bindings[target::ONE]),
-            gl::TEXTURE_BINDING_2D => Value::token(bindings[target::TWO]),
-            gl::TEXTURE_BINDING_3D => Value::token(bindings[target::THREE]),
-            gl::TEXTURE_BINDING_CUBE_MAP => Value::token(bindings[target::CUBE]),
-            gl::TEXTURE_BINDING_RECTANGLE_ARB => Value::token(bindings[target::RECTANGLE]),
+            gl::TEXTURE_BINDING_1D => bound(target::ONE),
+            gl::TEXTURE_BINDING_2D => bound(target::TWO),
+            gl::TEXTURE_BINDING_3D => bound(target::THREE),
+            gl::TEXTURE_BINDING_CUBE_MAP => bound(target::CUBE),
+            gl::TEXTURE_BINDING_RECTANGLE_ARB => bound(target::RECTANGLE),
             _ => return None,
         })
     }

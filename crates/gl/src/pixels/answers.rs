@@ -28,8 +28,8 @@ pub(crate) struct FramebufferBits {
 /// Textures bound to all units and their parameters, kept by `PushAttrib(TEXTURE_BIT)`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SavedTextures {
-    /// Unit by unit.
-    bound: Vec<Option<TextureHandle>>,
+    /// Names, by unit and slot.
+    bound: [[u32; 5]; MAX_TEXTURE_UNITS],
     textures: Vec<(TextureHandle, TextureParameters)>,
 }
 
@@ -131,15 +131,21 @@ impl Context {
                 }
             }
         }
-        SavedTextures { bound: self.textures.bound.as_flattened().to_vec(), textures }
+        let name = |unit| std::array::from_fn(|slot| self.texture_name(unit, slot));
+        SavedTextures { bound: std::array::from_fn(name), textures }
     }
 
     /// Binds textures again, and gives those that were bound then their parameters back. Ones deleted since are replaced by
-    /// the default one, as in the binding when they were deleted.
+    /// the default one, as in the binding when they were deleted; so is a name that has become another target's texture.
     pub(crate) fn restore_bound_textures(&mut self, saved: SavedTextures) {
-        for (i, texture) in saved.bound.into_iter().enumerate() {
-            let texture = texture.filter(|texture| self.is_named_texture(texture));
-            self.textures.bound.as_flattened_mut()[i] = texture;
+        for (names, bound) in saved.bound.iter().zip(&mut self.textures.bound) {
+            for (slot, (name, bound)) in names.iter().zip(bound).enumerate() {
+                // What is bound still may have been deleted in another context.
+                if bound.as_ref().map_or(0, |texture| lock(texture).name) != *name {
+                    let texture = lock(&self.shared.textures).get(name).cloned().flatten();
+                    *bound = texture.filter(|texture| lock(texture).slot == slot);
+                }
+            }
         }
         for (texture, parameters) in &saved.textures {
             let mut texture = lock(texture);

@@ -45,13 +45,6 @@ impl Context {
         self.textures.bound[unit][slot].as_ref().map_or(0, |texture| lock(texture).name)
     }
 
-    /// Whether a texture still has its name.
-    pub(crate) fn is_named_texture(&self, texture: &TextureHandle) -> bool {
-        let name = lock(texture).name;
-        let named = lock(&self.shared.textures).get(&name).cloned().flatten();
-        named.is_some_and(|named| Arc::ptr_eq(&named, texture))
-    }
-
     /// The texture bound to the active unit that an image call names.
     pub(crate) fn target_texture(&self, target: ImageTarget) -> TextureHandle {
         self.bound_texture(self.state.active_unit, target.slot)
@@ -311,6 +304,9 @@ mod tests {
         assert_eq!(read_u32(&c, BASE), 7);
         c.get_buffer_parameteriv(ARRAY_BUFFER, BUFFER_SIZE, BASE);
         assert_eq!((read_u32(&c, BASE), c.texture_name(0, target::CUBE)), (9, 5));
+        c.push_attrib(TEXTURE_BIT);
+        c.pop_attrib();
+        assert_eq!(c.texture_name(0, target::CUBE), 5);
         // Bound again, the name is the new texture.
         c.bind_texture(TEXTURE_CUBE_MAP, 5);
         assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);

@@ -70,7 +70,8 @@ pub(crate) fn solution(
 ) -> Result<Arc<Solution>, crate::Error> {
     if let Some(loaded) = &*session.loaded_radiosity.lock().expect("it is only replaced") {
         if loaded.key() != fingerprint_of(lights, settings) {
-            let found = "the stored radiosity was found for other lights, another color space or transparency";
+            let found = "the stored radiosity was found for other lights, another color space or transparency; these must be \
+                         as when it was saved";
             return Err(crate::Error::Radiosity(found.to_owned()));
         }
         return Ok(Arc::clone(loaded));

@@ -6,6 +6,7 @@
 
 mod coincident;
 pub mod media;
+mod rays;
 mod sky;
 mod surface;
 pub(crate) mod whitted;

@@ -29,6 +29,7 @@
 
 use super::coincident::{Pile, Piles, unit_normal};
 use super::media::{Border, Media};
+use super::rays::{Branch, Rays, add, counts};
 use super::sky::Sky;
 use super::surface::Surface;
 use crate::marks::MarkColors;
@@ -88,76 +89,12 @@ pub(crate) struct Whitted<'a> {
     outcome: Mutex<Result<TracingCounters, Limit>>,
 }
 
-/// A ray, and what it is for.
-#[derive(Clone, Copy)]
-struct Branch {
-    /// The point whose colour it adds to.
-    target: u32,
-    /// How its red, green, blue and alpha count.
-    weight: [f32; 4],
-    /// Where it starts, world space less the scene's middle.
-    origin: DVec3,
-    /// Where it goes, unit, world space.
-    direction: DVec3,
-    /// The facet that it leaves.
-    own: u32,
-    media: Media,
-    /// The pile in which it is, and the next of its triangles: the ray meets that without looking for it.
-    pile: Option<u32>,
-    layer: u32,
-    /// Turns that it took.
-    depth: u32,
-    /// It is one of many that a translucent surface scattered.
-    scattered: bool,
-    /// What its light must count at least to be followed.
-    least: f32,
-    /// Distance from the eye to its start.
-    travelled: f64,
-    /// Row of the picture whose background it sees; `None` after a turn.
-    row: Option<u32>,
-    seed: u32,
-}
-
 /// A surface that a ray met: its light and properties, by number.
 struct Met<'a> {
     lit: &'a Lit,
     at: usize,
     /// Whether the ray came from the side from which the facet's corners run clockwise.
     from_behind: bool,
-}
-
-/// Rays of one generation.
-#[derive(Default)]
-struct Rays {
-    /// Those that look for what they meet.
-    free: Vec<Branch>,
-    /// Those within a pile.
-    piled: Vec<Branch>,
-    /// Points, and how opaque what they show becomes where branches end: black, not a hole.
-    ended: Vec<(u32, f32)>,
-}
-
-impl Rays {
-    fn is_empty(&self) -> bool {
-        self.free.is_empty() && self.piled.is_empty()
-    }
-
-    fn clear(&mut self) {
-        self.free.clear();
-        self.piled.clear();
-    }
-
-    /// A branch with this weight ends.
-    fn end(&mut self, target: u32, weight: [f32; 4]) {
-        if weight[3] > 0.0 {
-            self.ended.push((target, weight[3]));
-        }
-    }
-
-    /// Adds what ended to the points' colours.
-    fn settle(&mut self, colors: &mut [[f32; 4]]) {
-        self.ended.drain(..).for_each(|(target, alpha)| colors[target as usize][3] += alpha);
-    }
 }
 
 /// The first surfaces of a tile.
@@ -705,14 +642,4 @@ fn least_weight(constants: &FrameConstants<'_>) -> f32 {
     let glow = constants.materials.iter().map(|m| m.material.emission);
     let brightest = lights.chain(glow).flatten().filter(|channel| channel.is_finite()).fold(1.0, f32::max);
     LEAST_SEEN / brightest / if constants.raw { 1.0 } else { STEEPEST }
-}
-
-fn counts(weight: [f32; 4], least: f32) -> bool {
-    weight.iter().any(|&w| w >= least)
-}
-
-fn add(sum: &mut [f32; 4], weight: [f32; 4], color: [f32; 4]) {
-    for k in 0..4 {
-        sum[k] += weight[k] * color[k];
-    }
 }

@@ -1,0 +1,78 @@
+//! The rays of a generation, and where their light goes.
+
+use super::media::Media;
+use vitral_math::DVec3;
+
+/// A ray, and what it is for.
+#[derive(Clone, Copy)]
+pub(super) struct Branch {
+    /// The point whose colour it adds to.
+    pub(super) target: u32,
+    /// How its red, green, blue and alpha count.
+    pub(super) weight: [f32; 4],
+    /// Where it starts, world space less the scene's middle.
+    pub(super) origin: DVec3,
+    /// Where it goes, unit, world space.
+    pub(super) direction: DVec3,
+    /// The facet that it leaves.
+    pub(super) own: u32,
+    pub(super) media: Media,
+    /// The pile in which it is, and the next of its triangles: the ray meets that without looking for it.
+    pub(super) pile: Option<u32>,
+    pub(super) layer: u32,
+    /// Turns that it took.
+    pub(super) depth: u32,
+    /// It is one of many that a translucent surface scattered.
+    pub(super) scattered: bool,
+    /// What its light must count at least to be followed.
+    pub(super) least: f32,
+    /// Distance from the eye to its start.
+    pub(super) travelled: f64,
+    /// Row of the picture whose background it sees; `None` after a turn.
+    pub(super) row: Option<u32>,
+    pub(super) seed: u32,
+}
+
+/// Rays of one generation.
+#[derive(Default)]
+pub(super) struct Rays {
+    /// Those that look for what they meet.
+    pub(super) free: Vec<Branch>,
+    /// Those within a pile.
+    pub(super) piled: Vec<Branch>,
+    /// Points, and how opaque what they show becomes where branches end: black, not a hole.
+    pub(super) ended: Vec<(u32, f32)>,
+}
+
+impl Rays {
+    pub(super) fn is_empty(&self) -> bool {
+        self.free.is_empty() && self.piled.is_empty()
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.free.clear();
+        self.piled.clear();
+    }
+
+    /// A branch with this weight ends.
+    pub(super) fn end(&mut self, target: u32, weight: [f32; 4]) {
+        if weight[3] > 0.0 {
+            self.ended.push((target, weight[3]));
+        }
+    }
+
+    /// Adds what ended to the points' colours.
+    pub(super) fn settle(&mut self, colors: &mut [[f32; 4]]) {
+        self.ended.drain(..).for_each(|(target, alpha)| colors[target as usize][3] += alpha);
+    }
+}
+
+pub(super) fn counts(weight: [f32; 4], least: f32) -> bool {
+    weight.iter().any(|&w| w >= least)
+}
+
+pub(super) fn add(sum: &mut [f32; 4], weight: [f32; 4], color: [f32; 4]) {
+    for k in 0..4 {
+        sum[k] += weight[k] * color[k];
+    }
+}

@@ -276,56 +276,6 @@ fn p41_fog_is_depth_cueing() {
 }
 
 #[test]
-fn p41_fog_is_that_of_the_fragments_depth() {
-    const SIDE: u16 = 33;
-    // A floor that passes under the eye, and without perspective a surface through the eye's plane: one quad, four, a fine grid.
-    for perspective in [true, false] {
-        let place = |u: f32, v: f32| match perspective {
-            true => [100.0 * u - 50.0, -1.0, 51.2 - 100.0 * v],
-            false => [2.0 * u - 1.0, 2.0 * v - 1.0, 12.0 * v - 6.0],
-        };
-        for cells in [1u16, 2, SIDE - 1] {
-            let mut c = Stage::new(32, 32);
-            c.clear(gl::COLOR_BUFFER_BIT);
-            c.matrix_mode(gl::PROJECTION);
-            if perspective {
-                c.frustum(-1.0, 1.0, -1.0, 1.0, 1.0, 100.0);
-            } else {
-                c.ortho(-1.0, 1.0, -1.0, 1.0, -8.0, 8.0);
-            }
-            c.enable(gl::FOG);
-            c.fogi(gl::FOG_MODE, gl::LINEAR as i32);
-            c.fogf(gl::FOG_START, 1.0);
-            c.fogf(gl::FOG_END, 8.0);
-            let side = cells + 1;
-            let at = |i: u16| f32::from(i) / f32::from(cells);
-            let vertices: Vec<[f32; 3]> = (0..side * side).map(|i| place(at(i % side), at(i / side))).collect();
-            let corners = (0..cells * cells).map(|cell| cell / cells * side + cell % cells);
-            let indices: Vec<u16> = corners.flat_map(|a| [a, a + 1, a + side, a + side, a + 1, a + side + 1]).collect();
-            let (vertices, count, indices) = (c.put(&vertices), indices.len() as i32, c.put(&indices));
-            c.vertex_pointer(3, gl::FLOAT, 0, vertices);
-            c.enable_client_state(gl::VERTEX_ARRAY);
-            c.draw_elements(gl::TRIANGLES, count, gl::UNSIGNED_SHORT, indices);
-            for row in 0..if perspective { 16 } else { 32 } {
-                let y = (row as f32 + 0.5) / 16.0 - 1.0;
-                let depth = if perspective { -1.0 / y } else { (6.0 * y).abs() };
-                let kept = (8.0 - depth) / 7.0;
-                for column in [3, 16, 28] {
-                    let found = c.pixel(column, row);
-                    let error = (f32::from(found[0]) - kept.clamp(0.0, 1.0) * 255.0).abs();
-                    assert!(
-                        error <= 1.0,
-                        "{perspective} {cells} cells, row {row}: {} instead of {}",
-                        found[0],
-                        kept * 255.0
-                    );
-                }
-            }
-        }
-    }
-}
-
-#[test]
 fn p41_the_highlight_is_blinns_and_lights_add_up() {
     // Light and viewer at infinity, straight ahead: the halfway vector is z, so a normal at angle t shines with cos^n t, and
     // Phong's reflected ray, at 2t, with cos^m 2t, which has the same width for n = 4 m.

@@ -119,7 +119,7 @@ fn fog(f: &state::Fog) -> Fog {
         _ => FogMode::Exp { density: f.density },
     };
     let [r, g, b, _] = f.color.map(|c| c.clamp(0.0, 1.0));
-    Fog { mode, by_depth: f.source == gl::FRAGMENT_DEPTH, color: [r, g, b] }
+    Fog { mode, color: [r, g, b] }
 }
 
 fn source(token: u32) -> CombineSource {

@@ -93,7 +93,7 @@ impl Context {
         RasterPosition {
             window: [wx, wy, wz, w],
             valid: true,
-            distance: if self.state.fog.source == gl::FRAGMENT_DEPTH { vertex.fog.abs() } else { vertex.fog },
+            distance: vertex.fog,
             color: vertex.color,
             secondary: vertex.secondary,
             tex: vertex.tex,

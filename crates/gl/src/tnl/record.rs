@@ -5,13 +5,14 @@
 //! light is still at hand when they add it.
 
 use super::geometry::{DrawGeometry, PointSizes};
-use super::snapshot::{Generation, LightCache, VertexSnapshot};
+use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
 use crate::vertex::{Given, Sent, VertexBatch};
 use std::sync::{Arc, PoisonError};
 use vitral_exec::{Started, Workers};
+use vitral_math::Vec4;
 use vitral_math::lanes::Level;
 use vitral_raster::forward::{
     Command, FragmentState, Layout, NO_GRID, Pass, PrimitiveState, Runner, Target, WindowTransform,
@@ -202,14 +203,17 @@ impl Context {
         let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
-        let snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
+        let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Sent::Now && batch.is_small();
         let assembled = (!small).then(|| batch.assembled.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
         let flat = assembled.as_ref().is_some_and(|assembled| assembled.grid.is_some());
-        let grid = flat && draws_grids(&snapshot, &primitive, fragment);
+        let grid = flat && self.draws_grids(&snapshot, &primitive, fragment);
+        if grid && snapshot.fog == Some(FogSource::Depth) {
+            snapshot.fog = Some(FogSource::Ahead);
+        }
         let colors_alone = shaded && layout.stride == layout.color + 4;
         layout.uniform = colors_alone && snapshot.lighting.is_none() && batch.colors.is_none();
         if grid && shaded && snapshot.lighting.is_some() {
@@ -226,6 +230,19 @@ impl Context {
         };
         let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
         Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, points })
+    }
+
+    /// Whether everything that varies on a flat grid is linear, but the colours of one side.
+    fn draws_grids(&self, snapshot: &VertexSnapshot, primitive: &PrimitiveState, fragment: &FragmentState) -> bool {
+        let lit = snapshot.lighting.as_ref();
+        // What a perspective projection shows lies ahead.
+        let ahead = self.state.matrices.projection.top().row(3) == Vec4::NEG_Z;
+        primitive.polygon_mode == [2, 2]
+            && !primitive.polygon_smooth
+            && !(lit.is_some() && fragment.flat)
+            && lit.is_none_or(|lighting| !lighting.two_side && !lighting.separate_specular)
+            && snapshot.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
+            && (ahead || snapshot.fog != Some(FogSource::Depth))
     }
 
     /// Where vertex records hold what. `samples`: the target has several a pixel.
@@ -299,16 +316,6 @@ impl Context {
             grid: NO_GRID,
         })
     }
-}
-
-/// Whether everything that varies on a flat grid is linear, but the colours of one side.
-fn draws_grids(snapshot: &VertexSnapshot, primitive: &PrimitiveState, fragment: &FragmentState) -> bool {
-    let lit = snapshot.lighting.as_ref();
-    primitive.polygon_mode == [2, 2]
-        && !primitive.polygon_smooth
-        && !(lit.is_some() && fragment.flat)
-        && lit.is_none_or(|lighting| !lighting.two_side && !lighting.separate_specular)
-        && snapshot.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
 }
 
 /// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need what is there now.

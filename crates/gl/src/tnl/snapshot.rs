@@ -62,8 +62,10 @@ pub(crate) struct LightingSnapshot {
 /// Where fog coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FogSource {
-    /// The depth before the eye's plane, negative behind it.
+    /// The distance from the eye's plane.
     Depth,
+    /// How far it lies ahead of the eye: as `Depth` for what is seen, but linear.
+    Ahead,
     Given,
 }
 

@@ -278,7 +278,8 @@ pub(crate) fn colors<S: Simd>(
             }
             None => splat(simd, snapshot.current.fog),
         },
-        _ => -eye[2],
+        Some(FogSource::Ahead) => -eye[2],
+        _ => lanes::Lanes::abs(eye[2]),
     };
     let Some(lighting) = &snapshot.lighting else {
         let secondary = if snapshot.color_sum {

@@ -200,14 +200,11 @@ pub enum FogMode {
     Exp2 { density: f32 },
 }
 
-/// Fog, applied to a fragment's fog coordinate.
+/// Fog, applied to a fragment's fog coordinate (eye distance or given).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {
     /// Mode and its numbers.
     pub mode: FogMode,
-    /// Coordinates are depths before the eye, negative behind it, of which the fog takes the size: as depths they are linear
-    /// on surfaces that pass the eye. Others are taken as they are.
-    pub by_depth: bool,
     /// Colour, 0..=1.
     pub color: [f32; 3],
 }

@@ -31,7 +31,7 @@ pub(crate) fn fog_factor<V: Lanes>(mode: FogMode, coordinate: V) -> V {
 /// Fades towards the fog's colour.
 #[inline(always)]
 pub(crate) fn fog<V: Lanes>(state: &Fog, color: [V; 4], coordinate: V) -> [V; 4] {
-    let f = fog_factor(state.mode, if state.by_depth { coordinate.abs() } else { coordinate });
+    let f = fog_factor(state.mode, coordinate);
     [
         mix(f.splat(state.color[0]), color[0], f),
         mix(f.splat(state.color[1]), color[1], f),
@@ -70,19 +70,13 @@ mod tests {
 
     #[test]
     fn fog_mixes_colour_and_keeps_alpha() {
+        let state = Fog { mode: FogMode::Linear { start: 0.0, end: 4.0 }, color: [1.0, 0.0, 0.5] };
         for (_, level) in available_levels() {
-            for (by_depth, coordinate, expected) in [
-                (false, 3.0, [0.75, 0.25, 0.5, 0.25]),
-                (true, -3.0, [0.75, 0.25, 0.5, 0.25]),
-                (false, -3.0, [0.0, 1.0, 0.5, 0.25]),
-            ] {
-                let state = Fog { mode: FogMode::Linear { start: 0.0, end: 4.0 }, by_depth, color: [1.0, 0.0, 0.5] };
-                let out = dispatch!(level, simd => {
-                    let out = fog(&state, splat_rgba(simd, [0.0, 1.0, 0.5, 0.25]), splat(simd, coordinate));
-                    [out[0].to_array()[3], out[1].to_array()[3], out[2].to_array()[3], out[3].to_array()[3]]
-                });
-                assert_eq!(out, expected);
-            }
+            let out = dispatch!(level, simd => {
+                let out = fog(&state, splat_rgba(simd, [0.0, 1.0, 0.5, 0.25]), splat(simd, 3.0));
+                [out[0].to_array()[3], out[1].to_array()[3], out[2].to_array()[3], out[3].to_array()[3]]
+            });
+            assert_eq!(out, [0.75, 0.25, 0.5, 0.25]);
             let out = dispatch!(level, simd => {
                 let secondary = [splat(simd, 0.5), splat(simd, 0.25), splat(simd, 0.0)];
                 let out = color_sum(splat_rgba(simd, [0.75, 0.5, 0.5, 0.25]), &secondary);

@@ -141,7 +141,7 @@ impl Sender {
         }
         let polygon = above(&self.corners, point, normal);
         let whole = from_point(point, normal, &polygon);
-        if polygon.is_empty() || whole <= NOTHING {
+        if whole <= NOTHING {
             return None;
         }
         let mut parts = vec![self.corners];

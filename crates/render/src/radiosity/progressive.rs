@@ -12,7 +12,8 @@
 //!
 //! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of any of them carries about
 //! the same, and its error shows as much. All light together then goes through about as many pixels, into however many
-//! patches a scene is cut.
+//! patches a scene is cut, until elements are so many that fewer and fewer pixels would show each: from there on pixels grow
+//! with them.
 //!
 //! In:   an enclosure. Out: irradiance of each side of each element.
 //! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
@@ -55,7 +56,8 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Pixels along the edge of a hemicube for a patch that sends at least this part of all light, where elements are few.
+/// Pixels along the edge of a hemicube, if there is one so fine, for a patch that sends at least this part of all light, where
+/// elements are few.
 const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
 /// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
 const FEW: usize = 8192;
@@ -158,10 +160,11 @@ fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Colo
 
 /// The coarsest hemicube with enough pixels for this part of all light and so many elements, else the finest.
 fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
-    let (side, strong) = STRONG;
+    let (last, (side, strong)) = (hemicubes.len() - 1, STRONG);
+    let side = side.min(f64::from(hemicubes[last].side()));
     let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW as f64).max(1.0);
     let enough = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side()) >= needed;
-    hemicubes.iter().position(enough).unwrap_or(hemicubes.len() - 1)
+    hemicubes.iter().position(enough).unwrap_or(last)
 }
 
 /// What a side of a patch sees: sides of elements.
@@ -269,6 +272,7 @@ mod tests {
             assert_eq!(fineness(&hemicubes, part, 1), expected, "{part} of large elements");
         }
         assert_eq!(fineness(&hemicubes[..1], 1.0, 9), 0, "there is no finer one");
+        assert_eq!(fineness(&hemicubes[..2], strong / 4.0, 9), 0, "in proportion to the finest that there is");
     }
 
     #[test]

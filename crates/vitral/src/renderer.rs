@@ -3,7 +3,7 @@
 use crate::{Error, SystemClock};
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
-use vitral_light::{Light, Rgb};
+use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
 use vitral_render::{Execution, Global, Rendered, Session, Settings, Shot, render};
@@ -158,7 +158,10 @@ impl Renderer {
             return Vec::new();
         }
         let (view, lens) = (View::default(), Lens::default());
-        default_lights(&framing::frame(&self.world().bounds, view, self.up, lens, 1.0))
+        let mut lights = default_lights(&framing::frame(&self.world().bounds, view, self.up, lens, 1.0));
+        // Light that went through walls would be reflected on behind them.
+        lights.iter_mut().filter(|light| light.kind != LightKind::Ambient).for_each(|light| light.shadow = true);
+        lights
     }
 
     /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient).
@@ -276,7 +279,8 @@ mod tests {
     fn default_lights_are_for_scenes_without_lights() {
         let mut renderer = small("teapot");
         let camera = renderer.frame_camera();
-        assert_eq!(renderer.frame_lights(&camera), default_lights(&camera));
+        let renderer_lights = renderer.frame_lights(&camera);
+        assert_eq!(renderer_lights, default_lights(&camera));
         renderer.lights = Some(Vec::new());
         assert!(renderer.frame_lights(&camera).is_empty(), "no lights were asked for");
         // Radiosity does not depend on the camera, and needs no lamps where surfaces shine.
@@ -285,6 +289,9 @@ mod tests {
         let (near, far) = (Camera { position: DVec3::ONE, ..camera }, Camera { position: -DVec3::ONE, ..camera });
         assert!(!fixed.frame_lights(&near).is_empty());
         assert_eq!(fixed.frame_lights(&near), fixed.frame_lights(&far));
+        // None of them goes through walls; the usual fill light does.
+        let leak = |lights: &[Light]| lights.iter().any(|l| l.kind != LightKind::Ambient && !l.shadow);
+        assert!(!leak(&fixed.frame_lights(&near)) && leak(&renderer_lights));
         let mut scene = load_builtin("teapot").unwrap();
         scene.materials.push(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
         let mut shining = Renderer::new(scene).unwrap();

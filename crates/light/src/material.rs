@@ -120,13 +120,21 @@ pub enum AlphaMode {
     /// Not at all: the surface is opaque.
     #[default]
     Opaque,
-    /// Cut-out: fully there where opacity reaches `cutoff`, gone elsewhere.
+    /// Cut-out: fully there where opacity reaches `cutoff` (see [`AlphaMode::least_opacity`]), gone elsewhere.
     Mask {
         /// The threshold, usually 0.5.
         cutoff: f32,
     },
     /// Blended with what is behind.
     Blend,
+}
+
+impl AlphaMode {
+    /// The opacity from which on a cut-out surface is there: its cutoff less what interpolation may round away, so that a
+    /// surface whose opacity is its cutoff everywhere has no holes.
+    pub fn least_opacity(cutoff: f32) -> f32 {
+        cutoff - 1.0 / (1u32 << 20) as f32
+    }
 }
 
 /// Specular or diffuse transmission (the course's transparent and translucent materials).

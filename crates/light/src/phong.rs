@@ -37,6 +37,8 @@ pub struct Phong<T> {
 /// `illumination` chooses the terms: [`Illumination::Ambient`], [`Illumination::Lambert`], [`Illumination::Phong`] or
 /// [`Illumination::BlinnPhong`]. [`Illumination::Constant`] reflects nothing (see [`crate::constant_color`]); the others
 /// count as Phong. `visibility(j)` says how much of each colour of light `j` is not in shadow, `0..=1`; it does not touch ambient light.
+/// A light is in front of the surface where `N·L` is more than what `grazing` says, usually 0; where rounding decides whether a light
+/// in the surface's plane is in front, [`PreparedLight::direction_rounding`] keeps highlights from coming in specks.
 #[inline(always)]
 pub fn phong<T: Lanes>(
     illumination: Illumination,
@@ -45,6 +47,7 @@ pub fn phong<T: Lanes>(
     s: &Surface<T>,
     k: &Phong<T>,
     visibility: impl Fn(usize) -> V3<T>,
+    grazing: impl Fn(&PreparedLight) -> T,
 ) -> Reflected<T> {
     let zero = s.n.x.splat(0.0);
     let mut sum = Reflected { diffuse: tint(k.ka, global_ambient), specular: V3::new(zero, zero, zero) };
@@ -70,8 +73,11 @@ pub fn phong<T: Lanes>(
         sum.diffuse = sum.diffuse + tint(k.kd, light.diffuse).times(caught);
 
         // Specular: only where the light is in front of the surface.
-        let in_front = zero.lt(n_l);
-        if illumination == Illumination::Lambert || !T::any(in_front) {
+        if illumination == Illumination::Lambert {
+            continue;
+        }
+        let in_front = grazing(light).lt(n_l);
+        if !T::any(in_front) {
             continue;
         }
         let cos = match illumination {
@@ -113,7 +119,7 @@ mod tests {
             ks: V3::splat(0.0, [1.0; 3]),
             shininess,
         };
-        let r = phong(illumination, &[sun(from)], [0.2; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0));
+        let r = phong(illumination, &[sun(from)], [0.2; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0), |_| 0.0);
         (r.diffuse.x, r.specular.x)
     }
 

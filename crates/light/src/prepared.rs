@@ -140,16 +140,18 @@ impl PreparedLight {
     }
 
     /// How wrong the direction from `position` to the light may be, and with it a cosine: what rounding does to both places.
-    pub fn direction_rounding(&self, position: V3<f32>) -> f32 {
+    #[inline(always)]
+    pub fn direction_rounding<T: Lanes>(&self, position: V3<T>) -> T {
+        let constant = position.x.splat(DIRECTION_ROUNDING);
         let at = match &self.source {
-            Source::Everywhere => return 0.0,
-            Source::Infinity(_) => return DIRECTION_ROUNDING,
+            Source::Everywhere => return position.x.splat(0.0),
+            Source::Infinity(_) => return constant,
             Source::Point(at) | Source::Spot { position: at, .. } => *at,
             Source::Area(shape) => shape.centroid,
         };
-        let (at, length) = (V3::splat(position.x, at), |v: V3<f32>| v.dot(v).sqrt());
-        let distance = length(at - position).max(f32::MIN_POSITIVE);
-        DIRECTION_ROUNDING * (1.0 + (length(position) + length(at)) / distance)
+        let (at, length) = (V3::splat(position.x, at), |v: V3<T>| v.dot(v).sqrt());
+        let distance = length(at - position).max(position.x.splat(f32::MIN_POSITIVE));
+        ((length(position) + length(at)) / distance + 1.0) * constant
     }
 
     /// What a diffuse surface with unit normal `n` at `position` gets of an area light if nothing is in between, where a

@@ -40,7 +40,7 @@ fn material(ka: f32, kd: f32, ks: f32, shininess: f32) -> Phong<f32> {
 }
 
 fn lit(model: Illumination, lights: &[Light], ambient: Rgb, s: &Point, k: &Phong<f32>) -> Reflected<f32> {
-    phong(model, &prepared(lights), ambient, s, k, |_| V3::new(1.0, 1.0, 1.0))
+    phong(model, &prepared(lights), ambient, s, k, |_| V3::new(1.0, 1.0, 1.0), |_| 0.0)
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn e12_reflectance_is_reflected_over_incident() {
 fn f20_shadow_takes_all_but_ambient_light() {
     let lights = prepared(&[Light { ambient: [0.5; 3], ..sun(DVec3::Z) }]);
     let k = material(0.4, 0.6, 0.5, 20.0);
-    let r = phong(Illumination::Phong, &lights, [0.25; 3], &point(DVec3::Z), &k, |_| V3::new(0.0, 0.0, 0.0));
+    let r = phong(Illumination::Phong, &lights, [0.25; 3], &point(DVec3::Z), &k, |_| V3::new(0.0, 0.0, 0.0), |_| 0.0);
     assert!((r.diffuse.x - 0.3).abs() < 1e-7 && r.specular.x == 0.0);
 }
 
@@ -382,8 +382,8 @@ proptest! {
         let m = Microfacet { base_color: k.ks, metallic, roughness, occlusion: 1.0 };
         let mut results = vec![];
         for model in Illumination::ALL {
-            results.push(phong(model, &lights, [0.1; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0)));
-            results.push(phong(model, &lights, [0.1; 3], &s, &phong_from_microfacet(&m), |_| V3::new(1.0, 1.0, 1.0)));
+            results.push(phong(model, &lights, [0.1; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0), |_| 0.0));
+            results.push(phong(model, &lights, [0.1; 3], &s, &phong_from_microfacet(&m), |_| V3::new(1.0, 1.0, 1.0), |_| 0.0));
         }
         results.push(cook_torrance(&lights, [0.1; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0)));
         results.push(cook_torrance(&lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| V3::new(1.0, 1.0, 1.0)));

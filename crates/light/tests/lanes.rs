@@ -71,11 +71,27 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
     for light in lights {
         let light = std::slice::from_ref(light);
         for model in [Illumination::Lambert, Illumination::Phong, Illumination::BlinnPhong] {
-            put(phong(model, light, [0.1; 3], &s, &k, |_| V3::new(a.saturate(), a.saturate(), a.saturate())));
+            put(phong(
+                model,
+                light,
+                [0.1; 3],
+                &s,
+                &k,
+                |_| V3::new(a.saturate(), a.saturate(), a.saturate()),
+                |l| l.direction_rounding(s.position),
+            ));
         }
         put(cook_torrance(light, [0.1; 3], &s, &m, |_| V3::new(a.saturate(), a.saturate(), a.saturate())));
     }
-    put(phong(Illumination::Phong, lights, [0.1; 3], &s, &phong_from_microfacet(&m), |_| V3::splat(e, [1.0; 3])));
+    put(phong(
+        Illumination::Phong,
+        lights,
+        [0.1; 3],
+        &s,
+        &phong_from_microfacet(&m),
+        |_| V3::splat(e, [1.0; 3]),
+        |_| e * 0.0,
+    ));
     put(cook_torrance(lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| V3::splat(e, [1.0; 3])));
 }
 

@@ -4,12 +4,20 @@
 //! projected, and widened on the screen into two triangles each. They lie a little nearer to the viewer than where
 //! they are, so that an edge is not hidden by the faces that meet in it.
 //!
-//! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
-//! Of a material count its diffuse or base colour and its opacity, not its textures; lines are not lit.
+//! A stroke is hardly wider than a pixel: counting which of a pixel's few samples it hits says badly how much of the pixel
+//! it covers, and a slanted stroke would look dashed. So where pixels have several samples a stroke's border is soft: a
+//! sample near it is covered in part, by its distance from the line.
 //!
-//! In:   visible instances, model space. Out: a [`Batch`] on the screen, and the colour of each mark.
+//! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
+//! Of a material count its diffuse or base colour, its emission and its opacity, not its textures; lines are not lit.
+//!
+//! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
+//! the million.
+//!
+//! In:   visible instances, model space. Out: [`Marks`] on the screen, and the colour of each.
 //! Cost: linear in lines and points.
-//! Source: the polygon offset is that of the GL specification in spirit; here it is a fixed number of pixels in depth.
+//! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
+//! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
 use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings, Transparency};
 use vitral_light::{AlphaMode, Reflectance};
@@ -21,6 +29,8 @@ use vitral_scene::{FreePart, Instance};
 
 /// Width of strokes in pixels.
 const STROKE: f32 = 1.3;
+/// Width of a stroke's soft border in pixels, half of it within [`STROKE`].
+const SOFT: f32 = 0.5;
 /// Side of dots in pixels.
 const DOT: f32 = 3.0;
 /// How many pixels' depth a mark lies in front of its place.
@@ -31,6 +41,15 @@ const EDGE: [f32; 3] = [0.11, 0.12, 0.14];
 /// Colour of lines and points that have none of their own, linear.
 const PLAIN: [f32; 3] = [0.02, 0.02, 0.03];
 
+/// Lines and points on the screen.
+#[derive(Clone, Debug, Default)]
+pub struct Marks {
+    /// All of them.
+    pub all: Batch,
+    /// Those among them that hide what is behind them.
+    pub hiding: Batch,
+}
+
 /// The colours of marks. Their ids follow the facets'.
 #[derive(Debug, Default)]
 pub struct MarkColors {
@@ -39,6 +58,10 @@ pub struct MarkColors {
     colors: Vec<[f32; 4]>,
     /// The others, in the order of their marks.
     gradients: Vec<(u32, Gradient)>,
+    /// Ends of each stroke on the screen, pixels; not numbers for dots. Empty where borders are not soft.
+    ends: Vec<[Vec2; 2]>,
+    /// Samples within a pixel, pixels; none where borders are not soft.
+    samples: Vec<Vec2>,
 }
 
 /// How the colour of a line goes over from its first end to its second.
@@ -70,13 +93,30 @@ impl MarkColors {
         (!self.colors.is_empty() && id >= self.first).then(|| id - self.first)
     }
 
-    /// Premultiplied colour in the space of composition, at a place on the screen, in pixels.
-    pub fn color(&self, mark: usize, place: Vec2) -> [f32; 4] {
+    /// Premultiplied colour in the space of composition at samples of a pixel that a mark hits; `corner` is the pixel's upper
+    /// left one on the screen.
+    pub fn color(&self, mark: usize, corner: Vec2, mask: u32) -> [f32; 4] {
         let color = self.colors[mark];
-        match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
-            Ok(found) => self.gradients[found].1.at(color, place),
+        let color = match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
+            Ok(found) => self.gradients[found].1.at(color, corner + 0.5),
             Err(_) => color,
-        }
+        };
+        let covered = self.covered(mark, corner, mask);
+        color.map(|c| c * covered)
+    }
+
+    /// How much a mark covers of the samples that it hits, `0..=1`.
+    fn covered(&self, mark: usize, corner: Vec2, mask: u32) -> f32 {
+        let Some(&[a, b]) = self.ends.get(mark).filter(|ends| ends[0].is_finite()) else { return 1.0 };
+        let (way, from) = (b - a, corner - a);
+        let inverse = way.length_squared().max(f32::MIN_POSITIVE).recip();
+        let of_sample = |&sample: &Vec2| {
+            let from = from + sample;
+            let t = (from.dot(way) * inverse).clamp(0.0, 1.0);
+            (((STROKE + SOFT) * 0.5 - (from - way * t).length()) / SOFT).clamp(0.0, 1.0)
+        };
+        let hit = self.samples.iter().enumerate().filter(|(s, _)| mask >> s & 1 == 1);
+        hit.map(|(_, sample)| of_sample(sample)).sum::<f32>() / mask.count_ones() as f32
     }
 
     /// How many there are.
@@ -93,15 +133,30 @@ impl MarkColors {
     fn next(&mut self, color: [f32; 4]) -> Option<u32> {
         let id = self.first.checked_add(self.colors.len() as u32).filter(|&id| id < vitral_raster::NO_FACET)?;
         self.colors.push(color);
+        if !self.samples.is_empty() {
+            self.ends.push([Vec2::NAN; 2]);
+        }
         Some(id)
+    }
+
+    /// Says where the stroke with the newest id is.
+    fn place(&mut self, drawn: &Drawn) {
+        if let Some(ends) = self.ends.last_mut() {
+            *ends = drawn.ends;
+        }
     }
 }
 
 /// Places all marks of a view on the screen.
-pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution) -> (Batch, MarkColors) {
+pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution) -> (Marks, MarkColors) {
     let world = &view.session.world;
-    let mut marks = MarkColors { first: world.facet_count, ..MarkColors::default() };
-    let mut pen = Pen { view, batch: Batch::default(), clip_from_model: Mat4::IDENTITY, lift: Lift::new(view) };
+    let count = view.pattern.len();
+    let samples =
+        if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
+    let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
+    let mut marks = MarkColors { first: world.facet_count, samples, ..MarkColors::default() };
+    let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
+    let mut pen = Pen { view, drawn, clip_from_model, lift, half };
     let raw = settings.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
     let edge_color = encode(edge_color(&settings.background));
@@ -112,7 +167,9 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
         if settings.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
-                pen.stroke(edge.ends.map(|i| positions[i as usize]), id);
+                if let Some(drawn) = pen.stroke(edge.ends.map(|i| positions[i as usize]), id) {
+                    marks.place(&drawn);
+                }
             }
         }
         let mesh = &instance.mesh;
@@ -122,6 +179,7 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
             let [start, end] = line.map(|vertex| paint.color(material, vertex));
             let Some(id) = marks.next(start) else { break };
             let Some(drawn) = pen.stroke(line.map(|i| positions[i as usize]), id) else { continue };
+            marks.place(&drawn);
             if start != end {
                 let mark = marks.colors.len() - 1;
                 let gradient = drawn.gradient([start, end], settings.interpolation);
@@ -131,12 +189,14 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
         }
         for (i, &point) in mesh.points.iter().enumerate() {
             let material = FreePart::material_of(&mesh.point_parts, i);
-            let Some(id) = marks.next(paint.color(material, point)) else { break };
-            pen.dot(positions[point as usize], id);
+            let color = paint.color(material, point);
+            let Some(id) = marks.next(color) else { break };
+            pen.dot(positions[point as usize], id, color[3] >= 1.0);
         }
     }
-    pen.batch.finish(&view.screen);
-    (pen.batch, marks)
+    pen.drawn.all.finish(&view.screen);
+    pen.drawn.hiding.finish(&view.screen);
+    (pen.drawn, marks)
 }
 
 /// Dark edges on light ground and the other way round.
@@ -177,13 +237,15 @@ impl Paint<'_, '_> {
         };
         let own = own.unwrap_or([1.0; 4]);
         let alpha = (material.opacity * own[3]).clamp(0.0, 1.0);
+        let glow = material.emission;
         let alpha = match material.alpha_mode {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= cutoff)),
+            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= AlphaMode::least_opacity(cutoff))),
             AlphaMode::Blend if self.settings.transparency == Transparency::None => 1.0,
             AlphaMode::Blend => alpha,
         };
-        [base[0] * own[0] * alpha, base[1] * own[1] * alpha, base[2] * own[2] * alpha, alpha]
+        let [r, g, b] = [0, 1, 2].map(|k| (base[k] * own[k] + glow[k]) * alpha);
+        [r, g, b, alpha]
     }
 }
 
@@ -243,12 +305,14 @@ impl Lift {
     }
 }
 
-/// Draws strokes and dots into a batch.
+/// Draws strokes and dots.
 struct Pen<'v, 'a> {
     view: &'v PreparedView<'a>,
-    batch: Batch,
+    drawn: Marks,
     clip_from_model: Mat4,
     lift: Lift,
+    /// Half the width of strokes' triangles, pixels.
+    half: f32,
 }
 
 impl Pen<'_, '_> {
@@ -256,23 +320,24 @@ impl Pen<'_, '_> {
     fn stroke(&mut self, ends: [[f32; 3]; 2], id: u32) -> Option<Drawn> {
         let [a, b] = ends.map(|p| transform_point(&self.clip_from_model, p));
         if !(a.is_finite() && b.is_finite()) {
-            self.batch.counters.not_finite += 1;
+            self.drawn.all.counters.not_finite += 1;
             return None;
         }
         let (shares, [a, b]) = clip_segment([a, b], self.view.screen.transform().guard())?;
         let ([pa, za], [pb, zb]) = (self.place(a), self.place(b));
-        let along = (pb - pa).normalize_or(Vec2::X) * (STROKE * 0.5);
+        let along = (pb - pa).normalize_or(Vec2::X) * self.half;
         let across = Vec2::new(-along.y, along.x);
         self.quad(
             [pa - along - across, pa - along + across, pb + along + across, pb + along - across],
             [za, za, zb, zb],
             id,
+            false,
         );
         Some(Drawn { ends: [pa, pb], shares, w: [a.w, b.w] })
     }
 
     /// A square round a point in model space.
-    fn dot(&mut self, p: [f32; 3], id: u32) {
+    fn dot(&mut self, p: [f32; 3], id: u32, opaque: bool) {
         let clip = transform_point(&self.clip_from_model, p);
         let guard = self.view.screen.transform().guard();
         if !clip.is_finite() || clip_segment([clip, clip], guard).is_none() {
@@ -281,7 +346,7 @@ impl Pen<'_, '_> {
         let [p, z] = self.place(clip);
         let h = DOT * 0.5;
         let corner = |x: f32, y: f32| p + Vec2::new(x, y);
-        self.quad([corner(-h, -h), corner(-h, h), corner(h, h), corner(h, -h)], [z; 4], id);
+        self.quad([corner(-h, -h), corner(-h, h), corner(h, h), corner(h, -h)], [z; 4], id, opaque);
     }
 
     /// Screen position in pixels, and depth (twice, in the second vector).
@@ -293,11 +358,13 @@ impl Pen<'_, '_> {
         [Vec2::new(half.x + ndc.x * half.x, half.y - ndc.y * half.y), Vec2::splat(z)]
     }
 
-    fn quad(&mut self, corners: [Vec2; 4], depths: [Vec2; 4], id: u32) {
+    fn quad(&mut self, corners: [Vec2; 4], depths: [Vec2; 4], id: u32, hides: bool) {
         let corner = |i: usize| CornerPosition { x: snap(corners[i].x), y: snap(corners[i].y), z: depths[i].x };
         let [a, b, c, d] = [0, 1, 2, 3].map(corner);
-        self.batch.add_corners([a, b, c], false, false, id, &self.view.screen);
-        self.batch.add_corners([a, c, d], false, false, id, &self.view.screen);
+        for batch in std::iter::once(&mut self.drawn.all).chain(hides.then_some(&mut self.drawn.hiding)) {
+            batch.add_corners([a, b, c], false, false, id, &self.view.screen);
+            batch.add_corners([a, c, d], false, false, id, &self.view.screen);
+        }
     }
 }
 

@@ -165,7 +165,7 @@ fn render_color(
         execution,
     );
     let t1 = clock();
-    let (mark_batch, mark_colors) = marks::build(&view, settings, execution);
+    let (drawn_marks, mark_colors) = marks::build(&view, settings, execution);
     let t2 = clock();
 
     // Find what is visible, and shade each tile as it is finished.
@@ -190,7 +190,7 @@ fn render_color(
         sink.show_passes();
     }
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
-    let marks = (!mark_colors.is_empty()).then_some(&mark_batch);
+    let marks = (!mark_colors.is_empty()).then_some(&drawn_marks);
     let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
     stats.picture = sink.counters();
     let passes = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Vec::new()) };

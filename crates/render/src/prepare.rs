@@ -4,7 +4,7 @@
 //! facet, [`PreparedView::setups`] gives its pieces on the screen, whose `covers` and `depth` say which samples they
 //! cover and how near they are there; the z-buffer's kernels compute the same in bulk.
 
-use crate::cull::{backface, frustum};
+use crate::cull::frustum;
 use crate::stats::CullCounters;
 use crate::transparency::registry::order;
 use crate::visible::TileSink;
@@ -82,7 +82,9 @@ impl<'a> PreparedView<'a> {
         for visible in frustum::cull(session, &clip_from_world, cull_objects, counters) {
             let instance = &session.world.instances[visible.instance];
             let solid = |double_sided: bool| {
-                settings.cull.back_face && !double_sided && is_solid(session, instance, camera, &view, execution)
+                settings.cull.back_face
+                    && !double_sided
+                    && is_solid(session, instance, camera, &view, settings, execution)
             };
             let draws = if surfaces {
                 draws(session, instance, &visible.ranges, &clip_from_world, settings, solid)
@@ -165,16 +167,18 @@ impl<'a> PreparedView<'a> {
     }
 }
 
-/// Whether only the outside of an instance can be seen: its mesh is solid, and the near plane does not cut it open.
+/// Whether only the outside of an instance can be seen: its mesh is solid without a window, and the near plane does not cut it
+/// open.
 pub fn is_solid(
     session: &Session,
     instance: &Instance,
     camera: &Camera,
     view: &ViewTransform,
+    settings: &Settings,
     execution: &Execution,
 ) -> bool {
     depth_range(camera, &instance.bounds).0 > view.near
-        && backface::applies(session.solidity(instance.mesh_index, &execution.workers))
+        && session.is_solid(instance.mesh_index, settings.transparency, &execution.workers)
 }
 
 /// How many layers each tile may have when all of them together take `bytes`.
@@ -188,17 +192,18 @@ pub fn mirrors(transform: &DMat4) -> bool {
     transform.determinant() < 0.0
 }
 
-/// The opacity class of a material.
-fn class(material: Option<&Material>, transparency: Transparency) -> Class {
-    let layered = |m: &Material| match m.alpha_mode {
+/// Whether surfaces of a material are layers in front of what is opaque.
+pub(crate) fn is_layered(material: Option<&Material>, transparency: Transparency) -> bool {
+    material.is_some_and(|m| match m.alpha_mode {
         AlphaMode::Opaque => false,
         AlphaMode::Mask { .. } => true,
         AlphaMode::Blend => transparency != Transparency::None,
-    };
-    material.map_or(Class { layered: false, double_sided: false }, |m| Class {
-        layered: layered(m),
-        double_sided: m.double_sided,
     })
+}
+
+/// The opacity class of a material.
+fn class(material: Option<&Material>, transparency: Transparency) -> Class {
+    Class { layered: is_layered(material, transparency), double_sided: material.is_some_and(|m| m.double_sided) }
 }
 
 /// Cuts an instance's visible ranges by class, in order, one draw a class.

@@ -2,8 +2,8 @@
 //!
 //! Pictures with a fresh session and with a used one are equal.
 
-use crate::Error;
-use crate::cull::bounds_tree::BoundsTree;
+use crate::cull::{backface, bounds_tree::BoundsTree};
+use crate::prepare::is_layered;
 use crate::radiosity;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
@@ -13,6 +13,7 @@ use crate::shading::{BackgroundKey, BackgroundRows, FaceTable, Scratch};
 use crate::shadow;
 use crate::trace::{Observer, Step};
 use crate::visible::BspTree;
+use crate::{Error, Transparency};
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Frame;
@@ -22,7 +23,7 @@ use vitral_math::{Aabb, DMat4, Mat4, Vec3};
 use vitral_raster::{Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Instance, Scene, Solidity, World};
+use vitral_scene::{Instance, Mesh, Part, Scene, Solidity, World};
 
 /// Who computes, with which instructions, and how much is allowed.
 #[derive(Clone, Debug)]
@@ -122,6 +123,8 @@ pub(crate) fn keep_for<K: PartialEq, T, E>(
 #[derive(Debug, Default)]
 struct MeshKnowledge {
     solidity: OnceLock<Solidity>,
+    /// Of what is opaque, without and with blended materials.
+    opaque_solidity: [OnceLock<Solidity>; 2],
     tree: OnceLock<BoundsTree>,
     faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
@@ -143,6 +146,7 @@ impl MeshKnowledge {
     fn count(&self) -> usize {
         let known = [
             self.solidity.get().is_some(),
+            self.opaque_solidity.iter().any(|s| s.get().is_some()),
             self.tree.get().is_some(),
             self.faces.get().is_some(),
             self.edges.get().is_some(),
@@ -245,6 +249,32 @@ impl Session {
     pub fn solidity(&self, mesh: u32, workers: &Workers) -> Solidity {
         let known = &self.meshes[mesh as usize].solidity;
         *known.get_or_init(|| Solidity::of(&self.scene.meshes[mesh as usize], workers))
+    }
+
+    /// Whether back faces of a mesh can never be seen from outside: neither past its skin nor through a window in it.
+    pub fn is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
+        backface::applies(self.solidity(mesh, workers)) && self.opaque_is_solid(mesh, transparency, workers)
+    }
+
+    /// Whether what is opaque of a mesh is solid by itself, if that is not all and not nothing.
+    fn opaque_is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
+        let known = &self.meshes[mesh as usize].opaque_solidity[usize::from(transparency == Transparency::None)];
+        let mesh = &self.scene.meshes[mesh as usize];
+        let is_opaque = |part: &&Part| {
+            let material = part.material.and_then(|m| self.scene.materials.get(m as usize));
+            !is_layered(material, transparency)
+        };
+        let opaque = mesh.parts.iter().filter(is_opaque);
+        let count: usize = opaque.clone().map(|part| part.triangles.len()).sum();
+        if count == 0 || count == mesh.triangles.len() {
+            return true;
+        }
+        let solidity = known.get_or_init(|| {
+            let of = |part: &Part| &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
+            let triangles = opaque.flat_map(of).copied().collect();
+            Solidity::of(&Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() }, workers)
+        });
+        backface::applies(*solidity)
     }
 
     /// The list of all triangles, made when it is first asked for, as are the structures over it: the views of a

@@ -343,7 +343,7 @@ fn lit<S: Simd>(
             let dull = !tracked.specular && m.dull;
             let model = if dull { Illumination::Lambert } else { Illumination::BlinnPhong };
             let Reflected { diffuse, specular } =
-                phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible);
+                phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible, |_| one * 0.0);
             let primary = diffuse + of(tracked.emission, &m.emission);
             let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {

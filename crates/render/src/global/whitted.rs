@@ -61,8 +61,9 @@ const LEAST_SEEN: f32 = 1.0 / 512.0;
 const STEEPEST: f32 = 12.92;
 /// A direction that is in no simple ratio to the axes.
 const ASKEW: Vec3 = Vec3::new(0.531_7, 0.681_9, 0.502_3);
-/// Depths that differ by less may be those of faces that coincide.
-const SAME_DEPTH: f32 = 1.0 / (1 << 18) as f32;
+/// Depths that differ by less may be those of faces that coincide: their corners were snapped to 1/256 pixel, and a steep face's
+/// depth changes much along that. A probe tells for certain.
+const SAME_DEPTH: f32 = 1.0 / (1 << 14) as f32;
 /// Samples whose trees are followed together.
 const TOGETHER: usize = 2048;
 

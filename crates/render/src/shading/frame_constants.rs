@@ -142,7 +142,8 @@ impl<'a> FrameConstants<'a> {
     ) -> Self {
         let session = view.session;
         let raw = settings.color_space == ColorSpace::Raw;
-        let instances = (0..session.world.instances.len()).map(|i| instance_constants(view, i, execution)).collect();
+        let instances =
+            (0..session.world.instances.len()).map(|i| instance_constants(view, i, settings, execution)).collect();
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
         let materials: Vec<_> = materials.map(|m| material_constants(m, view, settings, tables)).collect();
@@ -224,7 +225,12 @@ fn rows(m: &DMat4) -> [[f32; 4]; 3] {
     [0, 1, 2].map(|r| m.row(r).as_vec4().to_array())
 }
 
-fn instance_constants(view: &PreparedView<'_>, index: usize, execution: &Execution) -> InstanceConstants {
+fn instance_constants(
+    view: &PreparedView<'_>,
+    index: usize,
+    settings: &Settings,
+    execution: &Execution,
+) -> InstanceConstants {
     let instance = &view.session.world.instances[index];
     let view_from_model = view.view.view_from_world * instance.world_from_model;
     let clip = view.view.clip_from_view * view_from_model;
@@ -243,7 +249,7 @@ fn instance_constants(view: &PreparedView<'_>, index: usize, execution: &Executi
         screen_from_model: screen.map(|r| r.as_vec4().to_array()),
         view_from_model: rows(&view_from_model),
         view_from_model_normal: [0, 1, 2].map(normal_row),
-        two_sided: !is_solid(view.session, instance, &view.camera, &view.view, execution),
+        two_sided: !is_solid(view.session, instance, &view.camera, &view.view, settings, execution),
         mirrored,
     }
 }
@@ -266,7 +272,7 @@ fn material_constants<'a>(
     };
     let (cutoff, blend) = match material.alpha_mode {
         AlphaMode::Opaque => (None, false),
-        AlphaMode::Mask { cutoff } => (Some(cutoff), false),
+        AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
         AlphaMode::Blend => (None, settings.transparency != Transparency::None),
     };
     MaterialConstants {

@@ -101,7 +101,11 @@ impl Lighting<'_> {
                 );
                 match coefficients {
                     Coefficients::Empirical(k) => {
-                        vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit)
+                        let grazing = lanes::inlined(
+                            #[inline(always)]
+                            |light: &PreparedLight| light.direction_rounding(*position),
+                        );
+                        vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
                     }
                     Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
                 }

@@ -97,7 +97,7 @@ impl<'a> Occluders<'a> {
     fn let_through(&self, material: &Material, coverage: f32) -> Rgb {
         let alpha = (material.opacity * coverage).clamp(0.0, 1.0);
         match material.alpha_mode {
-            AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < cutoff)); 3],
+            AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < AlphaMode::least_opacity(cutoff))); 3],
             AlphaMode::Blend if self.filtered => {
                 let passes =
                     filtered::passes(coverage.clamp(0.0, 1.0), linear::opacity(material.opacity), material.filter);

@@ -11,16 +11,16 @@
 
 use super::facets::nearer;
 use super::screen_setups::{ScreenSetups, charged};
+use super::zbuffer::hide_behind;
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::{Passed, Step};
 use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::dispatch;
-use vitral_raster::{
-    Batch, Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse_by_rows,
-};
+use vitral_raster::{Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Tile, TileGrid, traverse_by_rows};
 
 /// Tests of a facet at a sample that are not refused: about an hour on one thread.
 pub const MOST_TESTS: u64 = 1 << 40;
@@ -33,7 +33,7 @@ impl VisibleSurface for BruteForce {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
@@ -58,7 +58,7 @@ impl VisibleSurface for BruteForce {
 /// Lets `look` fill each tile and its layers, adds the marks and hands the tile on. After a limit the rest is left out.
 pub(super) fn each_tile(
     view: &PreparedView<'_>,
-    marks: Option<&Batch>,
+    marks: Option<&Marks>,
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,
@@ -93,16 +93,18 @@ pub(super) fn each_tile(
 /// Tests lines and points against the finished depth.
 fn add_marks(
     view: &PreparedView<'_>,
-    marks: &Batch,
+    marks: &Marks,
     index: usize,
-    tile: &Tile,
+    tile: &mut Tile,
     layers: &mut LayerList,
     execution: &Execution,
 ) {
+    hide_behind(execution.level, &marks.hiding, index, tile, &view.pattern);
     dispatch!(execution.level, simd => {
+        let place = (tile.x, tile.y);
         let mut sink = LayerSink::new(tile, &view.pattern, layers);
-        for setup in marks.tile(index) {
-            traverse_by_rows(simd, setup, (tile.x, tile.y), &view.pattern, &mut sink);
+        for setup in marks.all.tile(index) {
+            traverse_by_rows(simd, setup, place, &view.pattern, &mut sink);
         }
     });
 }

@@ -20,12 +20,13 @@ use super::cut::{Cut, Depth};
 use super::facets::{Facets, fill_with};
 use super::pieces::{Footprint, List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, DVec4};
-use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, Tile, TileGrid, Viewport};
+use vitral_raster::{LayerList, SUBPIXEL, Setup, Tile, TileGrid, Viewport};
 
 pub(crate) use tree::Tree;
 
@@ -46,7 +47,7 @@ impl VisibleSurface for Bsp {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
@@ -81,7 +82,7 @@ fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>,
 fn picture(
     tree: &Tree,
     facets: &Facets<'_, '_>,
-    marks: Option<&Batch>,
+    marks: Option<&Marks>,
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,

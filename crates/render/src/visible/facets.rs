@@ -8,8 +8,10 @@
 //! In:   prepared draws (model space). Out: set-up triangles (screen space).
 //! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they are set up.
 
+use super::zbuffer::hide_behind;
 use super::zbuffer::{jobs, retire_vertices, rounds, set_up, transform_vertices, walk};
 use super::{Peel, Resolved, TileSink};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::{Mutex, OnceLock};
@@ -118,13 +120,17 @@ impl<'v, 'a> Facets<'v, 'a> {
         &self,
         index: usize,
         tile: &mut Tile,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         sink: &dyn TileSink,
         collect: Option<&Collect<'_>>,
     ) {
+        let (level, pattern) = (self.execution.level, &self.view.pattern);
+        let (all, hiding) = (marks.map(|m| &m.all), marks.map(|m| &m.hiding));
+        if let Some(hiding) = hiding {
+            hide_behind(level, hiding, index, tile, pattern);
+        }
         if sink.takes_passes() {
-            let batches = self.layered.iter().chain(marks);
-            let (level, pattern) = (self.execution.level, &self.view.pattern);
+            let batches = self.layered.iter().chain(all);
             let go_on = || self.execution.budget.check("passes over layers").is_ok();
             let mut pass = |peel: &mut Peel| go_on() && peel.pass(level, batches.clone(), index, tile, pattern);
             return sink.tile_in_passes(index, tile, &mut pass);
@@ -135,8 +141,8 @@ impl<'v, 'a> Facets<'v, 'a> {
             collect(self, index, tile, &mut layers);
             layered = &[];
         }
-        let in_front = layered.iter().chain(marks).map(|batch| (true, batch));
-        walk(self.execution.level, in_front, index, tile, &self.view.pattern, &mut layers);
+        let in_front = layered.iter().chain(all).map(|batch| (true, batch));
+        walk(level, in_front, None, index, tile, pattern, &mut layers);
         layers.finish();
         sink.tile(index, tile, &mut layers);
     }
@@ -162,7 +168,7 @@ pub(super) type Fill<'f> =
 /// Calls `fill` for each `chunk` tiles, on all threads, and hands the tiles on.
 pub(super) fn fill_tiles(
     view: &PreparedView<'_>,
-    marks: Option<&Batch>,
+    marks: Option<&Marks>,
     grid: &mut TileGrid,
     execution: &Execution,
     sink: &dyn TileSink,
@@ -178,7 +184,7 @@ pub(super) fn fill_tiles(
 /// [`fill_tiles`], of facets that are on the screen already; `collect` takes the layers by a list, if there is one.
 pub(super) fn fill_with(
     facets: &Facets<'_, '_>,
-    marks: Option<&Batch>,
+    marks: Option<&Marks>,
     grid: &mut TileGrid,
     sink: &dyn TileSink,
     chunk: usize,

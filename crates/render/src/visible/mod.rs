@@ -20,10 +20,11 @@ pub(crate) use facets::nearer;
 pub use peel::{PassLayer, Peel};
 pub(crate) use screen_setups::charged;
 
+use crate::marks::Marks;
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
-use vitral_raster::{Batch, LayerList, Tile, TileGrid};
+use vitral_raster::{LayerList, Tile, TileGrid};
 
 /// Takes tiles as they are finished, from any thread, each once.
 pub trait TileSink: Sync {
@@ -76,7 +77,7 @@ pub trait VisibleSurface: Sync {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,

@@ -24,6 +24,7 @@ use super::cut::{Cut, bounds, corners};
 use super::facets::{Facets, fill_with};
 use super::pieces::{List, Pieces, Raster, draw, draw_layers, piece_step};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::{Execution, PreparedView};
@@ -32,7 +33,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
+use vitral_raster::{LayerList, Setup, Tile, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +43,7 @@ impl VisibleSurface for Painter {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,

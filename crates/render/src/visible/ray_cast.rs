@@ -22,6 +22,7 @@ mod single;
 use super::brute_force::{MOST_TESTS, each_tile};
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
@@ -34,7 +35,7 @@ use eye::Eye;
 use std::collections::HashSet;
 use std::sync::Mutex;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, LayerList, Setup, Tile, TileGrid};
+use vitral_raster::{LayerList, Setup, Tile, TileGrid};
 
 /// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
 const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
@@ -51,7 +52,7 @@ impl VisibleSurface for RayCast {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
@@ -84,7 +85,7 @@ impl VisibleSurface for RayCast {
 /// What is to be done, with any structure.
 struct Job<'a> {
     view: &'a PreparedView<'a>,
-    marks: Option<&'a Batch>,
+    marks: Option<&'a Marks>,
     execution: &'a Execution,
     sink: &'a dyn TileSink,
     /// When it began, on the budget's clock.

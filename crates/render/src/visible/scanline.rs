@@ -27,6 +27,7 @@ mod implied_edge;
 
 use super::facets::{Facets, fill_tiles, nearer};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::{Span, SpanVerdict, Step};
 use crate::{Coherence, CoherenceSet, Execution, PreparedView};
@@ -34,7 +35,7 @@ use face::OnLine;
 use implied_edge::ImpliedEdges;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_raster::{SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
 
 /// Parts of spans that are shorter are decided at their samples without asking for an implied edge.
 const LONG: usize = 4;
@@ -47,7 +48,7 @@ impl VisibleSurface for ScanLine {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,

@@ -17,13 +17,14 @@
 
 use super::facets::{Facets, extent, fill_tiles, nearer, put};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::{Step, WindowVerdict};
 use crate::{Coherence, CoherenceSet, Execution, PreparedView};
 use std::cmp::Ordering;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_raster::{SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +34,7 @@ impl VisibleSurface for Warnock {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,

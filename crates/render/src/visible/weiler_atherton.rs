@@ -20,12 +20,13 @@ mod region;
 
 use super::facets::{Facets, fill_tiles, nearer, put};
 use super::{Resolved, TileSink, VisibleSurface};
+use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::{Execution, PreparedView};
 use region::{Clipped, Convex, Edge, Line, Region};
 use vitral_exec::Limit;
-use vitral_raster::{Batch, SUBPIXEL, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_raster::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Tile, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,7 @@ impl VisibleSurface for WeilerAtherton {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,

@@ -16,6 +16,7 @@ use super::brute_force::size_in_picture;
 use super::facets::BYTES_A_TRIANGLE;
 use super::near_first::near_first;
 use super::{Peel, Resolved, TileSink, VisibleSurface, charged};
+use crate::marks::Marks;
 use crate::stats::GeometryStats;
 use crate::trace::Step;
 use crate::{Execution, PreparedView};
@@ -24,8 +25,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, Draw, FragmentSink, LayerList, LayerSink, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE, Tile,
-    TileGrid, TileLists, Viewport, VisibilitySink, transform, traverse_by_rows,
+    Batch, Draw, FragmentSink, LayerList, LayerSink, NO_FACET, RowSink, SUBPIXEL, SamplePattern, ScreenVertex, TILE,
+    Tile, TileGrid, TileLists, Viewport, VisibilitySink, transform, traverse_by_rows,
 };
 
 /// Triangles in one piece of work.
@@ -58,7 +59,7 @@ impl VisibleSurface for ZBuffer {
     fn resolve(
         &self,
         view: &PreparedView<'_>,
-        marks: Option<&Batch>,
+        marks: Option<&Marks>,
         grid: &mut TileGrid,
         execution: &Execution,
         sink: &dyn TileSink,
@@ -96,18 +97,20 @@ impl VisibleSurface for ZBuffer {
                 let passes = sink.takes_passes();
                 let tile_batches = batches.iter().filter(|(layered, _)| !(passes && *layered));
                 let tile_batches = tile_batches.map(|(layered, batch)| (*layered, batch));
-                let tile_batches = tile_batches.chain(marks.filter(|_| last && !passes).map(|m| (true, m)));
+                let marks = marks.filter(|_| last);
+                let tile_batches = tile_batches.chain(marks.filter(|_| !passes).map(|m| (true, &m.all)));
                 if execution.observer.is_some() {
                     count_facets(view, &batches, index, tile, &mut costs[index].lock().expect("counts"));
                 }
-                walk(execution.level, tile_batches, index, tile, &view.pattern, &mut layers);
+                let hiding = marks.map(|m| &m.hiding);
+                walk(execution.level, tile_batches, hiding, index, tile, &view.pattern, &mut layers);
                 if last {
                     if execution.observer.is_some() {
                         tell_tile(view, &costs[index], execution, tile);
                     }
                     if passes {
                         let here = batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
-                        let layered = kept.batches.iter().chain(here).chain(marks);
+                        let layered = kept.batches.iter().chain(here).chain(marks.map(|m| &m.all));
                         let go_on = || execution.budget.check("passes over layers").is_ok();
                         let mut pass = |peel: &mut Peel| {
                             go_on() && peel.pass(execution.level, layered.clone(), index, tile, &view.pattern)
@@ -161,7 +164,7 @@ pub(crate) fn resolve_in_passing(
             tile.clear();
             (tile.x, tile.y) = tile_place(view, index);
             let mut layers = view.layer_list_for(sink);
-            walk(execution.level, batches.iter().copied(), index, tile, &view.pattern, &mut layers);
+            walk(execution.level, batches.iter().copied(), None, index, tile, &view.pattern, &mut layers);
             layers.finish();
             if tile.touched || !layers.is_empty() {
                 sink.tile(index, tile, &mut layers);
@@ -421,6 +424,7 @@ pub(super) fn set_up(
 pub(crate) fn walk<'b>(
     level: Level,
     batches: impl Iterator<Item = (bool, &'b Batch)> + Clone,
+    hiding: Option<&Batch>,
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
@@ -432,6 +436,11 @@ pub(crate) fn walk<'b>(
         for (_, batch) in batches.filter(|(layered, _)| !layered) {
             walk_batch(simd, batch, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
         }
+    });
+    if let Some(hiding) = hiding {
+        hide_behind(level, hiding, index, tile, pattern);
+    }
+    dispatch!(level, simd => {
         let Some(first) = in_front.next() else { return };
         let in_front = std::iter::once(first).chain(in_front).map(|(_, batch)| batch);
         if layers.gathers() {
@@ -442,6 +451,21 @@ pub(crate) fn walk<'b>(
             in_front.for_each(|batch| walk_batch(simd, batch, index, place, pattern, &mut sink));
         }
     });
+}
+
+/// Lets facets that are drawn as layers hide what is behind them, though not each other where they are equally near: nothing is
+/// left there but a depth just behind theirs.
+pub(super) fn hide_behind(level: Level, hiding: &Batch, index: usize, tile: &mut Tile, pattern: &SamplePattern) {
+    let Some(first) = hiding.tile(index).map(|setup| setup.facet).min() else { return };
+    let place = (tile.x, tile.y);
+    dispatch!(level, simd => {
+        walk_batch(simd, hiding, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
+    });
+    for (facet, depth) in tile.facet.iter_mut().zip(&mut tile.depth) {
+        if *facet >= first && *facet != NO_FACET {
+            (*facet, *depth) = (NO_FACET, depth.next_down());
+        }
+    }
 }
 
 #[inline(always)]

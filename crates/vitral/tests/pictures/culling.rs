@@ -1,9 +1,11 @@
 //! Culling never changes a picture, and saves work (COURSE.md P10, P14).
 
 use crate::common::{exact, exact_builtin, on_z};
+use vitral::light::AlphaMode;
 use vitral::math::{DMat4, DVec3};
+use vitral::scene::Part;
 use vitral::scene::builtin::solids;
-use vitral::{Camera, Projection, Rendered, Renderer, Scene};
+use vitral::{Camera, Material, Projection, Rendered, Renderer, Scene};
 
 /// The picture with the given culling.
 fn culled(renderer: &mut Renderer, frustum: bool, back_face: bool) -> Rendered {
@@ -36,6 +38,31 @@ fn p10_p14_culling_changes_no_picture() {
             }
         }
     }
+}
+
+#[test]
+fn inner_walls_are_seen_through_a_window() {
+    // Five walls and a pane in one closed mesh: what is seen through the pane are back faces of the walls.
+    let mut room = solids::cuboid(DVec3::splat(2.0));
+    let part = |triangles, material| Part { name: String::new(), triangles, material: Some(material) };
+    room.parts = vec![part(0..10, 0), part(10..12, 1)];
+    let front = room.triangles[10].map(|corner| DVec3::from(room.positions[corner as usize].map(f64::from)));
+    let outwards = (front[1] - front[0]).cross(front[2] - front[0]).normalize();
+    let mut scene = Scene::default();
+    let wall = Material { unlit: true, ..Material::default() };
+    scene.add_material(wall.clone());
+    scene.add_material(Material { opacity: 0.1, alpha_mode: AlphaMode::Blend, ..wall });
+    scene.add_mesh(room, DMat4::IDENTITY);
+    let mut renderer = exact(scene, 60, 60);
+    let view_up = outwards.any_orthogonal_vector();
+    renderer.camera = Some(Camera { position: outwards * 6.0, focal_point: DVec3::ZERO, view_up, ..on_z(1.0, 0.9) });
+    let culled_away = culled(&mut renderer, true, true).frame;
+    assert_eq!(culled_away, culled(&mut renderer, false, false).frame);
+    // The wall, raw 0.8, through the pane; without the wall the pane alone would be a tenth of it.
+    assert!(culled_away.color.unwrap().at(30, 30)[0] > 190);
+    // Without transparency the walls hide each other, and culling pays again.
+    renderer.settings.transparency = vitral::render::Transparency::None;
+    assert_eq!(culled(&mut renderer, true, true).stats.cull.back_face_culled_instances, 1);
 }
 
 #[test]

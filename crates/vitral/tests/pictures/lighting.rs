@@ -6,7 +6,7 @@ use crate::common::{
 use std::collections::{BTreeMap, HashSet};
 use vitral::frame::{Encoding, Plane, Texture};
 use vitral::light::{Light, LightKind, Reflectance, TextureRef};
-use vitral::math::{DMat4, DVec2, DVec3};
+use vitral::math::{DMat4, DQuat, DVec2, DVec3};
 use vitral::scene::builtin::solids;
 use vitral::scene::{NodeTransform, lab};
 use vitral::{Frame, Illumination, Material, Projection, Renderer, Scene, Shading, load_builtin};
@@ -348,5 +348,35 @@ fn an_occlusion_texture_takes_ambient_light_only() {
     for illumination in [Illumination::Lambert, Illumination::CookTorrance] {
         let lit = |strength| middle(illumination, 0.0, &[sun(DVec3::Z, 0.5)], strength);
         assert!(lit(1.0) > 50 && lit(1.0) == lit(0.0), "{illumination}");
+    }
+}
+
+#[test]
+fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
+    // A turned box under a light straight above: N·L of its walls is rounding, here above zero and there below.
+    let reflectance = Reflectance::Phong { ka: [0.1; 3], kd: [0.7; 3], ks: [0.9; 3], shininess: 5.0 };
+    let mut scene = Scene::default();
+    let material = Some(scene.add_material(Material { reflectance, ..Material::default() }));
+    let mut cube = solids::cuboid(DVec3::splat(2.0));
+    cube.parts.iter_mut().for_each(|part| part.material = material);
+    scene.add_mesh(cube, DMat4::from_quat(DQuat::from_xyzw(0.0, 0.2, 0.0, 0.98).normalize()));
+    scene.ambient = [1.0; 3];
+    let lamp = LightKind::Point { position: DVec3::new(1.2, 9.0, 0.7) };
+    for light in [sun(DVec3::Y, 1.0), Light { kind: lamp, ..Light::default() }] {
+        for (illumination, shadows) in
+            [(Illumination::Phong, "none"), (Illumination::BlinnPhong, "none"), (Illumination::BlinnPhong, "ray")]
+        {
+            // The lamp is in the plane of no wall: it only must not be forgotten.
+            let in_plane = matches!(light.kind, LightKind::Directional { .. });
+            let mut renderer = exact(scene.clone(), 400, 300);
+            renderer.settings.illumination = illumination;
+            renderer.settings.shadows = shadows.into();
+            renderer.lights = Some(vec![light.clone()]);
+            let camera = on_z(1.0, 0.7);
+            let (position, view_up) = (DVec3::new(2.9, -2.9, 3.3), DVec3::new(0.3, 1.0, 0.0));
+            renderer.camera = Some(vitral::Camera { position, view_up, ..camera });
+            let shades: HashSet<_> = colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
+            assert_eq!(shades.len() == 1, in_plane, "{illumination}, shadows {shadows}: {}", shades.len());
+        }
     }
 }

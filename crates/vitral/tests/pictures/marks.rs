@@ -2,7 +2,7 @@
 
 use crate::common::{colors, exact, one};
 use vitral::math::DVec3;
-use vitral::render::{Interpolation, Lines};
+use vitral::render::{Interpolation, Lines, TransparencyOrder};
 use vitral::scene::FreePart;
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection};
@@ -160,4 +160,72 @@ fn flat_models_of_lines_and_points_alone_are_seen() {
             }
         }
     }
+}
+
+#[test]
+fn slanted_lines_are_as_dark_all_along() {
+    // A white line over black, nearly upright: what each row of pixels gets of it is the same, whichever samples it hits.
+    let mut mesh = colored_line(0.0, [0.0; 2], [[1.0; 4]; 2]);
+    mesh.positions = vec![[-0.13, -1.2, 0.0], [0.17, 1.2, 0.0]];
+    for samples in [4, 9] {
+        let mut scene = vitral::Scene::default();
+        scene.add_mesh(mesh.clone(), vitral::math::DMat4::IDENTITY);
+        let mut renderer = exact(scene, 90, 90);
+        renderer.settings.samples = samples;
+        renderer.settings.color_space = vitral::render::ColorSpace::Raw;
+        renderer.camera = Some(camera(4.0, false));
+        let picture = colors(&mut renderer);
+        let rows = (15..75).map(|y| picture[y * 90..][..90].iter().map(|c| f32::from(c[0]) / 255.0).sum::<f32>());
+        let rows: Vec<f32> = rows.collect();
+        let (least, most) = rows.iter().fold((f32::MAX, 0.0f32), |(low, high), &row| (low.min(row), high.max(row)));
+        assert!((1.2..1.4).contains(&least) && most - least < 0.15, "{samples} samples: {least} to {most}");
+    }
+}
+
+#[test]
+fn clouds_of_points_are_no_heap_of_layers() {
+    // Ten thousand points behind each other, and a glass pane in front of them and one behind.
+    let deep = Mesh {
+        positions: (0..10_000).map(|i| [0.0, 0.0, -1e-4 * i as f32]).collect(),
+        points: (0..10_000).collect(),
+        ..Mesh::default()
+    };
+    let glass =
+        Material { opacity: 0.5, alpha_mode: vitral::light::AlphaMode::Blend, unlit: true, ..Material::default() };
+    let mut scene = one(solids::cuboid(DVec3::new(2.0, 2.0, 3.0)), glass);
+    scene.add_mesh(deep, vitral::math::DMat4::IDENTITY);
+    let mut pictures = Vec::new();
+    for (visibility, order) in [
+        ("z-buffer", TransparencyOrder::ABuffer),
+        ("z-buffer", TransparencyOrder::MultiPass),
+        ("warnock", TransparencyOrder::Sorted),
+        ("bsp", TransparencyOrder::BackToFront),
+        ("ray-cast", TransparencyOrder::ABuffer),
+    ] {
+        let mut renderer = exact(scene.clone(), 41, 41);
+        renderer.settings.visibility = visibility.into();
+        renderer.settings.transparency_order = order;
+        renderer.settings.samples = 4;
+        renderer.camera = Some(camera(6.0, false));
+        let rendered = renderer.render().unwrap();
+        let picture = rendered.frame.color.unwrap();
+        // The pane in front shows everywhere, over the points and over the pane behind.
+        assert!(rendered.stats.picture.layer_samples < 3 * 41 * 41 * 4, "{visibility}: {:?}", rendered.stats.picture);
+        pictures.push((visibility, picture));
+    }
+    let (_, first) = &pictures[0];
+    assert_ne!(first.at(20, 20), first.at(5, 20), "the points are seen through the pane");
+    for (name, picture) in &pictures {
+        let far = picture.data().iter().zip(first.data()).filter(|(a, b)| (0..4).any(|k| a[k].abs_diff(b[k]) > 1));
+        assert_eq!(far.count(), 0, "{name}");
+    }
+}
+
+#[test]
+fn lines_shine_with_their_emission() {
+    let mut mesh = colored_line(0.0, [0.0; 2], [[1.0; 4]; 2]);
+    FreePart::extend(&mut mesh.line_parts, 0..1, Some(0));
+    let black = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    let glowing = Material { reflectance: black, emission: [1.0, 0.0, 0.0], ..Material::default() };
+    assert_eq!(middle_row(exact(one(mesh, glowing), 81, 81), camera(4.0, false))[40], [255, 0, 0, 255]);
 }

@@ -7,7 +7,7 @@ use vitral::render::registry::VISIBILITY;
 use vitral::render::transparency::registry::ORDERS;
 use vitral::render::{Background, Global, Lines, Shading, Transparency, TransparencyOrder};
 use vitral::scene::builtin::solids;
-use vitral::scene::{Attribute, Part};
+use vitral::scene::{Attribute, NodeTransform, Part};
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
 
 /// A square from -1 to 1 at height `z`, which rises by `slope` along x.
@@ -263,6 +263,26 @@ fn thousands_of_layers_stay_within_their_memory_with_a_warning() {
     assert_ne!(cut, whole, "what is lost shows");
     let reversed: Vec<_> = panes.into_iter().rev().collect();
     assert!(run(reversed, 1 << 20).0 == cut, "the nearest layers stay in every order");
+}
+
+#[test]
+fn a_cut_out_whose_opacity_is_its_cutoff_has_no_holes() {
+    // Interpolated between corners, a constant 1 may become a little less.
+    let mut pane = solids::cuboid(DVec3::new(2.0, 2.0, 0.1));
+    pane.colors = Some(Attribute::per_vertex(vec![[1.0; 4]; pane.positions.len()]));
+    let material =
+        Material { opacity: 0.5, alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, unlit: true, ..Material::default() };
+    for (shadows, global) in [("none", Global::None), ("ray", Global::None), ("ray", Global::RayTrace)] {
+        let mut scene = one(pane.clone(), material.clone());
+        scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_y(0.3) * DMat4::from_rotation_x(0.2));
+        let mut r = exact(scene, 200, 150);
+        (r.settings.shadows, r.settings.global) = (shadows.into(), global);
+        r.settings.background = vitral::render::Background::Color { color: [1.0, 0.0, 0.0] };
+        r.camera = Some(on_z(4.0, 0.4));
+        let middle =
+            colors(&mut r).chunks(200).skip(50).take(50).flat_map(|row| row[80..120].to_vec()).collect::<Vec<_>>();
+        assert!(middle.iter().all(|c| c[1] > 0), "{shadows}: {} holes", middle.iter().filter(|c| c[1] == 0).count());
+    }
 }
 
 #[test]

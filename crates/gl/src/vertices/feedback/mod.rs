@@ -289,4 +289,22 @@ mod tests {
         c.window_pos_2i(0, 0);
         assert_eq!(c.render_mode(enums::RENDER), -1);
     }
+
+    #[test]
+    fn refused_names_record_nothing() {
+        type Call = fn(&mut crate::Context);
+        let calls: [(Call, usize); 3] = [(|c| c.load_name(3), 0), (|c| c.pop_name(), 0), (|c| c.push_name(3), 128)];
+        for (call, names) in calls {
+            let mut c = context();
+            c.select_buffer(400, BASE);
+            c.render_mode(enums::SELECT);
+            (0..names).for_each(|name| c.push_name(name as u32));
+            c.window_pos_3f(0.0, 0.0, 1.0);
+            call(&mut c);
+            assert_ne!(std::mem::take(&mut c.error), 0);
+            c.window_pos_3f(0.0, 0.0, 0.0);
+            assert_eq!(c.render_mode(enums::RENDER), 1, "one record over both depths");
+            assert_eq!(client::values::<u32>(&*c.memory, BASE, 3).unwrap(), [names as u32, 0, u32::MAX]);
+        }
+    }
 }

@@ -5,55 +5,54 @@ use crate::state::MAX_NAME_STACK_DEPTH;
 use crate::{Context, enums};
 
 impl Context {
-    /// Lists a call that changes the name stack, or tells what stands against that.
+    /// Lists a call that changes the name stack, unless something stands against that. What was hit until then is recorded
+    /// under the old names; a call that is refused records nothing.
     fn name_call(
         &mut self,
         call: &'static str,
-        change: impl Fn(&mut Feedback) -> Result<(), (u32, &'static str)> + Send + Sync + 'static,
+        refusal: impl Fn(&Feedback) -> Option<(u32, &'static str)> + Send + Sync + 'static,
+        change: impl Fn(&mut Vec<u32>) + Send + Sync + 'static,
     ) {
         self.listable(move |c| {
             if c.refused_inside_begin(call) || c.feedback.mode != enums::SELECT {
                 return;
             }
-            c.feedback.record_hit();
-            if let Err((error, why)) = change(&mut c.feedback) {
-                c.record_error(error, call, why);
+            if let Some((error, why)) = refusal(&c.feedback) {
+                return c.record_error(error, call, why);
             }
+            c.feedback.record_hit();
+            change(&mut c.feedback.names);
         });
     }
 
     /// `glInitNames`.
     pub fn init_names(&mut self) {
-        self.name_call("glInitNames", |feedback| {
-            feedback.names.clear();
-            Ok(())
-        });
+        self.name_call("glInitNames", |_| None, Vec::clear);
     }
 
     /// `glLoadName`.
     pub fn load_name(&mut self, name: u32) {
-        self.name_call("glLoadName", move |feedback| {
-            let top = feedback.names.last_mut().ok_or((enums::INVALID_OPERATION, "the name stack is empty"))?;
-            *top = name;
-            Ok(())
+        let refusal =
+            |f: &Feedback| f.names.is_empty().then_some((enums::INVALID_OPERATION, "the name stack is empty"));
+        self.name_call("glLoadName", refusal, move |names| {
+            if let Some(top) = names.last_mut() {
+                *top = name;
+            }
         });
     }
 
     /// `glPushName`.
     pub fn push_name(&mut self, name: u32) {
-        self.name_call("glPushName", move |feedback| {
-            if feedback.names.len() >= MAX_NAME_STACK_DEPTH {
-                return Err((enums::STACK_OVERFLOW, "the name stack is full"));
-            }
-            feedback.names.push(name);
-            Ok(())
-        });
+        let is_full = |f: &Feedback| f.names.len() >= MAX_NAME_STACK_DEPTH;
+        let refusal = move |f: &Feedback| is_full(f).then_some((enums::STACK_OVERFLOW, "the name stack is full"));
+        self.name_call("glPushName", refusal, move |names| names.push(name));
     }
 
     /// `glPopName`.
     pub fn pop_name(&mut self) {
-        self.name_call("glPopName", |feedback| {
-            feedback.names.pop().map(|_| ()).ok_or((enums::STACK_UNDERFLOW, "the name stack is empty"))
+        let refusal = |f: &Feedback| f.names.is_empty().then_some((enums::STACK_UNDERFLOW, "the name stack is empty"));
+        self.name_call("glPopName", refusal, |names| {
+            names.pop();
         });
     }
 }

@@ -173,7 +173,7 @@ impl DepthSink<'_> {
                 tile.depth.copy_from_slice(&depths);
                 let mut list = view.layer_list_for(self);
                 let layered = batches.iter().copied().filter(|(layered, _)| *layered);
-                walk(self.level, layered, index, tile, &view.pattern, &mut list);
+                walk(self.level, layered, None, index, tile, &view.pattern, &mut list);
                 list.finish();
                 layers = self.layers(tile, &list);
             });

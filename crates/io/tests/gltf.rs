@@ -1,5 +1,8 @@
 //! glTF and GLB: the shared models, the table of malformed files, small files made here, and files damaged at random.
 
+mod common;
+
+use common::documents::{FLOAT, Memory, ONE_NODE, document, floats, load_text, triangle};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,15 +23,6 @@ impl Resolver for Folder {
     }
 }
 
-/// Files in memory.
-struct Memory(BTreeMap<&'static str, Vec<u8>>);
-
-impl Resolver for Memory {
-    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
-        self.0.get(path).cloned().ok_or(ResolveError::NotFound)
-    }
-}
-
 fn shared(path: &str) -> Option<PathBuf> {
     let path = Path::new(MODELS).join(path);
     if !path.exists() {
@@ -42,10 +36,6 @@ fn load_path(path: &Path) -> Result<Scene, Error> {
     let bytes = std::fs::read(path).unwrap();
     let folder = Folder(path.parent().unwrap().to_owned());
     gltf::load(&bytes, &path.file_name().unwrap().to_string_lossy(), &folder, &Workers::new(2))
-}
-
-fn load_text(json: &str) -> Result<Scene, Error> {
-    gltf::load(json.as_bytes(), "a.gltf", &NoFiles, &Workers::single())
 }
 
 /// Every mesh is sound and every index of the scene points at something.
@@ -62,50 +52,6 @@ fn check(scene: &Scene) {
         assert!(mesh.materials().all(|m| m < materials));
     }
 }
-
-/// Base64 for the small files made here.
-fn base64(bytes: &[u8]) -> String {
-    let alphabet = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let digit = |bits: u32, k: u32| char::from(alphabet[(bits >> (18 - 6 * k) & 63) as usize]);
-    let group = |g: &[u8]| {
-        let bits = g.iter().fold(0u32, |bits, &b| bits << 8 | u32::from(b)) << (8 * (3 - g.len()));
-        (0..=g.len() as u32).map(|k| digit(bits, k)).collect::<String>()
-    };
-    bytes.chunks(3).map(group).collect()
-}
-
-fn floats(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|v| v.to_le_bytes()).collect()
-}
-
-/// A document with one buffer, and one view and accessor for each array: bytes, component type, type, count, more.
-fn document(arrays: &[(Vec<u8>, u32, &str, usize, &str)], rest: &str) -> String {
-    let (mut data, mut views, mut accessors) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, (bytes, component, shape, count, more)) in arrays.iter().enumerate() {
-        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, data.len(), bytes.len()));
-        let head = format!(r#"{{"bufferView":{i},"componentType":{component},"type":"{shape}","count":{count}"#);
-        accessors.push(format!("{head}{more}}}"));
-        data.extend(bytes);
-        data.resize(data.len().next_multiple_of(4), 0);
-    }
-    format!(
-        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{},"uri":"data:;base64,{}"}}],
-        "bufferViews":[{}],"accessors":[{}],{rest}}}"#,
-        data.len(),
-        base64(&data),
-        views.join(","),
-        accessors.join(",")
-    )
-}
-
-const FLOAT: u32 = 5126;
-
-/// A unit right triangle at z = 0.
-fn triangle() -> (Vec<u8>, u32, &'static str, usize, &'static str) {
-    (floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]), FLOAT, "VEC3", 3, "")
-}
-
-const ONE_NODE: &str = r#""scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}]"#;
 
 #[test]
 fn every_shared_model_loads_as_the_manifest_says() {

@@ -2,19 +2,17 @@
 //!
 //! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
 //! `specular_glossiness.rs`.
-//! Departs from it: transmission textures are left out (with a warning). A transmissive surface becomes
-//! glass, a blended one whose opacity is what transmission leaves, with the base colour as the colour of what passes; a base
-//! texture does not colour what passes.
+//! Departs from it: a transmissive surface becomes glass, a blended one whose opacity is what transmission leaves, with the
+//! base colour as the colour of what passes; a base texture does not colour what passes.
 
 use super::accessor::Source;
 use super::specular_glossiness::SpecularGlossiness;
-use super::texture::{Reference, Wanted, transform_in};
+use super::texture::{Meaning, Reference, Wanted, transform_in};
 use crate::Error;
 use gltf::json::Material as JsonMaterial;
 use gltf::json::material::AlphaMode as JsonAlphaMode;
 use gltf::json::texture::Info;
 use gltf::json::validation::Checked;
-use vitral_frame::Encoding;
 use vitral_light::{AlphaMode, Material, Reflectance, TextureRef, Transmission};
 
 /// Reads material `index`. Its textures are asked for, not yet loaded.
@@ -48,6 +46,7 @@ pub(crate) fn read(
         Checked::Valid(JsonAlphaMode::Opaque) | Checked::Invalid => (AlphaMode::Opaque, 1.0),
     };
     apply_extensions(source, json, &path, &mut material, warnings);
+    apply_transmission(source, json, &path, &mut material, wanted, warnings);
 
     ask_textures(source, json, older.as_ref(), &path, &mut material, wanted, warnings)?;
     if let Some(older) = older {
@@ -70,25 +69,22 @@ fn ask_textures(
     warnings: &mut Vec<String>,
 ) -> Result<(), Error> {
     let pbr = &json.pbr_metallic_roughness;
-    let mut ask = |info: &Option<Info>, encoding, name: &str| -> Option<TextureRef> {
-        let (info, path) = (info.as_ref()?, format!("{path}.{name}"));
-        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-        let reference = Reference { texture: info.index.value(), uv_set: info.tex_coord, transform, path: &path };
-        wanted.ask(source, &reference, encoding, warnings)
+    let mut ask = |info: &Option<Info>, meaning, name: &str| -> Option<TextureRef> {
+        ask_info(source, info.as_ref()?, meaning, &format!("{path}.{name}"), wanted, warnings)
     };
     match older {
         // The older form takes the place of the other.
         Some(older) => {
-            material.base_texture = ask(&older.diffuse_texture, Encoding::Srgb, "diffuseTexture");
+            material.base_texture = ask(&older.diffuse_texture, Meaning::Color, "diffuseTexture");
         }
         None => {
             let name = "pbrMetallicRoughness.baseColorTexture";
-            material.base_texture = ask(&pbr.base_color_texture, Encoding::Srgb, name);
+            material.base_texture = ask(&pbr.base_color_texture, Meaning::Color, name);
             let name = "pbrMetallicRoughness.metallicRoughnessTexture";
-            material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Encoding::Linear, name);
+            material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Meaning::Data, name);
         }
     }
-    material.emission_texture = ask(&json.emissive_texture, Encoding::Srgb, "emissiveTexture");
+    material.emission_texture = ask(&json.emissive_texture, Meaning::Color, "emissiveTexture");
     if let Some(normal) = &json.normal_texture {
         let path = format!("{path}.normalTexture");
         let transform = match &normal.extensions {
@@ -96,7 +92,7 @@ fn ask_textures(
             None => None,
         };
         let reference = Reference { texture: normal.index.value(), uv_set: normal.tex_coord, transform, path: &path };
-        material.normal_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
+        material.normal_texture = wanted.ask(source, &reference, Meaning::Data, warnings);
         material.normal_scale = finite(normal.scale, 1.0);
     }
     if let Some(occlusion) = &json.occlusion_texture {
@@ -107,13 +103,27 @@ fn ask_textures(
         };
         let (texture, uv_set) = (occlusion.index.value(), occlusion.tex_coord);
         let reference = Reference { texture, uv_set, transform, path: &path };
-        material.occlusion_texture = wanted.ask(source, &reference, Encoding::Linear, warnings);
+        material.occlusion_texture = wanted.ask(source, &reference, Meaning::Data, warnings);
         material.occlusion_strength = unit(occlusion.strength.0, 1.0);
     }
     Ok(())
 }
 
-/// Emission, transmission, index of refraction, unlit.
+/// Asks for the texture of the reference `info` at `path`.
+fn ask_info(
+    source: &Source<'_>,
+    info: &Info,
+    meaning: Meaning,
+    path: &str,
+    wanted: &mut Wanted,
+    warnings: &mut Vec<String>,
+) -> Option<TextureRef> {
+    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
+    let reference = Reference { texture: info.index.value(), uv_set: info.tex_coord, transform, path };
+    wanted.ask(source, &reference, meaning, warnings)
+}
+
+/// Emission, index of refraction, unlit.
 fn apply_extensions(
     source: &Source<'_>,
     json: &JsonMaterial,
@@ -133,24 +143,38 @@ fn apply_extensions(
             n => warn(&format!("an index of refraction of {n}, 1 or more is required; 1.5 is used")),
         }
     }
-    if let Some(transmission) = extensions.transmission {
-        let factor = unit(transmission.transmission_factor.0, 0.0);
-        match material.alpha_mode {
-            _ if factor == 0.0 => {}
-            AlphaMode::Mask { .. } => warn("a cut-out surface is not transmissive as well, transmission is not used"),
-            AlphaMode::Opaque | AlphaMode::Blend => {
-                let left = material.opacity * (1.0 - factor);
-                material.filter = filter(material, factor);
-                material.opacity = left;
-                material.alpha_mode = AlphaMode::Blend;
-                material.transmission = Transmission::Transparent;
-                material.glass = true;
-            }
-        }
-        if transmission.transmission_texture.is_some() {
-            warn("the transmission texture is not used");
+}
+
+/// Makes a transmissive surface glass. Where a texture says how much passes, the rest becomes the texture of the opacity.
+fn apply_transmission(
+    source: &Source<'_>,
+    json: &JsonMaterial,
+    path: &str,
+    material: &mut Material,
+    wanted: &mut Wanted,
+    warnings: &mut Vec<String>,
+) {
+    let Some(transmission) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else { return };
+    let factor = unit(transmission.transmission_factor.0, 0.0);
+    if factor == 0.0 {
+        return;
+    }
+    if matches!(material.alpha_mode, AlphaMode::Mask { .. }) {
+        let what = "a cut-out surface is not transmissive as well, transmission is not used";
+        warnings.push(format!("{}: {path}: {what}", source.file));
+        return;
+    }
+    material.filter = filter(material, factor);
+    match &transmission.transmission_texture {
+        None => material.opacity *= 1.0 - factor,
+        Some(info) => {
+            let path = format!("{path}.extensions.KHR_materials_transmission.transmissionTexture");
+            material.opacity_texture = ask_info(source, info, Meaning::Transmission(factor), &path, wanted, warnings);
         }
     }
+    material.alpha_mode = AlphaMode::Blend;
+    material.transmission = Transmission::Transparent;
+    material.glass = true;
 }
 
 /// The colour of all light that passes a material of which the part `factor` is transmissive: what goes through the surface

@@ -1,6 +1,6 @@
 //! Images and samplers.
 //!
-//! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour or data), on all
+//! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour, data, opacity), on all
 //! workers. A picture that cannot be had is a warning, and materials do without it.
 //!
 //! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform, EXT_texture_webp.
@@ -19,10 +19,21 @@ use vitral_frame::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap};
 use vitral_light::TextureRef;
 use vitral_math::func;
 
-/// Textures that materials ask for, each image once an encoding.
+/// What the bytes of an image stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Meaning {
+    /// sRGB colours.
+    Color,
+    /// Linear values.
+    Data,
+    /// Red is how much a surface transmits, times this factor; the texture gets what is left, as opacity.
+    Transmission(f32),
+}
+
+/// Textures that materials ask for, each image once a meaning.
 #[derive(Default)]
 pub(crate) struct Wanted {
-    images: Vec<(usize, Encoding)>,
+    images: Vec<(usize, Meaning)>,
 }
 
 /// A texture, and what is odd about its image.
@@ -44,7 +55,7 @@ impl Wanted {
         &mut self,
         source: &Source<'_>,
         reference: &Reference<'_>,
-        encoding: Encoding,
+        meaning: Meaning,
         warnings: &mut Vec<String>,
     ) -> Option<TextureRef> {
         let texture = &source.root.textures[reference.texture];
@@ -54,7 +65,7 @@ impl Wanted {
             warnings.push(format!("{}: textures[{}]: no image that is read, left out", source.file, reference.texture));
             return None;
         };
-        let key = (image, encoding);
+        let key = (image, meaning);
         let number = self.images.iter().position(|&k| k == key).unwrap_or_else(|| {
             self.images.push(key);
             self.images.len() - 1
@@ -81,8 +92,8 @@ impl Wanted {
         workers: &Workers,
     ) -> Vec<Result<Loaded, String>> {
         workers.map(self.images.len(), |i| {
-            let (image, encoding) = self.images[i];
-            load_image(source, image, encoding, resolver).map_err(|e| format!("{e}; the texture is left out"))
+            let (image, meaning) = self.images[i];
+            load_image(source, image, meaning, resolver).map_err(|e| format!("{e}; the texture is left out"))
         })
     }
 }
@@ -116,7 +127,7 @@ pub(crate) fn settle(
     textures
 }
 
-fn load_image(source: &Source<'_>, index: usize, encoding: Encoding, resolver: &dyn Resolver) -> Result<Loaded, Error> {
+fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dyn Resolver) -> Result<Loaded, Error> {
     let entry = &source.root.images[index];
     let path = format!("images[{index}]");
     let mut name = name_or(&entry.name, "image", index);
@@ -134,7 +145,18 @@ fn load_image(source: &Source<'_>, index: usize, encoding: Encoding, resolver: &
         }
         (None, None) => return Err(source.error(path, "neither a uri nor a bufferView")),
     };
+    let (plane, encoding) = match meaning {
+        Meaning::Color => (plane, Encoding::Srgb),
+        Meaning::Data => (plane, Encoding::Linear),
+        Meaning::Transmission(factor) => (plane.map(|&[r, ..]| opaque_part(r, factor)), Encoding::Linear),
+    };
     Ok((Texture::new(name, plane, encoding), odd))
+}
+
+/// The texel of an opacity texture for one that transmits `red` of 255, times `factor`.
+fn opaque_part(red: u8, factor: f32) -> [u8; 4] {
+    let left = (255.0 - f32::from(red) * factor).round() as u8;
+    [left, left, left, 255]
 }
 
 /// Our sampler for one of glTF's. Filters that are not given are linear and trilinear.

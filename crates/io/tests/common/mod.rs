@@ -1,5 +1,7 @@
-//! The folder of shared models, and a resolver over it.
+//! The folder of shared models, a resolver over it, and small files made here.
 #![allow(dead_code)]
+
+pub(crate) mod documents;
 
 use std::path::{Path, PathBuf};
 use vitral_io::{ResolveError, Resolver};

@@ -8,7 +8,8 @@
 //! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are taken as linear
 //! coefficients, as they stand. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
 //! `1 - mean(Tf)`, and the filter is the hue of `Tf`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into
-//! opaque materials.
+//! opaque materials. `Tr 1` without `d` is opaque, with a warning: MeshLab means that by it, and nobody wants a surface that
+//! is not seen.
 //!
 //! Maps: `map_Kd` (sRGB; its alpha counts only in a material that `d` makes transparent), `map_Ks` (linear), `map_Ke`
 //! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
@@ -81,7 +82,23 @@ pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
         }
         cursor.next_line();
     }
+    tell_of_reversed(&materials, warnings);
     materials
+}
+
+/// Names the materials whose `Tr 1` is not obeyed, the first few of them.
+fn tell_of_reversed(materials: &[MtlMaterial], warnings: &mut Warnings) {
+    const NAMED: usize = 4;
+    let names: Vec<&str> = materials.iter().filter(|m| m.is_reversed()).map(|m| m.name.as_str()).collect();
+    if names.is_empty() {
+        return;
+    }
+    warnings.note("reversed Tr", Place::File, || {
+        let more = names.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let list = names.iter().take(NAMED).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        format!("`Tr 1` without `d` would be invisible, it is taken for opaque: {list}{more}")
+    });
 }
 
 fn show(word: &[u8]) -> String {
@@ -184,7 +201,15 @@ impl MtlMaterial {
         if whole > 0.0 { tf.map(|c| c / whole) } else { [1.0; 3] }
     }
 
+    /// Whether the material would be invisible by `Tr` alone, which some exporters write for opaque ones.
+    fn is_reversed(&self) -> bool {
+        self.d.is_none() && self.tr == Some(1.0)
+    }
+
     fn opacity(&self) -> f32 {
+        if self.is_reversed() {
+            return 1.0;
+        }
         let filtered = matches!(self.illum, Some(4 | 6 | 7 | 9));
         let from_filter = self.tf.filter(|_| filtered).map(|tf| 1.0 - (tf[0] + tf[1] + tf[2]) / 3.0);
         self.d.or(self.tr.map(|t| 1.0 - t)).or(from_filter).unwrap_or(1.0).clamp(0.0, 1.0)
@@ -369,6 +394,17 @@ mod tests {
         assert_eq!(one("newmtl a\nTf 1 1 1\nillum 2").0.opacity, 1.0);
         assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 4").0.opacity, 0.5);
         assert_eq!(one("newmtl a\nTr .75").0.opacity, 0.25);
+    }
+
+    #[test]
+    fn a_surface_that_tr_alone_makes_invisible_is_opaque() {
+        let (m, _, warnings) = one("newmtl a\nTr 1.000000\nnewmtl b\nTr 1\nd 0\nnewmtl c\nTr 1\nnewmtl d\nTr .99");
+        assert_eq!((m.opacity, m.alpha_mode), (1.0, AlphaMode::Opaque));
+        assert_eq!(warnings, ["m.mtl: `Tr 1` without `d` would be invisible, it is taken for opaque: `a`, `c`"]);
+        let (m, _, warnings) = one("newmtl a\nd 0\nTr 1");
+        assert_eq!((m.opacity, warnings.len()), (0.0, 0), "`d` says so, too");
+        let many: String = (0..6).map(|k| format!("newmtl m{k}\nTr 1\n")).collect();
+        assert!(one(&many).2[0].ends_with(": `m0`, `m1`, `m2`, `m3` and 2 more"));
     }
 
     #[test]

@@ -4,15 +4,15 @@ use std::sync::Arc;
 use vitral_light::{AlphaMode, Material, Reflectance};
 use vitral_scene::{Mesh, Scene};
 
-/// Gives parts without a material one if their mesh has colours; where some of these are not opaque it blends.
-pub(crate) fn give_materials(scene: &mut Scene) {
+/// Gives parts without a material one if their mesh has colours; where some of these are not opaque it blends, if `alpha_counts`.
+pub(crate) fn give_materials(scene: &mut Scene, alpha_counts: bool) {
     let bare = |mesh: &Mesh| mesh.colors.is_some() && mesh.parts.iter().any(|part| part.material.is_none());
     let mut known = [None; 2];
     for number in 0..scene.meshes.len() {
         let Some(colors) = scene.meshes[number].colors.as_ref().filter(|_| bare(&scene.meshes[number])) else {
             continue;
         };
-        let blends = colors.values.iter().any(|color| color[3] < 1.0);
+        let blends = alpha_counts && colors.values.iter().any(|color| color[3] < 1.0);
         let index = *known[usize::from(blends)].get_or_insert_with(|| scene.add_material(white(blends)));
         for part in &mut Arc::make_mut(&mut scene.meshes[number]).parts {
             part.material.get_or_insert(index);
@@ -52,5 +52,21 @@ mod tests {
         }
         let plain = load(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off", &NoFiles, &Workers::single()).unwrap();
         assert!(plain.materials.is_empty());
+    }
+
+    #[test]
+    fn the_default_material_of_gltf_is_opaque_whatever_the_colours() {
+        // Three times the same four bytes, as positions and as colours with an alpha of 1/255.
+        let text = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1}}]}],
+            "accessors":[{"bufferView":0,"componentType":5121,"count":3,"type":"VEC3"},
+            {"bufferView":0,"componentType":5121,"count":3,"type":"VEC4","normalized":true}],
+            "bufferViews":[{"buffer":0,"byteLength":12,"byteStride":4}],
+            "buffers":[{"byteLength":12,"uri":"data:;base64,AQIDAQECAwEBAgMB"}]}"#;
+        let scene = load(text.as_bytes(), "a.gltf", &NoFiles, &Workers::single()).unwrap();
+        let mesh = &scene.meshes[0];
+        assert_eq!(mesh.colors.as_ref().unwrap().values[0][3], 1.0 / 255.0);
+        let material = &scene.materials[mesh.parts[0].material.unwrap() as usize];
+        assert_eq!((material.alpha_mode, material.opacity), (AlphaMode::Opaque, 1.0));
     }
 }

@@ -52,7 +52,9 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         Format::SceneJson => return scene_json::load(bytes, file, resolver, workers),
     }?;
     scene.ups = vec![if format == Format::Stl { Axis::PlusZ } else { Axis::PlusY }];
-    colored::give_materials(&mut scene);
+    // The default material of glTF is opaque, whatever the alpha of `COLOR_0`.
+    let alpha_counts = !matches!(format, Format::Gltf | Format::Glb);
+    colored::give_materials(&mut scene, alpha_counts);
     Ok(scene)
 }
 

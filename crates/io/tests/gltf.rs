@@ -548,7 +548,8 @@ fn rich_document() -> String {
         (floats(&[1.0; 16]), FLOAT, "MAT4", 1, ""),
     ];
     let rest = r#""scene":0,"scenes":[{"nodes":[0,2]}],
-        "nodes":[{"mesh":0,"children":[1],"rotation":[0,0,0,1]},{"camera":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
+        "nodes":[{"mesh":0,"children":[1],"rotation":[0,0,0,1],"extensions":{"EXT_mesh_gpu_instancing":
+        {"attributes":{"TRANSLATION":0}}}},{"camera":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
         {"mesh":0,"skin":0,"weights":[0.5],"extensions":{"KHR_lights_punctual":{"light":0}}}],
         "skins":[{"joints":[1],"inverseBindMatrices":5}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0,"JOINTS_0":2,"WEIGHTS_0":3,"COLOR_0":3,"TEXCOORD_0":4},

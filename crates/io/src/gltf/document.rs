@@ -8,7 +8,7 @@
 //! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
 //! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
 
-use super::untidy;
+use super::{instances, untidy};
 use crate::format::extension_of;
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
@@ -18,8 +18,9 @@ use serde_json::{Map, Value};
 pub(crate) const WEBP: &str = "EXT_texture_webp";
 
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 9] = [
+const SUPPORTED: [&str; 10] = [
     WEBP,
+    instances::NAME,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",

@@ -2,7 +2,7 @@
 //!
 //! The way of the data: `document.rs` takes the container apart and checks every index (`untidy.rs` helps it); `buffers.rs` fetches bytes;
 //! `accessor.rs` makes typed arrays of them; `geometry.rs`, `mesh.rs`, `normals.rs` and `deform.rs` make meshes;
-//! `texture.rs` and `material.rs` say what they look like; `node.rs` says where they are.
+//! `texture.rs` and `material.rs` say what they look like; `node.rs` and `instances.rs` say where they are.
 //!
 //! In:   the file's bytes and a resolver for the files that it names. Out: a [`Scene`].
 //! Cost: linear in the bytes; meshes and images are made on all workers.
@@ -13,6 +13,7 @@ mod buffers;
 mod deform;
 mod document;
 mod geometry;
+mod instances;
 mod material;
 mod mesh;
 mod node;
@@ -69,6 +70,7 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         warnings.extend(told);
     }
     add_nodes(&source, &tree, &poses, &mut scene, &mut warnings);
+    instances::spread(&source, &tree, &mut scene, &mut warnings)?;
     scene.warnings = warnings;
     Ok(scene)
 }

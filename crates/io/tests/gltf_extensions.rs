@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use vitral_exec::Workers;
 use vitral_frame::{Encoding, Plane};
 use vitral_io::encode::{PngOptions, png};
-use vitral_io::gltf;
+use vitral_io::{Error, gltf};
 use vitral_light::AlphaMode;
 use vitral_math::DVec3;
 use vitral_scene::{Instance, World};
@@ -122,4 +122,32 @@ fn a_small_file_cannot_unfold_into_many_copies() {
     let text = document(&[triangle(), empty], &rest).replace(r#""bufferView":1,"#, "");
     let told = load_text(&text).unwrap_err().to_string();
     assert!(told.contains("copies of meshes in all"), "{told}");
+}
+
+#[test]
+fn vertices_that_are_only_there_compressed_are_refused() {
+    let load = |position: &str, view: &str| {
+        load_text(&format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "extensionsUsed":["KHR_draco_mesh_compression"],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},
+            "extensions":{{"KHR_draco_mesh_compression":{{"bufferView":0,"attributes":{{"POSITION":0}}}}}}}}]}}],
+            "accessors":[{{"componentType":5126,"count":3,"type":"VEC3"{position}}}],
+            "bufferViews":[{{"buffer":1,"byteLength":36}},{{"buffer":0,"byteLength":36{view}}}],
+            "buffers":[{{"byteLength":36}},{{"byteLength":36,"uri":"data:;base64,{}"}}]}}"#,
+            "A".repeat(48)
+        ))
+    };
+    let refused = |position: &str, view: &str, what: &str| match load(position, view) {
+        Err(Error::Unsupported { what: seen, .. }) => assert_eq!(seen, what),
+        other => panic!("{other:?}"),
+    };
+    let draco = "meshes[0].primitives[0] is compressed with KHR_draco_mesh_compression, which is not supported";
+    refused("", "", draco);
+    assert_eq!(load(r#","bufferView":0"#, "").unwrap().meshes[0].triangles.len(), 1, "there a second time");
+    for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let packed = format!(r#","extensions":{{"{name}":{{"buffer":1,"byteLength":9,"byteStride":12,"count":3}}}}"#);
+        let what = format!("bufferViews[1] is compressed with {name}, which is not supported");
+        refused(r#","bufferView":1"#, &packed, &what);
+    }
 }

@@ -6,6 +6,7 @@ use super::document::Document;
 use crate::uri::{self, Target};
 use crate::{Error, Place, Resolver};
 use gltf::json::Root;
+use gltf::json::buffer::View;
 use std::borrow::Cow;
 
 /// All buffers of a document, each at least as long as it claims. `None` for one without bytes, which is an error where it is
@@ -49,6 +50,10 @@ impl<'a> Buffers<'a> {
     pub(crate) fn view(&self, root: &Root, view: usize, file: &str) -> Result<&[u8], Error> {
         let entry = &root.buffer_views[view];
         let Some(buffer) = &self.data[entry.buffer.value()] else {
+            if let Some(name) = compression(entry) {
+                let what = format!("bufferViews[{view}] is compressed with {name}, which is not supported");
+                return Err(Error::Unsupported { file: file.to_owned(), what });
+            }
             let place = Place::Json(format!("buffers[{}]", entry.buffer));
             return Err(Error::malformed(file, place, "neither a uri nor the binary chunk of a GLB"));
         };
@@ -62,6 +67,12 @@ impl<'a> Buffers<'a> {
             }
         }
     }
+}
+
+/// The extension by which a view's bytes are packed in another buffer; the buffer that it names may lack bytes then.
+fn compression(view: &View) -> Option<&'static str> {
+    let others = &view.extensions.as_ref()?.others;
+    ["EXT_meshopt_compression", "KHR_meshopt_compression"].into_iter().find(|name| others.contains_key(*name))
 }
 
 /// The bytes that a URI of a model stands for.

@@ -47,6 +47,7 @@ impl Attributes {
     ) -> Result<Option<Self>, Error> {
         let get = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|a| a.value());
         let Some(positions) = get(Semantic::Positions) else { return Ok(None) };
+        check_compression(source, primitive, positions, path)?;
         let uvs = [get(Semantic::TexCoords(0)), get(Semantic::TexCoords(1))];
         if uvs[0].is_none() && uvs[1].is_some() {
             warnings.push(format!("{}: {path}: TEXCOORD_1 without TEXCOORD_0, which is taken as 0", source.file));
@@ -195,6 +196,18 @@ impl Outline {
     pub(crate) fn bytes(&self) -> u64 {
         self.len() as u64 * 12
     }
+}
+
+/// Refuses a primitive whose only vertices are compressed. Some files have them a second time for readers like this one.
+fn check_compression(source: &Source<'_>, primitive: &Primitive, positions: usize, path: &str) -> Result<(), Error> {
+    const DRACO: &str = "KHR_draco_mesh_compression";
+    let accessor = &source.root.accessors[positions];
+    let has_bytes = accessor.buffer_view.is_some() || accessor.sparse.is_some();
+    if has_bytes || !primitive.extensions.as_ref().is_some_and(|e| e.others.contains_key(DRACO)) {
+        return Ok(());
+    }
+    let what = format!("{path} is compressed with {DRACO}, which is not supported");
+    Err(Error::Unsupported { file: source.file.to_owned(), what })
 }
 
 /// Lines come in pairs of vertices, triangles in threes.

@@ -18,7 +18,7 @@ use serde_json::{Map, Value};
 pub(crate) const WEBP: &str = "EXT_texture_webp";
 
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 10] = [
+const SUPPORTED: [&str; 11] = [
     WEBP,
     instances::NAME,
     "KHR_lights_punctual",
@@ -27,8 +27,23 @@ const SUPPORTED: [&str; 10] = [
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    // Without a choice of variant, primitives have the materials that they name themselves.
+    "KHR_materials_variants",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
+];
+
+/// Extensions that only change how a surface looks: without them it is seen all the same, so a file that requires one is
+/// shown, with a warning.
+const LOOKS: [&str; 8] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_volume",
 ];
 
 /// A document whose indices are all in range, except those of `scene` and of image sources, which may be absent.
@@ -150,17 +165,20 @@ pub(crate) fn plain_message(error: &serde_json::Error) -> String {
     }
 }
 
-/// Refuses required extensions that are not read; names the optional ones.
+/// Refuses required extensions that are not read; names those that a picture can do without.
 fn check_extensions(root: &Root, file: &str) -> Result<Vec<String>, Error> {
     let unknown = |names: &[String]| -> Vec<String> {
         names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect()
     };
-    let required = unknown(&root.extensions_required);
+    let (looks, required): (Vec<_>, Vec<_>) =
+        unknown(&root.extensions_required).into_iter().partition(|name| LOOKS.contains(&name.as_str()));
     if !required.is_empty() {
         let what = format!("requires {}, which is not supported", required.join(", "));
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
-    let used = unknown(&root.extensions_used);
+    let mut used = unknown(&root.extensions_used);
+    let unlisted: Vec<String> = looks.into_iter().filter(|name| !used.contains(name)).collect();
+    used.extend(unlisted);
     Ok(if used.is_empty() { used } else { vec![format!("{file}: extensions not read: {}", used.join(", "))] })
 }
 
@@ -295,6 +313,22 @@ mod tests {
             error(&format!("{head}{draco}")),
             "a.gltf: requires KHR_draco_mesh_compression, which is not supported"
         );
+    }
+
+    #[test]
+    fn what_only_changes_the_look_may_be_required() {
+        let warnings = |required: &str, used: &str| {
+            let lists = format!(r#""extensionsRequired":[{required}],"extensionsUsed":[{used}]"#);
+            let text = format!(r#"{{"asset":{{"version":"2.0"}},{lists}}}"#);
+            parse(text.as_bytes(), "a.gltf").map(|document| document.warnings).map_err(|e| e.to_string())
+        };
+        let variants = r#""KHR_materials_variants""#;
+        assert_eq!(warnings(variants, variants).unwrap(), Vec::<String>::new());
+        let sheen = r#""KHR_materials_sheen","KHR_materials_volume""#;
+        let told = ["a.gltf: extensions not read: KHR_materials_volume, KHR_materials_sheen"];
+        assert_eq!(warnings(sheen, r#""KHR_materials_volume""#).unwrap(), told);
+        let other = warnings(r#""KHR_materials_sheen","EXT_other""#, "").unwrap_err();
+        assert_eq!(other, "a.gltf: requires EXT_other, which is not supported");
     }
 
     #[test]

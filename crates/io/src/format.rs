@@ -246,7 +246,7 @@ fn by_text(head: &[u8]) -> Option<Format> {
         return None;
     }
     let word = cursor.word();
-    if crate::off::Header::parse(word).is_some() {
+    if crate::off::Header::begin(word).is_some() {
         return Some(Format::Off);
     }
     if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {

@@ -2,8 +2,8 @@
 //!
 //! The first word says what a vertex line holds, in this order: `[ST][C][N][4]OFF`: position (four homogeneous
 //! coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with `ST`. Prefixes in another order and lower
-//! case, which exist, mean the same. A line with the numbers of
-//! vertices, faces and edges follows (all three are required; the last is not used), then each vertex and each face: the
+//! case, which exist, mean the same. A line with the numbers of vertices, faces and edges follows (all three are required; the
+//! last is not used; some files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face: the
 //! corner count, the corners, and possibly a colour. Both begin a line and may go on over several, but a colour that may be left
 //! out is on the line of what is before it. `#` begins a comment.
 //!
@@ -59,6 +59,13 @@ impl Header {
             rest = &rest[length..];
         }
         Some(header)
+    }
+
+    /// The header with which `word` begins, and its length. Behind it may be a count, without a blank between.
+    pub(crate) fn begin(word: &[u8]) -> Option<(Self, usize)> {
+        let digits = word.iter().rev().take_while(|b| b.is_ascii_digit()).count();
+        let length = word.len() - digits;
+        Some((Self::parse(&word[..length])?, length))
     }
 }
 
@@ -119,9 +126,8 @@ impl<'a> Reader<'a> {
             return Err(self.error("the file ends here, `OFF` is required"));
         }
         // The word may be missing: then the file begins with its counts.
-        let mut ahead = self.cursor;
-        let word = ahead.word();
-        let Some(header) = Header::parse(word) else {
+        let word = self.cursor.word_at(self.cursor.offset());
+        let Some((header, length)) = Header::begin(word) else {
             if word.first().is_some_and(u8::is_ascii_digit) {
                 return Ok(Header {
                     texture: false,
@@ -134,8 +140,8 @@ impl<'a> Reader<'a> {
             let seen = String::from_utf8_lossy(&word[..word.len().min(40)]);
             return Err(self.error(format!("`{seen}`, `OFF` is required")));
         };
-        self.cursor = ahead;
-        let is_binary = ahead.word().eq_ignore_ascii_case(b"BINARY");
+        self.cursor.advance(length);
+        let is_binary = self.cursor.word_at(self.cursor.offset()).eq_ignore_ascii_case(b"BINARY");
         if header.dimensions || is_binary {
             let kind = if is_binary { "binary" } else { "n-dimensional" };
             return Err(Error::Unsupported { file: self.file.to_owned(), what: format!("{kind} OFF is not read") });
@@ -388,6 +394,22 @@ mod tests {
             (m.normals.as_ref().unwrap().values[2], m.colors.as_ref().unwrap().values[2][0]),
             ([0.0, 0.0, 1.0], 1.0)
         );
+    }
+
+    #[test]
+    fn counts_may_be_glued_to_the_header() {
+        let rest = " 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+        for head in ["OFF3", "off3", "# c\n OFF3", "OFF\n3"] {
+            let s = read(&format!("{head}{rest}")).unwrap();
+            assert_eq!((s.meshes[0].triangles.len(), s.warnings.len()), (1, 0), "{head}");
+        }
+        let begin = |word: &str| Header::begin(word.as_bytes()).map(|(header, length)| (Some(header), length));
+        for (word, header) in [("COFF12", "COFF"), ("4OFF8", "4OFF"), ("STCN4OFF", "STCN4OFF"), ("OFF", "OFF")] {
+            assert_eq!(begin(word), Some((Header::parse(header.as_bytes()), header.len())), "{word}");
+        }
+        assert_eq!([begin("OFF8x"), begin("12"), begin("8OFF"), begin("")], [None; 4]);
+        let text = format!("OFF3{rest}");
+        assert_eq!(crate::Format::detect(text.as_bytes(), "-").unwrap(), crate::Format::Off);
     }
 
     #[test]

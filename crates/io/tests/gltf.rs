@@ -335,6 +335,24 @@ fn attribute_counts_must_agree() {
 }
 
 #[test]
+fn indices_behind_the_last_whole_triangle_are_left_out() {
+    let shown = |indices: Vec<u8>, mode: u32| {
+        let count = indices.len();
+        let primitive = format!(r#"{{"attributes":{{"POSITION":0}},"indices":1,"mode":{mode}}}"#);
+        let rest = format!(r#"{ONE_NODE},"meshes":[{{"primitives":[{primitive}]}}]"#);
+        load_text(&document(&[triangle(), (indices, 5121, "SCALAR", count, "")], &rest)).unwrap()
+    };
+    let scene = shown(vec![0, 1, 2, 2, 1], 4);
+    let told = "5 indices, TRIANGLES need a multiple of 3; the rest is left out";
+    assert_eq!(scene.warnings, [format!("a.gltf: meshes[0].primitives[0].indices: {told}")]);
+    assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
+    let scene = shown(vec![2, 1, 0], 1);
+    assert!(scene.warnings[0].contains("3 indices, LINES need a multiple of 2; the rest is left out"));
+    assert_eq!((scene.meshes[0].lines.as_slice(), scene.meshes[0].positions.len()), (&[[1, 0]][..], 2));
+    assert_eq!(shown(vec![0, 1, 2, 0], 5).warnings.len(), 0);
+}
+
+#[test]
 fn morph_targets_at_default_weights() {
     let shift = |x: f32| (floats(&[x, 0.0, 0.0, x, 0.0, 0.0, x, 0.0, 0.0]), FLOAT, "VEC3", 3, "");
     let rest = r#""scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0},{"mesh":0,"weights":[0,2]},{"mesh":0}],

@@ -125,28 +125,32 @@ impl Attributes {
 }
 
 impl Outline {
-    /// Reads the indices of a primitive and finds the vertices that it uses.
+    /// Reads the indices of a primitive and finds the vertices that it uses. Adds to `warnings` what is left out.
     pub(crate) fn read(
         source: &Source<'_>,
         primitive: &Primitive,
         attributes: Attributes,
         path: &str,
+        warnings: &mut Vec<String>,
     ) -> Result<Self, Error> {
         let vertices = source.count(attributes.positions)?;
         let Checked::Valid(mode) = primitive.mode else {
             return Err(source.error(format!("{path}.mode"), "unknown mode"));
         };
         let Some(accessor) = primitive.indices else {
-            check_whole(source, mode, vertices, path)?;
+            // A list of vertices that ends within a triangle has lost some.
+            if let Some((of, name)) = group(mode).filter(|(of, _)| !vertices.is_multiple_of(*of)) {
+                return Err(source.error(path, format!("{vertices} vertices, {name} need a multiple of {of}")));
+            }
             return Ok(Self { attributes, mode, indices: None, used: 0..vertices });
         };
         let path = format!("{path}.indices");
         let accessor = accessor.value();
-        check_whole(source, mode, source.count(accessor)?, &path)?;
         if source.shape(accessor) != Some(Type::Scalar) {
             return Err(source.error(path, format!("accessor {accessor} is not SCALAR")));
         }
-        let indices = source.unsigned::<1>(accessor, 0..source.count(accessor)?, &path)?.into_flattened();
+        let mut indices = source.unsigned::<1>(accessor, 0..source.count(accessor)?, &path)?.into_flattened();
+        leave_out_rest(&mut indices, mode, source, &path, warnings);
 
         // Find the range and check it at once; look for the culprit only if there is one.
         let (low, high) = indices.iter().fold((u32::MAX, 0), |(low, high), &i| (low.min(i), high.max(i)));
@@ -210,17 +214,24 @@ fn check_compression(source: &Source<'_>, primitive: &Primitive, positions: usiz
     Err(Error::Unsupported { file: source.file.to_owned(), what })
 }
 
-/// Lines come in pairs of vertices, triangles in threes.
-fn check_whole(source: &Source<'_>, mode: Mode, vertices: usize, path: &str) -> Result<(), Error> {
-    let (of, name) = match mode {
-        Mode::Lines => (2, "LINES"),
-        Mode::Triangles => (3, "TRIANGLES"),
-        _ => return Ok(()),
-    };
-    if vertices.is_multiple_of(of) {
-        return Ok(());
+/// Of how many vertices a mode makes one line or triangle, and its name; `None` where vertices are shared.
+fn group(mode: Mode) -> Option<(usize, &'static str)> {
+    match mode {
+        Mode::Lines => Some((2, "LINES")),
+        Mode::Triangles => Some((3, "TRIANGLES")),
+        _ => None,
     }
-    Err(source.error(path, format!("{vertices} vertices, {name} need a multiple of {of}")))
+}
+
+/// Leaves out the indices behind the last whole line or triangle, as OpenGL does.
+fn leave_out_rest(indices: &mut Vec<u32>, mode: Mode, source: &Source<'_>, path: &str, warnings: &mut Vec<String>) {
+    let Some((of, name)) = group(mode) else { return };
+    let count = indices.len();
+    if !count.is_multiple_of(of) {
+        let what = format!("{count} indices, {name} need a multiple of {of}; the rest is left out");
+        warnings.push(format!("{}: {path}: {what}", source.file));
+        indices.truncate(count - count % of);
+    }
 }
 
 #[cfg(test)]

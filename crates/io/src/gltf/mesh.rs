@@ -63,7 +63,7 @@ impl Plan {
                 plan.warnings.push(format!("{}: {path}: no POSITION, nothing is drawn", source.file));
                 continue;
             };
-            let outline = Outline::read(source, primitive, attributes, &path)?;
+            let outline = Outline::read(source, primitive, attributes, &path, &mut plan.warnings)?;
             let block = plan.blocks.iter().position(|b| b.attributes == outline.attributes).unwrap_or_else(|| {
                 let attributes = outline.attributes.clone();
                 let range = outline.used.clone();

@@ -74,9 +74,14 @@ pub(crate) fn finish(mesh: Mesh, mut scene: Scene, file: &str) -> Scene {
             .push(format!("{file}: {broken} vertices have coordinates that are not finite; what they touch vanishes"));
     }
     if mesh.triangles.is_empty() && mesh.lines.is_empty() && mesh.points.is_empty() {
-        scene.warnings.push(format!("{file}: the file holds nothing to show"));
+        scene.warnings.push(nothing_to_show(file));
         return scene;
     }
     scene.add_mesh(mesh, vitral_math::DMat4::IDENTITY);
     scene
+}
+
+/// The warning of a file without triangles, lines and points.
+pub(crate) fn nothing_to_show(file: &str) -> String {
+    format!("{file}: the file holds nothing to show")
 }

@@ -344,12 +344,15 @@ mod tests {
 
     #[test]
     fn what_the_format_allows_and_what_is_not_read_is_no_error() {
+        let blank = "a.gltf: the file holds nothing to show";
         let sound = |rest: &str| {
             let text = format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{}}],{rest}}}"#);
             let loaded = crate::gltf::load(text.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single());
             let scene = loaded.unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(scene.nodes.len(), 1, "{rest}");
-            scene.warnings
+            let mut warnings = scene.warnings;
+            assert_eq!(warnings.pop().unwrap(), blank, "{rest}");
+            warnings
         };
         let none: [&str; 0] = [];
         assert_eq!(sound(r#""scene":0.0"#), none);
@@ -370,7 +373,7 @@ mod tests {
             format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],{mesh}}}"#);
         let workers = vitral_exec::Workers::single();
         let scene = crate::gltf::load(shown.as_bytes(), "a.gltf", &crate::NoFiles, &workers).unwrap();
-        assert_eq!(scene.warnings, ["a.gltf: meshes[0].primitives[0]: no POSITION, nothing is drawn"]);
+        assert_eq!(scene.warnings, ["a.gltf: meshes[0].primitives[0]: no POSITION, nothing is drawn", blank]);
         let light = r#""extensionsUsed":["KHR_lights_punctual"],
             "extensions":{"KHR_lights_punctual":{"lights":[{"type":"sky"},{"type":"point"}]}}"#;
         let place = "a.gltf: extensions.KHR_lights_punctual.lights[0]";

@@ -71,6 +71,11 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     }
     add_nodes(&source, &tree, &poses, &mut scene, &mut warnings);
     instances::spread(&source, &tree, &mut scene, &mut warnings)?;
+    // A scene without nodes was told before.
+    let is_blank = scene.meshes.iter().all(|m| m.triangles.is_empty() && m.lines.is_empty() && m.points.is_empty());
+    if is_blank && !tree.shown.is_empty() {
+        warnings.push(crate::nothing_to_show(file));
+    }
     scene.warnings = warnings;
     Ok(scene)
 }

@@ -190,7 +190,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     }
     settings.acceleration = args.acceleration.or(settings.acceleration);
     if let Some(values::CoherenceList(kinds)) = &args.coherence {
-        settings.coherence = Some(kinds.clone());
+        settings.coherence.clone_from(kinds);
     }
     settings.cull = args.cull.unwrap_or(settings.cull);
     settings.illumination = args.illumination.unwrap_or(settings.illumination);

@@ -144,6 +144,11 @@ fn coherence_is_a_choice_of_what_the_algorithm_has() {
         assert_eq!(code(&with("scan-line", list, name)), 0, "{list}");
         assert_eq!(folder.read("a.png"), folder.read(name), "{list}");
     }
+    for algorithm in json(&folder.run(&["algorithms", "--json"]))["visibility"].as_array().unwrap() {
+        let name = algorithm["name"].as_str().unwrap();
+        let output = with(name, "all", "all.png");
+        assert_eq!(code(&output), 0, "{name}: {}", errors(&output));
+    }
     let refused = with("warnock", "face", "d.png");
     assert_eq!(code(&refused), 2);
     assert!(errors(&refused).contains("object, area, depth, frame"), "{}", errors(&refused));

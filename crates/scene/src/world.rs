@@ -1,6 +1,6 @@
 //! The scene graph walked once: instances, lights and cameras in world space, and the numbering of surfaces.
 
-use crate::{Camera, Mesh, Scene};
+use crate::{Camera, Mesh, Node, Scene};
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_light::Light;
@@ -68,6 +68,16 @@ pub enum WorldError {
         /// How many there are.
         count: usize,
     },
+    /// A root is no node.
+    #[error("roots[{place}] is node {index}, there are {count}")]
+    BadRoot {
+        /// Its place in the list of roots.
+        place: usize,
+        /// The index.
+        index: u32,
+        /// How many nodes there are.
+        count: usize,
+    },
     /// More triangles than ids.
     #[error("the scene has more than 4294967294 triangles")]
     TooManyFacets,
@@ -87,18 +97,18 @@ impl World {
         let mut seen = vec![false; scene.nodes.len()];
         // A stack of our own: a deep graph must not overflow the thread's.
         let mut cameras: Vec<(u32, Camera)> = Vec::new();
+        check_roots(scene)?;
         let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
         let (mut surfaces, mut facets) = (0u64, 0u64);
         while let Some((index, world_from_parent)) = stack.pop() {
-            let count = scene.nodes.len();
-            let bad = |what, index: u32, count| WorldError::BadIndex { node: index, what, index, count };
-            let node = scene.nodes.get(index as usize).ok_or(bad("node", index, count))?;
+            let node = &scene.nodes[index as usize];
+            check_references(scene, index, node)?;
             if std::mem::replace(&mut seen[index as usize], true) {
                 return Err(WorldError::NotATree { node: index });
             }
             let world_from_node = world_from_parent * node.transform.matrix();
             if let Some(m) = node.mesh {
-                let mesh = scene.meshes.get(m as usize).ok_or(bad("mesh", m, scene.meshes.len()))?;
+                let mesh = &scene.meshes[m as usize];
                 let model_bounds = bounds[m as usize];
                 let bounds = model_bounds.transformed(&world_from_node);
                 world.bounds = world.bounds.union(&bounds);
@@ -122,8 +132,7 @@ impl World {
                 world.lights.push(light.transformed(&world_from_node));
             }
             if let Some(c) = node.camera {
-                let camera = scene.cameras.get(c as usize).ok_or(bad("camera", c, scene.cameras.len()))?;
-                cameras.push((c, camera_in_world(camera, &world_from_node)));
+                cameras.push((c, camera_in_world(&scene.cameras[c as usize], &world_from_node)));
             }
             stack.extend(node.children.iter().rev().map(|&c| (c, world_from_node)));
         }
@@ -145,6 +154,26 @@ impl World {
     }
 }
 
+/// That all roots are nodes.
+fn check_roots(scene: &Scene) -> Result<(), WorldError> {
+    let count = scene.nodes.len();
+    match scene.roots.iter().position(|&root| root as usize >= count) {
+        Some(place) => Err(WorldError::BadRoot { place, index: scene.roots[place], count }),
+        None => Ok(()),
+    }
+}
+
+/// That all is there that node number `number` refers to.
+fn check_references(scene: &Scene, number: u32, node: &Node) -> Result<(), WorldError> {
+    let there = |what, index: u32, count: usize| match (index as usize) < count {
+        true => Ok(()),
+        false => Err(WorldError::BadIndex { node: number, what, index, count }),
+    };
+    node.mesh.map_or(Ok(()), |mesh| there("mesh", mesh, scene.meshes.len()))?;
+    node.camera.map_or(Ok(()), |camera| there("camera", camera, scene.cameras.len()))?;
+    node.children.iter().try_for_each(|&child| there("node", child, scene.nodes.len()))
+}
+
 fn camera_in_world(camera: &Camera, world_from_node: &DMat4) -> Camera {
     let forward = world_from_node.transform_vector3(camera.focal_point - camera.position);
     let position = world_from_node.transform_point3(camera.position);
@@ -155,5 +184,29 @@ fn camera_in_world(camera: &Camera, world_from_node: &DMat4) -> Camera {
         focal_point: position + forward.normalize_or(DVec3::NEG_Z) * distance,
         view_up: up.normalize_or(DVec3::Y),
         ..*camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bad_index_is_told_with_the_node_that_has_it() {
+        let node =
+            |children: &[u32], mesh, camera| Node { children: children.to_vec(), mesh, camera, ..Node::default() };
+        let told = |roots: &[u32], nodes: [Node; 2]| {
+            let scene = Scene { roots: roots.to_vec(), nodes: nodes.to_vec(), ..Scene::default() };
+            World::new(&scene).map_or_else(|e| e.to_string(), |_| String::new())
+        };
+        let good = || node(&[], None, None);
+        assert_eq!(told(&[1], [good(), node(&[0], None, None)]), "");
+        assert_eq!(told(&[1], [good(), node(&[0, 7], None, None)]), "node 1 refers to node 7, there are 2");
+        assert_eq!(
+            told(&[0], [node(&[1], None, None), node(&[], Some(3), None)]),
+            "node 1 refers to mesh 3, there are 0"
+        );
+        assert_eq!(told(&[0, 1], [good(), node(&[], None, Some(0))]), "node 1 refers to camera 0, there are 0");
+        assert_eq!(told(&[0, 5], [good(), good()]), "roots[1] is node 5, there are 2");
     }
 }

@@ -36,7 +36,10 @@ const BATCH: usize = 1 << 14;
 /// Makes the normals that `mesh` lacks: all, or those that are zero or not finite. Does nothing where none is missing.
 ///
 /// `crease_angle` in radians: faces whose normals differ by more are not averaged. `π` (or NaN) is smooth everywhere,
-/// `0` gives each face its own normal. The mesh must be sound ([`Mesh::check`]).
+/// `0` gives each face its own normal.
+///
+/// # Panics
+/// Possibly, if the mesh is not sound ([`Mesh::check`]): its indices are followed without a look at their size.
 pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
     let missing = |n: &[f32; 3]| *n == [0.0; 3] || n.iter().any(|c| !c.is_finite());
     if mesh.triangles.is_empty() || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing)) {

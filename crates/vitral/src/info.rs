@@ -224,8 +224,10 @@ pub struct CameraInfo {
 /// Counts what is in a scene.
 ///
 /// # Errors
-/// A scene graph that is not sound.
+/// A mesh or a scene graph that is not sound.
 pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
+    let sound = scene.meshes.iter().try_for_each(|mesh| mesh.check_with(workers));
+    sound.map_err(vitral_render::Error::Scene)?;
     let world = World::with_workers(scene, workers).map_err(vitral_render::Error::from)?;
     let shown = |index: usize| world.instances.iter().filter(|i| i.mesh_index as usize == index).count();
     let mesh = |(index, mesh): (usize, &std::sync::Arc<Mesh>)| MeshInfo::of(mesh, shown(index), workers);
@@ -427,6 +429,7 @@ mod tests {
     use super::*;
     use crate::load_builtin;
     use vitral_math::DMat4;
+    use vitral_scene::Part;
 
     #[test]
     fn eight_cubes_are_counted() {
@@ -447,7 +450,8 @@ mod tests {
     fn bounds_are_those_of_what_is_seen_however_it_is_turned() {
         let mut scene = Scene::default();
         let corners = vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [9.0, 9.0, 9.0], [0.0, f32::NAN, 0.0]];
-        let mesh = Mesh { positions: corners, triangles: vec![[0, 1, 2], [0, 2, 4]], ..Mesh::default() };
+        let parts = vec![Part { name: String::new(), triangles: 0..2, material: None }];
+        let mesh = Mesh { positions: corners, triangles: vec![[0, 1, 2], [0, 2, 4]], parts, ..Mesh::default() };
         // By 45 degrees: the box round the turned box would reach to 1.41 and -0.71.
         scene.add_mesh(mesh, DMat4::from_rotation_z(std::f64::consts::FRAC_PI_4));
         let bounds = info(&scene, &Workers::single()).unwrap().bounds.unwrap();
@@ -465,6 +469,15 @@ mod tests {
         assert!(!info.closed && info.meshes[0].non_finite_vertices == 1);
         assert!(info.to_string().contains("1 vertex with a NaN") && info.warnings[0].contains("open"));
         assert!(super::info(&Scene::default(), &Workers::single()).unwrap().bounds.is_none());
+    }
+
+    #[test]
+    fn a_mesh_that_is_not_sound_is_an_error() {
+        let mut mesh = vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1);
+        mesh.triangles[0][1] = 99;
+        let error = info(&Scene::from_mesh(mesh), &Workers::single()).unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        assert!(error.to_string().contains("index 99"), "{error}");
     }
 
     #[test]

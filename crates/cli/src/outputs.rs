@@ -1,6 +1,7 @@
 //! Where pictures go: file names with places to fill in, formats, standard output.
 
 use crate::report::{self, Failure};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::picture::{self, EncodeOptions};
 use vitral::{Channel, Frame, PictureFormat};
@@ -30,6 +31,7 @@ impl Output {
         let make = |(pattern, &channel): (&PathBuf, &Channel)| {
             let format =
                 if report::is_standard(pattern) { PictureFormat::Png } else { PictureFormat::from_path(pattern)? };
+            picture::check(channel, format)?;
             Ok(Self { pattern: pattern.clone(), channel, format })
         };
         outputs.iter().zip(channels).map(make).collect()
@@ -48,6 +50,17 @@ impl Output {
     /// The file of a frame: `{model}` and `{frame}` or `{frame:4}` filled in.
     pub(crate) fn path(&self, model: &str, frame: u32) -> Result<PathBuf, Failure> {
         expand(&self.pattern.to_string_lossy(), model, frame).map(PathBuf::from)
+    }
+
+    /// Whether each of the frames has a name and a place: what is wrong is told before the work.
+    pub(crate) fn check_places(&self, model: &str, frames: RangeInclusive<u32>) -> Result<(), Failure> {
+        if self.is_standard() {
+            return Ok(());
+        }
+        // Of most turntables all frames go into one folder.
+        let in_one_folder = self.pattern.parent().is_none_or(|folder| !folder.to_string_lossy().contains('{'));
+        let checked = if in_one_folder { 1 } else { usize::MAX };
+        frames.take(checked).try_for_each(|frame| Ok(picture::check_place(self.path(model, frame)?)?))
     }
 
     /// Encodes the channel and writes it.
@@ -116,6 +129,8 @@ mod tests {
         assert!(Output::pair(&files, &[Channel::Color]).is_err());
         assert!(Output::pair(&files, &[]).is_err());
         assert!(Output::pair(&["a.gif".into()], &[]).is_err());
+        assert!(Output::pair(&["a.npy".into()], &[]).is_err(), "colours are no numbers");
+        assert!(Output::pair(&["a.jpg".into()], &[Channel::Depth]).is_err());
         assert!(Output::pair(&["a.png".into(), "a.png".into()], &[Channel::Color, Channel::Depth]).is_err());
     }
 }

@@ -10,12 +10,11 @@ use crate::resolve::{Plan, resolve};
 use crate::trace_file::TraceFile;
 use crate::values;
 use serde_json::{Value, json};
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Explanation, explain};
-use vitral::frame::compare;
+use vitral::frame::{Plane, compare};
 use vitral::picture::EncodeOptions;
 use vitral::render::ColorSpace;
 use vitral::render::trace::Observer;
@@ -170,11 +169,8 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Came
         }
         drawn.warnings.extend(news);
         let encode_start = Instant::now();
-        let wanted = match &args.output.reference {
-            Some(reference) => differs(args, reference, &rendered.frame)?,
-            None => true,
-        };
-        drawn.different |= wanted && args.output.reference.is_some();
+        let wanted = plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
+        drawn.different |= wanted && plan.reference.is_some();
         for output in plan.outputs.iter().filter(|_| wanted) {
             let path = output.path(&model, number)?;
             output.write(&path, &rendered.frame, &options)?;
@@ -197,17 +193,16 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Came
 }
 
 /// Whether the colour picture is farther from the reference than allowed.
-fn differs(args: &RenderArgs, reference: &Path, frame: &Frame) -> Result<bool, Failure> {
-    let expected = compare_command::read(reference)?;
+fn differs(args: &RenderArgs, expected: &Plane<[u8; 4]>, frame: &Frame) -> bool {
     let color = frame.color.as_ref().expect("a reference asks for colours");
     let threshold = compare_command::threshold_byte(args.output.reference_threshold.unwrap_or(0.0));
-    let found = compare::compare(&expected, color, threshold);
+    let found = compare::compare(expected, color, threshold);
     let different = compare_command::differs(&found);
-    if different && !args.report.quiet {
+    if let Some(reference) = args.output.reference.as_ref().filter(|_| different && !args.report.quiet) {
         let text = found.as_ref().map_or_else(ToString::to_string, ToString::to_string);
         report::line(&format!("{}: {text}", reference.display()));
     }
-    Ok(different)
+    different
 }
 
 fn write_stats(args: &ReportArgs, stats: &Value) -> Result<(), Failure> {

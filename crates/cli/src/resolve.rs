@@ -1,12 +1,14 @@
 //! From options as typed to a whole plan: defaults, then the configuration file, then the state file, then the options.
 
-use crate::outputs::Output;
+use crate::compare_command;
+use crate::outputs::{Output, model_name};
 use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::{self, Failure};
 use crate::values;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use vitral::frame::Plane;
 use vitral::render::{Background, Channels, Global, Lines, registry};
 use vitral::{Channel, State, Viewpoint, default_camera};
 
@@ -24,6 +26,8 @@ pub(crate) struct Plan {
     pub(crate) frames: RangeInclusive<u32>,
     /// Views of the whole turn; 1 without a turntable.
     pub(crate) views: u32,
+    /// The picture that others are compared with.
+    pub(crate) reference: Option<Plane<[u8; 4]>>,
 }
 
 /// Resolves the options.
@@ -110,7 +114,23 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         let name = if one.is_standard() { "standard output" } else { "--output" };
         return Err(Failure::usage(format!("{name} holds one picture, the turntable has {views}")).with_hint(hint));
     }
-    Ok(Plan { state, outputs, frames, views })
+    check_files(args, &state, &outputs, &frames)?;
+    let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
+    Ok(Plan { state, outputs, frames, views, reference })
+}
+
+/// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours of work.
+fn check_files(
+    args: &RenderArgs,
+    state: &State,
+    outputs: &[Output],
+    frames: &RangeInclusive<u32>,
+) -> Result<(), Failure> {
+    let model = model_name(state.models.first().map_or("", String::as_str));
+    outputs.iter().try_for_each(|output| output.check_places(&model, frames.clone()))?;
+    let stats = args.report.stats_file.as_ref().filter(|file| !report::is_standard(file));
+    let files = [stats, args.output.save_radiosity.as_ref(), args.output.export_shadow_polygons.as_ref()];
+    files.into_iter().flatten().try_for_each(|file| Ok(vitral::picture::check_place(file)?))
 }
 
 /// Standard output holds one thing; an explained pixel goes into the object of `--json`.

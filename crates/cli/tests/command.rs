@@ -245,6 +245,34 @@ fn exit_codes() {
 }
 
 #[test]
+fn mistakes_in_outputs_are_told_before_the_work() {
+    let folder = Folder::new("early");
+    std::fs::create_dir_all(folder.0.join("folder")).unwrap();
+    folder.file("text.png", "no picture");
+    let volumes = ["--shadows", "volume", "--export-shadow-polygons", "no/s.obj"];
+    // The model is missing, too: what is told is what was looked at first.
+    for (arguments, expected, said) in [
+        (&["-o", "x{fr}.png"][..], 2, "an unknown place in braces"),
+        (&["-o", "x.npy"], 4, "the channel color cannot be written as NPY"),
+        (&["-o", "x.jpg", "--channel", "depth"], 4, "the channel depth cannot be written as JPEG"),
+        (&["-o", "no/x.png"], 5, "there is no folder `no`"),
+        (&["-o", "{model}/x.png"], 5, "there is no folder `missing`"),
+        (&["-o", "folder/{frame}/x.png", "--turntable", "3"], 5, "there is no folder `folder/0`"),
+        (&["-o", "text.png/x.png"], 5, "text.png/x.png: "),
+        (&["-o", "x.png", "--stats-file", "no/s.json"], 5, "there is no folder `no`"),
+        (&["-o", "x.png", "--stats-file", "folder"], 5, "is a directory"),
+        (&["-o", "x.png", "--global", "radiosity", "--save-radiosity", "no/r"], 5, "there is no folder `no`"),
+        (&volumes, 5, "there is no folder `no`"),
+        (&["-o", "x.png", "--reference", "no.png"], 3, "no.png: "),
+        (&["-o", "x.png", "--reference", "text.png"], 4, "text.png: this image format is not read"),
+    ] {
+        let output = render(&folder, &[&["missing.obj"], arguments].concat());
+        assert_eq!(code(&output), expected, "{arguments:?}: {}", errors(&output));
+        assert!(errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
+    }
+}
+
+#[test]
 fn mistakes_are_told_in_words_of_our_own() {
     let folder = Folder::new("mistakes");
     folder.file("a.obj", TRIANGLE);

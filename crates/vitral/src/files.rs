@@ -165,14 +165,7 @@ fn read_standard_input(limit: u64) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// [`Error::Write`]; nothing is left behind then.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let failed = |source: std::io::Error| {
-        let folder = path.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
-        let source = match folder.filter(|f| !f.exists()) {
-            Some(folder) => std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display())),
-            None => source,
-        };
-        Error::Write { path: path.to_owned(), source }
-    };
+    let failed = |source| not_written(path, source);
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     match fs::metadata(&target) {
         Ok(old) if old.is_dir() => return Err(failed(std::io::Error::from(ErrorKind::IsADirectory))),
@@ -187,6 +180,31 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
         let _ = fs::remove_file(&temporary);
         failed(source)
     })
+}
+
+/// Why a file cannot be written, in words: a folder that is not there is called that.
+fn not_written(path: &Path, source: std::io::Error) -> Error {
+    let folder = path.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
+    let source = match folder.filter(|f| !f.exists()) {
+        Some(folder) => std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display())),
+        None => source,
+    };
+    Error::Write { path: path.to_owned(), source }
+}
+
+/// Whether there is a place for a file of this name.
+///
+/// # Errors
+/// [`Error::Write`], as [`write`] would give it for want of a folder, or because the name is that of one.
+pub(crate) fn check_place(path: &Path) -> Result<(), Error> {
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match fs::metadata(path) {
+        Ok(old) if old.is_dir() => Err(not_written(path, ErrorKind::IsADirectory.into())),
+        // A new name in a folder, or a link that points to none yet.
+        Err(e) if e.kind() == ErrorKind::NotFound && folder.is_dir() => Ok(()),
+        Err(e) => Err(not_written(path, e)),
+        Ok(_) => Ok(()),
+    }
 }
 
 /// Makes a file in the same folder that nobody else has.
@@ -291,6 +309,11 @@ mod tests {
         let lost = write(&folder.join("none/a.png"), b"x").unwrap_err();
         assert!(matches!(lost, Error::Write { .. }) && lost.to_string().contains("there is no folder `"), "{lost}");
         assert!(matches!(write(&folder, b"x"), Err(Error::Write { .. })));
+        for path in [folder.join("none/a.png"), folder.clone(), path.join("b.png")] {
+            let told = [check_place(&path), write(&path, b"x")].map(|e| e.unwrap_err().to_string());
+            assert_eq!(told[0], told[1], "told beforehand as afterwards");
+        }
+        assert!([folder.join("b.png"), path.clone(), PathBuf::from("b.png")].iter().all(|p| check_place(p).is_ok()));
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "the folder `model` and the picture");
         fs::remove_dir_all(folder).unwrap();
     }

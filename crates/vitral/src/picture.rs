@@ -161,6 +161,22 @@ pub fn encode(frame: &Frame, channel: Channel, format: PictureFormat) -> Result<
     encode_with(frame, channel, format, &EncodeOptions::default())
 }
 
+/// Whether the format can hold the channel: known before there is a frame.
+///
+/// # Errors
+/// [`Error::Unsupported`] if it cannot; the hint names formats that can.
+pub fn check(channel: Channel, format: PictureFormat) -> Result<(), Error> {
+    let instead = match (channel, format) {
+        (Channel::Color | Channel::Steps, PictureFormat::Npy) => ".png, .jpg or .ppm",
+        (Channel::Depth, PictureFormat::Jpeg | PictureFormat::Ppm) => ".png or .npy",
+        _ => return Ok(()),
+    };
+    Err(Error::Unsupported {
+        what: format!("the channel {} cannot be written as {}", channel.name(), format.name()),
+        hint: format!("choose {instead}"),
+    })
+}
+
 /// One channel of a frame as a file.
 ///
 /// # Errors
@@ -171,11 +187,8 @@ pub fn encode_with(
     format: PictureFormat,
     options: &EncodeOptions,
 ) -> Result<Vec<u8>, Error> {
+    check(channel, format)?;
     let missing = || Error::usage(format!("the channel {} was not rendered", channel.name()), "");
-    let impossible = |instead: &str| Error::Unsupported {
-        what: format!("the channel {} cannot be written as {}", channel.name(), format.name()),
-        hint: format!("choose {instead}"),
-    };
     let numbers = PngOptions { srgb: false };
     let ids = |plane: &Option<Plane<u32>>| {
         let plane = plane.as_ref().ok_or_else(missing)?;
@@ -196,19 +209,16 @@ pub fn encode_with(
         }
     };
     match channel {
-        Channel::Color if format == PictureFormat::Npy => Err(impossible(".png, .jpg or .ppm")),
         Channel::Color => {
             let plane = frame.color.as_ref().ok_or_else(missing)?;
             picture(plane, format, PngOptions { srgb: options.srgb }, options)
         }
-        Channel::Steps if format == PictureFormat::Npy => Err(impossible(".png, .jpg or .ppm")),
         Channel::Steps => picture(frame.steps.as_ref().ok_or_else(missing)?, format, numbers, options),
         Channel::Depth => {
             let plane = frame.depth.as_ref().ok_or_else(missing)?;
             match format {
                 PictureFormat::Npy => Ok(encode::npy_f32(plane)),
-                PictureFormat::Png => Ok(encode::png16_gray(&plane.map(|&z| word_from_unit(z)))?),
-                PictureFormat::Jpeg | PictureFormat::Ppm => Err(impossible(".png or .npy")),
+                _ => Ok(encode::png16_gray(&plane.map(|&z| word_from_unit(z)))?),
             }
         }
         Channel::AttachedShadow => shares(&frame.attached_shadow),
@@ -265,6 +275,15 @@ fn normal_color(normal: [f32; 3]) -> [u8; 4] {
     }
     let [r, g, b] = normal.map(|c| vitral_math::color::byte_from_unit(c * 0.5 + 0.5));
     [r, g, b, 255]
+}
+
+/// Whether [`write()`] has a place to write to, as far as that can be told beforehand: the folder is there, and no folder has the
+/// file's name.
+///
+/// # Errors
+/// [`Error::Write`], as writing would end.
+pub fn check_place(path: impl AsRef<Path>) -> Result<(), Error> {
+    files::check_place(path.as_ref())
 }
 
 /// Writes a file so that it appears complete or not at all (by renaming).

@@ -312,6 +312,10 @@ fn what_is_no_object_is_told_in_words() {
         ("{", "a.json: line 1: column 1: EOF while parsing an object"),
         (r#"{"vitral-scene":1,"nodes":[3]}"#, "nodes[0]: invalid type: integer `3`, expected an object"),
         (r#"{"vitral-scene":1,"materials":[7]}"#, "materials[0]: invalid type: integer `7`, expected an object"),
+        (r#"{"vitral-scene":1,"lights":[[]]}"#, "lights[0]: invalid type: sequence, expected an object"),
+        (r#"{"vitral-scene":1,"nodes":[{"light":[]}]}"#, "nodes[0].light: invalid type: sequence, expected an object"),
+        (r#"{"vitral-scene":1,"meshes":[{},["a.obj"]]}"#, "meshes[1]: invalid type: sequence, expected an object"),
+        (r#"{"vitral-scene":1,"nodes":[[]]}"#, "nodes[0]: invalid type: sequence, expected an object"),
     ] {
         let error = load(text).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
@@ -363,6 +367,15 @@ fn lights_that_cannot_shine_are_refused() {
             r#""area","shape":{"shape":"polygon","corners":[[0,5,0],[1,5,0],[2,5,0]]}"#,
             "corners: a polygon with an area is required",
         ),
+        (
+            r#""spot","position":[0,0,0],"direction":[0,1,0],"cutoff":0.5,"inner":0.6,"exponent":0"#,
+            "inner: a half angle from 0 to the cutoff",
+        ),
+        (r#""ambient"},"ambient":[0,-1,0],"attenuation":{"form":"none""#, "intensities of at least 0 are required"),
+        (
+            r#""ambient"},"attenuation":{"form":"clamped","c1":1,"c2":-1,"c3":0"#,
+            "attenuation: three terms of at least 0",
+        ),
     ] {
         let light = format!(r#"{{"kind":{{"type":{kind}}}}}"#);
         let error = load(&format!(r#"{{"vitral-scene":1,"lights":[{{}},{light}]}}"#)).unwrap_err().to_string();
@@ -373,6 +386,8 @@ fn lights_that_cannot_shine_are_refused() {
     let point = r#"{"shape":"disc","center":[0,1,0],"normal":[0,-1,0],"radius":0}"#;
     let text = format!(r#"{{"vitral-scene":1,"lights":[{{"kind":{{"type":"area","shape":{point}}}}}]}}"#);
     assert!(load(&text).is_ok(), "a disc of radius 0 is a point");
+    let error = load(r#"{"vitral-scene":1,"ambient":[0.1,-0.1,0.1]}"#).unwrap_err().to_string();
+    assert!(error.contains("ambient: intensities of at least 0 are required"), "{error}");
 }
 
 #[test]
@@ -383,6 +398,16 @@ fn materials_out_of_range_are_refused() {
         (r#""ior":0"#, "index of refraction 0: a number above 0 is required"),
         (r#""ior":-1.5"#, "index of refraction -1.5"),
         (r#""filter":[1,2,0]"#, "filter 2: 0 to 1 in each channel is required"),
+        (r#""occlusion-strength":2"#, "occlusion-strength 2: 0 to 1 is required"),
+        (r#""emission":[0,-1,0]"#, "emission -1: a number of at least 0 is required"),
+        (
+            r#""reflectance":{"form":"metallic-roughness","base-color":[1,1,1],"metallic":1.5,"roughness":0.5}"#,
+            "metallic 1.5: 0 to 1 is required",
+        ),
+        (
+            r#""reflectance":{"form":"phong","ka":[0,0,0],"kd":[0,0,0],"ks":[0,0,0],"shininess":-3}"#,
+            "shininess -3: a number of at least 0 is required",
+        ),
     ] {
         let text = format!(r#"{{"vitral-scene":1,"materials":[{{}},{{"name":"glass",{property}}}]}}"#);
         let error = load(&text).unwrap_err().to_string();

@@ -200,6 +200,43 @@ fn crosses_itself(corners: &[DVec2]) -> bool {
     count <= SEARCHED && (0..count).any(|i| (i + 2..count).any(|j| cross(i, j)))
 }
 
+impl LightKind {
+    fn check(&self) -> Result<(), &'static str> {
+        let directed = |direction: &DVec3| direction.try_normalize().is_some();
+        match self {
+            Self::Directional { direction } | Self::Spot { direction, .. } if !directed(direction) => {
+                Err("direction: a direction of some length is required")
+            }
+            Self::Spot { cutoff, .. } if !(*cutoff > 0.0 && *cutoff <= WIDEST) => {
+                Err("cutoff: a half angle above 0, up to 90 degrees, is required")
+            }
+            Self::Spot { cutoff, inner, .. } if !(*inner >= 0.0 && inner <= cutoff) => {
+                Err("inner: a half angle from 0 to the cutoff is required")
+            }
+            Self::Spot { exponent, .. } if exponent.is_nan() || *exponent < 0.0 => {
+                Err("exponent: a number of at least 0 is required")
+            }
+            Self::Area { shape } => shape.check(),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Attenuation {
+    fn check(&self) -> Result<(), &'static str> {
+        let sound = |terms: [f64; 3]| terms.iter().all(|&t| t >= 0.0) && terms.iter().any(|&t| t > 0.0);
+        match *self {
+            Self::Range { range } if range.is_nan() || range <= 0.0 => Err("attenuation: a range above 0 is required"),
+            Self::Clamped { c1: a, c2: b, c3: c } | Self::Gl { constant: a, linear: b, quadratic: c }
+                if !sound([a, b, c]) =>
+            {
+                Err("attenuation: three terms of at least 0, not all 0, are required")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Light {
     /// What keeps the light from shining, or from being what it says, for those who read lights and can say so; in a
     /// picture, lights that cannot shine are left out.
@@ -207,23 +244,12 @@ impl Light {
     /// # Errors
     /// A sentence on what is required.
     pub fn check(&self) -> Result<(), &'static str> {
-        let directed = |direction: &DVec3| direction.try_normalize().is_some();
-        match &self.kind {
-            LightKind::Directional { direction } | LightKind::Spot { direction, .. } if !directed(direction) => {
-                return Err("direction: a direction of some length is required");
-            }
-            LightKind::Spot { cutoff, .. } if !(*cutoff > 0.0 && *cutoff <= WIDEST) => {
-                return Err("cutoff: a half angle above 0, up to 90 degrees, is required");
-            }
-            LightKind::Area { shape } => shape.check()?,
-            _ => {}
+        let sound = |intensity: &Rgb| intensity.iter().all(|&channel| channel >= 0.0);
+        if ![self.ambient, self.diffuse, self.specular].iter().all(sound) {
+            return Err("ambient, diffuse, specular: intensities of at least 0 are required");
         }
-        match self.attenuation {
-            Attenuation::Range { range } if range.is_nan() || range <= 0.0 => {
-                Err("attenuation: a range above 0 is required")
-            }
-            _ => Ok(()),
-        }
+        self.kind.check()?;
+        self.attenuation.check()
     }
 
     /// The light after an affine transform: positions as points, directions as vectors, normals as normals.
@@ -305,7 +331,26 @@ mod tests {
         };
         assert_eq!(disc(DVec3::Y, 0.0), Ok(()), "a point");
         assert!(disc(DVec3::Y, -1.0).is_err() && disc(DVec3::ZERO, 1.0).is_err());
+        let cone = |inner, exponent| {
+            check(LightKind::Spot { position: DVec3::ZERO, direction: DVec3::Y, cutoff: 0.5, inner, exponent })
+        };
+        assert_eq!([cone(0.0, 0.0), cone(0.5, 9.0)], [Ok(()); 2]);
+        assert!([0.6, -0.1, f64::NAN].iter().all(|&inner| cone(inner, 0.0).is_err_and(|why| why.starts_with("inner"))));
+        assert!([-1.0, f64::NAN].iter().all(|&e| cone(0.0, e).is_err_and(|why| why.starts_with("exponent"))));
         let ranged = |range| Light { attenuation: Attenuation::Range { range }, ..Light::default() }.check();
         assert_eq!((ranged(1.0), ranged(0.0)), (Ok(()), Err("attenuation: a range above 0 is required")));
+    }
+
+    #[test]
+    fn light_and_its_loss_are_not_negative() {
+        let colored = |diffuse| Light { diffuse, ..Light::default() }.check().is_ok();
+        assert!(colored([0.0, 3.0, 0.5]) && !colored([1.0, -0.1, 1.0]) && !colored([f32::NAN; 3]));
+        let fading = |c1, c2, c3| {
+            let (clamped, gl) =
+                (Attenuation::Clamped { c1, c2, c3 }, Attenuation::Gl { constant: c1, linear: c2, quadratic: c3 });
+            [clamped, gl].map(|attenuation| Light { attenuation, ..Light::default() }.check().is_ok())
+        };
+        assert_eq!([fading(1.0, 0.0, 0.0), fading(0.0, 0.0, 2.0)], [[true; 2]; 2]);
+        assert_eq!([fading(1.0, -0.1, 0.0), fading(0.0, 0.0, 0.0), fading(f64::NAN, 1.0, 1.0)], [[false; 2]; 3]);
     }
 }

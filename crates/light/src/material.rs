@@ -187,6 +187,44 @@ impl Material {
 }
 
 impl Material {
+    /// What number of the material has no meaning, for those who read materials that somebody wrote by hand and can say so.
+    /// Models bring such numbers; they are drawn as well as can be.
+    ///
+    /// # Errors
+    /// Which it is, and what is required.
+    pub fn check(&self) -> Result<(), String> {
+        let unit = |value: f32| (0.0..=1.0).contains(&value);
+        let positive = |value: f32| value >= 0.0 && value.is_finite();
+        let bad = |what: &str, value: f32, required: &str| Err(format!("{what} {value}: {required} is required"));
+        let shares = [("opacity", self.opacity), ("occlusion-strength", self.occlusion_strength)];
+        let (mut shares, mut colors) = (shares.to_vec(), vec![("emission", self.emission)]);
+        match self.reflectance {
+            Reflectance::Phong { ka, kd, ks, shininess } => {
+                colors.extend([("ka", ka), ("kd", kd), ("ks", ks), ("shininess", [shininess; 3])]);
+            }
+            Reflectance::MetallicRoughness { base_color, metallic, roughness } => {
+                colors.push(("base-color", base_color));
+                shares.extend([("metallic", metallic), ("roughness", roughness)]);
+            }
+        }
+        if let Some(&(what, value)) = shares.iter().find(|(_, value)| !unit(*value)) {
+            return bad(what, value, "0 to 1");
+        }
+        if !(self.ior > 0.0 && self.ior.is_finite()) {
+            return bad("index of refraction", self.ior, "a number above 0");
+        }
+        if let Some(&part) = self.filter.iter().find(|part| !unit(**part)) {
+            return bad("filter", part, "0 to 1 in each channel");
+        }
+        let channels = colors.iter().flat_map(|(what, color)| color.map(|channel| (*what, channel)));
+        match channels.into_iter().find(|(_, channel)| !positive(*channel)) {
+            Some((what, channel)) => bad(what, channel, "a number of at least 0"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Material {
     /// Every place for a texture, to change.
     pub fn texture_slots_mut(&mut self) -> [&mut Option<TextureRef>; 7] {
         [
@@ -261,6 +299,26 @@ mod tests {
             let material: Material = serde_json::from_str(&json).unwrap();
             assert_eq!((material.transmission, material.opacity), (expected, 0.5));
         }
+    }
+
+    #[test]
+    fn numbers_without_meaning_are_told() {
+        let phong = |ks: f32, shininess| Reflectance::Phong { ka: [0.1; 3], kd: [0.5; 3], ks: [ks; 3], shininess };
+        let rough = |metallic, roughness| Reflectance::MetallicRoughness { base_color: [2.0; 3], metallic, roughness };
+        let told = |reflectance| Material { reflectance, ..Material::default() }.check();
+        assert_eq!([told(phong(3.0, 0.0)), told(rough(0.0, 1.0))], [Ok(()), Ok(())]);
+        for (reflectance, expected) in [
+            (phong(-0.5, 9.0), "ks -0.5: a number of at least 0 is required"),
+            (phong(0.5, -9.0), "shininess -9: a number of at least 0 is required"),
+            (rough(1.5, 0.5), "metallic 1.5: 0 to 1 is required"),
+            (rough(1.0, -0.5), "roughness -0.5: 0 to 1 is required"),
+            (rough(1.0, f32::NAN), "roughness NaN: 0 to 1 is required"),
+        ] {
+            assert_eq!(told(reflectance).unwrap_err(), expected);
+        }
+        let emission = Material { emission: [0.0, -1.0, 0.0], ..Material::default() };
+        let occluded = Material { occlusion_strength: 1.1, ..Material::default() };
+        assert!([emission, occluded].iter().all(|m| m.check().is_err()));
     }
 
     #[test]

@@ -2,7 +2,10 @@
 //! refused by the parser, so whatever is read is finite, but for coordinates given as `null`.
 
 use crate::{Error, Place};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
+use std::marker::PhantomData;
 use vitral_frame::Encoding;
 use vitral_light::{Light, Material};
 use vitral_scene::Camera;
@@ -12,20 +15,58 @@ use vitral_scene::Camera;
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct SceneForm {
     pub(super) vitral_scene: u32,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "objects")]
     pub(super) meshes: Vec<MeshForm>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "objects")]
     pub(super) materials: Vec<Material>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "objects")]
     pub(super) textures: Vec<TextureForm>,
+    #[serde(default, deserialize_with = "objects_if_any")]
     pub(super) nodes: Option<Vec<NodeForm>>,
     pub(super) roots: Option<Vec<u32>>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "objects")]
     pub(super) lights: Vec<Light>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "objects")]
     pub(super) cameras: Vec<Camera>,
     #[serde(default)]
     pub(super) ambient: [f32; 3],
+}
+
+/// What is written as an object. A list would be taken for its fields in order, and an empty one for all of them left out.
+struct Object<T>(T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Fields<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Fields<T> {
+            type Value = Object<T>;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<Object<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(fields)).map(Object)
+            }
+        }
+        deserializer.deserialize_map(Fields(PhantomData))
+    }
+}
+
+/// A list of objects.
+fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    Ok(Vec::<Object<T>>::deserialize(deserializer)?.into_iter().map(|object| object.0).collect())
+}
+
+/// An object, or null for none.
+fn object_if_any<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    Ok(Option::<Object<T>>::deserialize(deserializer)?.map(|object| object.0))
+}
+
+/// A list of objects, or null for none.
+fn objects_if_any<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<T>>, D::Error> {
+    let list = Option::<Vec<Object<T>>>::deserialize(deserializer)?;
+    Ok(list.map(|list| list.into_iter().map(|object| object.0).collect()))
 }
 
 /// A mesh with its arrays, or a reference to a model.
@@ -155,7 +196,7 @@ pub(super) struct NodeForm {
     pub(super) children: Vec<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) mesh: Option<u32>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "object_if_any")]
     pub(super) light: Option<Light>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) camera: Option<u32>,

@@ -58,6 +58,9 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     for (i, light) in scene.lights.iter().enumerate() {
         light.check().map_err(|what| report.at(format!("lights[{i}]"), what))?;
     }
+    if !form.ambient.iter().all(|&channel| channel >= 0.0) {
+        return Err(report.at("ambient", "intensities of at least 0 are required"));
+    }
     for (i, camera) in scene.cameras.iter().enumerate() {
         check_camera(camera, &format!("cameras[{i}]"), &report)?;
     }
@@ -153,20 +156,7 @@ fn add_textures(
 fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'_>) -> Result<(), Error> {
     for (i, material) in scene.materials.iter_mut().enumerate() {
         let path = format!("materials[{i}]");
-        let bad = |what: &str, value: f32, required: &str| {
-            let name = &material.name;
-            report.at(path.as_str(), format!("`{name}`: {what} {value}: {required} is required"))
-        };
-        let (opacity, ior) = (material.opacity, material.ior);
-        if !(0.0..=1.0).contains(&opacity) {
-            return Err(bad("opacity", opacity, "0 to 1"));
-        }
-        if !(ior > 0.0 && ior.is_finite()) {
-            return Err(bad("index of refraction", ior, "a number above 0"));
-        }
-        if let Some(&part) = material.filter.iter().find(|f| !(0.0..=1.0).contains(*f)) {
-            return Err(bad("filter", part, "0 to 1 in each channel"));
-        }
+        material.check().map_err(|what| report.at(path.as_str(), format!("`{}`: {what}", material.name)))?;
         for texture in material.textures_mut() {
             report.index(path.as_str(), "texture", texture.texture, places.len())?;
             if texture.uv_set > 1 {

@@ -8,9 +8,16 @@ use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settin
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
+use vitral_render::Background;
 
 /// The version of the form.
 pub const VERSION: u32 = 1;
+
+/// Most views of a turntable.
+const MOST_VIEWS: usize = 1_000_000;
+
+/// What is required of colours in the display's encoding.
+const COLOR: &str = "r,g,b from 0 to 1 are required";
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,6 +76,11 @@ impl State {
     /// # Errors
     /// [`Error::State`] with line and column.
     pub fn from_json(text: &str, file: &str) -> Result<Self, Error> {
+        // A list would be taken for the fields in order.
+        if text.trim_ascii_start().starts_with('[') {
+            let what = format!("a state is an object, `{{ \"vitral\": {VERSION}, ... }}`");
+            return Err(Error::State { file: file.to_owned(), place: "line 1, column 1: ".to_owned(), what });
+        }
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let read: Result<Self, _> = serde_path_to_error::deserialize(&mut deserializer);
         let state = read.map_err(|e| {
@@ -82,13 +94,35 @@ impl State {
             let what = format!("version {} is not known, only {VERSION}", state.vitral);
             return Err(Error::State { file: file.to_owned(), place: "vitral: ".to_owned(), what });
         }
-        for (i, light) in state.lights.iter().flatten().enumerate() {
-            light.check().map_err(|what| {
-                let (file, place) = (file.to_owned(), format!("lights[{i}]: "));
-                Error::State { file, place, what: what.to_owned() }
-            })?;
-        }
+        state.check().map_err(|(field, what)| {
+            let (file, place) = (file.to_owned(), format!("{field}: "));
+            Error::State { file, place, what: what.to_owned() }
+        })?;
         Ok(state)
+    }
+
+    /// Values that the options of the command line would refuse, too: the field, and what is required.
+    fn check(&self) -> Result<(), (String, &'static str)> {
+        const INTENSITIES: &str = "intensities of at least 0 are required";
+        let positive = |color: &[f32; 3]| color.iter().all(|&channel| channel >= 0.0);
+        for (i, light) in self.lights.iter().flatten().enumerate() {
+            light.check().map_err(|what| (format!("lights[{i}]"), what))?;
+        }
+        self.viewpoint.check_numbers().map_err(|(field, what)| (format!("viewpoint.{field}"), what))?;
+        let (field, what) = match self.settings.background {
+            _ if self.turntable.is_some_and(|views| !(1..=MOST_VIEWS).contains(&views)) => {
+                ("turntable", "a whole number from 1 to 1000000 is required")
+            }
+            _ if self.light_intensity.is_nan() || self.light_intensity < 0.0 => {
+                ("light-intensity", "a number of at least 0 is required")
+            }
+            _ if !positive(&self.ambient) => ("ambient", INTENSITIES),
+            Background::Color { color } if !displayed(&color) => ("settings.background.color", COLOR),
+            Background::Gradient { top, .. } if !displayed(&top) => ("settings.background.top", COLOR),
+            Background::Gradient { bottom, .. } if !displayed(&bottom) => ("settings.background.bottom", COLOR),
+            _ => return Ok(()),
+        };
+        Err((field.to_owned(), what))
     }
 
     /// Takes the fields that `text` has and keeps all others: how configuration files are laid over each other. Lists
@@ -166,6 +200,11 @@ impl State {
     }
 }
 
+/// Whether a display can show the colour.
+fn displayed(color: &[f32; 3]) -> bool {
+    color.iter().all(|channel| (0.0..=1.0).contains(channel))
+}
+
 /// Whether a model is a file with a relative path.
 fn is_relative(model: &str) -> bool {
     model != "-" && !model.starts_with("builtin:") && Path::new(model).is_relative()
@@ -209,7 +248,7 @@ fn merge(base: &mut Value, over: Value) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_render::{Background, Shading};
+    use vitral_render::Shading;
     use vitral_scene::{Axis, View};
 
     #[test]
@@ -253,6 +292,26 @@ mod tests {
         assert!(tell("{\"vitral\": 2}").contains("version 2"));
         let dark = "{\"lights\": [{\"kind\": {\"type\": \"directional\", \"direction\": [0, 0, 0]}}]}";
         assert!(tell(dark).contains("lights[0]: direction: a direction of some length"));
+        for (fields, expected) in [
+            (r#""viewpoint": {"direction": [0, 0, 0]}"#, "viewpoint.direction: a direction of some length is required"),
+            (r#""viewpoint": {"view-up": [0, 0, 0]}"#, "viewpoint.view-up: a direction of some length is required"),
+            (r#""viewpoint": {"zoom-factor": 0}"#, "viewpoint.zoom-factor: a number above 0 is required"),
+            (r#""turntable": 0"#, "turntable: a whole number from 1 to 1000000 is required"),
+            (r#""light-intensity": -1"#, "light-intensity: a number of at least 0 is required"),
+            (r#""ambient": [0, -1, 0]"#, "ambient: intensities of at least 0 are required"),
+            (
+                r#""lights": [{"diffuse": [0, -1, 0]}]"#,
+                "lights[0]: ambient, diffuse, specular: intensities of at least 0",
+            ),
+            (
+                r#""settings": {"background": {"type": "color", "color": [0, 2, 0]}}"#,
+                "settings.background.color: r,g,b from 0 to 1 are required",
+            ),
+        ] {
+            let told = tell(&format!("{{{fields}}}"));
+            assert!(told.starts_with(&format!("s.json: {expected}")), "{told}");
+        }
+        assert!(tell("[]").contains("line 1, column 1: a state is an object"));
         assert!(tell("{} x").contains("line 1, column 4"));
         assert_eq!(tell("{"), "s.json: line 1, column 1: EOF while parsing an object");
     }

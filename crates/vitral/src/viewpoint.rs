@@ -110,6 +110,23 @@ impl Viewpoint {
         *self == framed
     }
 
+    /// A number without sense, whatever the scene is, for those who read viewpoints and can say so: its field, and what is
+    /// required.
+    pub(crate) fn check_numbers(&self) -> Result<(), (&'static str, &'static str)> {
+        let directions = [("view-up", self.view_up), ("direction", self.direction)];
+        let pointless = |v: &Option<[f64; 3]>| v.is_some_and(|v| DVec3::from_array(v).try_normalize().is_none());
+        if let Some((field, _)) = directions.iter().find(|(_, v)| pointless(v)) {
+            return Err((field, "a direction of some length is required"));
+        }
+        if self.view_angle.is_some_and(|angle| !(angle > 0.0 && angle < 180.0)) {
+            return Err(("view-angle", "an angle between 0 and 180 degrees is required"));
+        }
+        if self.zoom_factor.is_nan() || self.zoom_factor <= 0.0 {
+            return Err(("zoom-factor", "a number above 0 is required"));
+        }
+        Ok(())
+    }
+
     fn check(&self, renderer: &Renderer) -> Result<(), Error> {
         let count = renderer.world().cameras.len();
         if let Some(index) = self.camera_index.filter(|&i| i >= count) {
@@ -122,13 +139,7 @@ impl Viewpoint {
         if !points.iter().flatten().flatten().chain(&numbers).all(|n| n.is_finite()) {
             return Err(Error::usage("the camera has a number that is not finite", ""));
         }
-        let angle = self.view_angle.unwrap_or(30.0);
-        if !(angle > 0.0 && angle < 180.0) {
-            return Err(Error::usage(format!("a view angle of {angle} degrees"), "it lies between 0 and 180"));
-        }
-        if self.zoom_factor <= 0.0 {
-            return Err(Error::usage(format!("a zoom factor of {}", self.zoom_factor), "it is larger than 0"));
-        }
+        self.check_numbers().map_err(|(field, required)| Error::usage(format!("viewpoint.{field}: {required}"), ""))?;
         let parallel = self.orthographic;
         if clip[0] >= clip[1] || (self.clip.is_some() && !parallel && clip[0] <= 0.0) {
             return Err(Error::usage(
@@ -285,6 +296,8 @@ mod tests {
             Viewpoint { view_angle: Some(180.0), ..Viewpoint::default() },
             Viewpoint { position: Some([f64::NAN; 3]), ..Viewpoint::default() },
             Viewpoint { clip: Some((2.0, 1.0)), ..Viewpoint::default() },
+            Viewpoint { direction: Some([0.0; 3]), ..Viewpoint::default() },
+            Viewpoint { view_up: Some([0.0; 3]), ..Viewpoint::default() },
             Viewpoint { position: Some([1.0; 3]), focal_point: Some([1.0; 3]), ..Viewpoint::default() },
         ] {
             assert_eq!(camera(bad).unwrap_err().exit_code(), 2);

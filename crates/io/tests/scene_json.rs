@@ -226,6 +226,20 @@ fn infinite_coordinates_come_back_as_nan() {
 }
 
 #[test]
+fn what_could_not_be_read_back_is_not_written() {
+    let refused = |change: fn(&mut Scene), part: &str| {
+        let mut scene = full_scene();
+        change(&mut scene);
+        let error = scene_json::write(&scene).unwrap_err();
+        assert!(matches!(error, Error::Encode { .. }) && error.to_string().contains(part), "{error}");
+    };
+    refused(|scene| scene.materials[0].occlusion_strength = 3.0, "materials[0]: ``: occlusion-strength 3");
+    refused(|scene| scene.lights[0].diffuse = [-1.0; 3], "lights[0]: ");
+    refused(|scene| scene.ambient = [f32::NAN; 3], "ambient[0]: ");
+    refused(|scene| scene.roots.push(99), "node 99");
+}
+
+#[test]
 fn the_smallest_files() {
     let teapot = load(r#"{"vitral-scene":1,"meshes":[{"builtin":"teapot"}]}"#).unwrap();
     assert!(World::new(&teapot).unwrap().facet_count > 500);
@@ -491,6 +505,14 @@ fn the_examples_of_the_documentation_are_read() {
         let scene = scene_json::load(example.as_bytes(), "a.json", &beside, &Workers::single());
         let scene = scene.unwrap_or_else(|e| panic!("{e}\n{example}"));
         assert!(scene.warnings.is_empty() && !scene.meshes.is_empty(), "{:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn the_documentation_has_all_builtin_scenes() {
+    let text = std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md")).unwrap();
+    for (name, _) in vitral_scene::builtin::names() {
+        assert!(text.contains(&format!("`{name}`")), "{name}");
     }
 }
 

@@ -2,10 +2,13 @@
 
 use super::form::{NodeForm, TextureForm};
 use super::mesh::to_form;
-use crate::Error;
+use super::read::read;
+use super::reference::Origin;
 use crate::encode::{PngOptions, png};
 use crate::uri::to_base64;
+use crate::{Error, NoFiles};
 use serde::Serialize;
+use vitral_exec::Workers;
 use vitral_frame::{Encoding, Plane, Texture};
 use vitral_math::{DMat4, DVec4};
 use vitral_scene::{Node, NodeTransform, Scene};
@@ -15,8 +18,12 @@ use vitral_scene::{Node, NodeTransform, Scene};
 /// Reading it back gives an equal scene, but for its warnings and usual upward axes, for nodes that place cameras that none did, for coordinates that are not finite (they come back as
 /// NaN), and for other numbers that are not finite (normals and the like become 0).
 ///
+/// Models may bring what scene files must not have, such as a roughness above 1; so what was written is read back before it is
+/// handed out, which takes as long again as reading it.
+///
 /// # Errors
-/// [`Error::Encode`] if a texture has no pixels, or if a number that must be finite is not.
+/// [`Error::Encode`] if a texture has no pixels, or if the file would be refused when it is read: for a number that must be
+/// finite and is not, or for values out of their range.
 pub fn write(scene: &Scene) -> Result<String, Error> {
     let textures = scene.textures.iter().map(|t| texture(t)).collect::<Result<Vec<_>, _>>()?;
     let mut out = format!("{{\n\"vitral-scene\": {}", super::VERSION);
@@ -27,6 +34,9 @@ pub fn write(scene: &Scene) -> Result<String, Error> {
     section(&mut out, "lights", scene.lights.iter())?;
     section(&mut out, "cameras", scene.cameras.iter())?;
     out += &format!(",\n\"roots\": {},\n\"ambient\": {}\n}}\n", json(&scene.roots)?, json(&scene.ambient)?);
+    let (name, workers) = ("scene file", Workers::single());
+    read(out.as_bytes(), name, &Origin::root(name, &NoFiles, &workers))
+        .map_err(|e| Error::Encode { what: e.to_string() })?;
     Ok(out)
 }
 

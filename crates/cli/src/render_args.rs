@@ -181,16 +181,26 @@ pub(crate) struct LightArgs {
     pub(crate) lighting: Option<bool>,
     /// A light, instead of the model's and the default ones; repeatable: KIND:key=value,... with KIND ambient,
     /// directional, point, spot or area and the keys name, ambient, diffuse, specular (a number, r,g,b or a colour's
-    /// name), attenuation (c1,c2,c3 or inverse-square), shadow, position, direction, cutoff (degrees), exponent, center,
-    /// normal, radius, corners
+    /// name), attenuation (none, inverse-square, c1,c2,c3, gl,constant,linear,quadratic or range,distance), shadow,
+    /// position, direction, cutoff (half angle of a spot's cone in degrees, 30 if left out), inner (half angle where its
+    /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
     pub(crate) light: Vec<Light>,
     /// Multiplies all lights [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f64>,
-    /// Override a material's property, such as glass.opacity=0.5; repeatable
-    #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
+    #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// The help of `--material`.
+fn material_help() -> String {
+    let properties: Vec<&str> = vitral::material_properties().map(|(name, _)| name).collect();
+    format!(
+        "Override a material's property, such as glass.opacity=0.5; repeatable. NAME is a material's, * for all, default for \
+         surfaces without material; PROPERTY is one of {} (docs/materials.md tells what they mean)",
+        properties.join(", ")
+    )
 }
 
 /// The viewer.
@@ -292,7 +302,7 @@ pub(crate) struct ReportArgs {
     /// No warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
-    /// A progress bar for turntables [default: auto]
+    /// A progress bar: frames of a turntable, long stages of a single picture [default: auto]
     #[arg(long, value_name = "WHEN", value_enum)]
     pub(crate) progress: Option<ProgressWhen>,
 }

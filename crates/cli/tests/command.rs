@@ -313,6 +313,10 @@ fn the_help_goes_into_pipes() {
     let output = folder.run(&["render", "--help"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
+    let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in ["gl,constant,linear,quadratic", "inner (half angle", "occlusion-strength, normal-scale", "* for all"] {
+        assert!(words.contains(part), "{part}");
+    }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");
 }
 

@@ -46,7 +46,7 @@ mod viewpoint;
 pub use error::Error;
 pub use files::{FolderResolver, read};
 pub use load::{LoadOptions, Normals, default_camera, load, load_builtin, load_bytes};
-pub use material_override::{MaterialOverride, override_material};
+pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
 pub use picture::{Channel, PictureFormat};
 pub use renderer::{Moves, Renderer, execution};

@@ -82,6 +82,11 @@ const PROPERTIES: [(&str, &str, Setter); 22] = [
     ("textures", "false drops them", set_textures),
 ];
 
+/// Name and meaning of every property that can be changed.
+pub fn material_properties() -> impl Iterator<Item = (&'static str, &'static str)> {
+    PROPERTIES.iter().map(|(name, meaning, _)| (*name, *meaning))
+}
+
 /// Sets `property` of the materials called `name` (all with `*`; `default` stands for surfaces without material) to
 /// what the text `value` says.
 ///
@@ -322,6 +327,15 @@ mod tests {
         assert!(hint(&mut scene, "ball.filter=1,2,1").contains("passes"));
         change(&mut scene, "ball.ior=0.7").expect("air seen from water");
         assert!(hint(&mut scene, "ball").contains("NAME.PROPERTY=VALUE"));
+    }
+
+    #[test]
+    fn the_documentation_has_all_properties() {
+        let file = vitral_testkit::fixture::repository().join("docs/materials.md");
+        let text = std::fs::read_to_string(file).unwrap();
+        for (name, meaning) in material_properties() {
+            assert!(text.contains(&format!("| `{name}` | {meaning} |")), "{name}");
+        }
     }
 
     #[test]

@@ -245,6 +245,10 @@ impl<'a> Whitted<'a> {
         if let Ok(sum) = &mut *self.outcome.lock().expect("no thread panics while it counts") {
             sum.add(&counters);
         }
+    }
+
+    /// One more tile is shaded, whether rays went on from it or not.
+    pub(crate) fn tile_done(&self) {
         let done = self.tiles_done.fetch_add(1, Ordering::Relaxed) + 1;
         self.execution.budget.progress("ray tracing", done, self.tiles);
     }

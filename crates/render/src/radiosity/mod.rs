@@ -28,6 +28,7 @@ use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
@@ -43,6 +44,8 @@ pub const RESIDUAL: f64 = 0.002;
 const ROUGH: f64 = 0.2;
 /// How often elements are cut again.
 const ROUNDS: usize = 2;
+/// Thousandths of the progress at which the rough solutions and the last one begin, about as they take time.
+const BEGINNINGS: [u64; ROUNDS + 1] = [0, 100, 250];
 /// Elements over which light changes by more than this part of the mean are cut.
 const CONTRAST: f64 = 0.5;
 
@@ -102,8 +105,9 @@ fn solve(
     let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
     let most = settings.iterations.unwrap_or(u64::MAX);
     let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
-    for _ in 0..ROUNDS {
-        let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, execution)?;
+    for round in 0..ROUNDS {
+        let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
+        let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
         let contrasts = Solution::new(&enclosure, &rough).contrasts();
         let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
@@ -115,7 +119,8 @@ fn solve(
         trees.balance();
         enclosure = enclosed(trees, session, lights, settings, execution)?;
     }
-    let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, execution)?;
+    let last = part_of(execution, BEGINNINGS[ROUNDS]..1000);
+    let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, &last)?;
     let solution = Solution::new(&enclosure, &progress).with_key(fingerprint_of(lights, settings));
     *counters = RadiosityCounters {
         patches: enclosure.patches.len() as u64,
@@ -128,6 +133,15 @@ fn solve(
         seconds: execution.budget.elapsed() - start,
     };
     Ok(solution)
+}
+
+/// `execution` for one of several solutions, whose progress is this part of the whole, in thousandths.
+fn part_of(execution: &Execution, part: Range<u64>) -> Execution {
+    let whole = execution.budget.clone();
+    let listener = move |stage: &str, done: u64, total: u64| {
+        whole.progress(stage, part.start + done * (part.end - part.start) / total.max(1), 1000);
+    };
+    Execution { budget: execution.budget.clone().with_progress(Arc::new(listener)), ..execution.clone() }
 }
 
 /// An enclosure whose memory the budget allows.

@@ -109,8 +109,10 @@ pub fn solve(
     loop {
         let left: f64 = unsent.iter().map(power).sum();
         progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
-        tell(&progress, residual, execution);
-        if progress.residual <= residual || progress.shots >= most {
+        let finished = progress.residual <= residual || progress.shots >= most;
+        let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
+        tell(if finished { 1.0 } else { share }, execution);
+        if finished {
             break;
         }
         execution.budget.check("radiosity")?;
@@ -249,11 +251,15 @@ fn ambient(enclosure: &Enclosure, unsent: &[Color]) -> Color {
     })
 }
 
-/// Progress in thousandths, on the scale of logarithms on which the light falls.
-fn tell(progress: &Progress, residual: f64, execution: &Execution) {
-    let ratio =
-        vitral_math::func::ln(progress.residual.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
-    execution.budget.progress("radiosity", (ratio.clamp(0.0, 1.0) * 1000.0) as u64, 1000);
+/// How far it is from all light to `residual`, on the scale of logarithms on which the light falls.
+fn share_done(left: f64, residual: f64) -> f64 {
+    let ratio = vitral_math::func::ln(left.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
+    ratio.clamp(0.0, 1.0)
+}
+
+/// Progress in thousandths.
+fn tell(share: f64, execution: &Execution) {
+    execution.budget.progress("radiosity", (share * 1000.0) as u64, 1000);
 }
 
 #[cfg(test)]

@@ -223,6 +223,7 @@ impl TileSink for ColorSink<'_> {
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         if !tile.touched && layers.sample_count() == 0 && layers.lost() == 0 && self.deep.is_none() {
+            self.tracer.into_iter().for_each(Whitted::tile_done);
             return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
         }
         let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
@@ -243,6 +244,7 @@ impl TileSink for ColorSink<'_> {
         dispatch!(constants.level, simd => group::shade_all(simd, points, facets, constants, lit));
         if let (Some(tracer), Some(front)) = (self.tracer, &front) {
             tracer.follow(front, points, lit, forest);
+            tracer.tile_done();
         }
         let counters = PictureCounters {
             pixels: 0,

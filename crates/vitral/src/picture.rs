@@ -153,7 +153,8 @@ impl Default for EncodeOptions {
     }
 }
 
-/// One channel of a frame as a file, with the default [`EncodeOptions`].
+/// One channel of a frame as a file, with the default [`EncodeOptions`]: the colours are taken for sRGB, which PNG then says.
+/// Frames of [`ColorSpace::Raw`](vitral_render::ColorSpace) go through [`encode_with`] instead.
 ///
 /// # Errors
 /// As [`encode_with`].
@@ -294,13 +295,27 @@ pub fn write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
     files::write(path.as_ref(), bytes)
 }
 
-/// Encodes one channel in the format that the path names, and writes it.
+/// Encodes one channel in the format that the path names, and writes it; with the default [`EncodeOptions`], as [`encode`]
+/// does. Frames of [`ColorSpace::Raw`](vitral_render::ColorSpace) go through [`save_with`] instead.
 ///
 /// # Errors
 /// As [`encode_with`] and [`write()`].
 pub fn save(path: impl AsRef<Path>, frame: &Frame, channel: Channel) -> Result<(), Error> {
+    save_with(path, frame, channel, &EncodeOptions::default())
+}
+
+/// [`save`] with options.
+///
+/// # Errors
+/// As [`encode_with`] and [`write()`].
+pub fn save_with(
+    path: impl AsRef<Path>,
+    frame: &Frame,
+    channel: Channel,
+    options: &EncodeOptions,
+) -> Result<(), Error> {
     let path = path.as_ref();
-    write(path, &encode(frame, channel, PictureFormat::from_path(path)?)?)
+    write(path, &encode_with(frame, channel, PictureFormat::from_path(path)?, options)?)
 }
 
 #[cfg(test)]
@@ -341,6 +356,20 @@ mod tests {
         ] {
             assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), codes, "{}", channel.name());
         }
+    }
+
+    #[test]
+    fn only_colours_that_are_srgb_are_said_to_be() {
+        let path = std::env::temp_dir().join(format!("vitral-save-{}.png", std::process::id()));
+        for (srgb, said) in [(true, true), (false, false)] {
+            let options = EncodeOptions { srgb, ..EncodeOptions::default() };
+            save_with(&path, &frame(), Channel::Color, &options).unwrap();
+            let bytes = std::fs::read(&path).unwrap();
+            assert_eq!(bytes.windows(4).any(|chunk| chunk == b"sRGB"), said);
+        }
+        save(&path, &frame(), Channel::Color).unwrap();
+        assert!(std::fs::read(&path).unwrap().windows(4).any(|chunk| chunk == b"sRGB"));
+        std::fs::remove_file(path).unwrap();
     }
 
     #[test]

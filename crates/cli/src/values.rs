@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use vitral::math::DVec3;
 use vitral::render::{Coherence, Culling};
-use vitral::{MaterialOverride, names};
+use vitral::{MaterialOverride, Workers, names};
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
@@ -40,12 +40,9 @@ pub(crate) fn view_angle(text: &str) -> Result<f64, String> {
     })
 }
 
-/// Most threads that may be asked for: more than machines have processors, and few enough to start at once.
-const MOST_THREADS: usize = 1024;
-
 /// A number of threads; 0 lets the machine decide.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    whole(0..=MOST_THREADS)(text)
+    whole(0..=Workers::MOST)(text)
 }
 
 /// The number of threads that was asked for, else what `VITRAL_THREADS` says, else 0.
@@ -139,7 +136,7 @@ pub(crate) fn culling(text: &str) -> Result<Culling, String> {
     Ok(culling)
 }
 
-/// Kinds of coherence, as one value.
+/// Kinds of coherence, as one value; `None`: all that the algorithm exploits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CoherenceList(pub(crate) Option<Vec<Coherence>>);
 

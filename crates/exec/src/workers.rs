@@ -35,11 +35,13 @@ impl Workers {
         }
     }
 
-    /// `threads` workers; 0 means as many as the process may use (affinity, cgroup). Falls back to fewer threads
-    /// where threads cannot be made.
+    /// The most threads of a pool: more than machines have processors, and few enough to start at once.
+    pub const MOST: usize = 1024;
+
+    /// `threads` workers, at most [`Self::MOST`]; 0 means as many as the process may use (affinity, cgroup). Falls back to the
+    /// calling thread alone where threads cannot be made.
     pub fn new(threads: usize) -> Self {
-        let available = || std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = if threads == 0 { available() } else { threads };
+        let threads = number(threads);
         #[cfg(feature = "threads")]
         if threads > 1 {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("vitral-{i}"));
@@ -165,9 +167,22 @@ impl Workers {
     }
 }
 
+/// How many threads `asked` means.
+fn number(asked: usize) -> usize {
+    let available = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if asked == 0 { available() } else { asked };
+    threads.min(Workers::MOST)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_pool_has_more_threads_than_can_start() {
+        assert_eq!([3, Workers::MOST, Workers::MOST + 1, usize::MAX].map(number), [3, 1024, 1024, 1024]);
+        assert!((1..=Workers::MOST).contains(&number(0)));
+    }
 
     #[test]
     fn results_do_not_depend_on_threads() {

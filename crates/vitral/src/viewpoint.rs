@@ -83,11 +83,26 @@ impl Viewpoint {
         } else {
             let camera = self.camera(renderer);
             if camera.position == camera.focal_point {
-                return Err(Error::usage("the camera stands at its focal point", "a direction of view is required"));
+                return Err(self.pointless(renderer));
             }
             renderer.camera = Some(camera);
         }
         Ok(())
+    }
+
+    /// Why a camera looks nowhere: it is one of the file's, or the choices are to blame.
+    fn pointless(&self, renderer: &Renderer) -> Error {
+        let of_file = self.camera_index.filter(|&index| {
+            let camera = &renderer.world().cameras[index];
+            self.position.is_none() && camera.position == camera.focal_point
+        });
+        match of_file {
+            Some(index) => {
+                let what = format!("camera {index} of the scene stands at its focal point");
+                vitral_render::Error::Scene(what).into()
+            }
+            None => Error::usage("the camera stands at its focal point", "a direction of view is required"),
+        }
     }
 
     fn moves(&self) -> Moves {
@@ -287,6 +302,19 @@ mod tests {
         let parallel = camera(Viewpoint { orthographic: true, ..own }).unwrap();
         let Projection::Parallel { height } = parallel.projection else { panic!() };
         assert!(height > 1.0, "{height}");
+    }
+
+    #[test]
+    fn a_camera_of_the_file_that_looks_nowhere_is_the_files_fault() {
+        let mut scene = load_builtin("sphere").unwrap();
+        scene.cameras[0].focal_point = scene.cameras[0].position;
+        let mut renderer = Renderer::new(scene).unwrap();
+        let own = Viewpoint { camera_index: Some(0), ..Viewpoint::default() };
+        let error = own.apply(&mut renderer, Axis::PlusY).unwrap_err();
+        assert_eq!(error.exit_code(), 3, "{error}");
+        assert!(error.to_string().contains("camera 0 of the scene stands at its focal point"), "{error}");
+        let moved = Viewpoint { position: Some([9.0, 9.0, 9.0]), ..own };
+        assert!(moved.apply(&mut renderer, Axis::PlusY).is_ok());
     }
 
     #[test]

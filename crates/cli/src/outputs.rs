@@ -42,6 +42,16 @@ impl Output {
         report::is_standard(&self.pattern)
     }
 
+    /// What kind of file it is.
+    pub(crate) fn format(&self) -> PictureFormat {
+        self.format
+    }
+
+    /// Whether a transparent background comes out as one. Other channels than colours have none.
+    pub(crate) fn keeps_transparency(&self) -> bool {
+        self.channel != Channel::Color || self.format == PictureFormat::Png
+    }
+
     /// Whether each frame gets a file of its own.
     pub(crate) fn names_frames(&self) -> bool {
         self.pattern.to_string_lossy().contains("{frame")

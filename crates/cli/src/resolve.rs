@@ -95,6 +95,10 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
     check_standard_output(args, &outputs)?;
+    if let Some(opaque) = outputs.iter().find(|o| args.picture.no_background && !o.keeps_transparency()) {
+        let what = format!("--no-background: {} knows no transparency", opaque.format().name());
+        return Err(Failure::usage(what).with_hint("write a .png, or give --background-color"));
+    }
     let [width, height] = [state.settings.width, state.settings.height];
     if let Some([x, y]) = args.report.pixel.filter(|[x, y]| *x >= width || *y >= height) {
         return Err(Failure::usage(format!("--pixel {x},{y}: the picture has {width}x{height} pixels"))

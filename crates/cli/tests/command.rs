@@ -200,8 +200,10 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 29] = [
+    let cases: [(&[&str], i32, &str); 31] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
+        (&["a.obj", "-o", "x.png", "--no-background"], 0, ""),
+        (&["a.obj", "-o", "x.jpg", "--no-background"], 2, "--no-background: JPEG knows no transparency"),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
         (&["a.obj", "-o", "x.png", "--panels"], 2, "`none` have no panels: choose map, object-precision"),
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--panels"], 0, ""),
@@ -298,6 +300,9 @@ fn mistakes_are_told_in_words_of_our_own() {
     );
     assert!(told(&["a.obj", "-o", "a"]).contains("a: the name has no extension"));
     assert!(told(&["a.obj", "-o", "no/a.png"]).contains("there is no folder `no`"));
+    assert!(
+        told(&["a.obj", "-o", "x.jpg", "--no-background"]).contains("hint: write a .png, or give --background-color")
+    );
     let away = ["a.obj", "-o", "x.png", "--camera-position", "0,0,5", "--camera-focal-point", "0,0,9"];
     assert!(told(&away).contains("warning: nothing is in view"));
     assert_eq!(told(&away[..3]), "");

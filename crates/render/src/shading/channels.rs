@@ -1,20 +1,21 @@
-//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material, normal.
+//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material, normal. Transparent things are
+//! looked through; cut-out ones are seen where they are there.
 
 use super::FrameConstants;
 use super::facets::FacetTable;
 use super::geometry::surface;
-use super::group::each_eight;
+use super::group::{Lit, each_eight, shade_all};
 use super::phong::interpolated_normal;
 use super::points::{InFront, Points, Source};
 use super::shadowed::shadow_shares;
 use crate::Channels;
 use crate::marks::MarkColors;
-use crate::visible::TileSink;
+use crate::visible::{TileSink, nearer};
 use std::sync::Mutex;
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Simd, dispatch};
-use vitral_raster::{LayerList, NO_FACET, TILE_PIXELS, Tile};
+use vitral_raster::{Layer, LayerList, NO_FACET, TILE_PIXELS, Tile};
 
 /// The wanted planes of one tile, row by row; unwanted ones stay empty.
 #[derive(Debug, Default)]
@@ -46,8 +47,10 @@ impl TileSink for ChannelSink<'_> {
         false
     }
 
-    fn tile(&self, index: usize, tile: &Tile, _layers: &mut LayerList) {
+    fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let mut planes = DataPlanes::default();
+        let with_cut_outs = self.with_cut_outs(tile, layers);
+        let tile = with_cut_outs.as_ref().unwrap_or(tile);
         if self.wanted.depth {
             planes.depth = tile.depth.clone();
         }
@@ -72,6 +75,45 @@ impl TileSink for ChannelSink<'_> {
 }
 
 impl ChannelSink<'_> {
+    /// The tile with the cut-out surfaces that are nearest where they are there; `None` if it has none.
+    fn with_cut_outs(&self, tile: &Tile, layers: &[Layer]) -> Option<Tile> {
+        let world = &self.constants.view.session.world;
+        let is_cut_out = |facet: u32| {
+            let instance = &world.instances[world.instance_of_facet(facet)];
+            let material = instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
+            self.constants.material(material).cutoff.is_some()
+        };
+        let mut last = (NO_FACET, false);
+        let cut_out = |layer: &&Layer| {
+            if layer.facet != last.0 {
+                last = (layer.facet, is_cut_out(layer.facet));
+            }
+            last.1
+        };
+        let cut_outs: Vec<Layer> = layers.iter().filter(cut_out).copied().collect();
+        if cut_outs.is_empty() {
+            return None;
+        }
+
+        // Their alpha is part of what they look like; what is behind them need not be illuminated for that.
+        let mut bare = tile.clone();
+        bare.facet.fill(NO_FACET);
+        let (mut points, mut lit) = (Points::default(), Lit::default());
+        points.collect(&bare, InFront::Samples(&cut_outs), self.constants, &MarkColors::default());
+        lit.reset(points.len(), self.constants);
+        let facets = &mut FacetTable::default();
+        dispatch!(self.constants.level, simd => shade_all(simd, &points, facets, self.constants, &mut lit));
+        let mut front = tile.clone();
+        for f in &points.fragments {
+            let (at, candidate) = (f.pixel as usize, (points.depth(f, 0), f.facet));
+            if lit.colors[f.source as usize][3] > 0.0 && nearer(candidate, (front.depth[at], front.facet[at])) {
+                (front.depth[at], front.facet[at]) = candidate;
+                front.touched = true;
+            }
+        }
+        Some(front)
+    }
+
     fn ids(&self, tile: &Tile, planes: &mut DataPlanes) {
         let world = &self.constants.view.session.world;
         planes.surface = vec![Frame::BACKGROUND; TILE_PIXELS];

@@ -1,13 +1,13 @@
 //! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
 
-use crate::common::{all_channels, colors, exact, exact_builtin, on_z, one};
+use crate::common::{all_channels, colors, exact, exact_builtin, on_z, one, sun};
 use std::sync::Arc;
 use vitral::exec::{Budget, Limit};
-use vitral::light::{Light, LightKind, Reflectance};
+use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::SHADOWS;
-use vitral::scene::Faces;
 use vitral::scene::builtin::solids;
+use vitral::scene::{Faces, Node, NodeTransform};
 use vitral::{Camera, Error, Frame, Material, Renderer, Scene, SystemClock, Viewpoint, load_builtin};
 
 #[test]
@@ -200,4 +200,25 @@ fn no_light_leaks_in_where_walls_meet() {
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
         assert!(bright <= most, "{bright} with {size} texels");
     }
+}
+
+#[test]
+fn shadow_maps_of_transparent_things_keep_to_the_memory_limit() {
+    // Forty panes over each other are forty layers in each of half a million texels.
+    let pane = Material { opacity: 0.5, alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let mut scene = one(solids::cuboid(DVec3::new(2.0, 1e-3, 2.0)), pane);
+    let (mesh, height) = (scene.nodes[0].mesh, |i: usize| DVec3::Y * (0.1 * i as f64));
+    for i in 1..20 {
+        let transform = NodeTransform::Matrix(DMat4::from_translation(height(i)));
+        scene.roots.push(scene.nodes.len() as u32);
+        scene.nodes.push(Node { mesh, transform, ..Node::default() });
+    }
+    let mut renderer = exact(scene, 16, 16);
+    (renderer.settings.shadows, renderer.settings.shadow_map_size) = ("map".into(), 1024);
+    renderer.lights = Some(vec![sun(DVec3::Y, 1.0)]);
+    renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(64 << 20));
+    let error = renderer.render().unwrap_err().to_string();
+    assert!(error.contains("shadow map"), "{error}");
+    renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(2 << 30));
+    renderer.render().unwrap();
 }

@@ -277,11 +277,43 @@ fn a_cut_out_whose_opacity_is_its_cutoff_has_no_holes() {
         scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_y(0.3) * DMat4::from_rotation_x(0.2));
         let mut r = exact(scene, 200, 150);
         (r.settings.shadows, r.settings.global) = (shadows.into(), global);
-        r.settings.background = vitral::render::Background::Color { color: [1.0, 0.0, 0.0] };
+        r.settings.background = Background::Color { color: [1.0, 0.0, 0.0] };
         r.camera = Some(on_z(4.0, 0.4));
         let middle =
             colors(&mut r).chunks(200).skip(50).take(50).flat_map(|row| row[80..120].to_vec()).collect::<Vec<_>>();
         assert!(middle.iter().all(|c| c[1] > 0), "{shadows}: {} holes", middle.iter().filter(|c| c[1] == 0).count());
+    }
+}
+
+#[test]
+fn channels_show_cut_outs_where_they_are_there() {
+    // A pane whose left half is cut out, before a wall: ids, depth and normal are the pane's on the right, the wall's on the left.
+    let quad = |z: f32, half: f32| Mesh {
+        positions: [[-half, -1.0], [0.0, -1.0], [half, -1.0], [half, 1.0], [0.0, 1.0], [-half, 1.0]]
+            .map(|[x, y]| [x, y, z])
+            .to_vec(),
+        triangles: vec![[0, 1, 4], [0, 4, 5], [1, 2, 3], [1, 3, 4]],
+        parts: vec![Part { name: String::new(), triangles: 0..4, material: None }],
+        ..Mesh::default()
+    };
+    let mut pane = quad(0.5, 1.0);
+    let alphas = [0.0f32, 1.0].map(|alpha| [1.0, 1.0, 1.0, alpha]);
+    let corners = vec![[0, 0, 0], [0, 0, 0], [1, 1, 1], [1, 1, 1]];
+    pane.colors = Some(Attribute { values: alphas.to_vec(), corners: Some(corners) });
+    for visibility in ["z-buffer", "bsp", "ray-cast"] {
+        let mut scene =
+            one(pane.clone(), Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() });
+        scene.add_mesh(quad(-0.5, 1.5), DMat4::IDENTITY);
+        let mut r = exact(scene, 40, 40);
+        r.settings.visibility = visibility.into();
+        r.settings.channels = crate::common::all_channels();
+        (r.settings.channels.attached_shadow, r.settings.channels.cast_shadow) = (false, false);
+        r.camera = Some(on_z(4.0, 0.5));
+        let frame = r.render().unwrap().frame;
+        let (objects, depth, normal) = (frame.object.unwrap(), frame.depth.unwrap(), frame.normal.unwrap());
+        assert_eq!((*objects.at(14, 20), *objects.at(26, 20)), (1, 0), "{visibility}");
+        assert!(depth.at(26, 20) > depth.at(14, 20), "{visibility}");
+        assert!(normal.at(26, 20)[2] > 0.99, "{visibility}");
     }
 }
 

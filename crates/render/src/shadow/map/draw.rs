@@ -25,8 +25,10 @@ struct DepthSink<'a> {
     session: &'a Session,
     occluders: &'a Occluders<'a>,
     center: DVec3,
-    level: Level,
+    execution: &'a Execution,
     tiles: Vec<OnceLock<MapTile>>,
+    /// Bytes of transparent things, charged to the budget while the map is drawn, and why it was given up.
+    charged: Mutex<(u64, Option<Limit>)>,
 }
 
 /// When a map is drawn.
@@ -64,10 +66,11 @@ impl Map {
         let center = crate::raytrace::triangles::Triangles::center_of(&session.world);
         let columns = viewport.tiles_x() as usize;
         let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| OnceLock::new()).collect();
-        let sink = DepthSink { lens: &lens, session, occluders, center, level: execution.level, tiles };
+        let charged = Mutex::default();
+        let sink = DepthSink { lens: &lens, session, occluders, center, execution, tiles, charged };
         let Some(mut batches) = all_batches(&view, execution)? else {
             resolve_in_passing(&view, viewport.tiles_y(), execution, &sink)?;
-            let tiles = sink.tiles;
+            let tiles = sink.finish()?;
             return Ok(Self { lens, columns, tiles, pending: None });
         };
         let spare = Mutex::default();
@@ -91,7 +94,7 @@ impl Map {
         execution.workers.for_each(numbers, |index: usize| {
             sink.draw(&view, index, &touching(&batches, index), &spare);
         });
-        let tiles = sink.tiles;
+        let tiles = sink.finish()?;
         let mut pending = None;
         if when == When::Asked {
             let (layered, opaque): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
@@ -157,11 +160,26 @@ impl TileSink for DepthSink<'_> {
 }
 
 impl DepthSink<'_> {
+    fn is_given_up(&self) -> bool {
+        self.charged.lock().expect("bytes of a map").1.is_some()
+    }
+
+    /// The tiles, unless the map was given up.
+    fn finish(self) -> Result<Vec<OnceLock<MapTile>>, Limit> {
+        let (bytes, limit) = self.charged.into_inner().expect("bytes of a map");
+        self.execution.budget.release(bytes);
+        limit.map_or(Ok(self.tiles), Err)
+    }
+
     /// Draws a tile of the view.
     fn draw(&self, view: &PreparedView<'_>, index: usize, batches: &[(bool, &Batch)], spare: &Mutex<Vec<Tile>>) {
+        if self.is_given_up() {
+            return;
+        }
         let place = tile_place(view, index);
         let opaque = batches.iter().filter(|(layered, _)| !layered).map(|(_, batch)| *batch);
-        let nearest = nearest_depths(self.level, place, opaque, index);
+        let level = self.execution.level;
+        let nearest = nearest_depths(level, place, opaque, index);
         let far = nearest.far();
         let depths = nearest.into_depths();
         let mut layers = Vec::new();
@@ -173,7 +191,7 @@ impl DepthSink<'_> {
                 tile.depth.copy_from_slice(&depths);
                 let mut list = view.layer_list_for(self);
                 let layered = batches.iter().copied().filter(|(layered, _)| *layered);
-                walk(self.level, layered, None, index, tile, &view.pattern, &mut list);
+                walk(level, layered, None, index, tile, &view.pattern, &mut list);
                 list.finish();
                 layers = self.layers(tile, &list);
             });
@@ -183,7 +201,16 @@ impl DepthSink<'_> {
 
     /// Keeps a tile, given its depths, −∞ where nothing is.
     fn keep(&self, index: usize, depth: Vec<f32>, layers: Vec<Layer>) {
-        let new = self.tiles[index].set(MapTile::new(self.level, self.lens, depth, layers));
+        let (budget, bytes) = (&self.execution.budget, (layers.len() * size_of::<Layer>()) as u64);
+        let allowed =
+            budget.check("shadow maps").and_then(|()| budget.charge(bytes, "what is transparent in a shadow map"));
+        let mut charged = self.charged.lock().expect("bytes of a map");
+        match allowed {
+            Ok(()) => charged.0 += bytes,
+            Err(limit) => return charged.1 = Some(limit),
+        }
+        drop(charged);
+        let new = self.tiles[index].set(MapTile::new(self.execution.level, self.lens, depth, layers));
         new.expect("each tile is drawn once");
     }
 
@@ -211,6 +238,15 @@ impl DepthSink<'_> {
             a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
         });
         found.dedup_by_key(|(facet, l)| (*facet, l.texel));
+        // Behind what lets nothing through nothing need be known.
+        let mut shut = u32::MAX;
+        found.retain(|(_, layer)| {
+            let hidden = layer.texel == shut;
+            if layer.passing == [0.0; 3] {
+                shut = layer.texel;
+            }
+            !hidden
+        });
         found.into_iter().map(|(_, layer)| layer).collect()
     }
 

@@ -295,7 +295,7 @@ pub fn write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
     files::write(path.as_ref(), bytes)
 }
 
-/// Encodes one channel in the format that the path names, and writes it; with the default [`EncodeOptions`], as [`encode`]
+/// Encodes one channel in the format that the path names, and writes it; with the default [`EncodeOptions`], as [`encode()`]
 /// does. Frames of [`ColorSpace::Raw`](vitral_render::ColorSpace) go through [`save_with`] instead.
 ///
 /// # Errors

@@ -113,7 +113,7 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
     // A flat object, one scaled to nothing, and one far away.
     let mut scene = load_builtin("cubs").unwrap();
     for (node, scale) in [(1, DVec3::new(1.0, 0.0, 1.0)), (2, DVec3::ZERO), (3, DVec3::splat(1e30))] {
-        scene.nodes[node].transform = vitral::scene::NodeTransform::Matrix(DMat4::from_scale(scale));
+        scene.nodes[node].transform = NodeTransform::Matrix(DMat4::from_scale(scale));
     }
     let mut renderer = exact(scene, 40, 30);
     renderer.settings.channels = all_channels();

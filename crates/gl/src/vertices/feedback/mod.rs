@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn refused_names_record_nothing() {
-        type Call = fn(&mut crate::Context);
+        type Call = fn(&mut Context);
         let calls: [(Call, usize); 3] = [(|c| c.load_name(3), 0), (|c| c.pop_name(), 0), (|c| c.push_name(3), 128)];
         for (call, names) in calls {
             let mut c = context();

@@ -93,20 +93,20 @@ impl MarkColors {
         (!self.colors.is_empty() && id >= self.first).then(|| id - self.first)
     }
 
-    /// Premultiplied colour in the space of composition at samples of a pixel that a mark hits; `corner` is the pixel's upper
-    /// left one on the screen.
-    pub fn color(&self, mark: usize, corner: Vec2, mask: u32) -> [f32; 4] {
+    /// Premultiplied colour in the space of composition at the samples of a pixel that a mark hits, whichever of them are seen;
+    /// `corner` is the pixel's upper left one on the screen.
+    pub fn color(&self, mark: usize, corner: Vec2) -> [f32; 4] {
         let color = self.colors[mark];
         let color = match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
             Ok(found) => self.gradients[found].1.at(color, corner + 0.5),
             Err(_) => color,
         };
-        let covered = self.covered(mark, corner, mask);
+        let covered = self.covered(mark, corner);
         color.map(|c| c * covered)
     }
 
-    /// How much a mark covers of the samples that it hits, `0..=1`.
-    fn covered(&self, mark: usize, corner: Vec2, mask: u32) -> f32 {
+    /// How much a mark covers of the samples that it hits, on average, `0..=1`.
+    fn covered(&self, mark: usize, corner: Vec2) -> f32 {
         let Some(&[a, b]) = self.ends.get(mark).filter(|ends| ends[0].is_finite()) else { return 1.0 };
         let (way, from) = (b - a, corner - a);
         let inverse = way.length_squared().max(f32::MIN_POSITIVE).recip();
@@ -115,8 +115,10 @@ impl MarkColors {
             let t = (from.dot(way) * inverse).clamp(0.0, 1.0);
             (((STROKE + SOFT) * 0.5 - (from - way * t).length()) / SOFT).clamp(0.0, 1.0)
         };
-        let hit = self.samples.iter().enumerate().filter(|(s, _)| mask >> s & 1 == 1);
-        hit.map(|(_, sample)| of_sample(sample)).sum::<f32>() / mask.count_ones() as f32
+        let add = |(sum, hit): (f32, f32), covered: f32| (sum + covered, hit + f32::from(u8::from(covered > 0.0)));
+        let (sum, hit) = self.samples.iter().map(of_sample).fold((0.0, 0.0), add);
+        // Only a corner of the triangles may hit.
+        sum / hit.max(1.0)
     }
 
     /// How many there are.

@@ -152,7 +152,7 @@ pub(super) fn fragment<'a>(
     let (start, source) = (f.start as usize, f.source as usize);
     let color = if f.is_mark {
         let (x, y) = (tile.x + f.pixel % TILE as u32, tile.y + f.pixel / TILE as u32);
-        marks.color(source, Vec2::new(x as f32, y as f32), f.mask)
+        marks.color(source, Vec2::new(x as f32, y as f32))
     } else {
         lit.colors[source]
     };

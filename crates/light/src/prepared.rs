@@ -149,9 +149,14 @@ impl PreparedLight {
             Source::Point(at) | Source::Spot { position: at, .. } => *at,
             Source::Area(shape) => shape.centroid,
         };
-        let (at, length) = (V3::splat(position.x, at), |v: V3<T>| v.dot(v).sqrt());
-        let distance = length(at - position).max(position.x.splat(f32::MIN_POSITIVE));
-        ((length(position) + length(at)) / distance + 1.0) * constant
+        constant.apart(
+            #[inline(always)]
+            || {
+                let at = V3::splat(position.x, at);
+                let distance = (at - position).dot(at - position).sqrt().max(position.x.splat(f32::MIN_POSITIVE));
+                ((position.dot(position).sqrt() + at.dot(at).sqrt()) / distance + 1.0) * constant
+            },
+        )
     }
 
     /// What a diffuse surface with unit normal `n` at `position` gets of an area light if nothing is in between, where a

@@ -75,7 +75,9 @@ impl TileSink for ChannelSink<'_> {
 }
 
 impl ChannelSink<'_> {
-    /// The tile with the cut-out surfaces that are nearest where they are there; `None` if it has none.
+    /// The tile with the cut-out surfaces that are nearest where they are there; `None` if it has none. Out of line: compilers for
+    /// WebAssembly take very long over functions that are very large.
+    #[inline(never)]
     fn with_cut_outs(&self, tile: &Tile, layers: &[Layer]) -> Option<Tile> {
         let world = &self.constants.view.session.world;
         let is_cut_out = |facet: u32| {

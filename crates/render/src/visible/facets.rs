@@ -141,8 +141,8 @@ impl<'v, 'a> Facets<'v, 'a> {
             collect(self, index, tile, &mut layers);
             layered = &[];
         }
-        let in_front = layered.iter().chain(all).map(|batch| (true, batch));
-        walk(level, in_front, None, index, tile, pattern, &mut layers);
+        let in_front: Vec<_> = layered.iter().chain(all).map(|batch| (true, batch)).collect();
+        walk(level, &in_front, None, index, tile, pattern, &mut layers);
         layers.finish();
         sink.tile(index, tile, &mut layers);
     }

@@ -103,7 +103,8 @@ impl VisibleSurface for ZBuffer {
                     count_facets(view, &batches, index, tile, &mut costs[index].lock().expect("counts"));
                 }
                 let hiding = marks.map(|m| &m.hiding);
-                walk(execution.level, tile_batches, hiding, index, tile, &view.pattern, &mut layers);
+                let tile_batches: Vec<_> = tile_batches.collect();
+                walk(execution.level, &tile_batches, hiding, index, tile, &view.pattern, &mut layers);
                 if last {
                     if execution.observer.is_some() {
                         tell_tile(view, &costs[index], execution, tile);
@@ -164,7 +165,7 @@ pub(crate) fn resolve_in_passing(
             tile.clear();
             (tile.x, tile.y) = tile_place(view, index);
             let mut layers = view.layer_list_for(sink);
-            walk(execution.level, batches.iter().copied(), None, index, tile, &view.pattern, &mut layers);
+            walk(execution.level, batches, None, index, tile, &view.pattern, &mut layers);
             layers.finish();
             if tile.touched || !layers.is_empty() {
                 sink.tile(index, tile, &mut layers);
@@ -421,28 +422,24 @@ pub(super) fn set_up(
 }
 
 /// Walks a tile's triangles.
-pub(crate) fn walk<'b>(
+pub(crate) fn walk(
     level: Level,
-    batches: impl Iterator<Item = (bool, &'b Batch)> + Clone,
+    batches: &[(bool, &Batch)],
     hiding: Option<&Batch>,
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
     layers: &mut LayerList,
 ) {
-    let place = (tile.x, tile.y);
-    let mut in_front = batches.clone().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
-    dispatch!(level, simd => {
-        for (_, batch) in batches.filter(|(layered, _)| !layered) {
-            walk_batch(simd, batch, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
-        }
-    });
+    walk_opaque(level, batches, index, tile, pattern);
     if let Some(hiding) = hiding {
         hide_behind(level, hiding, index, tile, pattern);
     }
+    let place = (tile.x, tile.y);
+    let mut in_front = batches.iter().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
+    let Some(first) = in_front.next() else { return };
+    let in_front = std::iter::once(first).chain(in_front).map(|(_, batch)| *batch);
     dispatch!(level, simd => {
-        let Some(first) = in_front.next() else { return };
-        let in_front = std::iter::once(first).chain(in_front).map(|(_, batch)| batch);
         if layers.gathers() {
             let mut sink = FragmentSink::new(tile, pattern, layers);
             in_front.for_each(|batch| walk_batch(simd, batch, index, place, pattern, &mut sink));
@@ -453,14 +450,22 @@ pub(crate) fn walk<'b>(
     });
 }
 
+/// Draws what is opaque in a tile. Out of line: compilers for WebAssembly take very long over functions that are very large.
+#[inline(never)]
+fn walk_opaque(level: Level, batches: &[(bool, &Batch)], index: usize, tile: &mut Tile, pattern: &SamplePattern) {
+    let place = (tile.x, tile.y);
+    dispatch!(level, simd => {
+        for (_, batch) in batches.iter().filter(|(layered, _)| !layered) {
+            walk_batch(simd, batch, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
+        }
+    });
+}
+
 /// Lets facets that are drawn as layers hide what is behind them, though not each other where they are equally near: nothing is
 /// left there but a depth just behind theirs.
 pub(super) fn hide_behind(level: Level, hiding: &Batch, index: usize, tile: &mut Tile, pattern: &SamplePattern) {
     let Some(first) = hiding.tile(index).map(|setup| setup.facet).min() else { return };
-    let place = (tile.x, tile.y);
-    dispatch!(level, simd => {
-        walk_batch(simd, hiding, index, place, pattern, &mut VisibilitySink::new(tile, pattern));
-    });
+    walk_opaque(level, &[(false, hiding)], index, tile, pattern);
     for (facet, depth) in tile.facet.iter_mut().zip(&mut tile.depth) {
         if *facet >= first && *facet != NO_FACET {
             (*facet, *depth) = (NO_FACET, depth.next_down());

@@ -190,8 +190,8 @@ impl DepthSink<'_> {
                 (tile.block_far, tile.touched) = (far, true);
                 tile.depth.copy_from_slice(&depths);
                 let mut list = view.layer_list_for(self);
-                let layered = batches.iter().copied().filter(|(layered, _)| *layered);
-                walk(level, layered, None, index, tile, &view.pattern, &mut list);
+                let layered: Vec<_> = batches.iter().copied().filter(|(layered, _)| *layered).collect();
+                walk(level, &layered, None, index, tile, &view.pattern, &mut list);
                 list.finish();
                 layers = self.layers(tile, &list);
             });

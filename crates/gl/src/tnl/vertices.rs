@@ -315,7 +315,7 @@ fn lit<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let one = splat(simd, 1.0);
+            let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
             let given = V3::new(color[0], color[1], color[2]);
             let row = lanes::inlined(
                 #[inline(always)]
@@ -343,7 +343,7 @@ fn lit<S: Simd>(
             let dull = !tracked.specular && m.dull;
             let model = if dull { Illumination::Lambert } else { Illumination::BlinnPhong };
             let Reflected { diffuse, specular } =
-                phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible, |_| one * 0.0);
+                phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible, |_| zero);
             let primary = diffuse + of(tracked.emission, &m.emission);
             let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {

@@ -125,10 +125,10 @@ impl<'v, 'a> Facets<'v, 'a> {
         collect: Option<&Collect<'_>>,
     ) {
         let (level, pattern) = (self.execution.level, &self.view.pattern);
-        let (all, hiding) = (marks.map(|m| &m.all), marks.map(|m| &m.hiding));
-        if let Some(hiding) = hiding {
-            hide_behind(level, hiding, index, tile, pattern);
+        if let Some(marks) = marks {
+            hide_behind(level, &marks.hiding, index, tile, pattern);
         }
+        let all = marks.map(|m| &m.all);
         if sink.takes_passes() {
             let batches = self.layered.iter().chain(all);
             let go_on = || self.execution.budget.check("passes over layers").is_ok();
@@ -142,7 +142,7 @@ impl<'v, 'a> Facets<'v, 'a> {
             layered = &[];
         }
         let in_front: Vec<_> = layered.iter().chain(all).map(|batch| (true, batch)).collect();
-        walk(level, &in_front, None, index, tile, pattern, &mut layers);
+        walk(level, &in_front, index, tile, pattern, &mut layers);
         layers.finish();
         sink.tile(index, tile, &mut layers);
     }

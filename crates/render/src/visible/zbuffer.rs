@@ -102,9 +102,11 @@ impl VisibleSurface for ZBuffer {
                 if execution.observer.is_some() {
                     count_facets(view, &batches, index, tile, &mut costs[index].lock().expect("counts"));
                 }
-                let hiding = marks.map(|m| &m.hiding);
+                if let Some(marks) = marks {
+                    hide_behind(execution.level, &marks.hiding, index, tile, &view.pattern);
+                }
                 let tile_batches: Vec<_> = tile_batches.collect();
-                walk(execution.level, &tile_batches, hiding, index, tile, &view.pattern, &mut layers);
+                walk(execution.level, &tile_batches, index, tile, &view.pattern, &mut layers);
                 if last {
                     if execution.observer.is_some() {
                         tell_tile(view, &costs[index], execution, tile);
@@ -165,7 +167,7 @@ pub(crate) fn resolve_in_passing(
             tile.clear();
             (tile.x, tile.y) = tile_place(view, index);
             let mut layers = view.layer_list_for(sink);
-            walk(execution.level, batches, None, index, tile, &view.pattern, &mut layers);
+            walk(execution.level, batches, index, tile, &view.pattern, &mut layers);
             layers.finish();
             if tile.touched || !layers.is_empty() {
                 sink.tile(index, tile, &mut layers);
@@ -425,16 +427,12 @@ pub(super) fn set_up(
 pub(crate) fn walk(
     level: Level,
     batches: &[(bool, &Batch)],
-    hiding: Option<&Batch>,
     index: usize,
     tile: &mut Tile,
     pattern: &SamplePattern,
     layers: &mut LayerList,
 ) {
     walk_opaque(level, batches, index, tile, pattern);
-    if let Some(hiding) = hiding {
-        hide_behind(level, hiding, index, tile, pattern);
-    }
     let place = (tile.x, tile.y);
     let mut in_front = batches.iter().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
     let Some(first) = in_front.next() else { return };

@@ -191,7 +191,7 @@ impl DepthSink<'_> {
                 tile.depth.copy_from_slice(&depths);
                 let mut list = view.layer_list_for(self);
                 let layered: Vec<_> = batches.iter().copied().filter(|(layered, _)| *layered).collect();
-                walk(level, &layered, None, index, tile, &view.pattern, &mut list);
+                walk(level, &layered, index, tile, &view.pattern, &mut list);
                 list.finish();
                 layers = self.layers(tile, &list);
             });

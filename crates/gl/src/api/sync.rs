@@ -5,14 +5,21 @@
 //! Source: the ARB_sync specification.
 
 use crate::{Context, enums as gl};
-use std::collections::BTreeSet;
 use std::sync::{MutexGuard, PoisonError};
 
-/// The fences of one or more contexts, by their handles.
+/// The fences of one or more contexts.
 #[derive(Debug, Default)]
 pub(crate) struct Fences {
-    names: BTreeSet<usize>,
+    /// The handles of those that there are: they rise.
+    names: Vec<usize>,
     last: usize,
+}
+
+impl Fences {
+    /// Where in the list a fence is.
+    fn find(&self, sync: usize) -> Option<usize> {
+        self.names.binary_search(&sync).ok()
+    }
 }
 
 impl Context {
@@ -25,7 +32,7 @@ impl Context {
         if !self.may_set(call) {
             return false;
         }
-        let known = self.fences().names.contains(&sync);
+        let known = self.fences().find(sync).is_some();
         if !known {
             self.refuse_value(call, "sync is not a sync object");
         }
@@ -46,20 +53,24 @@ impl Context {
         let mut fences = self.fences();
         fences.last += 1;
         let name = fences.last;
-        fences.names.insert(name);
+        fences.names.push(name);
         name
     }
 
     /// `glIsSync`.
     pub fn is_sync(&mut self, sync: usize) -> u8 {
-        u8::from(self.may_set("glIsSync") && self.fences().names.contains(&sync))
+        u8::from(self.may_set("glIsSync") && self.fences().find(sync).is_some())
     }
 
     /// `glDeleteSync`.
     pub fn delete_sync(&mut self, sync: usize) {
         let call = "glDeleteSync";
         if (sync != 0 || !self.may_set(call)) && self.knows_fence(call, sync) {
-            self.fences().names.remove(&sync);
+            let mut fences = self.fences();
+            if let Some(at) = fences.find(sync) {
+                fences.names.remove(at);
+            }
+            drop(fences);
             self.forget_label(gl::SYNC_FENCE, sync as u32);
         }
     }

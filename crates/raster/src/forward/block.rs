@@ -6,18 +6,18 @@
 
 use super::depth_ranges::{Verdict, verdict};
 use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
-use super::fragment_ops::compare::{compare, holds};
+use super::fragment_ops::compare::holds;
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
 use super::state::{Compare, StencilFace, StencilOp};
 use super::surface::Surface;
-use super::wide::{bits_of, mask_of, max, min, select, splat};
+use super::wide::{bits_of, every, mask_of, max, min, select, splat};
 use crate::kernel::block::Block;
 use crate::setup::DepthPlane;
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd, U32x8};
+use vitral_math::lanes::{F32x8, F32x16, I32x8, LANES, Mask16, Simd, U32x8, U32x16};
 
 /// A block's packed colours.
 pub(crate) type BlockWords = [u32; BLOCK * BLOCK];
@@ -55,6 +55,9 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
 }
 
+/// Rows of a block that are computed together.
+const TWO: usize = 2;
+
 /// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
 #[derive(Clone, Copy)]
 pub(super) struct Slope<S: Simd> {
@@ -71,10 +74,12 @@ impl<S: Simd> Slope<S> {
         Self { across: across(simd, plane, left as i32 * SUBPIXEL + x), rows }
     }
 
-    /// The depths of a row as stored.
+    /// The depths of rows `row` and `row + 1` as stored.
     #[inline(always)]
-    fn row(&self, simd: S, row: usize, [low, high]: [F32x8<S>; 2], scale: f32) -> F32x8<S> {
-        stored_depth(simd, min(max(self.across + self.rows[row % BLOCK], low), high), scale)
+    fn two_rows(&self, simd: S, row: usize, [low, high]: [f32; 2], scale: f32) -> F32x16<S> {
+        let [first, second] = [splat(simd, self.rows[row % BLOCK]), splat(simd, self.rows[(row + 1) % BLOCK])];
+        let depths = self.across.combine(self.across) + first.combine(second);
+        stored_depth(simd, min(max(depths, every(simd, low)), every(simd, high)), scale)
     }
 
     /// The least and the largest depth of the block: sums are ordered as their terms are, however they are rounded.
@@ -90,17 +95,34 @@ impl<S: Simd> Slope<S> {
 /// What a block's depth test works with.
 struct Test<'a, S: Simd> {
     slopes: &'a [Slope<S>; SAMPLES],
-    limits: [F32x8<S>; 2],
+    limits: [f32; 2],
     scale: f32,
     write: bool,
 }
 
 impl<'a, S: Simd> Test<'a, S> {
     #[inline(always)]
-    fn new(simd: S, surface: &Surface, slopes: &'a [Slope<S>; SAMPLES], write: bool) -> Self {
-        let limits = [splat(simd, surface.plane.z_min), splat(simd, surface.plane.z_max)];
-        Self { slopes, limits, scale: surface.scale, write }
+    fn new(surface: &Surface, slopes: &'a [Slope<S>; SAMPLES], write: bool) -> Self {
+        Self { slopes, limits: [surface.plane.z_min, surface.plane.z_max], scale: surface.scale, write }
     }
+}
+
+/// The first rows of those pairs of rows in which bits are set.
+#[inline(always)]
+fn pairs(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let row = mask.trailing_zeros() as usize / (TWO * BLOCK) * TWO;
+        let found = (mask != 0).then_some(row);
+        mask &= !(0xffff_u64.wrapping_shl((BLOCK * row) as u32));
+        found
+    })
+}
+
+/// Two rows of a tile's plane of samples, eight pixels each: those from `at` on.
+#[inline(always)]
+fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; TWO] {
+    let (first, second) = plane[at..at + TILE + LANES].split_at_mut(TILE);
+    [&mut first[..LANES], second]
 }
 
 /// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
@@ -142,7 +164,7 @@ pub(crate) fn depths<S: Simd>(
             }
             let together = pattern.len() != samples && all_alike(masks, samples);
             let slopes = surface.slopes(simd);
-            let test = Test::new(simd, &surface, &slopes, rule.write);
+            let test = Test::new(&surface, &slopes, rule.write);
             let old = ranges.of(simd, tile, index, samples);
             let new = surface.bounds(&slopes);
             let verdict = verdict(rule.func, new, old);
@@ -165,14 +187,18 @@ pub(crate) fn depths<S: Simd>(
                 let alike = before.places == 1;
                 let values = tile.replace(touched, alike, samples);
                 let slopes = before.slopes(simd);
-                fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(simd, &before, &slopes, true));
+                fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(&before, &slopes, true));
             }
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
             let (count, values) = tile.open(touched, together, samples);
-            let func = if verdict == Verdict::AllPass { Compare::Always } else { rule.func };
-            compare_rows(simd, block, values, count, &test, func, masks);
+            let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
+            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
+                if masks[s] != 0 {
+                    masks[s] = pass_rows(simd, (block, plane, &slopes[s % SAMPLES]), &test, passing, masks[s]);
+                }
+            }
             agree(masks, count, samples);
         },
     );
@@ -228,79 +254,70 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
     for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
         let slope = &test.slopes[s % SAMPLES];
         let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-        for row in 0..BLOCK {
-            let at = row * TILE;
-            slope.row(simd, row, test.limits, test.scale).store_slice(&mut plane[at..at + LANES]);
+        for row in (0..BLOCK).step_by(TWO) {
+            let [first, second] = rows_from(plane, row * TILE);
+            let (low, high) = slope.two_rows(simd, row, test.limits, test.scale).split();
+            low.store_slice(first);
+            high.store_slice(second);
         }
     }
 }
 
-/// Compares the depths of the samples in `masks`, and leaves those that pass.
-#[inline(always)]
-fn compare_rows<S: Simd>(
-    simd: S,
-    block: &Block,
-    values: &mut [f32],
-    count: usize,
-    test: &Test<'_, S>,
-    func: Compare,
-    masks: &mut [u64; SAMPLES],
-) {
-    for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-        if masks[s] == 0 {
-            continue;
-        }
-        let slope = &test.slopes[s % SAMPLES];
-        let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-        masks[s] = match func {
-            Compare::GreaterOrEqual => pass_rows(
-                simd,
-                (block, plane, slope, test),
-                masks[s],
-                #[inline(always)]
-                |new, old| new.simd_ge(old),
-            ),
-            Compare::LessOrEqual => pass_rows(
-                simd,
-                (block, plane, slope, test),
-                masks[s],
-                #[inline(always)]
-                |new, old| new.simd_le(old),
-            ),
-            func => pass_rows(
-                simd,
-                (block, plane, slope, test),
-                masks[s],
-                #[inline(always)]
-                |new, old| compare(simd, func, new, old),
-            ),
+/// A depth function as bits of two rows: what passes is `((at_least ^ flip[0] | any[0]) & (at_most ^ flip[1] | any[1])) ^ other`. So all
+/// functions are one piece of code without branches.
+#[derive(Clone, Copy)]
+struct Passing {
+    flip: [u32; 2],
+    any: [u32; 2],
+    other: u32,
+}
+
+impl Passing {
+    #[inline(always)]
+    fn new(func: Compare) -> Self {
+        let all = 0xffff;
+        let (flip, any, other) = match func {
+            Compare::Less => ([all, 0], [0, 0], 0),
+            Compare::Greater => ([0, all], [0, 0], 0),
+            Compare::Equal => ([0, 0], [0, 0], 0),
+            Compare::NotEqual => ([0, 0], [0, 0], all),
+            Compare::LessOrEqual => ([0, 0], [all, 0], 0),
+            Compare::GreaterOrEqual => ([0, 0], [0, all], 0),
+            Compare::Always => ([0, 0], [all, all], 0),
+            Compare::Never => ([0, 0], [all, all], all),
         };
+        Self { flip, any, other }
+    }
+
+    /// Of sixteen new depths those that pass.
+    #[inline(always)]
+    fn of<S: Simd>(&self, new: F32x16<S>, old: F32x16<S>) -> u32 {
+        let (at_least, at_most) = (bits_of(new.simd_ge(old)), bits_of(new.simd_le(old)));
+        ((at_least ^ self.flip[0] | self.any[0]) & (at_most ^ self.flip[1] | self.any[1])) ^ self.other
     }
 }
 
-/// The samples of `mask` for whose new and old depth `passes` holds.
+/// The samples of `mask` whose new depths pass; writes them if the test does.
 #[inline(always)]
 fn pass_rows<S: Simd>(
     simd: S,
-    (block, plane, slope, test): (&Block, &mut [f32], &Slope<S>, &Test<'_, S>),
+    (block, plane, slope): (&Block, &mut [f32], &Slope<S>),
+    test: &Test<'_, S>,
+    passing: Passing,
     mask: u64,
-    passes: impl Fn(F32x8<S>, F32x8<S>) -> Mask8<S>,
 ) -> u64 {
+    let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
     let mut passed = 0;
-    for row in block.rows.clone() {
-        let bits = (mask >> (8 * row)) as u32 & 0xff;
-        if bits == 0 {
-            continue;
-        }
-        let new = slope.row(simd, row, test.limits, test.scale);
-        let at = row % BLOCK * TILE;
-        let stored = &mut plane[at..at + LANES];
-        let old = F32x8::from_slice(simd, stored);
-        let pass = bits_of(passes(new, old)) & bits;
+    for row in pairs(mask) {
+        let new = slope.two_rows(simd, row, test.limits, test.scale);
+        let [first, second] = rows_from(plane, row * TILE);
+        let old = F32x8::from_slice(simd, first).combine(F32x8::from_slice(simd, second));
+        let pass = passing.of(new, old) & (mask >> (8 * row)) as u32 & 0xffff;
         passed |= u64::from(pass) << (8 * row);
-        if test.write && pass != 0 {
-            let new = if pass == 0xff { new } else { select(mask_of(simd, pass), new, old) };
-            new.store_slice(stored);
+        if test.write {
+            let (low, high) = select(Mask16::from_bitmask(simd, u64::from(pass)), new, old).split();
+            low.store_slice(first);
+            high.store_slice(second);
         }
     }
     passed
@@ -428,52 +445,54 @@ pub(crate) fn colors<S: Simd>(
     let samples = planes.samples;
     let Some(ColorTile::Rgba8(tile)) = &mut planes.color else { return };
     let together = all_alike(masks, samples);
-    let row_of = lanes::inlined(
-        #[inline(always)]
-        |row: usize| match words {
-            Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
-            Words::Each(words) => U32x8::from_slice(simd, &words[8 * row..8 * row + 8]),
-        },
-    );
     simd.vectorize(
         #[inline(always)]
         || {
-            if mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned() {
-                let values = tile.replace(block.touched(), true, samples);
-                let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
-                for row in 0..BLOCK {
-                    row_of(row).store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+            let whole = mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned();
+            let (count, values) = if whole {
+                (1, tile.replace(block.touched(), true, samples))
+            } else {
+                tile.open(block.touched(), together, samples)
+            };
+            // What would reach beyond the tile becomes the last rows of a block that does not.
+            let below = block.y.saturating_sub(TILE - BLOCK);
+            let mut copy;
+            let words = match words {
+                Words::Each(words) if below == 0 => *words,
+                Words::Each(words) => {
+                    copy = [0; BLOCK * BLOCK];
+                    copy[BLOCK * below..].copy_from_slice(&words[..BLOCK * (BLOCK - below)]);
+                    &copy
                 }
-                return;
-            }
-            let (count, values) = tile.open(block.touched(), together, samples);
+                Words::One(word) => {
+                    copy = [*word; BLOCK * BLOCK];
+                    &copy
+                }
+            };
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-                if masks[s] == 0 {
-                    continue;
-                }
-                for row in block.rows.clone() {
-                    let bits = (masks[s] >> (8 * row)) as u32 & 0xff;
-                    if bits == 0 {
-                        continue;
-                    }
-                    let at = (block.y + row) * TILE + block.x;
-                    write_row(simd, row_of(row % BLOCK), bits, mixing, &mut plane[at..at + LANES]);
-                }
+                let mask = masks[s] << (BLOCK * below);
+                let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
+                write_rows(simd, (words, mixing), mask, plane);
             }
         },
     );
 }
 
-/// Writes colours to the pixels of a row whose bits are set.
+/// Writes colours to the pixels of `mask`; `stored` begins with the block's first.
 #[inline(always)]
-fn write_row<S: Simd>(simd: S, new: U32x8<S>, bits: u32, mixing: Mixing, stored: &mut [u32]) {
-    let old = U32x8::from_slice(simd, stored);
-    let new = match mixing {
-        Mixing::Add => add_packed(new, old),
-        Mixing::AddScaled => add_scaled_packed(new, old),
-        Mixing::Mix => mix_packed(new, old),
-        _ => new,
-    };
-    let new = if bits == 0xff { new } else { mask_of(simd, bits).select(new, old) };
-    new.store_slice(stored);
+fn write_rows<S: Simd>(simd: S, (words, mixing): (&BlockWords, Mixing), mask: u64, stored: &mut [u32]) {
+    for row in pairs(mask) {
+        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + TWO)]);
+        let [first, second] = rows_from(stored, row * TILE);
+        let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
+        let new = match mixing {
+            Mixing::Add => add_packed(new, old),
+            Mixing::AddScaled => add_scaled_packed(new, old),
+            Mixing::Mix => mix_packed(new, old),
+            _ => new,
+        };
+        let (low, high) = Mask16::from_bitmask(simd, (mask >> (8 * row)) & 0xffff).select(new, old).split();
+        low.store_slice(first);
+        high.store_slice(second);
+    }
 }

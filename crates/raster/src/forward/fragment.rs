@@ -13,12 +13,12 @@ use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pac
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
 use super::state::{Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, StencilFace, StencilOp};
-use super::wide::{Rgba, bits_of, floor, mask_of, saturate_rgba, select, splat};
+use super::wide::{Rgba, bits_of, every, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Simd, U32x8};
+use vitral_math::lanes::{F32x8, Floats, LANES, Simd, U32x8};
 
 /// The colour samples of a tile.
 pub(crate) enum ColorTile<'a> {
@@ -72,13 +72,13 @@ pub(crate) type Depths<S> = [F32x8<S>; SAMPLES];
 
 /// Depth in `0..=1` as stored: scaled and rounded to whole numbers, unless the scale is 1.
 #[inline(always)]
-pub(crate) fn stored_depth<S: Simd>(simd: S, depth: F32x8<S>, scale: f32) -> F32x8<S> {
+pub(crate) fn stored_depth<S: Simd, V: Floats<S>>(simd: S, depth: V, scale: f32) -> V {
     if scale == 1.0 {
         return depth;
     }
     let scaled = depth * scale;
     // From 2^23 on every number is whole, and adding a half would round again.
-    let half = select(scaled.simd_lt(splat(simd, 8_388_608.0)), splat(simd, 0.5), splat(simd, 0.0));
+    let half = select(scaled.simd_lt(every::<S, V>(simd, 8_388_608.0)), every(simd, 0.5), every::<S, V>(simd, 0.0));
     floor(scaled + half)
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn unpack_bytes<S: Simd, V: Floats<S>>(words: V::Words) -> [V; 4] {
 
 /// Blending with `ONE, ONE`: each byte of the sum stays at 255.
 #[inline(always)]
-pub(crate) fn add_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S> {
+pub(crate) fn add_packed<S: Simd, W: SimdInt<S, Element = u32>>(source: W, stored: W) -> W {
     let rb = add_halves(source & HALVES, stored & HALVES);
     let ga = add_halves((source >> 8) & HALVES, (stored >> 8) & HALVES);
     rb | (ga << 8)
@@ -60,7 +60,7 @@ pub(crate) fn add_words(source: u32, stored: u32) -> u32 {
 
 /// Blending with `SRC_ALPHA, ONE`.
 #[inline(always)]
-pub(crate) fn add_scaled_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S> {
+pub(crate) fn add_scaled_packed<S: Simd, W: SimdInt<S, Element = u32>>(source: W, stored: W) -> W {
     let alpha = source >> 24;
     let rb = add_halves(divide_by_255((source & HALVES) * alpha), stored & HALVES);
     let ga = add_halves(divide_by_255(((source >> 8) & HALVES) * alpha), (stored >> 8) & HALVES);
@@ -69,7 +69,7 @@ pub(crate) fn add_scaled_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> 
 
 /// Blending with `SRC_ALPHA, ONE_MINUS_SRC_ALPHA`.
 #[inline(always)]
-pub(crate) fn mix_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S> {
+pub(crate) fn mix_packed<S: Simd, W: SimdInt<S, Element = u32>>(source: W, stored: W) -> W {
     let alpha = source >> 24;
     let rest = alpha ^ 255;
     let rb = divide_by_255((source & HALVES) * alpha + (stored & HALVES) * rest);
@@ -79,7 +79,7 @@ pub(crate) fn mix_packed<S: Simd>(source: U32x8<S>, stored: U32x8<S>) -> U32x8<S
 
 /// The sum of bytes in 16-bit halves, at most 255.
 #[inline(always)]
-fn add_halves<S: Simd>(a: U32x8<S>, b: U32x8<S>) -> U32x8<S> {
+fn add_halves<S: Simd, W: SimdInt<S, Element = u32>>(a: W, b: W) -> W {
     let sum = a + b;
     let over = (sum >> 8) & 0x0001_0001;
     (sum | ((over << 8) - over)) & HALVES
@@ -87,7 +87,7 @@ fn add_halves<S: Simd>(a: U32x8<S>, b: U32x8<S>) -> U32x8<S> {
 
 /// Each 16-bit half, of at most `255 * 255`, divided by 255 and rounded to nearest.
 #[inline(always)]
-fn divide_by_255<S: Simd>(halves: U32x8<S>) -> U32x8<S> {
+fn divide_by_255<S: Simd, W: SimdInt<S, Element = u32>>(halves: W) -> W {
     let biased = halves + 0x0080_0080;
     ((biased + ((biased >> 8) & HALVES)) >> 8) & HALVES
 }

@@ -126,7 +126,8 @@ fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; TWO] {
 }
 
 /// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
-/// place in the pattern all samples have the depth there.
+/// place in the pattern all samples have the depth there. Gives whether depths of samples that passed may differ from what
+/// was stored.
 pub(crate) fn depths<S: Simd>(
     simd: S,
     setup: &Setup,
@@ -136,9 +137,9 @@ pub(crate) fn depths<S: Simd>(
     planes: &mut TilePlanes<'_>,
     rule: DepthRule,
     masks: &mut [u64; SAMPLES],
-) {
+) -> bool {
     let samples = planes.samples;
-    let Some((tile, scale)) = &mut planes.depth else { return };
+    let Some((tile, scale)) = &mut planes.depth else { return false };
     let (scale, ranges) = (*scale, &mut planes.ranges);
     simd.vectorize(
         #[inline(always)]
@@ -151,7 +152,7 @@ pub(crate) fn depths<S: Simd>(
                 if !holds(rule.func, 0.0, 0.0) {
                     *masks = [0; SAMPLES];
                 }
-                return;
+                return false;
             }
             let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
             // Where nothing was drawn yet, the depths of the whole triangle mostly tell.
@@ -159,7 +160,8 @@ pub(crate) fn depths<S: Simd>(
                 let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
                 if verdict(rule.func, all, [empty; 2]) == Verdict::AllPass {
                     ranges.forget(touched);
-                    return tile.set_surface(index, surface);
+                    tile.set_surface(index, surface);
+                    return true;
                 }
             }
             let together = pattern.len() != samples && all_alike(masks, samples);
@@ -170,18 +172,20 @@ pub(crate) fn depths<S: Simd>(
             let verdict = verdict(rule.func, new, old);
             if verdict == Verdict::AllFail {
                 *masks = [0; SAMPLES];
-                return;
+                return false;
             }
             if verdict == Verdict::AllPass && !rule.write {
-                return;
+                return true;
             }
             if verdict == Verdict::AllPass && full {
                 ranges.set(index, new);
                 if block.is_aligned() {
-                    return tile.set_surface(index, surface);
+                    tile.set_surface(index, surface);
+                } else {
+                    let count = if together { 1 } else { samples };
+                    fill(simd, block, tile.replace(touched, together, samples), count, &test);
                 }
-                let count = if together { 1 } else { samples };
-                return fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                return true;
             }
             if let Some(before) = before {
                 let alike = before.places == 1;
@@ -194,14 +198,15 @@ pub(crate) fn depths<S: Simd>(
             }
             let (count, values) = tile.open(touched, together, samples);
             let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
+            let mut changed = 0;
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-                if masks[s] != 0 {
-                    masks[s] = pass_rows(simd, (block, plane, &slopes[s % SAMPLES]), &test, passing, masks[s]);
-                }
+                let place = (block, plane, &slopes[s % SAMPLES]);
+                changed |= pass_rows(simd, place, &test, passing, &mut masks[s]);
             }
             agree(masks, count, samples);
+            changed != 0
         },
-    );
+    )
 }
 
 /// Whether all samples have the same mask.
@@ -289,38 +294,41 @@ impl Passing {
         Self { flip, any, other }
     }
 
-    /// Of sixteen new depths those that pass.
+    /// Those that pass, of sixteen new depths of which these are at least, and at most, the old ones.
     #[inline(always)]
-    fn of<S: Simd>(&self, new: F32x16<S>, old: F32x16<S>) -> u32 {
-        let (at_least, at_most) = (bits_of(new.simd_ge(old)), bits_of(new.simd_le(old)));
+    fn of(&self, at_least: u32, at_most: u32) -> u32 {
         ((at_least ^ self.flip[0] | self.any[0]) & (at_most ^ self.flip[1] | self.any[1])) ^ self.other
     }
 }
 
-/// The samples of `mask` whose new depths pass; writes them if the test does.
+/// Leaves in `mask` the samples whose new depths pass, and writes these if the test does. Not 0 if one of them differs from what
+/// was stored.
 #[inline(always)]
 fn pass_rows<S: Simd>(
     simd: S,
     (block, plane, slope): (&Block, &mut [f32], &Slope<S>),
     test: &Test<'_, S>,
     passing: Passing,
-    mask: u64,
-) -> u64 {
+    mask: &mut u64,
+) -> u32 {
     let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-    let mut passed = 0;
-    for row in pairs(mask) {
+    let (mut passed, mut changed) = (0, 0);
+    for row in pairs(*mask) {
         let new = slope.two_rows(simd, row, test.limits, test.scale);
         let [first, second] = rows_from(plane, row * TILE);
         let old = F32x8::from_slice(simd, first).combine(F32x8::from_slice(simd, second));
-        let pass = passing.of(new, old) & (mask >> (8 * row)) as u32 & 0xffff;
+        let (at_least, at_most) = (bits_of(new.simd_ge(old)), bits_of(new.simd_le(old)));
+        let pass = passing.of(at_least, at_most) & (*mask >> (8 * row)) as u32 & 0xffff;
         passed |= u64::from(pass) << (8 * row);
+        changed |= pass & !(at_least & at_most);
         if test.write {
             let (low, high) = select(Mask16::from_bitmask(simd, u64::from(pass)), new, old).split();
             low.store_slice(first);
             high.store_slice(second);
         }
     }
-    passed
+    *mask = passed;
+    changed
 }
 
 /// Leaves in `masks` the samples that pass a stencil test; what it writes is [`update_stencil`]'s.

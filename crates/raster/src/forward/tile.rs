@@ -428,9 +428,10 @@ impl ForwardSink<'_, '_, '_> {
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.
         let late = state.alpha_test.is_some();
+        let mut changes = false;
         if let Some(rule) = rule {
             let early = DepthRule { write: rule.write && !late, ..rule };
-            self.depths(simd, setup, place, block, early, &mut bits);
+            changes = self.depths(simd, setup, place, block, early, &mut bits);
         }
         if let Some((face, covered, reached)) = &writes_stencil {
             block::update_stencil(simd, block, &mut self.run.planes, face, [covered, reached, &bits]);
@@ -444,7 +445,8 @@ impl ForwardSink<'_, '_, '_> {
             for b in &mut bits {
                 *b &= passed;
             }
-            if let Some(rule) = rule.filter(|rule| rule.write) {
+            // Mostly the depths are there already, from a draw before.
+            if let Some(rule) = rule.filter(|rule| rule.write && changes) {
                 let write = DepthRule { func: Compare::Always, ..rule };
                 self.depths(simd, setup, place, block, write, &mut bits);
             }
@@ -462,8 +464,8 @@ impl ForwardSink<'_, '_, '_> {
         block: &Block,
         rule: DepthRule,
         bits: &mut [u64; SAMPLES],
-    ) {
-        block::depths(simd, setup, place, block, self.pattern, &mut self.run.planes, rule, bits);
+    ) -> bool {
+        block::depths(simd, setup, place, block, self.pattern, &mut self.run.planes, rule, bits)
     }
 
     /// A row of eight pixels, with all operations that there are.

@@ -243,7 +243,8 @@ impl Surface {
             let [low, high] = slope.bounds();
             all = [all[0].min(low), all[1].max(high)];
         }
-        all.map(|depth| stored(depth.max(self.plane.z_min).min(self.plane.z_max), self.scale))
+        let limited = |depth: f32| stored(depth.max(self.plane.z_min).min(self.plane.z_max), self.scale);
+        [limited(all[0]), limited(all[1])]
     }
 
     /// [`Self::bounds`], for who has nothing but the surface.

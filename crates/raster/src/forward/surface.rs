@@ -34,7 +34,11 @@ impl Surface {
     /// The depths of the block as stored, at the place of a sample: the rows of [`super::block::Slope`].
     pub(super) fn rows(&self, sample: usize) -> [[f32; BLOCK]; BLOCK] {
         let (across, upwards) = self.slope(sample);
-        upwards.map(|up| self.row_of(&across, up))
+        let mut rows = [[0.0; BLOCK]; BLOCK];
+        for (row, up) in rows.iter_mut().zip(upwards) {
+            *row = self.row_of(&across, up);
+        }
+        rows
     }
 
     /// One of [`Self::rows`].
@@ -60,7 +64,14 @@ impl Surface {
 
     #[inline(always)]
     fn row_of(&self, across: &[f32; BLOCK], up: f32) -> [f32; BLOCK] {
-        let limited = across.map(|x| Lanes::min(Lanes::max(x + up, self.plane.z_min), self.plane.z_max));
-        if self.scale == 1.0 { limited } else { limited.map(|depth| stored(depth, self.scale)) }
+        // A loop, since what an array's `map` is made of is not inlined here.
+        let mut row = *across;
+        for depth in &mut row {
+            *depth = Lanes::min(Lanes::max(*depth + up, self.plane.z_min), self.plane.z_max);
+        }
+        if self.scale != 1.0 {
+            row.iter_mut().for_each(|depth| *depth = stored(*depth, self.scale));
+        }
+        row
     }
 }

@@ -189,6 +189,9 @@ impl<T: Copy> PlaneTile<T> {
             let first = sample * TILE_PIXELS + at;
             return out.copy_from_slice(&self.values[first..=first + last]);
         }
+        if self.cleared & blocks == blocks {
+            return out.fill(self.clear);
+        }
         let mut done = 0;
         while done < out.len() {
             let here = at + done;

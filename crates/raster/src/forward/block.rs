@@ -272,7 +272,7 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
 /// A depth function as bits of two rows: what passes is `((at_least ^ flip[0] | any[0]) & (at_most ^ flip[1] | any[1])) ^ other`. So all
 /// functions are one piece of code without branches.
 #[derive(Clone, Copy)]
-struct Passing {
+pub(super) struct Passing {
     flip: [u32; 2],
     any: [u32; 2],
     other: u32,
@@ -280,7 +280,7 @@ struct Passing {
 
 impl Passing {
     #[inline(always)]
-    fn new(func: Compare) -> Self {
+    pub(super) fn new(func: Compare) -> Self {
         let all = 0xffff;
         let (flip, any, other) = match func {
             Compare::Less => ([all, 0], [0, 0], 0),
@@ -297,7 +297,7 @@ impl Passing {
 
     /// Those that pass, of sixteen new depths of which these are at least, and at most, the old ones.
     #[inline(always)]
-    fn of(&self, at_least: u32, at_most: u32) -> u32 {
+    pub(super) fn of(&self, at_least: u32, at_most: u32) -> u32 {
         ((at_least ^ self.flip[0] | self.any[0]) & (at_most ^ self.flip[1] | self.any[1])) ^ self.other
     }
 }

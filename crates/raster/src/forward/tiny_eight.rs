@@ -6,9 +6,8 @@
 //! ([`super::shade::EightFacets`]); else each facet colours its own pixels. The results are those of [`super::block`].
 
 use super::assemble::{Facet, Primitives};
-use super::block::{self, BlockWords, Words};
+use super::block::{self, BlockWords, Passing, Words};
 use super::fragment::{ColorTile, Mixing, SAMPLES, stored_depth};
-use super::fragment_ops::compare::holds;
 use super::fragment_ops::packed::add_words;
 use super::fragment_ops::stencil::stencil_holds;
 use super::pass::{DrawContext, facet_of};
@@ -134,19 +133,19 @@ impl TileRun<'_> {
         let draw = &job.draws[memory.waiting.draw as usize];
         let mut seen = covered;
         if draw.state.alpha_test.is_none() {
-            self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, true);
+            self.tiny_tested::<S, N>(simd, draw, &memory.waiting.eight, &mut seen, true);
             self.tiny_colored(simd, job, memory, &mut seen);
             return;
         }
         // Before the alpha test depths may be looked at, but not written. Mostly they are there already, from a draw before.
-        if !self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, false) {
+        if !self.tiny_tested::<S, N>(simd, draw, &memory.waiting.eight, &mut seen, false) {
             self.tiny_colored(simd, job, memory, &mut seen);
             return;
         }
         // Else what one facet leaves may hide the next.
         for facet in 0..memory.waiting.eight.len() {
             let mut seen = covered.of(facet);
-            self.tiny_tested::<N>(draw, &memory.waiting.eight, &mut seen, false);
+            self.tiny_tested::<S, N>(simd, draw, &memory.waiting.eight, &mut seen, false);
             self.tiny_colored(simd, job, memory, &mut seen);
             self.tiny_written::<N>(&memory.waiting.eight, &seen);
         }
@@ -209,8 +208,9 @@ impl TileRun<'_> {
 
     /// Depth test, with its writes if `write` is set and the draw writes depths. Otherwise, whether they would change anything.
     #[inline(always)]
-    fn tiny_tested<const N: usize>(
+    fn tiny_tested<S: Simd, const N: usize>(
         &mut self,
+        simd: S,
         draw: &DrawContext<'_>,
         eight: &TinyEight,
         seen: &mut Seen,
@@ -225,8 +225,12 @@ impl TileRun<'_> {
         let mut changes = false;
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
-        for (sample, stored) in stored.as_chunks_mut().0.iter_mut().enumerate().take(count) {
-            changes |= test(eight, &mut seen.masks[sample], sample % N, rule, stored);
+        let planes = stored.as_chunks_mut::<TILE_PIXELS>().0;
+        if let ([a, b, c, d, ..], SAMPLES) = (&mut *planes, count) {
+            let depths = [0, 1 % N, 2 % N, 3 % N];
+            changes = test(simd, eight, seen, rule, [a, b, c, d], depths);
+        } else if let [plane, ..] = planes {
+            changes = test(simd, eight, seen, rule, [plane], [0]);
         }
         seen.join();
         wanted && !write && changes
@@ -420,46 +424,66 @@ impl Seen {
     }
 }
 
-/// Depth tests of a sample of the pixels of `masks`, facet by facet, with their writes: those that pass remain. Gives whether one
-/// of them is not the depth that was stored.
-#[inline(always)]
-fn test(
+/// Depth tests of what is seen, facet by facet, with their writes: what passes remains. Gives whether something of that is not the
+/// depth that was stored. A plane of samples meets the facets' depths of the sample that `depths` says.
+#[inline(never)]
+fn test<S: Simd, const M: usize>(
+    simd: S,
     eight: &TinyEight,
-    masks: &mut [u64; LANES],
-    sample: usize,
+    seen: &mut Seen,
     rule: DepthTest,
-    stored: &mut [f32; TILE_PIXELS],
+    stored: [&mut [f32; TILE_PIXELS]; M],
+    depths: [usize; M],
 ) -> bool {
-    match rule.func {
-        Compare::Less => test_by(eight, masks, sample, rule.write, stored, |new, old| new < old),
-        Compare::LessOrEqual => test_by(eight, masks, sample, rule.write, stored, |new, old| new <= old),
-        Compare::GreaterOrEqual => test_by(eight, masks, sample, rule.write, stored, |new, old| new >= old),
-        func => test_by(eight, masks, sample, rule.write, stored, |new, old| holds(func, new, old)),
-    }
+    simd.vectorize(
+        #[inline(always)]
+        || match (rule.func, rule.write) {
+            (Compare::LessOrEqual, true) => test_by(eight, seen, true, stored, depths, |new, old| new <= old),
+            (Compare::LessOrEqual, false) => test_by(eight, seen, false, stored, depths, |new, old| new <= old),
+            (Compare::GreaterOrEqual, true) => test_by(eight, seen, true, stored, depths, |new, old| new >= old),
+            (Compare::GreaterOrEqual, false) => test_by(eight, seen, false, stored, depths, |new, old| new >= old),
+            (Compare::Less, true) => test_by(eight, seen, true, stored, depths, |new, old| new < old),
+            (func, write) => {
+                let passing = Passing::new(func);
+                let passes = |new, old| passing.of(u32::from(new >= old), u32::from(new <= old)) & 1 == 1;
+                test_by(eight, seen, write, stored, depths, passes)
+            }
+        },
+    )
 }
 
+/// All samples of a pixel together: how many pixels a facet has is not foretold, and so happens once, not four times.
 #[inline(always)]
-fn test_by(
+fn test_by<const M: usize>(
     eight: &TinyEight,
-    masks: &mut [u64; LANES],
-    sample: usize,
+    seen: &mut Seen,
     write: bool,
-    stored: &mut [f32; TILE_PIXELS],
+    stored: [&mut [f32; TILE_PIXELS]; M],
+    depths: [usize; M],
     passes: impl Fn(f32, f32) -> bool,
 ) -> bool {
     let mut changes = false;
-    for (facet, mask) in masks.iter_mut().enumerate().take(eight.len()) {
-        let (first, covered) = (eight.first(facet), *mask);
-        for place in places(covered) {
-            let old = &mut stored[pixel(first, place) % TILE_PIXELS];
-            let new = eight.depth(facet, place, sample);
-            let pass = passes(new, *old);
-            *mask ^= u64::from(!pass) << place;
-            if write {
-                *old = if pass { new } else { *old };
-            } else {
-                changes |= pass & (new != *old);
+    for facet in 0..eight.len() {
+        let (first, mut masks) = (eight.first(facet), [0; M]);
+        for s in 0..M {
+            masks[s] = seen.masks[s][facet];
+        }
+        for place in places(seen.any[facet]) {
+            let at = pixel(first, place) % TILE_PIXELS;
+            for s in 0..M {
+                let (old, new) = (stored[s][at], eight.depth(facet, place, depths[s]));
+                let covered = masks[s] >> place & 1 == 1;
+                let pass = covered & passes(new, old);
+                masks[s] ^= u64::from(covered & !pass) << place;
+                if write {
+                    stored[s][at] = if pass { new } else { old };
+                } else {
+                    changes |= pass & (new != old);
+                }
             }
+        }
+        for s in 0..M {
+            seen.masks[s][facet] = masks[s];
         }
     }
     changes

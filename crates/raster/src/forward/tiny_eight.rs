@@ -350,15 +350,11 @@ impl TileRun<'_> {
         let adds = draw.ops.mixing == Mixing::Add;
         if adds || draw.ops.mixing == Mixing::Replace {
             let (count, values) = plane.open(seen.touched, seen.alike, self.planes.samples);
-            for (values, masks) in values.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().zip(&seen.masks).take(count) {
-                for (facet, &mask) in masks.iter().enumerate().take(eight.len()) {
-                    let first = eight.first(facet);
-                    for place in places(mask) {
-                        let (value, new) =
-                            (&mut values[pixel(first, place) % TILE_PIXELS], each[place % PLACES][facet]);
-                        *value = if adds { add_words(new, *value) } else { new };
-                    }
-                }
+            let planes = values.as_chunks_mut::<TILE_PIXELS>().0;
+            if let ([a, b, c, d, ..], SAMPLES) = (&mut *planes, count) {
+                bring(simd, eight, seen, adds, each, [a, b, c, d]);
+            } else if let [plane, ..] = planes {
+                bring(simd, eight, seen, adds, each, [plane]);
             }
             return;
         }
@@ -422,6 +418,34 @@ impl Seen {
             masks[facet]
         })
     }
+}
+
+/// Brings colours of places to the samples that are seen, facet by facet, in `M` planes of samples.
+#[inline(never)]
+fn bring<S: Simd, const M: usize>(
+    simd: S,
+    eight: &TinyEight,
+    seen: &Seen,
+    adds: bool,
+    each: &[[u32; LANES]; PLACES],
+    values: [&mut [u32; TILE_PIXELS]; M],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for facet in 0..eight.len() {
+                let first = eight.first(facet);
+                for place in places(seen.any[facet]) {
+                    let (at, new) = (pixel(first, place) % TILE_PIXELS, each[place % PLACES][facet]);
+                    for s in 0..M {
+                        let old = values[s][at];
+                        let new = if adds { add_words(new, old) } else { new };
+                        values[s][at] = if seen.masks[s][facet] >> place & 1 == 1 { new } else { old };
+                    }
+                }
+            }
+        },
+    );
 }
 
 /// Depth tests of what is seen, facet by facet, with their writes: what passes remains. Gives whether something of that is not the

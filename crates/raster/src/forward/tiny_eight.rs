@@ -162,16 +162,17 @@ impl TileRun<'_> {
         let draw = &job.draws[waiting.draw as usize];
         let (eight, pattern) = (&mut waiting.eight, job.pattern(draw));
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
-        let mut masks = [[0; LANES]; SAMPLES];
-        for sample in 0..N {
-            masks[sample] = eight.cover(
-                simd,
-                (self.x, self.y),
-                (sample, pattern.position(sample)),
-                #[inline(always)]
-                |depth| stored_depth(simd, depth, scale),
-            );
+        let mut positions = [[0; 2]; N];
+        for (sample, position) in positions.iter_mut().enumerate() {
+            *position = pattern.position(sample);
         }
+        let masks = eight.cover(
+            simd,
+            (self.x, self.y),
+            positions,
+            #[inline(always)]
+            |depth| stored_depth(simd, depth, scale),
+        );
         // A draw without multisampling covers all samples of a pixel alike; where all have one value, one stands for all.
         let mut seen = Seen { masks, any: [0; LANES], touched: 0, alike: N == 1 };
         seen.settle(eight)?;

@@ -11,7 +11,7 @@ use super::block::Block;
 use super::traverse::{Placed, biases};
 use crate::{BLOCK, SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Simd};
+use vitral_math::lanes::{self, F32x8, F32x16, Floats, I32x8, LANES, Simd};
 
 /// As many samples a pixel may have.
 pub(crate) const SAMPLES: usize = 4;
@@ -173,27 +173,25 @@ impl TinyEight {
         [left + (place % BLOCK) as i32, top + (place / BLOCK) as i32]
     }
 
-    /// The pixels of each triangle whose sample of this number, at `[x, y]` of a pixel in 1/256 pixel, is covered. `stored` says
-    /// how depths are stored; `tile` is the tile's first pixel.
+    /// The pixels of each triangle that are covered, sample by sample: those at `positions` of a pixel in 1/256 pixel, one or four.
+    /// `stored` says how depths are stored; `tile` is the tile's first pixel.
     #[inline(always)]
-    pub(crate) fn cover<S: Simd>(
+    pub(crate) fn cover<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         tile: (u32, u32),
-        (sample, [sx, sy]): (usize, [i32; 2]),
+        positions: [[i32; 2]; N],
         stored: impl Fn(F32x8<S>) -> F32x8<S>,
-    ) -> [u64; LANES] {
+    ) -> [[u64; LANES]; SAMPLES] {
         let zero = I32x8::splat(simd, 0);
         let [x, y] = self.corners(simd);
         let [left, top] = self.pixels(simd, 0);
         // Edge functions as of `Placed::edges` and `Edge::constant`.
-        let (mut a, mut b, mut row) = ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut dx, mut dy, mut corner) = ([zero; 3], [zero; 3], [zero; 3]);
         for i in 0..3 {
             let j = (i + 1) % 3;
-            let (dx, dy) = (x[j] - x[i], y[j] - y[i]);
-            (a[i], b[i]) = (zero - dy, dx);
-            row[i] =
-                ((dy * x[i] - dx * y[i] + biases(simd, dx, dy) + (dx * sy - dy * sx)) >> 8) + a[i] * left + b[i] * top;
+            (dx[i], dy[i]) = (x[j] - x[i], y[j] - y[i]);
+            corner[i] = dy[i] * x[i] - dx[i] * y[i] + biases(simd, dx[i], dy[i]);
         }
         // Depths by the operations of `Setup::depth`, in their order; distances from the origin are exact.
         let words = lanes::inlined(
@@ -211,7 +209,7 @@ impl TinyEight {
             #[inline(always)]
             |words: I32x8<S>| -> F32x8<S> { words.bitcast() },
         );
-        let (z, dz_dx, dz_dy, z_min, z_max) = (real(z), real(dz_dx), real(dz_dy), real(z_min), real(z_max));
+        let plane = [real(z), real(dz_dx), real(dz_dy), real(z_min), real(z_max)];
         let away = lanes::inlined(
             #[inline(always)]
             |pixel: I32x8<S>, first: i32, origin: I32x8<S>| -> F32x8<S> {
@@ -219,20 +217,70 @@ impl TinyEight {
                 distance * (1.0 / SUBPIXEL as f32)
             },
         );
-        let (dx, mut dy) =
-            (away(left, tile.0 as i32 * SUBPIXEL + sx, origin_x), away(top, tile.1 as i32 * SUBPIXEL + sy, origin_y));
+        let walk = lanes::inlined(
+            #[inline(always)]
+            |sample: usize| -> Walk<S, F32x8<S>> {
+                let [sx, sy] = positions[sample % N];
+                let (mut a, mut row) = ([zero; 3], [zero; 3]);
+                for i in 0..3 {
+                    a[i] = zero - dy[i];
+                    row[i] = ((corner[i] + (dx[i] * sy - dy[i] * sx)) >> 8) + a[i] * left + dx[i] * top;
+                }
+                let distance = [
+                    away(left, tile.0 as i32 * SUBPIXEL + sx, origin_x),
+                    away(top, tile.1 as i32 * SUBPIXEL + sy, origin_y),
+                ];
+                Walk { a, b: dx, row, plane, distance }
+            },
+        );
+        let mut covered = [self.boxes; SAMPLES];
+        if N == 1 {
+            self.walk(simd, walk(0), 0, &stored, &mut covered);
+        } else {
+            // Two samples go together.
+            for first in (0..N.min(SAMPLES)).step_by(2) {
+                self.walk(simd, walk(first).with(&walk(first + 1)), first, &stored, &mut covered);
+            }
+        }
+        covered
+    }
+
+    /// Goes through the places of the boxes with one or two samples, from number `first` on; leaves in `covered` what is.
+    #[inline(always)]
+    fn walk<S: Simd, V: Floats<S>>(
+        &mut self,
+        simd: S,
+        walk: Walk<S, V>,
+        first: usize,
+        stored: &impl Fn(F32x8<S>) -> F32x8<S>,
+        covered: &mut [[u64; LANES]; SAMPLES],
+    ) {
+        let Walk { a, b, mut row, plane: [z, dz_dx, dz_dy, z_min, z_max], distance: [left, mut dy] } = walk;
         let [columns, rows] = self.size;
-        let mut halves = [zero; 2];
+        let every = lanes::inlined(
+            #[inline(always)]
+            |value: i32| <V::Ints as SimdBase<S>>::splat(simd, value),
+        );
+        let mut halves = [every(0); 2];
         for r in 0..rows.min(BLOCK) {
-            let (mut e, mut bit) = (row, I32x8::splat(simd, 1 << (8 * (r % 4))));
-            let (line, mut dx) = (z + dy * dz_dy, dx);
+            let (mut e, mut bit) = (row, every(1 << (8 * (r % 4))));
+            let (line, mut dx) = (z + dy * dz_dy, left);
             for c in 0..columns.min(BLOCK) {
                 // The sign is none only where no edge's is.
                 let outside = (e[0] | e[1] | e[2]) >> 31;
                 halves[r / 4] |= bit & !outside;
                 let depth = line + dx * dz_dx;
                 let depth = lanes::Lanes::min(lanes::Lanes::max(depth, z_min), z_max);
-                stored(depth).store_slice(&mut self.depths[sample % SAMPLES][BLOCK * r + c]);
+                let [] = V::by_eights(
+                    simd,
+                    [depth],
+                    #[inline(always)]
+                    |lane, [depth]| {
+                        let sample = (first + lane / LANES) % SAMPLES;
+                        stored(depth).store_slice(&mut self.depths[sample][BLOCK * r + c]);
+                        []
+                    },
+                );
                 bit <<= 1;
                 dx += 1.0;
                 for i in 0..3 {
@@ -244,13 +292,50 @@ impl TinyEight {
                 row[i] += b[i];
             }
         }
-        let (low, high) = (halves[0].to_array(), halves[1].to_array());
-        let mut covered = self.boxes;
-        for lane in 0..LANES {
+        let (low, high) = (halves[0].as_slice(), halves[1].as_slice());
+        for lane in 0..V::LEN {
             let inside = u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
-            covered[lane] &= inside | self.given[lane];
+            covered[(first + lane / LANES) % SAMPLES][lane % LANES] &= inside | self.given[lane % LANES];
         }
-        covered
+    }
+}
+
+/// What eight triangles' edge functions and depths begin with at one sample of their boxes' first pixels, or at two: those of the
+/// second sample in the upper lanes.
+#[derive(Clone, Copy)]
+struct Walk<S: Simd, V: Floats<S>> {
+    /// What edge functions change by with a column, with a row.
+    a: [V::Ints; 3],
+    b: [V::Ints; 3],
+    row: [V::Ints; 3],
+    /// `z`, `dz_dx`, `dz_dy`, `z_min`, `z_max`.
+    plane: [V; 5],
+    /// From the plane's origin, pixels.
+    distance: [V; 2],
+}
+
+impl<S: Simd> Walk<S, F32x8<S>> {
+    #[inline(always)]
+    fn with(&self, other: &Self) -> Walk<S, F32x16<S>> {
+        let (low, high) = (self, other);
+        let ints = lanes::inlined(
+            #[inline(always)]
+            |low: [I32x8<S>; 3], high: [I32x8<S>; 3]| {
+                [low[0].combine(high[0]), low[1].combine(high[1]), low[2].combine(high[2])]
+            },
+        );
+        let [z, dz_dx, dz_dy, z_min, z_max] = low.plane;
+        let twice = lanes::inlined(
+            #[inline(always)]
+            |v: F32x8<S>| v.combine(v),
+        );
+        Walk {
+            a: ints(low.a, high.a),
+            b: ints(low.b, high.b),
+            row: ints(low.row, high.row),
+            plane: [twice(z), twice(dz_dx), twice(dz_dy), twice(z_min), twice(z_max)],
+            distance: [low.distance[0].combine(high.distance[0]), low.distance[1].combine(high.distance[1])],
+        }
     }
 }
 
@@ -278,10 +363,13 @@ mod tests {
                     eight.clear();
                     setups.iter().for_each(|setup| eight.push(setup, &place(setup).unwrap()));
                     assert_eq!(eight.len(), setups.len());
-                    for sample in 0..samples {
-                        let [sx, sy] = pattern.position(sample);
-                        let masks =
-                            dispatch!(level, simd => eight.cover(simd, tile, (sample, [sx, sy]), |depth| depth * 0.5));
+                    let positions = [0, 1, 2, 3].map(|sample| pattern.position(sample % samples));
+                    let all = dispatch!(level, simd => match samples {
+                        1 => eight.cover(simd, tile, [positions[0]], |depth| depth * 0.5),
+                        _ => eight.cover(simd, tile, positions, |depth| depth * 0.5),
+                    });
+                    for (sample, masks) in all.into_iter().enumerate().take(samples) {
+                        let [sx, sy] = positions[sample];
                         let mut found = Vec::new();
                         for (triangle, &mask) in masks.iter().enumerate() {
                             let pixel_of = |place| {

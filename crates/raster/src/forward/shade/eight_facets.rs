@@ -248,6 +248,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             }
         }
         let mut count = 0;
+        let used = (4 + 4 * self.draw.plain.len()).min(FOG);
         for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
             let weights = self.weights(simd, eight, place, tile);
             let mut numbers = [[0.0; LANES]; NUMBERS];
@@ -279,9 +280,10 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             }
             for facet in 0..LANES {
                 if shown[facet] >> place & 1 == 1 {
-                    for k in 0..NUMBERS {
+                    for k in 0..used {
                         pixels.numbers[k][count] = numbers[k][facet];
                     }
+                    pixels.numbers[FOG][count] = numbers[FOG][facet];
                     (pixels.places[count], pixels.facets[count]) = (place as u8, facet as u8);
                     count += 1;
                 }

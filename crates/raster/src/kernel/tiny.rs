@@ -234,12 +234,13 @@ impl TinyEight {
             },
         );
         let mut covered = [self.boxes; SAMPLES];
-        if N == 1 {
-            self.walk(simd, walk(0), 0, &stored, &mut covered);
-        } else {
-            // Two samples go together.
-            for first in (0..N.min(SAMPLES)).step_by(2) {
+        // Two samples go together where lanes are wide enough for both.
+        let together = if <S::f32s as SimdBase<S>>::LEN > LANES { 2 } else { 1 };
+        for first in (0..N.min(SAMPLES)).step_by(together) {
+            if N > 1 && together == 2 {
                 self.walk(simd, walk(first).with(&walk(first + 1)), first, &stored, &mut covered);
+            } else {
+                self.walk(simd, walk(first), first, &stored, &mut covered);
             }
         }
         covered

@@ -39,13 +39,13 @@ const ROOM: usize = LANES * PLACES + LANES;
 pub(crate) struct FacetPixels {
     count: usize,
     places: [u8; ROOM],
-    facets: [u8; ROOM],
+    facets: [f32; ROOM],
     numbers: [[f32; ROOM]; NUMBERS],
 }
 
 impl Default for FacetPixels {
     fn default() -> Self {
-        Self { count: 0, places: [0; ROOM], facets: [0; ROOM], numbers: [[0.0; ROOM]; NUMBERS] }
+        Self { count: 0, places: [0; ROOM], facets: [0.0; ROOM], numbers: [[0.0; ROOM]; NUMBERS] }
     }
 }
 
@@ -249,14 +249,22 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         }
         let mut count = 0;
         let used = (4 + 4 * self.draw.plain.len()).min(FOG);
+        let word = lanes::inlined(
+            #[inline(always)]
+            |half: usize| {
+                I32x8::from_slice(simd, &std::array::from_fn::<_, LANES, _>(|f| (shown[f] >> (32 * half)) as i32))
+            },
+        );
+        let (halves, none) = ([word(0), word(1)], I32x8::splat(simd, 0));
+        let lane = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
             let weights = self.weights(simd, eight, place, tile);
-            let mut numbers = [[0.0; LANES]; NUMBERS];
+            let mut numbers = [splat(simd, 0.0); NUMBERS];
             let mut keep = lanes::inlined(
                 #[inline(always)]
                 |first: usize, four: Rgba<S>| {
                     for k in 0..4 {
-                        four[k].store_slice(&mut numbers[(first + k) % FOG]);
+                        numbers[(first + k) % FOG] = four[k];
                     }
                 },
             );
@@ -276,18 +284,23 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 keep(4 + 4 * i, where_to);
             }
             if self.draw.state.fog.is_some() {
-                self.fog_coordinate(&weights).store_slice(&mut numbers[FOG]);
+                numbers[FOG] = self.fog_coordinate(&weights);
             }
-            for facet in 0..LANES {
-                if shown[facet] >> place & 1 == 1 {
-                    for k in 0..used {
-                        pixels.numbers[k][count] = numbers[k][facet];
-                    }
-                    pixels.numbers[FOG][count] = numbers[FOG][facet];
-                    (pixels.places[count], pixels.facets[count]) = (place as u8, facet as u8);
-                    count += 1;
-                }
+            // The bit of the place becomes the sign.
+            let shows = (halves[place / 32 % 2] << (31 - place as u32 % 32)).simd_lt(none);
+            let append = lanes::inlined(
+                #[inline(always)]
+                |values: F32x8<S>, list: &mut [f32; ROOM]| {
+                    simd.compress_f32x8(values, shows).store_slice(&mut list[count..count + LANES]);
+                },
+            );
+            for k in 0..used {
+                append(numbers[k], &mut pixels.numbers[k]);
             }
+            append(numbers[FOG], &mut pixels.numbers[FOG]);
+            append(lane, &mut pixels.facets);
+            pixels.places[count..count + LANES].fill(place as u8);
+            count += bits_of(shows).count_ones() as usize;
         }
         pixels.count = count;
         // Lanes without a pixel of their own repeat the last one's.
@@ -334,7 +347,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             }
             let packed = pack::<S, F32x8<S>>(&color).to_array();
             for lane in 0..count {
-                let (place, facet) = (pixels.places[start + lane] as usize, pixels.facets[start + lane] as usize);
+                let (place, facet) = (usize::from(pixels.places[start + lane]), pixels.facets[start + lane] as usize);
                 words[place % PLACES][facet % LANES] = packed[lane];
                 shown[facet % LANES] &= !(u64::from(!passed >> lane & 1) << place);
             }

@@ -404,6 +404,16 @@ impl Seen {
         (self.touched != 0).then_some(())
     }
 
+    /// The pixels of one facet in the first planes of samples.
+    #[inline(always)]
+    fn masks_of<const M: usize>(&self, facet: usize) -> [u64; M] {
+        let mut masks = [0; M];
+        for s in 0..M {
+            masks[s] = self.masks[s][facet];
+        }
+        masks
+    }
+
     /// One facet's.
     fn of(&self, facet: usize) -> Self {
         let alone = |masks: &[u64; LANES]| std::array::from_fn(|f| if f == facet { masks[f] } else { 0 });
@@ -435,13 +445,12 @@ fn bring<S: Simd, const M: usize>(
         #[inline(always)]
         || {
             for facet in 0..eight.len() {
-                let first = eight.first(facet);
-                for place in places(seen.any[facet]) {
-                    let (at, new) = (pixel(first, place) % TILE_PIXELS, each[place % PLACES][facet]);
-                    for s in 0..M {
-                        let old = values[s][at];
-                        let new = if adds { add_words(new, old) } else { new };
-                        values[s][at] = if seen.masks[s][facet] >> place & 1 == 1 { new } else { old };
+                let (first, masks) = (eight.first(facet), seen.masks_of::<M>(facet));
+                for s in 0..M {
+                    for place in places(masks[s]) {
+                        let value = &mut values[s][pixel(first, place) % TILE_PIXELS];
+                        let new = each[place % PLACES][facet];
+                        *value = if adds { add_words(new, *value) } else { new };
                     }
                 }
             }
@@ -477,7 +486,6 @@ fn test<S: Simd, const M: usize>(
     )
 }
 
-/// All samples of a pixel together: how many pixels a facet has is not foretold, and so happens once, not four times.
 #[inline(always)]
 fn test_by<const M: usize>(
     eight: &TinyEight,
@@ -489,25 +497,19 @@ fn test_by<const M: usize>(
 ) -> bool {
     let mut changes = false;
     for facet in 0..eight.len() {
-        let (first, mut masks) = (eight.first(facet), [0; M]);
+        let (first, mut masks) = (eight.first(facet), seen.masks_of::<M>(facet));
         for s in 0..M {
-            masks[s] = seen.masks[s][facet];
-        }
-        for place in places(seen.any[facet]) {
-            let at = pixel(first, place) % TILE_PIXELS;
-            for s in 0..M {
-                let (old, new) = (stored[s][at], eight.depth(facet, place, depths[s]));
-                let covered = masks[s] >> place & 1 == 1;
-                let pass = covered & passes(new, old);
-                masks[s] ^= u64::from(covered & !pass) << place;
+            for place in places(masks[s]) {
+                let old = &mut stored[s][pixel(first, place) % TILE_PIXELS];
+                let new = eight.depth(facet, place, depths[s]);
+                let pass = passes(new, *old);
+                masks[s] ^= u64::from(!pass) << place;
                 if write {
-                    stored[s][at] = if pass { new } else { old };
+                    *old = if pass { new } else { *old };
                 } else {
-                    changes |= pass & (new != old);
+                    changes |= pass & (new != *old);
                 }
             }
-        }
-        for s in 0..M {
             seen.masks[s][facet] = masks[s];
         }
     }

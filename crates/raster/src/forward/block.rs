@@ -457,12 +457,19 @@ pub(crate) fn colors<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let whole = mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned();
-            let (count, values) = if whole {
-                (1, tile.replace(block.touched(), true, samples))
-            } else {
-                tile.open(block.touched(), together, samples)
-            };
+            if mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned() {
+                let values = tile.replace(block.touched(), true, samples);
+                let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
+                for row in 0..BLOCK {
+                    let new = match words {
+                        Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
+                        Words::Each(words) => U32x8::from_slice(simd, &words[BLOCK * row..BLOCK * (row + 1)]),
+                    };
+                    new.store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+                }
+                return;
+            }
+            let (count, values) = tile.open(block.touched(), together, samples);
             // What would reach beyond the tile becomes the last rows of a block that does not.
             let below = block.y.saturating_sub(TILE - BLOCK);
             let mut copy;

@@ -404,7 +404,7 @@ impl Seen {
         (self.touched != 0).then_some(())
     }
 
-    /// The pixels of one facet in the first planes of samples.
+    /// The pixels of one facet in the first `M` planes of samples.
     #[inline(always)]
     fn masks_of<const M: usize>(&self, facet: usize) -> [u64; M] {
         let mut masks = [0; M];
@@ -431,7 +431,8 @@ impl Seen {
     }
 }
 
-/// Brings colours of places to the samples that are seen, facet by facet, in `M` planes of samples.
+/// Brings colours of places to the samples that are seen, facet by facet, in `M` planes of samples. All planes for one facet, then
+/// the next: plane by plane for all facets costs crowds of small bodies 5 % of a frame, here and in the depth test.
 #[inline(never)]
 fn bring<S: Simd, const M: usize>(
     simd: S,

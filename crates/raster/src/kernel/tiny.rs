@@ -316,6 +316,7 @@ struct Walk<S: Simd, V: Floats<S>> {
 }
 
 impl<S: Simd> Walk<S, F32x8<S>> {
+    /// This sample in the lower lanes, the other in the upper ones.
     #[inline(always)]
     fn with(&self, other: &Self) -> Walk<S, F32x16<S>> {
         let (low, high) = (self, other);

@@ -18,7 +18,7 @@ use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
 use super::tile_index::{self, Candidate, Texels, TileIndex};
-use super::wide::{bits_of, every, mask_of, max, min, select, splat};
+use super::wide::{bits_of, every, max, min, select};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::Window;
 use crate::{SUBPIXEL, Setup, TILE, TILE_PIXELS, Viewport};
@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use vitral_exec::Workers;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, Floats, I32x8, LANES, Level, MOST_LANES, Simd, dispatch};
+use vitral_math::lanes::{self, F32x8, Floats, LANES, Level, MOST_LANES, MaskOf, Simd, dispatch};
 
 /// State of a draw, and the pixels that it may touch.
 type ClippedState = (Arc<FragmentState>, [i32; 4]);
@@ -241,22 +241,21 @@ impl PendingDepth {
         self.clear / self.scale * self.sign
     }
 
-    /// The depths of eight texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
+    /// The depths of texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
     /// triangles that cannot beat `known` are not looked at, and one that does is enough. Pass `None` for the exact depths.
     /// Lanes without their bit in `active` yield the clear value.
     #[inline(always)]
-    pub(crate) fn texels<S: Simd>(
+    pub(crate) fn texels<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        x: I32x8<S>,
-        y: I32x8<S>,
+        [x, y]: [V::Ints; 2],
         active: u32,
-        known: Option<F32x8<S>>,
-    ) -> F32x8<S> {
+        known: Option<V>,
+    ) -> V {
         const SHIFT: u32 = TILE.trailing_zeros();
         let tile = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
-        let (tiles, mut bounds) = (tile.to_array(), [f32::NEG_INFINITY; LANES]);
-        for lane in 0..LANES {
+        let (tiles, mut bounds) = (tile.as_slice(), [f32::NEG_INFINITY; MOST_LANES]);
+        for lane in 0..V::LEN {
             if let Some(bound) = self.bounds.get(tiles[lane] as u32 as usize) {
                 bounds[lane] = *bound;
             }
@@ -264,27 +263,30 @@ impl PendingDepth {
         let best = self.best();
         let floors = match known {
             Some(known) => known * self.sign,
-            None => splat(simd, f32::NEG_INFINITY),
+            None => every(simd, f32::NEG_INFINITY),
         };
         let settled = known.is_some();
-        let bounds = F32x8::from_slice(simd, &bounds);
-        let open = bounds.simd_gt(floors) & bounds.simd_gt(splat(simd, best));
-        let mut open = open.to_bitmask() as u32 & active;
-        let mut depths = splat(simd, best);
+        let bounds = V::from_slice(simd, &bounds[..V::LEN]);
+        let mut open = bits_of(bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, best))) & active;
+        let mut depths = every(simd, best);
         while open != 0 {
             // All texels of a tile go together.
-            let lane = open.trailing_zeros() as usize % LANES;
-            let together = tile.simd_eq(I32x8::splat(simd, tiles[lane])).to_bitmask() as u32 & open;
+            let number = tiles[open.trailing_zeros() as usize % V::LEN];
+            let together = bits_of(tile.simd_eq(<V::Ints as SimdBase<S>>::splat(simd, number))) & open;
             open &= !together;
-            let active = mask_of(simd, together);
+            let active = MaskOf::<S, V>::from_bitmask(simd, u64::from(together));
             let texels = Texels { x, y, active };
-            let found = match self.known(tiles[lane] as usize, together.count_ones()) {
+            let found = match self.known(number as usize, together.count_ones()) {
                 Some(Known::Few(index)) => self.search(simd, index, &texels, settled, floors, best),
                 Some(Known::Drawn(drawn)) => {
-                    let at = ((y & (TILE as i32 - 1)) * TILE as i32 + (x & (TILE as i32 - 1))).to_array();
-                    F32x8::from_slice(simd, &at.map(|at| drawn[at as usize % TILE_PIXELS])) / self.scale * self.sign
+                    let at = (y & (TILE as i32 - 1)) * TILE as i32 + (x & (TILE as i32 - 1));
+                    let (at, mut stored) = (at.as_slice(), [0.0; MOST_LANES]);
+                    for lane in 0..V::LEN {
+                        stored[lane] = drawn[at[lane] as usize % TILE_PIXELS];
+                    }
+                    V::from_slice(simd, &stored[..V::LEN]) / self.scale * self.sign
                 }
-                None => self.scan_all(simd, tiles[lane] as usize, &texels, settled, floors, best),
+                None => self.scan_all(simd, number as usize, &texels, settled, floors, best),
             };
             depths = select(active, found, depths);
         }
@@ -294,24 +296,24 @@ impl PendingDepth {
     /// The best of a few triangles at texels, if better than `floors` and `best`, or one that is if that settles it; times the
     /// sign.
     #[inline(never)]
-    fn search<S: Simd>(
+    fn search<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
         index: &TileIndex,
-        texels: &Texels<S>,
+        texels: &Texels<S, V>,
         settled: bool,
-        floors: F32x8<S>,
+        floors: V,
         best: f32,
-    ) -> F32x8<S> {
+    ) -> V {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut best = splat(simd, best);
+                let mut best = every(simd, best);
                 let next = lanes::inlined(
                     #[inline(always)]
-                    |best: F32x8<S>| {
+                    |best: V| {
                         let higher = max(best, floors);
-                        if settled { select(best.simd_gt(floors), splat(simd, f32::INFINITY), higher) } else { higher }
+                        if settled { select(best.simd_gt(floors), every(simd, f32::INFINITY), higher) } else { higher }
                     },
                 );
                 let mut above = next(best);
@@ -339,26 +341,26 @@ impl PendingDepth {
 
     /// The same for a tile of which little is known, texel by texel.
     #[inline(never)]
-    fn scan_all<S: Simd>(
+    fn scan_all<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
         tile: usize,
-        texels: &Texels<S>,
+        texels: &Texels<S, V>,
         settled: bool,
-        floors: F32x8<S>,
+        floors: V,
         best: f32,
-    ) -> F32x8<S> {
+    ) -> V {
         simd.vectorize(
             #[inline(always)]
             || {
-                let (x, y, floors) = (texels.x.to_array(), texels.y.to_array(), floors.to_array());
-                let (mut rest, mut depths) = (texels.active.to_bitmask(), [best; LANES]);
+                let (x, y, floors) = (texels.x.as_slice(), texels.y.as_slice(), floors.as_slice());
+                let (mut rest, mut depths) = (texels.active.to_bitmask(), [best; MOST_LANES]);
                 while rest != 0 {
-                    let lane = rest.trailing_zeros() as usize % LANES;
+                    let lane = rest.trailing_zeros() as usize % V::LEN;
                     rest &= rest - 1;
                     depths[lane] = self.scan(simd, [x[lane], y[lane]], tile, settled, floors[lane], best);
                 }
-                F32x8::from_slice(simd, &depths)
+                V::from_slice(simd, &depths[..V::LEN])
             },
         )
     }
@@ -529,19 +531,18 @@ impl PendingJob {
     }
 }
 
-/// A triangle's depths at eight texels, by the operations of [`Setup::depth`].
+/// A triangle's depths at texels, by the operations of [`Setup::depth`].
 #[inline(always)]
-fn depths_at<S: Simd>(simd: S, setup: &Setup, texels: &Texels<S>) -> F32x8<S> {
+fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &Texels<S, V>) -> V {
     let away = lanes::inlined(
         #[inline(always)]
-        |texel: I32x8<S>, axis: usize| -> F32x8<S> {
-            let distance: F32x8<S> =
-                ((texel << SUBPIXEL.trailing_zeros()) + (SUBPIXEL / 2 - setup.origin[axis])).to_float();
+        |texel: V::Ints, axis: usize| -> V {
+            let distance: V = ((texel << SUBPIXEL.trailing_zeros()) + (SUBPIXEL / 2 - setup.origin[axis])).to_float();
             distance * (1.0 / SUBPIXEL as f32)
         },
     );
     let z = (away(texels.y, 1) * setup.dz_dy + setup.z) + away(texels.x, 0) * setup.dz_dx;
-    min(max(z, splat(simd, setup.z_min)), splat(simd, setup.z_max))
+    min(max(z, every(simd, setup.z_min)), every(simd, setup.z_max))
 }
 
 /// What later triangles must be above. Nothing is above infinity: what is better than the floor may settle it.

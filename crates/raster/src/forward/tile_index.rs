@@ -2,15 +2,16 @@
 //!
 //! Each block of 8×8 texels has a bit for each triangle whose box reaches it. The triangles stand in falling order of their
 //! bounds: the first that covers a texel is mostly the one that is kept there, and what comes after the first bound that is too
-//! low needs no look. Eight texels go through the triangles of all their blocks together.
+//! low needs no look. Eight texels or sixteen go through the triangles of all their blocks together.
 //!
 //! In:   a tile's entries with their boxes and bounds. Out: triangles that may matter at texels.
 //! Cost: an operation a row of blocks for each triangle; a lookup is linear in the triangles of its blocks.
 
+use super::wide::every;
 use crate::kernel::traverse::{Edge, center_edges};
 use crate::{SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, Simd};
+use vitral_math::lanes::{self, Floats, MaskOf, Simd};
 
 /// As many triangles fit.
 pub(crate) const MOST: usize = u128::BITS as usize;
@@ -52,14 +53,14 @@ pub(crate) struct TileIndex {
     blocks: [u128; BLOCKS * BLOCKS],
 }
 
-/// Eight texels of a tile.
+/// Texels of a tile, eight or sixteen.
 #[derive(Clone, Copy)]
-pub(crate) struct Texels<S: Simd> {
+pub(crate) struct Texels<S: Simd, V: Floats<S>> {
     /// Places in the plane.
-    pub(crate) x: I32x8<S>,
-    pub(crate) y: I32x8<S>,
+    pub(crate) x: V::Ints,
+    pub(crate) y: V::Ints,
     /// Which of them matter.
-    pub(crate) active: Mask8<S>,
+    pub(crate) active: MaskOf<S, V>,
 }
 
 impl TileIndex {
@@ -86,27 +87,32 @@ impl TileIndex {
     /// Hands out the triangles that cover some of the texels and may lie above `floors` there, with which texels; what is
     /// returned are the next floors.
     #[inline(always)]
-    pub(crate) fn find<S: Simd>(
+    pub(crate) fn find<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        texels: &Texels<S>,
-        mut floors: F32x8<S>,
-        mut found: impl FnMut(&Setup, Mask8<S>) -> F32x8<S>,
+        texels: &Texels<S, V>,
+        mut floors: V,
+        mut found: impl FnMut(&Setup, MaskOf<S, V>) -> V,
     ) {
         let Texels { x, y, active } = *texels;
         let (column, row) = (x - self.origin[0], y - self.origin[1]);
-        let block = ((row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros())).to_array();
-        let (mut bits, mut lanes) = (0, active.to_bitmask());
-        while lanes != 0 {
-            bits |= self.blocks[block[lanes.trailing_zeros() as usize % LANES] as usize % self.blocks.len()];
-            lanes &= lanes - 1;
+        let block = (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
+        let block = block.as_slice();
+        let (mut bits, mut rest) = (0, active.to_bitmask());
+        while rest != 0 {
+            bits |= self.blocks[block[rest.trailing_zeros() as usize % V::LEN] as usize % self.blocks.len()];
+            rest &= rest - 1;
         }
-        let zero = I32x8::splat(simd, 0);
+        let whole = lanes::inlined(
+            #[inline(always)]
+            |value| <V::Ints as SimdBase<S>>::splat(simd, value),
+        );
+        let zero = whole(0);
         while bits != 0 {
             let Some(triangle) = self.triangles.get(bits.trailing_zeros() as usize) else { return };
             bits &= bits - 1;
             // NaN, which is above nothing, stands first.
-            let above = active & <F32x8<S> as SimdBase<S>>::splat(simd, triangle.bound).simd_gt(floors);
+            let above = active & every::<S, V>(simd, triangle.bound).simd_gt(floors);
             if !above.any_true() {
                 return;
             }
@@ -119,8 +125,8 @@ impl TileIndex {
             if !covered.any_true() {
                 continue;
             }
-            let [x0, y0, x1, y1] = triangle.clip.map(|v| I32x8::splat(simd, v));
-            covered &= x.simd_ge(x0) & x.simd_lt(x1) & y.simd_ge(y0) & y.simd_lt(y1);
+            let [x0, y0, x1, y1] = triangle.clip;
+            covered &= x.simd_ge(whole(x0)) & x.simd_lt(whole(x1)) & y.simd_ge(whole(y0)) & y.simd_lt(whole(y1));
             floors = found(&triangle.setup, covered);
         }
     }
@@ -131,7 +137,7 @@ mod tests {
     use super::*;
     use crate::forward::boxes::Boxes;
     use crate::testing::{box_of, triangles};
-    use vitral_math::lanes::{available_levels, dispatch};
+    use vitral_math::lanes::{F32x8, I32x8, LANES, Mask8, available_levels, dispatch};
 
     /// What triangles must be above.
     const FLOORS: [f32; 3] = [f32::NEG_INFINITY, 0.5, f32::INFINITY];

@@ -303,7 +303,7 @@ fn plane_depths<S: Simd>(
     known: Option<F32x8<S>>,
 ) -> F32x8<S> {
     if let Some(pending) = &depth.pending {
-        return pending.texels(simd, x, y, active, known);
+        return pending.texels(simd, [x, y], active, known);
     }
     const SHIFT: u32 = TILE.trailing_zeros();
     const INSIDE: i32 = TILE as i32 - 1;

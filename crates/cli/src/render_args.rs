@@ -186,7 +186,8 @@ pub(crate) struct LightArgs {
     /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
     pub(crate) light: Vec<Light>,
-    /// Multiplies all lights [default: 1]
+    /// Multiplies all lights [default: 1, and what brings a model's own lights to where a picture shows them: files have
+    /// them in candela and lux]
     #[arg(long, value_name = "FACTOR", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f64>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]

@@ -281,9 +281,7 @@ fn set_lights(state: &mut State, args: &LightArgs) {
     if !args.light.is_empty() {
         state.lights = Some(args.light.clone());
     }
-    if let Some(factor) = args.light_intensity {
-        state.light_intensity = factor as f32;
-    }
+    state.light_intensity = args.light_intensity.map(|factor| factor as f32).or(state.light_intensity);
     state.materials.extend(args.material.iter().cloned());
 }
 

@@ -57,7 +57,7 @@ fn six(
 ) -> Result<Rendered, Error> {
     let with = renderer.settings.clone();
     let own_lights = renderer.lights.replace(lights.to_vec());
-    let intensity = std::mem::replace(&mut renderer.light_intensity, 1.0);
+    let intensity = renderer.light_intensity.replace(1.0);
     let without = Settings { shadows: "none".to_owned(), ..with.clone() };
     let made = || {
         let mut shot = |settings: &Settings, camera: &Camera| {

@@ -7,7 +7,7 @@ use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
 use vitral_render::{Execution, Global, Rendered, Session, Settings, Shot, render};
-use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, framing};
+use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, exposure, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
 #[derive(Debug)]
@@ -26,11 +26,14 @@ pub struct Renderer {
     pub moves: Moves,
     /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has none.
     pub lights: Option<Vec<Light>>,
-    /// Multiplies all lights.
-    pub light_intensity: f32,
+    /// Multiplies all lights; `None`: 1, and for the scene's own lights what brings them to where pictures show them
+    /// ([`exposure`]), with a warning.
+    pub light_intensity: Option<f32>,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
     session: Session,
+    /// What brings the scene's own lights to where pictures show them.
+    exposure: f32,
     execution: Execution,
 }
 
@@ -59,17 +62,19 @@ impl Renderer {
     /// # Errors
     /// A scene whose parts do not fit together.
     pub fn with_execution(scene: Scene, execution: Execution) -> Result<Self, Error> {
+        let session = Session::with_workers(Arc::new(scene), &execution.workers)?;
         Ok(Self {
             settings: Settings::default(),
             camera: None,
             view: View::default(),
-            up: scene.usual_up(),
+            up: session.scene().usual_up(),
             lens: Lens::default(),
             moves: Moves::default(),
             lights: None,
-            light_intensity: 1.0,
+            light_intensity: None,
             ambient: [0.0; 3],
-            session: Session::with_workers(Arc::new(scene), &execution.workers)?,
+            exposure: exposure(session.world()),
+            session,
             execution,
         })
     }
@@ -105,6 +110,7 @@ impl Renderer {
     /// A scene whose parts do not fit together; the old one stays.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), Error> {
         self.session = Session::with_workers(Arc::new(scene), &self.execution.workers)?;
+        self.exposure = exposure(self.session.world());
         Ok(())
     }
 
@@ -143,12 +149,18 @@ impl Renderer {
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),
         };
+        let factor = self.light_intensity.unwrap_or(self.frame_exposure());
         for light in &mut lights {
             for color in [&mut light.ambient, &mut light.diffuse, &mut light.specular] {
-                *color = color.map(|c| c * self.light_intensity);
+                *color = color.map(|c| c * factor);
             }
         }
         lights
+    }
+
+    /// What the lights of a picture are multiplied with where no intensity was chosen: 1 unless they are the scene's own.
+    fn frame_exposure(&self) -> f32 {
+        if self.lights.is_none() && self.light_intensity.is_none() { self.exposure } else { 1.0 }
     }
 
     /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
@@ -186,7 +198,16 @@ impl Renderer {
     pub fn render_from(&mut self, camera: &Camera) -> Result<Rendered, Error> {
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
-        Ok(render(&mut self.session, &shot, &self.settings, &self.execution)?)
+        let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;
+        let exposure = self.frame_exposure();
+        if exposure != 1.0 && self.settings.lighting {
+            let (what, change, factor) =
+                if exposure < 1.0 { ("bright", "dimmed", 1.0 / exposure) } else { ("dark", "brightened", exposure) };
+            rendered.warnings.push(format!(
+                "the scene's lights are too {what} for a picture, {change} {factor} times (--light-intensity 1 leaves them)"
+            ));
+        }
+        Ok(rendered)
     }
 
     /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every
@@ -298,7 +319,7 @@ mod tests {
         shining.settings.global = Global::Radiosity;
         assert!(shining.frame_lights(&near).is_empty());
         let mut lab = small("sphere");
-        lab.light_intensity = 0.5;
+        lab.light_intensity = Some(0.5);
         let lights = lab.frame_lights(&camera);
         assert_eq!(lights.len(), 2);
         assert_eq!(lights[0].diffuse[0], lab.world().lights[0].diffuse[0] * 0.5);

@@ -36,8 +36,8 @@ pub struct State {
     pub viewpoint: Viewpoint,
     /// The lights, world space; `null`: the scene's, or default ones.
     pub lights: Option<Vec<Light>>,
-    /// Multiplies all lights.
-    pub light_intensity: f32,
+    /// Multiplies all lights; `null`: 1, and what brings the scene's own lights to where pictures show them.
+    pub light_intensity: Option<f32>,
     /// Global ambient light on top of the scene's own.
     pub ambient: [f32; 3],
     /// How pictures are made.
@@ -55,7 +55,7 @@ impl Default for State {
             materials: Vec::new(),
             viewpoint: Viewpoint::default(),
             lights: None,
-            light_intensity: 1.0,
+            light_intensity: None,
             ambient: [0.0; 3],
             settings: Settings::default(),
             turntable: None,
@@ -113,7 +113,7 @@ impl State {
             _ if self.turntable.is_some_and(|views| !(1..=MOST_VIEWS).contains(&views)) => {
                 ("turntable", "a whole number from 1 to 1000000 is required")
             }
-            _ if self.light_intensity.is_nan() || self.light_intensity < 0.0 => {
+            _ if self.light_intensity.is_some_and(|factor| factor.is_nan() || factor < 0.0) => {
                 ("light-intensity", "a number of at least 0 is required")
             }
             _ if !positive(&self.ambient) => ("ambient", INTENSITIES),

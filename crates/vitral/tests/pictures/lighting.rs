@@ -67,7 +67,7 @@ fn l13_light_contributions_add_up() {
     let mut renderer = exact_builtin("scene0", 120, 90);
     let mut lights = lab::lights();
     lights.push(Light { name: "LIGHT2".to_owned(), ..sun(DVec3::new(0.3, 1.0, -0.2), 0.6) });
-    renderer.light_intensity = 0.45;
+    renderer.light_intensity = Some(0.45);
     let mut with = |enabled: &dyn Fn(usize) -> bool| {
         let mut some = lights.clone();
         some.iter_mut().enumerate().for_each(|(i, l)| l.enabled = enabled(i));
@@ -93,7 +93,7 @@ fn l13_light_contributions_add_up() {
 fn sphere_with(model: Illumination, change: impl Fn(&mut Light)) -> Vec<[u8; 4]> {
     let mut renderer = exact_builtin("sphere", 100, 75);
     renderer.settings.illumination = model;
-    renderer.light_intensity = 0.5;
+    renderer.light_intensity = Some(0.5);
     let mut lights = lab::lights();
     change(&mut lights[0]);
     renderer.lights = Some(lights);
@@ -379,4 +379,33 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
             assert_eq!(shades.len() == 1, in_plane, "{illumination}, shadows {shadows}: {}", shades.len());
         }
     }
+}
+
+/// Files have lights in candela and lux.
+#[test]
+fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_asked_for() {
+    let picture = |strength: f32, intensity: Option<f32>| {
+        let mut scene = load_builtin("sphere").unwrap();
+        for light in &mut scene.lights {
+            [&mut light.ambient, &mut light.diffuse, &mut light.specular]
+                .into_iter()
+                .flatten()
+                .for_each(|c| *c *= strength);
+        }
+        let mut renderer = exact(scene, 60, 45);
+        renderer.light_intensity = intensity;
+        let rendered = renderer.render().unwrap();
+        (rendered.frame.color.unwrap().into_data(), rendered.warnings)
+    };
+    let (white, silent) = picture(4096.0, Some(1.0));
+    assert!(silent.is_empty() && white.iter().filter(|c| c[..3] == [255; 3]).count() > 500);
+    for (strength, what) in
+        [(4096.0, "too bright for a picture, dimmed"), (1.0 / 4096.0, "too dark for a picture, bright")]
+    {
+        let (shown, warnings) = picture(strength, None);
+        assert!(warnings.len() == 1 && warnings[0].contains(what), "{warnings:?}");
+        let most = shown.iter().flat_map(|c| c[..3].iter().copied()).filter(|&c| c > 60 && c < 250).count();
+        assert!(most > 500, "{what}: {most}");
+    }
+    assert_eq!(picture(1.0, None), picture(1.0, Some(1.0)));
 }

@@ -106,9 +106,9 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
         assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)), "{camera:?}");
     }
     renderer.camera = Some(good);
-    renderer.light_intensity = f32::NAN;
+    renderer.light_intensity = Some(f32::NAN);
     assert_eq!(colors(&mut renderer).len(), 1200);
-    renderer.light_intensity = f32::INFINITY;
+    renderer.light_intensity = Some(f32::INFINITY);
     assert_eq!(colors(&mut renderer).len(), 1200);
     // A flat object, one scaled to nothing, and one far away.
     let mut scene = load_builtin("cubs").unwrap();

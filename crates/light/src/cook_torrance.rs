@@ -74,7 +74,9 @@ pub fn cook_torrance<T: Lanes>(
     let mut sum = Reflected { diffuse: tint(ambient, global_ambient), specular: V3::new(zero, zero, zero) };
     for (j, light) in lights.iter().enumerate() {
         let incident = light.incident(s.position);
-        sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
+        if light.ambient != [0.0; 3] {
+            sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
+        }
         let n_l = s.n.dot(incident.l).saturate();
         let visible = visibility(j);
         let arriving = visible.scale(incident.intensity);

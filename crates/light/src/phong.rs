@@ -57,7 +57,9 @@ pub fn phong<T: Lanes>(
     let shininess = k.shininess.positive();
     for (j, light) in lights.iter().enumerate() {
         let incident = light.incident(s.position);
-        sum.diffuse = sum.diffuse + tint(k.ka, light.ambient).scale(incident.ambient_intensity);
+        if light.ambient != [0.0; 3] {
+            sum.diffuse = sum.diffuse + tint(k.ka, light.ambient).scale(incident.ambient_intensity);
+        }
         if illumination == Illumination::Ambient {
             continue;
         }

@@ -45,7 +45,11 @@ impl Composer {
             encode(constants.level, &self.places, &lit.colors, constants.raw, out);
             return;
         }
-        self.mix(tile, points, lit, constants, marks, deep);
+        if points.fragments.is_empty() {
+            self.mix_opaque(tile, points, lit, constants);
+        } else {
+            self.mix(tile, points, lit, constants, marks, deep);
+        }
         encode(constants.level, &self.places, &self.colors, constants.raw, out);
     }
 
@@ -68,6 +72,26 @@ impl Composer {
     /// Encodes the pixels that were added.
     pub(super) fn end(&self, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
         encode(constants.level, &self.places, &self.colors, constants.raw, out);
+    }
+
+    /// [`Self::mix`] where nothing lies in front.
+    fn mix_opaque(&mut self, tile: &Tile, points: &Points, lit: &Lit, constants: &FrameConstants<'_>) {
+        let samples = constants.view.pattern.len();
+        let background = &constants.background.colors[tile.y as usize..];
+        self.places.extend(points.pixels.iter().map(|p| p.index));
+        self.colors.extend(points.pixels.iter().map(|pixel| match pixel.source {
+            Source::Point(point) => lit.colors[point as usize],
+            Source::Mixed(start) => {
+                let (behind, mut sum) = (background[pixel.index as usize / TILE], [0.0; 4]);
+                for &point in &points.mixed[start as usize..][..samples] {
+                    let color = if point == NO_POINT { behind } else { lit.colors[point as usize] };
+                    for k in 0..4 {
+                        sum[k] += color[k];
+                    }
+                }
+                sum.map(|c| c / samples as f32)
+            }
+        }));
     }
 
     /// Mixes the samples of every pixel that shows more than the background.

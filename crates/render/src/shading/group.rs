@@ -90,8 +90,14 @@ impl Lighting<'_> {
             #[inline(always)]
             || {
                 let one = constant(simd, 1.0);
-                let v = towards_viewer(simd, position, self.along, self.perspective);
-                let surface = vitral_light::Surface { position: *position, n: *n, v };
+                if self.arriving.is_empty() {
+                    // Factors of 1 that are known to be that are left out.
+                    let all = lanes::inlined(
+                        #[inline(always)]
+                        |_: usize| V3::new(one, one, one),
+                    );
+                    return self.reflect_of(simd, position, n, coefficients, all);
+                }
                 let lit = lanes::inlined(
                     #[inline(always)]
                     |j: usize| match self.arriving.get(j) {
@@ -99,18 +105,33 @@ impl Lighting<'_> {
                         None => V3::new(one, one, one),
                     },
                 );
-                match coefficients {
-                    Coefficients::Empirical(k) => {
-                        let grazing = lanes::inlined(
-                            #[inline(always)]
-                            |light: &PreparedLight| light.direction_rounding(*position),
-                        );
-                        vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
-                    }
-                    Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
-                }
+                self.reflect_of(simd, position, n, coefficients, lit)
             },
         )
+    }
+
+    /// [`Self::reflect`] of light of which `lit` says how much arrives.
+    #[inline(always)]
+    fn reflect_of<S: Simd>(
+        &self,
+        simd: S,
+        position: &V3<F<S>>,
+        n: &V3<F<S>>,
+        coefficients: &Coefficients<S>,
+        lit: impl Fn(usize) -> V3<F<S>>,
+    ) -> Reflected<F<S>> {
+        let v = towards_viewer(simd, position, self.along, self.perspective);
+        let surface = vitral_light::Surface { position: *position, n: *n, v };
+        match coefficients {
+            Coefficients::Empirical(k) => {
+                let grazing = lanes::inlined(
+                    #[inline(always)]
+                    |light: &PreparedLight| light.direction_rounding(*position),
+                );
+                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
+            }
+            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
+        }
     }
 }
 

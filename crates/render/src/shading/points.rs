@@ -148,10 +148,12 @@ impl Points {
         self.followed.clear();
         self.overruled = 0;
         if tile.touched {
-            if constants.view.pattern.len() == 1 && !constants.follows_rays() {
-                self.collect_single(tile, constants);
-            } else {
-                self.collect_opaque(tile, constants);
+            match constants.view.pattern.len() {
+                _ if constants.follows_rays() => self.collect_opaque(tile, constants),
+                1 => self.collect_single(tile, constants),
+                2 => self.collect_samples::<2>(tile, constants),
+                4 => self.collect_samples::<4>(tile, constants),
+                _ => self.collect_opaque(tile, constants),
             }
         }
         self.covered_pixels = self.pixels.len() as u64;
@@ -194,6 +196,75 @@ impl Points {
         self.facet.truncate(count);
         self.place.truncate(count);
         self.pixels.truncate(count);
+    }
+
+    /// [`Self::collect_opaque`] for few samples and no rays that go on: where facets are small, whether they fill a
+    /// pixel is anyone's guess, so everything is written in any case, and kept where it is needed.
+    fn collect_samples<const SAMPLES: usize>(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
+        let Some(middles) = constants.middles.get(..1 << SAMPLES) else { return };
+        let (width, height) = visible_part(tile, constants);
+        let [mut points, mut pixels, mut mixed] = [0; 3];
+        for y in 0..height {
+            let down = (tile.y as usize + y) as f32;
+            for first in (0..width).step_by(RUN) {
+                let start = y * TILE + first;
+                let planes: [&[u32; RUN]; SAMPLES] = std::array::from_fn(|s| {
+                    tile.facet[s * TILE_PIXELS + start..].first_chunk().expect("a tile's rows are whole runs")
+                });
+                let (mut all, mut different) = ([NO_FACET; RUN], [0; RUN]);
+                for plane in planes {
+                    for x in 0..RUN {
+                        all[x] &= plane[x];
+                        different[x] |= plane[x] ^ planes[0][x];
+                    }
+                }
+                if is_empty(&all) {
+                    continue;
+                }
+                if self.facet.len() < points + RUN * SAMPLES {
+                    self.facet.resize(points + 16 * RUN * SAMPLES, 0);
+                    self.place.resize(points + 16 * RUN * SAMPLES, [0.0; 2]);
+                }
+                if self.pixels.len() < pixels + RUN {
+                    self.pixels.resize(pixels + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
+                }
+                if self.mixed.len() < mixed + RUN * SAMPLES {
+                    self.mixed.resize(mixed + 16 * RUN * SAMPLES, NO_POINT);
+                }
+                for x in 0..RUN.min(width - first) {
+                    let facets: [u32; SAMPLES] = std::array::from_fn(|s| planes[s][x]);
+                    let across = (tile.x as usize + first + x) as f32;
+                    let mut point_of = [NO_POINT; SAMPLES];
+                    for s in 0..SAMPLES {
+                        // The facet is new unless an earlier sample has it.
+                        let (mut point, mut is_new, mut mask) = (points as u32, facets[s] != NO_FACET, 0);
+                        for t in 0..s {
+                            let same = facets[t] == facets[s];
+                            point = if same { point_of[t] } else { point };
+                            is_new &= !same;
+                        }
+                        for t in s..SAMPLES {
+                            mask |= usize::from(facets[t] == facets[s]) << t;
+                        }
+                        let [right, below] = middles[mask];
+                        self.facet[points] = facets[s];
+                        self.place[points] = [across + right, down + below];
+                        points += usize::from(is_new);
+                        point_of[s] = if facets[s] == NO_FACET { NO_POINT } else { point };
+                    }
+                    let is_mixed = different[x] != 0;
+                    let source = if is_mixed { Source::Mixed(mixed as u32) } else { Source::Point(point_of[0]) };
+                    self.mixed[mixed..mixed + SAMPLES].copy_from_slice(&point_of);
+                    self.pixels[pixels] = Pixel { index: (start + x) as u32, source };
+                    mixed += SAMPLES * usize::from(is_mixed);
+                    pixels += usize::from(all[x] != NO_FACET);
+                }
+            }
+        }
+        self.facet.truncate(points);
+        self.place.truncate(points);
+        self.pixels.truncate(pixels);
+        self.mixed.truncate(mixed);
     }
 
     fn collect_opaque(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {

@@ -362,6 +362,17 @@ fn takes_second(level: Level) -> bool {
     false
 }
 
+/// Whether registers hold sixteen numbers: where two must hold them, formulas of many numbers are better off with eight.
+#[inline(always)]
+pub fn has_sixteen(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if matches!(level, Level::Avx512(_)) {
+        return true;
+    }
+    let _ = level;
+    false
+}
+
 /// A vector of three lanes: eight directions or points, or one.
 #[derive(Clone, Copy, Debug)]
 pub struct V3<T> {
@@ -383,6 +394,16 @@ impl<T: Lanes> V3<T> {
     #[inline(always)]
     pub fn splat(like: T, v: [f32; 3]) -> Self {
         Self { x: like.splat(v[0]), y: like.splat(v[1]), z: like.splat(v[2]) }
+    }
+    /// From components.
+    #[inline(always)]
+    pub fn from_array([x, y, z]: [T; 3]) -> Self {
+        Self { x, y, z }
+    }
+    /// Components.
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 3] {
+        [self.x, self.y, self.z]
     }
     /// Inner product.
     #[inline(always)]

@@ -46,7 +46,7 @@ pub(crate) fn shade<S: Simd>(
     slots: &Slots,
     surface: &Surface<S>,
     lighting: &Lighting<'_>,
-    coefficients: &Coefficients<S>,
+    coefficients: &Coefficients<F32x8<S>>,
 ) -> Reflected<F32x8<S>> {
     let [a, b, c] = surface.positions;
     if faces.centers_and_normals.is_empty() {

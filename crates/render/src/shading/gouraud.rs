@@ -22,7 +22,7 @@ pub(crate) fn shade<S: Simd>(
     simd: S,
     surface: &Surface<S>,
     lighting: &Lighting<'_>,
-    corner_coefficients: &[Coefficients<S>; 3],
+    corner_coefficients: &[Coefficients<F32x8<S>>; 3],
 ) -> Reflected<F32x8<S>> {
     let at = lanes::inlined(
         #[inline(always)]

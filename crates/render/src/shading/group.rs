@@ -3,7 +3,7 @@
 use super::FrameConstants;
 use super::facets::{FacetTable, Record, Subject, Viewing};
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Slots, Surface, constant, surface};
+use super::geometry::{F, Slots, Surface, surface};
 use super::hits::{Along, Hit};
 use super::looks::Looks;
 use super::points::{Group, Points};
@@ -17,7 +17,7 @@ use vitral_light::{
 };
 use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
+use vitral_math::lanes::{self, F32x8, F32x16, Floats, LANES, Lanes, Simd, V3};
 
 /// What a material's points go through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,10 +42,47 @@ pub(crate) fn model(material: &Material, illumination: Illumination, lighting: b
     }
 }
 
-/// Reflection coefficients at eight points.
-pub(crate) enum Coefficients<S: Simd> {
-    Empirical(Phong<F<S>>),
-    Microfacet(Microfacet<F<S>>),
+/// Reflection coefficients at points, a lane each.
+pub(crate) enum Coefficients<T> {
+    Empirical(Phong<T>),
+    Microfacet(Microfacet<T>),
+}
+
+/// Numbers of [`Coefficients`].
+const NUMBERS: usize = 10;
+
+impl<T: Lanes> Coefficients<T> {
+    /// As numbers; those of the microfacets are fewer, and the last is repeated.
+    #[inline(always)]
+    fn numbers(&self) -> [T; NUMBERS] {
+        match self {
+            Self::Empirical(Phong { ka, kd, ks, shininess }) => {
+                [ka.x, ka.y, ka.z, kd.x, kd.y, kd.z, ks.x, ks.y, ks.z, *shininess]
+            }
+            Self::Microfacet(Microfacet { base_color: b, metallic: m, roughness: r, occlusion: o }) => {
+                [b.x, b.y, b.z, *m, *r, *o, *o, *o, *o, *o]
+            }
+        }
+    }
+
+    /// The way back.
+    #[inline(always)]
+    fn from_numbers(model: Model, n: [T; NUMBERS]) -> Self {
+        match model {
+            Model::Microfacet => Self::Microfacet(Microfacet {
+                base_color: V3::new(n[0], n[1], n[2]),
+                metallic: n[3],
+                roughness: n[4],
+                occlusion: n[5],
+            }),
+            _ => Self::Empirical(Phong {
+                ka: V3::new(n[0], n[1], n[2]),
+                kd: V3::new(n[3], n[4], n[5]),
+                ks: V3::new(n[6], n[7], n[8]),
+                shininess: n[9],
+            }),
+        }
+    }
 }
 
 /// The lights of a frame and the way to use them.
@@ -64,32 +101,46 @@ pub(crate) struct Lighting<'a> {
 
 /// Unit vector from a position (view space) to the eye, or to where the rays come from.
 #[inline(always)]
-pub(crate) fn towards_viewer<S: Simd>(
+pub(crate) fn towards_viewer<S: Simd, V: Floats<S>>(
     simd: S,
-    position: &V3<F<S>>,
+    position: &V3<V>,
     along: Option<&Along>,
     perspective: bool,
-) -> V3<F<S>> {
+) -> V3<V> {
     match along {
-        Some(along) => (along.origin(simd) - *position).normalize(),
+        Some(along) => {
+            let origin = V::by_eights(
+                simd,
+                [],
+                #[inline(always)]
+                |_, []| along.origin(simd).to_array(),
+            );
+            (V3::from_array(origin) - *position).normalize()
+        }
         None if perspective => (-*position).normalize(),
-        None => V3::splat(constant(simd, 1.0), [0.0, 0.0, 1.0]),
+        None => V3::splat(every(simd, 1.0), [0.0, 0.0, 1.0]),
     }
+}
+
+/// A number in all lanes.
+#[inline(always)]
+fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
+    <V as SimdBase<S>>::splat(simd, value)
 }
 
 impl Lighting<'_> {
     /// Light reflected towards the viewer; position and unit normal in view space.
-    pub(crate) fn reflect<S: Simd>(
+    pub(crate) fn reflect<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        position: &V3<F<S>>,
-        n: &V3<F<S>>,
-        coefficients: &Coefficients<S>,
-    ) -> Reflected<F<S>> {
+        position: &V3<V>,
+        n: &V3<V>,
+        coefficients: &Coefficients<V>,
+    ) -> Reflected<V> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let one = constant(simd, 1.0);
+                let one = every(simd, 1.0);
                 if self.arriving.is_empty() {
                     // Factors of 1 that are known to be that are left out.
                     let all = lanes::inlined(
@@ -101,7 +152,12 @@ impl Lighting<'_> {
                 let lit = lanes::inlined(
                     #[inline(always)]
                     |j: usize| match self.arriving.get(j) {
-                        Some(parts) => parts.eight(simd, self.first),
+                        Some(parts) => V3::from_array(V::by_eights(
+                            simd,
+                            [],
+                            #[inline(always)]
+                            |lane, []| parts.eight(simd, self.first + lane).to_array(),
+                        )),
                         None => V3::new(one, one, one),
                     },
                 );
@@ -112,14 +168,14 @@ impl Lighting<'_> {
 
     /// [`Self::reflect`] of light of which `lit` says how much arrives.
     #[inline(always)]
-    fn reflect_of<S: Simd>(
+    fn reflect_of<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        position: &V3<F<S>>,
-        n: &V3<F<S>>,
-        coefficients: &Coefficients<S>,
-        lit: impl Fn(usize) -> V3<F<S>>,
-    ) -> Reflected<F<S>> {
+        position: &V3<V>,
+        n: &V3<V>,
+        coefficients: &Coefficients<V>,
+        lit: impl Fn(usize) -> V3<V>,
+    ) -> Reflected<V> {
         let v = towards_viewer(simd, position, self.along, self.perspective);
         let surface = vitral_light::Surface { position: *position, n: *n, v };
         match coefficients {
@@ -196,14 +252,22 @@ pub(crate) fn shade_all<S: Simd>(
         return;
     }
     let mut rays = 0;
-    each_eight(
+    each_pair(
         simd,
         points,
         facets,
         constants,
         (asks, &mut rays),
         #[inline(always)]
-        |eight| shade_eight(simd, eight, constants, lit),
+        |first, second| match second {
+            Some(second) if goes_with_others(simd, first.material, constants) => {
+                shade_pair(simd, [first, second], constants, lit);
+            }
+            _ => {
+                shade_eight(simd, first, constants, lit);
+                second.into_iter().for_each(|second| shade_eight(simd, second, constants, lit));
+            }
+        },
     );
     lit.shadow_rays += rays;
 }
@@ -239,8 +303,32 @@ pub(crate) fn each_eight<S: Simd>(
     points: &Points,
     facets: &mut FacetTable,
     constants: &FrameConstants<'_>,
-    (asks, rays): (impl Fn(&MaterialConstants<'_>) -> bool, &mut u64),
+    asks_and_rays: (impl Fn(&MaterialConstants<'_>) -> bool, &mut u64),
     mut visit: impl FnMut(&Eight<'_>),
+) {
+    each_pair(
+        simd,
+        points,
+        facets,
+        constants,
+        asks_and_rays,
+        #[inline(always)]
+        |first, second| {
+            visit(first);
+            second.into_iter().for_each(&mut visit);
+        },
+    );
+}
+
+/// [`each_eight`], two at a time where a group has two more.
+#[inline(always)]
+fn each_pair<S: Simd>(
+    simd: S,
+    points: &Points,
+    facets: &mut FacetTable,
+    constants: &FrameConstants<'_>,
+    (asks, rays): (impl Fn(&MaterialConstants<'_>) -> bool, &mut u64),
+    mut visit: impl FnMut(&Eight<'_>, Option<&Eight<'_>>),
 ) {
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
@@ -251,12 +339,29 @@ pub(crate) fn each_eight<S: Simd>(
         } else {
             [Vec::new(), Vec::new()]
         };
-        for (i, (eight, records)) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)).enumerate() {
-            let slots = slots(points, eight, records, subject.first_facet);
-            let (subject, arriving, first) = (&subject, &arriving, i * LANES);
-            let (slots, records, along) = (&slots, &facets.records, None);
-            let arriving_behind = &behind;
-            visit(&Eight { subject, material, points: eight, slots, records, along, arriving, arriving_behind, first });
+        for (i, (order, records)) in order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate() {
+            let count = order.len().min(LANES);
+            let ((mine, next), (my_records, next_records)) = (order.split_at(count), records.split_at(count));
+            let eight = |points, slots, first| Eight {
+                subject: &subject,
+                material,
+                points,
+                slots,
+                records: &facets.records,
+                along: None,
+                arriving: &arriving,
+                arriving_behind: &behind,
+                first,
+            };
+            let place = 2 * LANES * i;
+            let my_slots = slots(points, mine, my_records, subject.first_facet);
+            let mine = eight(mine, &my_slots, place);
+            if next.is_empty() {
+                visit(&mine, None);
+            } else {
+                let next_slots = slots(points, next, next_records, subject.first_facet);
+                visit(&mine, Some(&eight(next, &next_slots, place + LANES)));
+            }
         }
     }
 }
@@ -350,6 +455,74 @@ pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet
     slots
 }
 
+/// Whether eight points and the next eight of the group are illuminated together: where registers hold sixteen numbers, and
+/// the picture takes nothing of their surface but what they reflect and shine.
+#[inline(always)]
+fn goes_with_others<S: Simd>(simd: S, material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
+    lanes::has_sixteen(simd.level())
+        && constants.shading == Shading::Phong
+        && asks(material)
+        && constants.radiosity.is_none()
+        && constants.transparency != Transparency::Filtered
+        && material.scatters.is_none()
+        && !constants.follows_rays()
+}
+
+/// [`shade_eight`] for two eights that go together.
+fn shade_pair<S: Simd>(simd: S, pair: [&Eight<'_>; 2], constants: &FrameConstants<'_>, lit: &mut Lit) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let [first, second] = pair;
+            let numbers: [F32x16<S>; NUMBERS + 11] = Floats::by_eights(
+                simd,
+                [],
+                #[inline(always)]
+                |lane, []| point_numbers(simd, if lane == 0 { first } else { second }, constants),
+            );
+            let v3 = lanes::inlined(
+                #[inline(always)]
+                |at: usize| V3::new(numbers[at], numbers[at + 1], numbers[at + 2]),
+            );
+            let (position, normal, emission) = (v3(0), v3(3), v3(6));
+            let (alpha, coverage) = (numbers[9], numbers[10]);
+            let mut of_coefficients = [alpha; NUMBERS];
+            of_coefficients.copy_from_slice(&numbers[11..]);
+            let k = Coefficients::from_numbers(first.material.model, of_coefficients);
+            let reflected = lighting(first, constants).reflect(simd, &position, &normal, &k);
+            let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
+            let halves = lanes::inlined(
+                #[inline(always)]
+                |channel: F32x16<S>| simd.split_f32x16(channel),
+            );
+            let (r, g, b, a) = (halves(color.x), halves(color.y), halves(color.z), halves(alpha));
+            put_colors(simd, first.points, [r.0, g.0, b.0, a.0], lit);
+            put_colors(simd, second.points, [r.1, g.1, b.1, a.1], lit);
+        },
+    );
+}
+
+/// What [`shade_pair`] needs of eight points: position, normal, emission, alpha, coverage, and the numbers of the coefficients.
+#[inline(never)]
+fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let &Eight { subject, material, slots, records, .. } = eight;
+            let surface = surface(simd, records, slots);
+            let mut looks = Looks::new(simd, subject.mesh, slots, &surface, material, constants.raw);
+            looks.let_through(simd, &surface, material, constants, None);
+            let k = looks.coefficients(simd, material, looks.base);
+            let normal = looks.mapped_normal(simd, subject.mesh, slots, &surface, material);
+            let [p, n] = phong::placed(&surface, normal);
+            let (e, mut numbers) = (looks.emission, [looks.alpha; NUMBERS + 11]);
+            numbers[..11].copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, looks.alpha, looks.coverage]);
+            numbers[11..].copy_from_slice(&k.numbers());
+            numbers
+        },
+    )
+}
+
 /// One instruction-set function: kept out of line, so that each level compiles it once.
 fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
     simd.vectorize(
@@ -360,24 +533,13 @@ fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'
 
 #[inline(always)]
 fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
-    let &Eight { subject, material, points, slots, records, along, arriving, first, .. } = eight;
+    let &Eight { subject, material, points, slots, records, along, .. } = eight;
     let (mesh, instance) = (subject.mesh, subject.instance);
     let surface = surface(simd, records, slots);
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
     looks.let_through(simd, &surface, material, constants, along);
 
-    let lighting = Lighting {
-        lights: &constants.lights,
-        ambient: constants.ambient,
-        illumination: match material.model {
-            Model::Empirical(illumination) => illumination,
-            _ => Illumination::Phong,
-        },
-        perspective: subject.viewing.perspective,
-        along,
-        arriving,
-        first,
-    };
+    let lighting = lighting(eight, constants);
     let mut reflected = match material.model {
         Model::Own => Reflected { diffuse: looks.own(simd, material), specular: V3::splat(looks.alpha, [0.0; 3]) },
         Model::Constant(color) => {
@@ -423,11 +585,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         _ => looks.emission,
     };
     let filtered = constants.transparency == Transparency::Filtered;
-    let color = if material.blend && (filtered || material.material.glass) {
-        (reflected.diffuse + emitted).scale(looks.alpha) + reflected.specular.scale(looks.coverage)
-    } else {
-        (reflected.diffuse + reflected.specular + emitted).scale(looks.alpha)
-    };
+    let color = premultiplied(material, filtered, &reflected, emitted, looks.alpha, looks.coverage);
     if filtered && material.blend {
         let passes = filtered::passes(looks.coverage, looks.kt, material.material.filter);
         let soa = [passes.x.to_array(), passes.y.to_array(), passes.z.to_array()];
@@ -462,10 +620,56 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
             lit.bounces[p as usize] = Bounce { normal, mirror, place: places[lane] };
         }
     }
-    let soa = [color.x.to_array(), color.y.to_array(), color.z.to_array(), looks.alpha.to_array()];
-    for (lane, &p) in points.iter().enumerate() {
-        lit.colors[p as usize] = [soa[0][lane], soa[1][lane], soa[2][lane], soa[3][lane]];
+    put_colors(simd, points, [color.x, color.y, color.z, looks.alpha], lit);
+}
+
+/// The lights of a frame for some points and those that follow in their group.
+#[inline(always)]
+fn lighting<'a>(eight: &Eight<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
+    Lighting {
+        lights: &constants.lights,
+        ambient: constants.ambient,
+        illumination: match eight.material.model {
+            Model::Empirical(illumination) => illumination,
+            _ => Illumination::Phong,
+        },
+        perspective: eight.subject.viewing.perspective,
+        along: eight.along,
+        arriving: eight.arriving,
+        first: eight.first,
     }
+}
+
+/// What a surface reflects and shines, premultiplied.
+#[inline(always)]
+fn premultiplied<T: Lanes>(
+    material: &MaterialConstants<'_>,
+    filtered: bool,
+    reflected: &Reflected<T>,
+    emitted: V3<T>,
+    alpha: T,
+    coverage: T,
+) -> V3<T> {
+    if material.blend && (filtered || material.material.glass) {
+        (reflected.diffuse + emitted).scale(alpha) + reflected.specular.scale(coverage)
+    } else {
+        (reflected.diffuse + reflected.specular + emitted).scale(alpha)
+    }
+}
+
+/// Hands the colours of up to eight points on: red, green, blue, alpha.
+#[inline(always)]
+fn put_colors<S: Simd>(simd: S, points: &[u32], [r, g, b, a]: [F<S>; 4], lit: &mut Lit) {
+    lanes::rows_of_columns(
+        simd,
+        [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()],
+        #[inline(always)]
+        |lane, row| {
+            if let Some(&p) = points.get(lane) {
+                lit.colors[p as usize] = bytemuck::cast(row);
+            }
+        },
+    );
 }
 
 /// What arrives at eight points from other surfaces.

@@ -198,7 +198,12 @@ impl<S: Simd> Looks<S> {
     }
 
     /// Coefficients for the material's model, with `color` multiplying the diffuse or base colour.
-    pub(super) fn coefficients(&self, simd: S, material: &MaterialConstants<'_>, color: V3<F<S>>) -> Coefficients<S> {
+    pub(super) fn coefficients(
+        &self,
+        simd: S,
+        material: &MaterialConstants<'_>,
+        color: V3<F<S>>,
+    ) -> Coefficients<F<S>> {
         simd.vectorize(
             #[inline(always)]
             || {

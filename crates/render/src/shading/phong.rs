@@ -15,11 +15,17 @@ pub(crate) fn shade<S: Simd>(
     surface: &Surface<S>,
     normal: Option<V3<F32x8<S>>>,
     lighting: &Lighting<'_>,
-    coefficients: &Coefficients<S>,
+    coefficients: &Coefficients<F32x8<S>>,
 ) -> Reflected<F32x8<S>> {
-    let position = blend3(&surface.weights, &surface.positions);
-    let normal = normal.unwrap_or_else(|| interpolated_normal(surface));
+    let [position, normal] = placed(surface, normal);
     lighting.reflect(simd, &position, &normal, coefficients)
+}
+
+/// Where each point is, and its normal.
+#[inline(always)]
+pub(super) fn placed<S: Simd>(surface: &Surface<S>, normal: Option<V3<F32x8<S>>>) -> [V3<F32x8<S>>; 2] {
+    let position = blend3(&surface.weights, &surface.positions);
+    [position, normal.unwrap_or_else(|| interpolated_normal(surface))]
 }
 
 /// The unit normal between the corners'.

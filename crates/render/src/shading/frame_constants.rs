@@ -64,6 +64,16 @@ pub(crate) struct MaterialConstants<'a> {
     pub scatters: Option<f32>,
 }
 
+impl MaterialConstants<'_> {
+    /// Whether textures vary it.
+    pub(super) fn has_textures(&self) -> bool {
+        let Self { base, specular, emission, opacity, metallic_roughness, occlusion, normal, .. } = self;
+        [base, specular, emission, opacity, metallic_roughness, occlusion, normal]
+            .iter()
+            .any(|texture| texture.is_some())
+    }
+}
+
 /// Decode tables of one frame.
 pub(crate) struct DecodeTables {
     pub(crate) srgb: [f32; 256],

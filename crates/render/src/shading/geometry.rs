@@ -4,7 +4,7 @@
 
 use super::facets::Record;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x4, F32x8, LANES, Simd, V3};
+use vitral_math::lanes::{self, F32x4, F32x8, Floats, LANES, Lanes, Simd, V3};
 
 /// Up to eight points of one object and material.
 #[derive(Clone, Copy)]
@@ -55,18 +55,79 @@ pub(crate) fn gather<S: Simd, const N: usize, const C: usize>(
 
 /// `Σ weight * value` over the three corners.
 #[inline(always)]
-pub(crate) fn blend<S: Simd>(weights: &[F<S>; 3], values: [F<S>; 3]) -> F<S> {
+pub(crate) fn blend<T: Lanes>(weights: &[T; 3], values: [T; 3]) -> T {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
 /// `Σ weight * vector` over the three corners.
 #[inline(always)]
-pub(crate) fn blend3<S: Simd>(weights: &[F<S>; 3], v: &[V3<F<S>>; 3]) -> V3<F<S>> {
+pub(crate) fn blend3<T: Lanes>(weights: &[T; 3], v: &[V3<T>; 3]) -> V3<T> {
     V3::new(
         blend(weights, [v[0].x, v[1].x, v[2].x]),
         blend(weights, [v[0].y, v[1].y, v[2].y]),
         blend(weights, [v[0].z, v[1].z, v[2].z]),
     )
+}
+
+/// Where a surface is, and how it is turned: a point in each lane.
+pub(crate) struct Placed<T> {
+    /// View space.
+    pub position: V3<T>,
+    /// Unit shading normal, view space.
+    pub normal: V3<T>,
+}
+
+impl<T: Lanes> Placed<T> {
+    /// Between the corners of each lane's facet, which has a unit normal of its own.
+    #[inline(always)]
+    pub(crate) fn new(weights: &[T; 3], positions: &[V3<T>; 3], normals: &[V3<T>; 3], facet_normal: V3<T>) -> Self {
+        Self { position: blend3(weights, positions), normal: between(weights, normals, facet_normal) }
+    }
+}
+
+/// The unit normal between the corners'.
+#[inline(always)]
+pub(super) fn between<T: Lanes>(weights: &[T; 3], normals: &[V3<T>; 3], facet_normal: V3<T>) -> V3<T> {
+    let n = blend3(weights, normals).normalize();
+    // Opposite corner normals can cancel out: use the facet's.
+    let length2 = n.dot(n);
+    let usable = (length2 * 0.0).lt(length2);
+    V3::select(usable, n, facet_normal)
+}
+
+/// [`Placed`] on the facets under eight points and eight more, or eight alone.
+#[inline(always)]
+pub(crate) fn placed<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots: [&Slots; 2]) -> Placed<V> {
+    let rows = [rows(records, slots[0]), rows(records, slots[1])];
+    let q = lanes::inlined(
+        #[inline(always)]
+        |i: usize| -> [V; 4] {
+            V::by_eights(
+                simd,
+                [],
+                #[inline(always)]
+                |lane, []| columns(simd, &rows[lane / LANES], 4 * i),
+            )
+        },
+    );
+    let place = V::by_eights(
+        simd,
+        [],
+        #[inline(always)]
+        |lane, []| {
+            let Slots { x, y, .. } = slots[lane / LANES];
+            [F32x8::from_slice(simd, x), F32x8::from_slice(simd, y)]
+        },
+    );
+    let ([c0, a0, b0, c1], [a1, b1, c2, a2], [b2, x0, y0, nx]) = (q(0), q(1), q(2));
+    let (x, y) = (place[0] - x0, place[1] - y0);
+    let weights = on_facet([c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y]);
+    let [ny, nz, p0x, p0y] = q(3);
+    let ([p0z, p1x, p1y, p1z], [p2x, p2y, p2z, n0x]) = (q(4), q(5));
+    let ([n0y, n0z, n1x, n1y], [n1z, n2x, n2y, n2z]) = (q(6), q(7));
+    let positions = [V3::new(p0x, p0y, p0z), V3::new(p1x, p1y, p1z), V3::new(p2x, p2y, p2z)];
+    let normals = [V3::new(n0x, n0y, n0z), V3::new(n1x, n1y, n1z), V3::new(n2x, n2y, n2z)];
+    Placed::new(&weights, &positions, &normals, V3::new(nx, ny, nz))
 }
 
 /// The corners of each lane's facet, and the point's weights.
@@ -115,13 +176,15 @@ pub(crate) fn linear<S: Simd>(m: &[[f32; 3]; 3], p: &[F<S>; 3]) -> V3<F<S>> {
 
 /// Scales numbers to a sum of 1; a third each where the sum is 0.
 #[inline(always)]
-fn normalized<S: Simd>(e: [F<S>; 3]) -> [F<S>; 3] {
+fn normalized<T: Lanes>(e: [T; 3]) -> [T; 3] {
     let sum = e[0] + e[1] + e[2];
-    let (zero, one) = (lanes::Lanes::splat(sum, 0.0), lanes::Lanes::splat(sum, 1.0));
-    let usable = lanes::Lanes::lt(zero, lanes::Lanes::abs(sum));
-    let inverse = one / sum;
-    let third = lanes::Lanes::splat(sum, 1.0 / 3.0);
-    [usable.select(e[0] * inverse, third), usable.select(e[1] * inverse, third), usable.select(e[2] * inverse, third)]
+    let usable = sum.splat(0.0).lt(sum.abs());
+    let (inverse, third) = (sum.splat(1.0) / sum, sum.splat(1.0 / 3.0));
+    [
+        T::select(usable, e[0] * inverse, third),
+        T::select(usable, e[1] * inverse, third),
+        T::select(usable, e[2] * inverse, third),
+    ]
 }
 
 /// Builds the surface under each lane's point.
@@ -175,10 +238,9 @@ fn weighed<S: Simd>(simd: S, rows: &[&Record; LANES], slots: &Slots) -> ([Edge<S
 
 /// Barycentric coordinates. Snapping may put a sample a hair outside the facet: stay on it.
 #[inline(always)]
-fn on_facet<S: Simd>(values: [F<S>; 3]) -> [F<S>; 3] {
+fn on_facet<T: Lanes>(values: [T; 3]) -> [T; 3] {
     let w = normalized(values);
-    let zero = lanes::Lanes::splat(w[0], 0.0);
-    normalized([lanes::Lanes::max(w[0], zero), lanes::Lanes::max(w[1], zero), lanes::Lanes::max(w[2], zero)])
+    normalized([w[0].positive(), w[1].positive(), w[2].positive()])
 }
 
 #[inline(always)]

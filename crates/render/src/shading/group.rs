@@ -3,9 +3,9 @@
 use super::FrameConstants;
 use super::facets::{FacetTable, Record, Subject, Viewing};
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Slots, Surface, surface};
+use super::geometry::{F, Placed, Slots, Surface, placed, surface};
 use super::hits::{Along, Hit};
-use super::looks::Looks;
+use super::looks::{self, Looks};
 use super::points::{Group, Points};
 use super::{flat, glow, gouraud, hits, phong, shadowed};
 use crate::radiosity::Solution;
@@ -259,13 +259,22 @@ pub(crate) fn shade_all<S: Simd>(
         constants,
         (asks, &mut rays),
         #[inline(always)]
-        |first, second| match second {
-            Some(second) if goes_with_others(simd, first.material, constants) => {
-                shade_pair(simd, [first, second], constants, lit);
-            }
-            _ => {
-                shade_eight(simd, first, constants, lit);
-                second.into_iter().for_each(|second| shade_eight(simd, second, constants, lit));
+        |first, second| {
+            let simple = is_simple(first.material, constants);
+            let unvaried = simple && is_unvaried(first, constants);
+            match second {
+                Some(second) if simple && lanes::has_sixteen(simd.level()) => {
+                    shade_together::<S, F32x16<S>>(simd, [first, second], unvaried, constants, lit);
+                }
+                _ => {
+                    for eight in std::iter::once(first).chain(second) {
+                        if unvaried {
+                            shade_together::<S, F32x8<S>>(simd, [eight; 2], true, constants, lit);
+                        } else {
+                            shade_eight(simd, eight, constants, lit);
+                        }
+                    }
+                }
             }
         },
     );
@@ -455,12 +464,10 @@ pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet
     slots
 }
 
-/// Whether eight points and the next eight of the group are illuminated together: where registers hold sixteen numbers, and
-/// the picture takes nothing of their surface but what they reflect and shine.
+/// Whether the picture takes nothing of a material's points but what they reflect and shine.
 #[inline(always)]
-fn goes_with_others<S: Simd>(simd: S, material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
-    lanes::has_sixteen(simd.level())
-        && constants.shading == Shading::Phong
+fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
+    constants.shading == Shading::Phong
         && asks(material)
         && constants.radiosity.is_none()
         && constants.transparency != Transparency::Filtered
@@ -468,41 +475,103 @@ fn goes_with_others<S: Simd>(simd: S, material: &MaterialConstants<'_>, constant
         && !constants.follows_rays()
 }
 
-/// [`shade_eight`] for two eights that go together.
-fn shade_pair<S: Simd>(simd: S, pair: [&Eight<'_>; 2], constants: &FrameConstants<'_>, lit: &mut Lit) {
+/// [`shade_eight`] of what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.
+fn shade_together<S: Simd, V: Floats<S>>(
+    simd: S,
+    eights: [&Eight<'_>; 2],
+    unvaried: bool,
+    constants: &FrameConstants<'_>,
+    lit: &mut Lit,
+) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let [first, second] = pair;
-            let numbers: [F32x16<S>; NUMBERS + 11] = Floats::by_eights(
-                simd,
-                [],
-                #[inline(always)]
-                |lane, []| point_numbers(simd, if lane == 0 { first } else { second }, constants),
-            );
-            let v3 = lanes::inlined(
-                #[inline(always)]
-                |at: usize| V3::new(numbers[at], numbers[at + 1], numbers[at + 2]),
-            );
-            let (position, normal, emission) = (v3(0), v3(3), v3(6));
-            let (alpha, coverage) = (numbers[9], numbers[10]);
-            let mut of_coefficients = [alpha; NUMBERS];
-            of_coefficients.copy_from_slice(&numbers[11..]);
-            let k = Coefficients::from_numbers(first.material.model, of_coefficients);
-            let reflected = lighting(first, constants).reflect(simd, &position, &normal, &k);
+            let first = eights[0];
+            let points: PointNumbers<V> = if unvaried {
+                PointNumbers::unvaried(simd, eights)
+            } else {
+                PointNumbers::from_array(
+                    first.material.model,
+                    V::by_eights(
+                        simd,
+                        [],
+                        #[inline(always)]
+                        |lane, []| point_numbers(simd, eights[lane / LANES], constants),
+                    ),
+                )
+            };
+            let PointNumbers { placed: Placed { position, normal }, emission, alpha, coverage, coefficients } = points;
+            let reflected = lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
             let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
-            let halves = lanes::inlined(
+            V::by_eights(
+                simd,
+                [color.x, color.y, color.z, alpha],
                 #[inline(always)]
-                |channel: F32x16<S>| simd.split_f32x16(channel),
+                |lane, color| {
+                    put_colors(simd, eights[lane / LANES].points, color, lit);
+                    []
+                },
             );
-            let (r, g, b, a) = (halves(color.x), halves(color.y), halves(color.z), halves(alpha));
-            put_colors(simd, first.points, [r.0, g.0, b.0, a.0], lit);
-            put_colors(simd, second.points, [r.1, g.1, b.1, a.1], lit);
         },
     );
 }
 
-/// What [`shade_pair`] needs of eight points: position, normal, emission, alpha, coverage, and the numbers of the coefficients.
+/// What [`shade_together`] needs of points.
+struct PointNumbers<T> {
+    placed: Placed<T>,
+    emission: V3<T>,
+    alpha: T,
+    coverage: T,
+    coefficients: Coefficients<T>,
+}
+
+impl<T: Lanes> PointNumbers<T> {
+    #[inline(always)]
+    fn to_array(&self) -> [T; NUMBERS + 11] {
+        let Self { placed: Placed { position: p, normal: n }, emission: e, alpha, coverage, coefficients } = self;
+        let mut numbers = [*alpha; NUMBERS + 11];
+        numbers[..11].copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, *alpha, *coverage]);
+        numbers[11..].copy_from_slice(&coefficients.numbers());
+        numbers
+    }
+
+    #[inline(always)]
+    fn from_array(model: Model, numbers: [T; NUMBERS + 11]) -> Self {
+        let v3 = |at: usize| V3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
+        let mut of_coefficients = [numbers[0]; NUMBERS];
+        of_coefficients.copy_from_slice(&numbers[11..]);
+        Self {
+            placed: Placed { position: v3(0), normal: v3(3) },
+            emission: v3(6),
+            alpha: numbers[9],
+            coverage: numbers[10],
+            coefficients: Coefficients::from_numbers(model, of_coefficients),
+        }
+    }
+}
+
+impl<T: Lanes> PointNumbers<T> {
+    /// Of a material that nothing varies.
+    #[inline(always)]
+    fn unvaried<S: Simd>(simd: S, eights: [&Eight<'_>; 2]) -> Self
+    where
+        T: Floats<S>,
+    {
+        let (one, material) = (every(simd, 1.0), eights[0].material);
+        let (coefficients, alpha) = looks::unvaried(one, material);
+        let placed = placed(simd, eights[0].records, [eights[0].slots, eights[1].slots]);
+        Self { placed, emission: V3::splat(one, material.material.emission), alpha, coverage: one, coefficients }
+    }
+}
+
+/// Whether all points of a material on a mesh look the same but for how they are placed.
+fn is_unvaried(eight: &Eight<'_>, constants: &FrameConstants<'_>) -> bool {
+    let (material, mesh) = (eight.material, eight.subject.mesh);
+    let varied_by_angle = material.blend && (material.material.glass || constants.transparency == Transparency::Kay);
+    !varied_by_angle && !material.has_textures() && mesh.colors.is_none()
+}
+
+/// [`PointNumbers`] of eight points, whatever the material.
 #[inline(never)]
 fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
     simd.vectorize(
@@ -512,13 +581,15 @@ fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants
             let surface = surface(simd, records, slots);
             let mut looks = Looks::new(simd, subject.mesh, slots, &surface, material, constants.raw);
             looks.let_through(simd, &surface, material, constants, None);
-            let k = looks.coefficients(simd, material, looks.base);
             let normal = looks.mapped_normal(simd, subject.mesh, slots, &surface, material);
-            let [p, n] = phong::placed(&surface, normal);
-            let (e, mut numbers) = (looks.emission, [looks.alpha; NUMBERS + 11]);
-            numbers[..11].copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, looks.alpha, looks.coverage]);
-            numbers[11..].copy_from_slice(&k.numbers());
-            numbers
+            let numbers = PointNumbers {
+                placed: phong::placed(&surface, normal),
+                emission: looks.emission,
+                alpha: looks.alpha,
+                coverage: looks.coverage,
+                coefficients: looks.coefficients(simd, material, looks.base),
+            };
+            numbers.to_array()
         },
     )
 }

@@ -17,7 +17,7 @@ use crate::transparency::{kay, linear};
 use crate::{Shading, Transparency};
 use vitral_light::{DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
+use vitral_math::lanes::{self, F32x8, LANES, Lanes, Simd, V3};
 use vitral_scene::{Attribute, Mesh};
 
 /// What textures and vertex colours make of a material at eight points.
@@ -71,7 +71,7 @@ impl<S: Simd> Looks<S> {
                 let [r, g, b, _] = corners[c];
                 corner_colors[c] = V3::new(r, g, b);
                 if raw && mesh.colors_from_srgb {
-                    let encode = lanes::Lanes::srgb_from_linear;
+                    let encode = Lanes::srgb_from_linear;
                     corner_colors[c] = V3::new(encode(r), encode(g), encode(b));
                 }
             }
@@ -89,18 +89,9 @@ impl<S: Simd> Looks<S> {
             alpha *= t[0];
         }
         // Only blended surfaces have degrees of opacity; Kay's model changes it later.
-        let opacity = material.material.opacity;
-        let coverage = lanes::Lanes::saturate(alpha);
-        let kt = constant(simd, if material.blend { linear::opacity(opacity) } else { 0.0 });
-        let alpha = lanes::Lanes::saturate(alpha * opacity);
-        let alpha = match (material.cutoff, material.blend) {
-            (Some(cutoff), _) => {
-                let gone = lanes::Lanes::lt(alpha, constant(simd, cutoff));
-                gone.select(constant(simd, 0.0), one)
-            }
-            (None, true) => alpha,
-            (None, false) => one,
-        };
+        let coverage = Lanes::saturate(alpha);
+        let kt = constant(simd, if material.blend { linear::opacity(material.material.opacity) } else { 0.0 });
+        let alpha = opaque_part(material, alpha);
         let mut emission = V3::splat(one, material.material.emission);
         if let Some([r, g, b, _]) = lookup(&material.emission) {
             emission = emission.times(V3::new(r, g, b));
@@ -153,13 +144,13 @@ impl<S: Simd> Looks<S> {
                 let position = blend3(&surface.weights, &surface.positions);
                 let towards = n.dot((along.origin(simd) - position).normalize());
                 // As the eye sees it without rays, as long as they come straight from there.
-                let straight = lanes::Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &along.straight));
+                let straight = Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &along.straight));
                 straight.select(n.z, towards)
             }
             None => n.z,
         };
         self.kt = if kay {
-            let least = lanes::Lanes::min(constant(simd, constants.kay.least), self.kt);
+            let least = Lanes::min(constant(simd, constants.kay.least), self.kt);
             kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent))
         } else {
             // Kay's formula with these numbers is what Schlick's leaves.
@@ -189,7 +180,7 @@ impl<S: Simd> Looks<S> {
         match material.material.reflectance {
             Reflectance::Phong { ks, .. } => V3::splat(one, ks).times(self.specular),
             Reflectance::MetallicRoughness { base_color, metallic, .. } => {
-                let metallic = lanes::Lanes::saturate(self.metallic_factor * metallic);
+                let metallic = Lanes::saturate(self.metallic_factor * metallic);
                 let metal = V3::splat(one, base_color).times(self.base).scale(metallic);
                 let dielectric = (one - metallic) * DIELECTRIC_F0;
                 metal + V3::new(dielectric, dielectric, dielectric)
@@ -207,36 +198,13 @@ impl<S: Simd> Looks<S> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let one = constant(simd, 1.0);
-                match (material.material.reflectance, material.model) {
-                    (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
-                        let k = Phong {
-                            ka: V3::splat(one, ka).times(color).scale(self.occlusion),
-                            kd: V3::splat(one, kd).times(color),
-                            ks: V3::splat(one, ks).times(self.specular),
-                            shininess: constant(simd, shininess),
-                        };
-                        match model {
-                            Model::Microfacet => {
-                                let m = microfacet_from_phong(&k);
-                                Coefficients::Microfacet(Microfacet { occlusion: self.occlusion, ..m })
-                            }
-                            _ => Coefficients::Empirical(k),
-                        }
-                    }
-                    (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
-                        let m = Microfacet {
-                            base_color: V3::splat(one, base_color).times(color),
-                            metallic: self.metallic_factor * metallic,
-                            roughness: self.roughness_factor * roughness,
-                            occlusion: self.occlusion,
-                        };
-                        match model {
-                            Model::Microfacet => Coefficients::Microfacet(m),
-                            _ => Coefficients::Empirical(phong_from_microfacet(&m)),
-                        }
-                    }
-                }
+                let factors = Factors {
+                    specular: self.specular,
+                    metallic: self.metallic_factor,
+                    roughness: self.roughness_factor,
+                    occlusion: self.occlusion,
+                };
+                coefficients(material, color, &factors)
             },
         )
     }
@@ -265,7 +233,7 @@ impl<S: Simd> Looks<S> {
                 let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
                 let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
                 let zero = constant(simd, 0.0);
-                let flipped = lanes::Lanes::lt(du1 * dv2 - du2 * dv1, zero);
+                let flipped = Lanes::lt(du1 * dv2 - du2 * dv1, zero);
                 let tangent = e1.scale(dv2) - e2.scale(dv1);
                 let tangent = V3::select(flipped, -tangent, tangent);
                 let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
@@ -275,6 +243,65 @@ impl<S: Simd> Looks<S> {
                 Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
             },
         )
+    }
+}
+
+/// What textures make of a material's coefficients, besides its colour.
+struct Factors<T> {
+    specular: V3<T>,
+    metallic: T,
+    roughness: T,
+    occlusion: T,
+}
+
+/// Coefficients for a material's model.
+#[inline(always)]
+fn coefficients<T: Lanes>(material: &MaterialConstants<'_>, color: V3<T>, factors: &Factors<T>) -> Coefficients<T> {
+    let &Factors { specular, metallic: metallic_factor, roughness: roughness_factor, occlusion } = factors;
+    match (material.material.reflectance, material.model) {
+        (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
+            let k = Phong {
+                ka: V3::splat(occlusion, ka).times(color).scale(occlusion),
+                kd: V3::splat(occlusion, kd).times(color),
+                ks: V3::splat(occlusion, ks).times(specular),
+                shininess: occlusion.splat(shininess),
+            };
+            match model {
+                Model::Microfacet => Coefficients::Microfacet(Microfacet { occlusion, ..microfacet_from_phong(&k) }),
+                _ => Coefficients::Empirical(k),
+            }
+        }
+        (Reflectance::MetallicRoughness { base_color, metallic, roughness }, model) => {
+            let m = Microfacet {
+                base_color: V3::splat(occlusion, base_color).times(color),
+                metallic: metallic_factor * metallic,
+                roughness: roughness_factor * roughness,
+                occlusion,
+            };
+            match model {
+                Model::Microfacet => Coefficients::Microfacet(m),
+                _ => Coefficients::Empirical(phong_from_microfacet(&m)),
+            }
+        }
+    }
+}
+
+/// A material's coefficients and opacity where neither textures nor vertex colours vary them; `one` is 1.
+#[inline(always)]
+pub(super) fn unvaried<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (Coefficients<T>, T) {
+    let white = V3::new(one, one, one);
+    let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
+    (coefficients(material, white, &factors), opaque_part(material, one))
+}
+
+/// Opacity of a material where textures and vertex colours leave `alpha` of the surface.
+#[inline(always)]
+fn opaque_part<T: Lanes>(material: &MaterialConstants<'_>, alpha: T) -> T {
+    let (alpha, one) = (Lanes::saturate(alpha * material.material.opacity), alpha.splat(1.0));
+    match (material.cutoff, material.blend) {
+        (Some(cutoff), _) => T::select(alpha.lt(alpha.splat(cutoff)), alpha.splat(0.0), one),
+        (None, true) => alpha,
+        (None, false) => one,
     }
 }
 
@@ -327,7 +354,7 @@ fn sample<S: Simd>(
                     du * du + dv * dv
                 },
             );
-            let lod = lanes::Lanes::log2(lanes::Lanes::max(length2(&right), length2(&down))) * 0.5;
+            let lod = Lanes::log2(Lanes::max(length2(&right), length2(&down))) * 0.5;
             let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
             let mut soa = [[0.0f32; LANES]; 4];
             for lane in 0..LANES {

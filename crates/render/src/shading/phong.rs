@@ -3,7 +3,7 @@
 //! Input: corners and weights of a point, view space. Output: reflected light at the point.
 //! Source: [Phong 1975].
 
-use super::geometry::{Surface, blend3};
+use super::geometry::{Placed, Surface, between, blend3};
 use super::group::{Coefficients, Lighting};
 use vitral_light::Reflected;
 use vitral_math::lanes::{F32x8, Simd, V3};
@@ -17,23 +17,19 @@ pub(crate) fn shade<S: Simd>(
     lighting: &Lighting<'_>,
     coefficients: &Coefficients<F32x8<S>>,
 ) -> Reflected<F32x8<S>> {
-    let [position, normal] = placed(surface, normal);
+    let Placed { position, normal } = placed(surface, normal);
     lighting.reflect(simd, &position, &normal, coefficients)
 }
 
 /// Where each point is, and its normal.
 #[inline(always)]
-pub(super) fn placed<S: Simd>(surface: &Surface<S>, normal: Option<V3<F32x8<S>>>) -> [V3<F32x8<S>>; 2] {
+pub(super) fn placed<S: Simd>(surface: &Surface<S>, normal: Option<V3<F32x8<S>>>) -> Placed<F32x8<S>> {
     let position = blend3(&surface.weights, &surface.positions);
-    [position, normal.unwrap_or_else(|| interpolated_normal(surface))]
+    Placed { position, normal: normal.unwrap_or_else(|| interpolated_normal(surface)) }
 }
 
 /// The unit normal between the corners'.
 #[inline(always)]
 pub(crate) fn interpolated_normal<S: Simd>(surface: &Surface<S>) -> V3<F32x8<S>> {
-    let n = blend3(&surface.weights, &surface.normals).normalize();
-    // Opposite corner normals can cancel out: use the facet's.
-    let length2 = n.dot(n);
-    let usable = vitral_math::lanes::Lanes::lt(length2 * 0.0, length2);
-    V3::select(usable, n, surface.facet_normal)
+    between(&surface.weights, &surface.normals, surface.facet_normal)
 }

@@ -8,7 +8,7 @@
 
 use super::frame_constants::InstanceConstants;
 use super::geometry::{Slots, Surface, affine, gather, linear};
-use super::group::{Coefficients, Lighting};
+use super::lighting::{Coefficients, Lighting};
 use vitral_light::Reflected;
 use vitral_math::lanes::{F32x8, Lanes, Simd, V3};
 use vitral_scene::{Faces, Mesh, normals};

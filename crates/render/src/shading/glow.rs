@@ -10,7 +10,8 @@
 
 use super::FrameConstants;
 use super::geometry::{F, Surface, blend3, constant};
-use super::group::{Eight, towards_viewer};
+use super::group::Eight;
+use super::lighting::towards_viewer;
 use super::looks::Looks;
 use super::phong;
 use crate::{Shading, Transparency};

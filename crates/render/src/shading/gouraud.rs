@@ -12,7 +12,7 @@
 //! Source: [Gouraud 1971].
 
 use super::geometry::{Surface, blend3};
-use super::group::{Coefficients, Lighting};
+use super::lighting::{Coefficients, Lighting};
 use vitral_light::Reflected;
 use vitral_math::lanes::{self, F32x8, Simd};
 

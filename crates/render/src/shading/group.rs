@@ -3,21 +3,21 @@
 use super::FrameConstants;
 use super::facets::{FacetTable, Record, Subject, Viewing};
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Placed, Slots, Surface, placed, surface};
+use super::geometry::{F, Slots, Surface, surface};
 use super::hits::{Along, Hit};
-use super::looks::{self, Looks};
+use super::lighting::{Coefficients, lighting};
+use super::looks::Looks;
 use super::points::{Group, Points};
+use super::together::{is_simple, is_unvaried, shade_together};
 use super::{flat, glow, gouraud, hits, phong, shadowed};
 use crate::radiosity::Solution;
 use crate::shadow::{Parts, Place, Places};
 use crate::transparency::{filtered, linear};
 use crate::{Shading, Transparency};
-use vitral_light::{
-    Illumination, Material, Microfacet, Phong, PreparedLight, Reflected, Rgb, constant_color, cook_torrance,
-};
+use vitral_light::{Illumination, Material, Reflected, Rgb, constant_color};
 use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, F32x16, Floats, LANES, Lanes, Simd, V3};
+use vitral_math::lanes::{self, F32x8, F32x16, LANES, Lanes, Simd, V3};
 
 /// What a material's points go through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,155 +39,6 @@ pub(crate) fn model(material: &Material, illumination: Illumination, lighting: b
         _ if !lighting || material.unlit => Model::Own,
         Illumination::CookTorrance => Model::Microfacet,
         other => Model::Empirical(other),
-    }
-}
-
-/// Reflection coefficients at points, a lane each.
-pub(crate) enum Coefficients<T> {
-    Empirical(Phong<T>),
-    Microfacet(Microfacet<T>),
-}
-
-/// Numbers of [`Coefficients`].
-const NUMBERS: usize = 10;
-
-impl<T: Lanes> Coefficients<T> {
-    /// As numbers; those of the microfacets are fewer, and the last is repeated.
-    #[inline(always)]
-    fn numbers(&self) -> [T; NUMBERS] {
-        match self {
-            Self::Empirical(Phong { ka, kd, ks, shininess }) => {
-                [ka.x, ka.y, ka.z, kd.x, kd.y, kd.z, ks.x, ks.y, ks.z, *shininess]
-            }
-            Self::Microfacet(Microfacet { base_color: b, metallic: m, roughness: r, occlusion: o }) => {
-                [b.x, b.y, b.z, *m, *r, *o, *o, *o, *o, *o]
-            }
-        }
-    }
-
-    /// The way back.
-    #[inline(always)]
-    fn from_numbers(model: Model, n: [T; NUMBERS]) -> Self {
-        match model {
-            Model::Microfacet => Self::Microfacet(Microfacet {
-                base_color: V3::new(n[0], n[1], n[2]),
-                metallic: n[3],
-                roughness: n[4],
-                occlusion: n[5],
-            }),
-            _ => Self::Empirical(Phong {
-                ka: V3::new(n[0], n[1], n[2]),
-                kd: V3::new(n[3], n[4], n[5]),
-                ks: V3::new(n[6], n[7], n[8]),
-                shininess: n[9],
-            }),
-        }
-    }
-}
-
-/// The lights of a frame and the way to use them.
-pub(crate) struct Lighting<'a> {
-    lights: &'a [PreparedLight],
-    ambient: Rgb,
-    illumination: Illumination,
-    perspective: bool,
-    /// The rays that see the points, if it is not the eye.
-    along: Option<&'a Along>,
-    /// Which part of each light arrives at the group's points; empty without shadows.
-    arriving: &'a [Parts],
-    /// The first of the eight points in the group.
-    first: usize,
-}
-
-/// Unit vector from a position (view space) to the eye, or to where the rays come from.
-#[inline(always)]
-pub(crate) fn towards_viewer<S: Simd, V: Floats<S>>(
-    simd: S,
-    position: &V3<V>,
-    along: Option<&Along>,
-    perspective: bool,
-) -> V3<V> {
-    match along {
-        Some(along) => {
-            let origin = V::by_eights(
-                simd,
-                [],
-                #[inline(always)]
-                |_, []| along.origin(simd).to_array(),
-            );
-            (V3::from_array(origin) - *position).normalize()
-        }
-        None if perspective => (-*position).normalize(),
-        None => V3::splat(every(simd, 1.0), [0.0, 0.0, 1.0]),
-    }
-}
-
-/// A number in all lanes.
-#[inline(always)]
-fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
-    <V as SimdBase<S>>::splat(simd, value)
-}
-
-impl Lighting<'_> {
-    /// Light reflected towards the viewer; position and unit normal in view space.
-    pub(crate) fn reflect<S: Simd, V: Floats<S>>(
-        &self,
-        simd: S,
-        position: &V3<V>,
-        n: &V3<V>,
-        coefficients: &Coefficients<V>,
-    ) -> Reflected<V> {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let one = every(simd, 1.0);
-                if self.arriving.is_empty() {
-                    // Factors of 1 that are known to be that are left out.
-                    let all = lanes::inlined(
-                        #[inline(always)]
-                        |_: usize| V3::new(one, one, one),
-                    );
-                    return self.reflect_of(simd, position, n, coefficients, all);
-                }
-                let lit = lanes::inlined(
-                    #[inline(always)]
-                    |j: usize| match self.arriving.get(j) {
-                        Some(parts) => V3::from_array(V::by_eights(
-                            simd,
-                            [],
-                            #[inline(always)]
-                            |lane, []| parts.eight(simd, self.first + lane).to_array(),
-                        )),
-                        None => V3::new(one, one, one),
-                    },
-                );
-                self.reflect_of(simd, position, n, coefficients, lit)
-            },
-        )
-    }
-
-    /// [`Self::reflect`] of light of which `lit` says how much arrives.
-    #[inline(always)]
-    fn reflect_of<S: Simd, V: Floats<S>>(
-        &self,
-        simd: S,
-        position: &V3<V>,
-        n: &V3<V>,
-        coefficients: &Coefficients<V>,
-        lit: impl Fn(usize) -> V3<V>,
-    ) -> Reflected<V> {
-        let v = towards_viewer(simd, position, self.along, self.perspective);
-        let surface = vitral_light::Surface { position: *position, n: *n, v };
-        match coefficients {
-            Coefficients::Empirical(k) => {
-                let grazing = lanes::inlined(
-                    #[inline(always)]
-                    |light: &PreparedLight| light.direction_rounding(*position),
-                );
-                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
-            }
-            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
-        }
     }
 }
 
@@ -282,7 +133,7 @@ pub(crate) fn shade_all<S: Simd>(
 }
 
 /// Whether a material's look depends on what of the lights arrives.
-fn asks(material: &MaterialConstants<'_>) -> bool {
+pub(super) fn asks(material: &MaterialConstants<'_>) -> bool {
     matches!(material.model, Model::Empirical(_) | Model::Microfacet)
 }
 
@@ -464,136 +315,6 @@ pub(crate) fn slots(points: &Points, eight: &[u32], records: &[u32], first_facet
     slots
 }
 
-/// Whether the picture takes nothing of a material's points but what they reflect and shine.
-#[inline(always)]
-fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
-    constants.shading == Shading::Phong
-        && asks(material)
-        && constants.radiosity.is_none()
-        && constants.transparency != Transparency::Filtered
-        && material.scatters.is_none()
-        && !constants.follows_rays()
-}
-
-/// [`shade_eight`] of what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.
-fn shade_together<S: Simd, V: Floats<S>>(
-    simd: S,
-    eights: [&Eight<'_>; 2],
-    unvaried: bool,
-    constants: &FrameConstants<'_>,
-    lit: &mut Lit,
-) {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let first = eights[0];
-            let points: PointNumbers<V> = if unvaried {
-                PointNumbers::unvaried(simd, eights)
-            } else {
-                PointNumbers::from_array(
-                    first.material.model,
-                    V::by_eights(
-                        simd,
-                        [],
-                        #[inline(always)]
-                        |lane, []| point_numbers(simd, eights[lane / LANES], constants),
-                    ),
-                )
-            };
-            let PointNumbers { placed: Placed { position, normal }, emission, alpha, coverage, coefficients } = points;
-            let reflected = lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
-            let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
-            V::by_eights(
-                simd,
-                [color.x, color.y, color.z, alpha],
-                #[inline(always)]
-                |lane, color| {
-                    put_colors(simd, eights[lane / LANES].points, color, lit);
-                    []
-                },
-            );
-        },
-    );
-}
-
-/// What [`shade_together`] needs of points.
-struct PointNumbers<T> {
-    placed: Placed<T>,
-    emission: V3<T>,
-    alpha: T,
-    coverage: T,
-    coefficients: Coefficients<T>,
-}
-
-impl<T: Lanes> PointNumbers<T> {
-    #[inline(always)]
-    fn to_array(&self) -> [T; NUMBERS + 11] {
-        let Self { placed: Placed { position: p, normal: n }, emission: e, alpha, coverage, coefficients } = self;
-        let mut numbers = [*alpha; NUMBERS + 11];
-        numbers[..11].copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, *alpha, *coverage]);
-        numbers[11..].copy_from_slice(&coefficients.numbers());
-        numbers
-    }
-
-    #[inline(always)]
-    fn from_array(model: Model, numbers: [T; NUMBERS + 11]) -> Self {
-        let v3 = |at: usize| V3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
-        let mut of_coefficients = [numbers[0]; NUMBERS];
-        of_coefficients.copy_from_slice(&numbers[11..]);
-        Self {
-            placed: Placed { position: v3(0), normal: v3(3) },
-            emission: v3(6),
-            alpha: numbers[9],
-            coverage: numbers[10],
-            coefficients: Coefficients::from_numbers(model, of_coefficients),
-        }
-    }
-}
-
-impl<T: Lanes> PointNumbers<T> {
-    /// Of a material that nothing varies.
-    #[inline(always)]
-    fn unvaried<S: Simd>(simd: S, eights: [&Eight<'_>; 2]) -> Self
-    where
-        T: Floats<S>,
-    {
-        let (one, material) = (every(simd, 1.0), eights[0].material);
-        let (coefficients, alpha) = looks::unvaried(one, material);
-        let placed = placed(simd, eights[0].records, [eights[0].slots, eights[1].slots]);
-        Self { placed, emission: V3::splat(one, material.material.emission), alpha, coverage: one, coefficients }
-    }
-}
-
-/// Whether all points of a material on a mesh look the same but for how they are placed.
-fn is_unvaried(eight: &Eight<'_>, constants: &FrameConstants<'_>) -> bool {
-    let (material, mesh) = (eight.material, eight.subject.mesh);
-    let varied_by_angle = material.blend && (material.material.glass || constants.transparency == Transparency::Kay);
-    !varied_by_angle && !material.has_textures() && mesh.colors.is_none()
-}
-
-/// [`PointNumbers`] of eight points, whatever the material.
-#[inline(never)]
-fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let &Eight { subject, material, slots, records, .. } = eight;
-            let surface = surface(simd, records, slots);
-            let mut looks = Looks::new(simd, subject.mesh, slots, &surface, material, constants.raw);
-            looks.let_through(simd, &surface, material, constants, None);
-            let normal = looks.mapped_normal(simd, subject.mesh, slots, &surface, material);
-            let numbers = PointNumbers {
-                placed: phong::placed(&surface, normal),
-                emission: looks.emission,
-                alpha: looks.alpha,
-                coverage: looks.coverage,
-                coefficients: looks.coefficients(simd, material, looks.base),
-            };
-            numbers.to_array()
-        },
-    )
-}
-
 /// One instruction-set function: kept out of line, so that each level compiles it once.
 fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
     simd.vectorize(
@@ -694,26 +415,9 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
     put_colors(simd, points, [color.x, color.y, color.z, looks.alpha], lit);
 }
 
-/// The lights of a frame for some points and those that follow in their group.
-#[inline(always)]
-fn lighting<'a>(eight: &Eight<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
-    Lighting {
-        lights: &constants.lights,
-        ambient: constants.ambient,
-        illumination: match eight.material.model {
-            Model::Empirical(illumination) => illumination,
-            _ => Illumination::Phong,
-        },
-        perspective: eight.subject.viewing.perspective,
-        along: eight.along,
-        arriving: eight.arriving,
-        first: eight.first,
-    }
-}
-
 /// What a surface reflects and shines, premultiplied.
 #[inline(always)]
-fn premultiplied<T: Lanes>(
+pub(super) fn premultiplied<T: Lanes>(
     material: &MaterialConstants<'_>,
     filtered: bool,
     reflected: &Reflected<T>,
@@ -730,7 +434,7 @@ fn premultiplied<T: Lanes>(
 
 /// Hands the colours of up to eight points on: red, green, blue, alpha.
 #[inline(always)]
-fn put_colors<S: Simd>(simd: S, points: &[u32], [r, g, b, a]: [F<S>; 4], lit: &mut Lit) {
+pub(super) fn put_colors<S: Simd>(simd: S, points: &[u32], [r, g, b, a]: [F<S>; 4], lit: &mut Lit) {
     lanes::rows_of_columns(
         simd,
         [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()],

@@ -10,8 +10,9 @@
 use super::FrameConstants;
 use super::frame_constants::{MaterialConstants, TextureConstants};
 use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather};
-use super::group::{Coefficients, Model};
+use super::group::Model;
 use super::hits::Along;
+use super::lighting::Coefficients;
 use super::phong;
 use crate::transparency::{kay, linear};
 use crate::{Shading, Transparency};

@@ -20,11 +20,13 @@ mod geometry;
 mod glow;
 mod group;
 pub(crate) mod hits;
+mod lighting;
 mod listed;
 mod looks;
 mod passes;
 mod points;
 mod shadowed;
+mod together;
 
 pub(crate) use channels::{ChannelSink, DataPlanes};
 pub use flat::FaceTable;

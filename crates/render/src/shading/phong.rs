@@ -4,7 +4,7 @@
 //! Source: [Phong 1975].
 
 use super::geometry::{Placed, Surface, between, blend3};
-use super::group::{Coefficients, Lighting};
+use super::lighting::{Coefficients, Lighting};
 use vitral_light::Reflected;
 use vitral_math::lanes::{F32x8, Simd, V3};
 

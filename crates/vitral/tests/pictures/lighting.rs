@@ -409,3 +409,35 @@ fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_a
     }
     assert_eq!(picture(1.0, None), picture(1.0, Some(1.0)));
 }
+
+/// What nothing varies takes a shorter way than what a texture of ones varies.
+#[test]
+fn a_white_texture_changes_not_a_bit() {
+    let white = Texture::new("white".into(), Plane::filled(1, 1, [255; 4]), Encoding::Linear);
+    let picture = |reflectance, illumination, opacity, textured: bool| {
+        let material = Material {
+            reflectance,
+            opacity,
+            base_texture: textured.then(|| TextureRef::new(0)),
+            ..Material::default()
+        };
+        let mut scene = one(solids::torus(2.0, 0.7, 40, 20), material);
+        scene.textures.push(std::sync::Arc::new(white.clone()));
+        scene.lights = lab::lights();
+        let lamp = LightKind::Point { position: DVec3::new(0.0, 2.0, 3.0) };
+        scene.lights.push(Light { kind: lamp, ..Light::default() });
+        let mut renderer = exact(scene, 90, 70);
+        (renderer.settings.illumination, renderer.settings.samples) = (illumination, 4);
+        colors(&mut renderer)
+    };
+    let phong = Reflectance::Phong { ka: [0.1, 0.2, 0.3], kd: [0.7, 0.3, 0.5], ks: [0.9; 3], shininess: 17.0 };
+    let rough = Reflectance::MetallicRoughness { base_color: [0.9, 0.4, 0.2], metallic: 0.6, roughness: 0.4 };
+    let models = [Illumination::Lambert, Illumination::Phong, Illumination::BlinnPhong, Illumination::CookTorrance];
+    for (reflectance, illumination, opacity) in
+        [phong, rough].iter().flat_map(|r| models.iter().flat_map(move |m| [1.0, 0.5].map(|o| (*r, *m, o))))
+    {
+        let plain = picture(reflectance, illumination, opacity, false);
+        assert!(plain.iter().collect::<HashSet<_>>().len() > 200, "{illumination}");
+        assert!(plain == picture(reflectance, illumination, opacity, true), "{reflectance:?} {illumination} {opacity}");
+    }
+}

@@ -1,0 +1,178 @@
+//! What points reflect of the lights of a frame.
+//!
+//! In:   positions, normals and coefficients, eight or sixteen; lights in view space. Out: light towards the viewer.
+//! Cost: linear in points, times the number of lights.
+
+use super::FrameConstants;
+use super::group::{Eight, Model};
+use super::hits::Along;
+use crate::shadow::Parts;
+use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, cook_torrance};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
+
+/// Reflection coefficients at points, a lane each.
+pub(crate) enum Coefficients<T> {
+    Empirical(Phong<T>),
+    Microfacet(Microfacet<T>),
+}
+
+/// Numbers of [`Coefficients`].
+pub(super) const NUMBERS: usize = 10;
+
+impl<T: Lanes> Coefficients<T> {
+    /// As numbers; those of the microfacets are fewer, and the last is repeated.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> [T; NUMBERS] {
+        match self {
+            Self::Empirical(Phong { ka, kd, ks, shininess }) => {
+                [ka.x, ka.y, ka.z, kd.x, kd.y, kd.z, ks.x, ks.y, ks.z, *shininess]
+            }
+            Self::Microfacet(Microfacet { base_color: b, metallic: m, roughness: r, occlusion: o }) => {
+                [b.x, b.y, b.z, *m, *r, *o, *o, *o, *o, *o]
+            }
+        }
+    }
+
+    /// The way back.
+    #[inline(always)]
+    pub(super) fn from_numbers(model: Model, n: [T; NUMBERS]) -> Self {
+        match model {
+            Model::Microfacet => Self::Microfacet(Microfacet {
+                base_color: V3::new(n[0], n[1], n[2]),
+                metallic: n[3],
+                roughness: n[4],
+                occlusion: n[5],
+            }),
+            _ => Self::Empirical(Phong {
+                ka: V3::new(n[0], n[1], n[2]),
+                kd: V3::new(n[3], n[4], n[5]),
+                ks: V3::new(n[6], n[7], n[8]),
+                shininess: n[9],
+            }),
+        }
+    }
+}
+
+/// The lights of a frame and the way to use them.
+pub(crate) struct Lighting<'a> {
+    lights: &'a [PreparedLight],
+    ambient: Rgb,
+    illumination: Illumination,
+    perspective: bool,
+    /// The rays that see the points, if it is not the eye.
+    along: Option<&'a Along>,
+    /// Which part of each light arrives at the group's points; empty without shadows.
+    arriving: &'a [Parts],
+    /// The first of the eight points in the group.
+    first: usize,
+}
+
+/// Unit vector from a position (view space) to the eye, or to where the rays come from.
+#[inline(always)]
+pub(crate) fn towards_viewer<S: Simd, V: Floats<S>>(
+    simd: S,
+    position: &V3<V>,
+    along: Option<&Along>,
+    perspective: bool,
+) -> V3<V> {
+    match along {
+        Some(along) => {
+            let origin = V::by_eights(
+                simd,
+                [],
+                #[inline(always)]
+                |_, []| along.origin(simd).to_array(),
+            );
+            (V3::from_array(origin) - *position).normalize()
+        }
+        None if perspective => (-*position).normalize(),
+        None => V3::splat(every(simd, 1.0), [0.0, 0.0, 1.0]),
+    }
+}
+
+/// A number in all lanes.
+#[inline(always)]
+pub(super) fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
+    <V as SimdBase<S>>::splat(simd, value)
+}
+
+impl Lighting<'_> {
+    /// Light reflected towards the viewer; position and unit normal in view space.
+    pub(crate) fn reflect<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        position: &V3<V>,
+        n: &V3<V>,
+        coefficients: &Coefficients<V>,
+    ) -> Reflected<V> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let one = every(simd, 1.0);
+                if self.arriving.is_empty() {
+                    // Factors of 1 that are known to be that are left out.
+                    let all = lanes::inlined(
+                        #[inline(always)]
+                        |_: usize| V3::new(one, one, one),
+                    );
+                    return self.reflect_of(simd, position, n, coefficients, all);
+                }
+                let lit = lanes::inlined(
+                    #[inline(always)]
+                    |j: usize| match self.arriving.get(j) {
+                        Some(parts) => V3::from_array(V::by_eights(
+                            simd,
+                            [],
+                            #[inline(always)]
+                            |lane, []| parts.eight(simd, self.first + lane).to_array(),
+                        )),
+                        None => V3::new(one, one, one),
+                    },
+                );
+                self.reflect_of(simd, position, n, coefficients, lit)
+            },
+        )
+    }
+
+    /// [`Self::reflect`] of light of which `lit` says how much arrives.
+    #[inline(always)]
+    fn reflect_of<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        position: &V3<V>,
+        n: &V3<V>,
+        coefficients: &Coefficients<V>,
+        lit: impl Fn(usize) -> V3<V>,
+    ) -> Reflected<V> {
+        let v = towards_viewer(simd, position, self.along, self.perspective);
+        let surface = vitral_light::Surface { position: *position, n: *n, v };
+        match coefficients {
+            Coefficients::Empirical(k) => {
+                let grazing = lanes::inlined(
+                    #[inline(always)]
+                    |light: &PreparedLight| light.direction_rounding(*position),
+                );
+                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
+            }
+            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
+        }
+    }
+}
+
+/// The lights of a frame for some points and those that follow in their group.
+#[inline(always)]
+pub(super) fn lighting<'a>(eight: &Eight<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
+    Lighting {
+        lights: &constants.lights,
+        ambient: constants.ambient,
+        illumination: match eight.material.model {
+            Model::Empirical(illumination) => illumination,
+            _ => Illumination::Phong,
+        },
+        perspective: eight.subject.viewing.perspective,
+        along: eight.along,
+        arriving: eight.arriving,
+        first: eight.first,
+    }
+}

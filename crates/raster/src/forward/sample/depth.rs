@@ -13,6 +13,7 @@ use crate::forward::plane::DepthPlane;
 use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat, splat_rgba};
+use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Lanes, Simd};
 
 /// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one texel a lookup, and a comparison
@@ -69,7 +70,22 @@ impl<'a> PackedShadow<'a> {
     fn depth<S: Simd, V: Floats<S>>(&self, simd: S, [x, y]: [V; 2], reference: V, active: u32) -> V {
         simd.vectorize(
             #[inline(always)]
-            || self.pending.texels(simd, [x.to_int(), y.to_int()], active, Some(reference)),
+            || {
+                // Sixteen in several registers make long code.
+                if lanes::has_sixteen(simd.level()) {
+                    return self.pending.texels(simd, [x.to_int(), y.to_int()], active, Some(reference));
+                }
+                let [depth] = V::by_eights(
+                    simd,
+                    [x, y, reference],
+                    #[inline(always)]
+                    |first, [x, y, reference]| {
+                        let active = active >> first & 0xff;
+                        [self.pending.texels(simd, [x.to_int(), y.to_int()], active, Some(reference))]
+                    },
+                );
+                depth
+            },
         )
     }
 }

@@ -376,6 +376,15 @@ pub fn has_sixteen(level: Level) -> bool {
     false
 }
 
+/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so that nobody compiles what
+/// nobody calls.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub type Widest<S> = F32x16<S>;
+/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so that nobody compiles what
+/// nobody calls.
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+pub type Widest<S> = F32x8<S>;
+
 /// A vector of three lanes: eight directions or points, or one.
 #[derive(Clone, Copy, Debug)]
 pub struct V3<T> {

@@ -17,7 +17,7 @@ use crate::{Shading, Transparency};
 use vitral_light::{Illumination, Material, Reflected, Rgb, constant_color};
 use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, F32x16, LANES, Lanes, Simd, V3};
+use vitral_math::lanes::{self, F32x8, LANES, Lanes, Simd, V3, Widest};
 
 /// What a material's points go through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ pub(crate) fn shade_all<S: Simd>(
             let unvaried = simple && is_unvaried(first, constants);
             match second {
                 Some(second) if simple && lanes::has_sixteen(simd.level()) => {
-                    shade_together::<S, F32x16<S>>(simd, [first, second], unvaried, constants, lit);
+                    shade_together::<S, Widest<S>>(simd, [first, second], unvaried, constants, lit);
                 }
                 _ => {
                     for eight in std::iter::once(first).chain(second) {

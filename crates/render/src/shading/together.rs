@@ -26,7 +26,7 @@ pub(super) fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConst
         && !constants.follows_rays()
 }
 
-/// [`shade_eight`] of what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.
+/// Illuminates what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.
 pub(super) fn shade_together<S: Simd, V: Floats<S>>(
     simd: S,
     eights: [&Eight<'_>; 2],

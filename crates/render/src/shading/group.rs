@@ -111,6 +111,14 @@ pub(crate) fn shade_all<S: Simd>(
         (asks, &mut rays),
         #[inline(always)]
         |first, second| {
+            // A second way through the same formulas is more than WebAssembly's compiler takes in minutes.
+            if cfg!(target_family = "wasm") {
+                shade_eight(simd, first, constants, lit);
+                if let Some(second) = second {
+                    shade_eight(simd, second, constants, lit);
+                }
+                return;
+            }
             let simple = is_simple(first.material, constants);
             let unvaried = simple && is_unvaried(first, constants);
             match second {

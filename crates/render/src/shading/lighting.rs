@@ -110,7 +110,8 @@ impl Lighting<'_> {
             #[inline(always)]
             || {
                 let one = every(simd, 1.0);
-                if self.arriving.is_empty() {
+                // As in `shade_all`.
+                if !cfg!(target_family = "wasm") && self.arriving.is_empty() {
                     // Factors of 1 that are known to be that are left out.
                     let all = lanes::inlined(
                         #[inline(always)]

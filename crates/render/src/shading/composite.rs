@@ -66,7 +66,7 @@ impl Composer {
     /// Adds a pixel that is the mean of samples.
     pub(super) fn put(&mut self, pixel: u32, samples: &[[f32; 4]]) {
         self.places.push(pixel);
-        self.colors.push(if let [one] = samples { *one } else { mean(samples) });
+        self.colors.push(if let [one] = samples { *one } else { mean(samples.iter().copied()) });
     }
 
     /// Encodes the pixels that were added.
@@ -82,14 +82,9 @@ impl Composer {
         self.colors.extend(points.pixels.iter().map(|pixel| match pixel.source {
             Source::Point(point) => lit.colors[point as usize],
             Source::Mixed(start) => {
-                let (behind, mut sum) = (background[pixel.index as usize / TILE], [0.0; 4]);
-                for &point in &points.mixed[start as usize..][..samples] {
-                    let color = if point == NO_POINT { behind } else { lit.colors[point as usize] };
-                    for k in 0..4 {
-                        sum[k] += color[k];
-                    }
-                }
-                sum.map(|c| c / samples as f32)
+                let behind = background[pixel.index as usize / TILE];
+                let color = |&point: &u32| if point == NO_POINT { behind } else { lit.colors[point as usize] };
+                mean(points.mixed[start as usize..][..samples].iter().map(color))
             }
         }));
     }
@@ -146,7 +141,7 @@ impl Composer {
                         }
                         (constants.lay)(&fragments, below);
                     }
-                    mean(below)
+                    mean(below.iter().copied())
                 }
             };
             self.places.push(index);
@@ -155,14 +150,14 @@ impl Composer {
     }
 }
 
-fn mean(samples: &[[f32; 4]]) -> [f32; 4] {
-    let mut sum = [0.0; 4];
+fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4] {
+    let (count, mut sum) = (samples.len() as f32, [0.0; 4]);
     for color in samples {
         for k in 0..4 {
             sum[k] += color[k];
         }
     }
-    sum.map(|c| c / samples.len() as f32)
+    sum.map(|c| c / count)
 }
 
 /// A fragment of a tile with its colour.

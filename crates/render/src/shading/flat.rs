@@ -44,7 +44,7 @@ pub(crate) fn shade<S: Simd>(
     faces: &FaceTable,
     instance: &InstanceConstants,
     slots: &Slots,
-    surface: &Surface<S>,
+    surface: &Surface<F32x8<S>>,
     lighting: &Lighting<'_>,
     coefficients: &Coefficients<F32x8<S>>,
 ) -> Reflected<F32x8<S>> {

@@ -3,6 +3,7 @@
 //! What is the same all over a facet was computed before, see [`super::facets`]; here each point weighs the corners.
 
 use super::facets::Record;
+use super::phong;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x4, F32x8, Floats, LANES, Lanes, Simd, V3};
 
@@ -25,7 +26,13 @@ pub(crate) type F<S> = F32x8<S>;
 /// Loads a constant.
 #[inline(always)]
 pub(crate) fn constant<S: Simd>(simd: S, value: f32) -> F<S> {
-    <F<S> as SimdBase<S>>::splat(simd, value)
+    every(simd, value)
+}
+
+/// [`constant`] for as many lanes as there are.
+#[inline(always)]
+pub(super) fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
+    <V as SimdBase<S>>::splat(simd, value)
 }
 
 /// Gathers `C` values with `N` components, at most four, for each lane: `[value][component]`. `value` gives a lane's by number. Each is one load, and they are transposed in registers: numbers that are put side by side in memory one by one are
@@ -78,78 +85,33 @@ pub(crate) struct Placed<T> {
 }
 
 impl<T: Lanes> Placed<T> {
-    /// Between the corners of each lane's facet, which has a unit normal of its own.
+    /// At a surface's points, with the normal between the corners'.
     #[inline(always)]
-    pub(crate) fn new(weights: &[T; 3], positions: &[V3<T>; 3], normals: &[V3<T>; 3], facet_normal: V3<T>) -> Self {
-        Self { position: blend3(weights, positions), normal: between(weights, normals, facet_normal) }
+    pub(crate) fn new(surface: &Surface<T>) -> Self {
+        Self { position: blend3(&surface.weights, &surface.positions), normal: phong::interpolated_normal(surface) }
     }
 }
 
-/// The unit normal between the corners'.
-#[inline(always)]
-pub(super) fn between<T: Lanes>(weights: &[T; 3], normals: &[V3<T>; 3], facet_normal: V3<T>) -> V3<T> {
-    let n = blend3(weights, normals).normalize();
-    // Opposite corner normals can cancel out: use the facet's.
-    let length2 = n.dot(n);
-    let usable = (length2 * 0.0).lt(length2);
-    V3::select(usable, n, facet_normal)
-}
-
-/// [`Placed`] on the facets under eight points and eight more, or eight alone.
-#[inline(always)]
-pub(crate) fn placed<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots: [&Slots; 2]) -> Placed<V> {
-    let rows = [rows(records, slots[0]), rows(records, slots[1])];
-    let q = lanes::inlined(
-        #[inline(always)]
-        |i: usize| -> [V; 4] {
-            V::by_eights(
-                simd,
-                [],
-                #[inline(always)]
-                |lane, []| columns(simd, &rows[lane / LANES], 4 * i),
-            )
-        },
-    );
-    let place = V::by_eights(
-        simd,
-        [],
-        #[inline(always)]
-        |lane, []| {
-            let Slots { x, y, .. } = slots[lane / LANES];
-            [F32x8::from_slice(simd, x), F32x8::from_slice(simd, y)]
-        },
-    );
-    let ([c0, a0, b0, c1], [a1, b1, c2, a2], [b2, x0, y0, nx]) = (q(0), q(1), q(2));
-    let (x, y) = (place[0] - x0, place[1] - y0);
-    let weights = on_facet([c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y]);
-    let [ny, nz, p0x, p0y] = q(3);
-    let ([p0z, p1x, p1y, p1z], [p2x, p2y, p2z, n0x]) = (q(4), q(5));
-    let ([n0y, n0z, n1x, n1y], [n1z, n2x, n2y, n2z]) = (q(6), q(7));
-    let positions = [V3::new(p0x, p0y, p0z), V3::new(p1x, p1y, p1z), V3::new(p2x, p2y, p2z)];
-    let normals = [V3::new(n0x, n0y, n0z), V3::new(n1x, n1y, n1z), V3::new(n2x, n2y, n2z)];
-    Placed::new(&weights, &positions, &normals, V3::new(nx, ny, nz))
-}
-
 /// The corners of each lane's facet, and the point's weights.
-pub(crate) struct Surface<S: Simd> {
+pub(crate) struct Surface<T> {
     /// Positions, view space.
-    pub positions: [V3<F<S>>; 3],
+    pub positions: [V3<T>; 3],
     /// Shading normals at the corners, view space, any length, turned to the viewer's side where both sides are seen.
-    pub normals: [V3<F<S>>; 3],
+    pub normals: [V3<T>; 3],
     /// Unit normal of the facet, view space, turned likewise.
-    pub facet_normal: V3<F<S>>,
+    pub facet_normal: V3<T>,
     /// Barycentric coordinates of the point, not negative, sum 1.
-    pub weights: [F<S>; 3],
-    edges: [Edge<S>; 3],
+    pub weights: [T; 3],
+    edges: [Edge<T>; 3],
     /// Barycentric coordinates before they were scaled to the sum 1.
-    values: [F<S>; 3],
+    values: [T; 3],
 }
 
 /// The slope of an unscaled barycentric coordinate `c + a x + b y`.
 #[derive(Clone, Copy)]
-struct Edge<S: Simd> {
-    a: F<S>,
-    b: F<S>,
+struct Edge<T> {
+    a: T,
+    b: T,
 }
 
 /// A row of an affine map times `(p, 1)`.
@@ -188,10 +150,10 @@ fn normalized<T: Lanes>(e: [T; 3]) -> [T; 3] {
 }
 
 /// Builds the surface under each lane's point.
-pub(crate) fn surface<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
+pub(crate) fn surface<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<F<S>> {
     simd.vectorize(
         #[inline(always)]
-        || surface_inlined(simd, records, slots),
+        || surfaces(simd, records, [slots; 2]),
     )
 }
 
@@ -224,14 +186,37 @@ fn columns<S: Simd>(simd: S, rows: &[&Record; LANES], at: usize) -> [F<S>; 4] {
     ]
 }
 
+/// [`columns`] for as many lanes as there are.
+#[inline(always)]
+fn columns_of<S: Simd, V: Floats<S>>(simd: S, rows: &[[&Record; LANES]; 2], at: usize) -> [V; 4] {
+    V::by_eights(
+        simd,
+        [],
+        #[inline(always)]
+        |lane, []| columns(simd, &rows[lane / LANES], at),
+    )
+}
+
 /// Slopes and values of the unscaled barycentric coordinates of each lane's point, and the number that comes after them in
 /// the records.
 #[inline(always)]
-fn weighed<S: Simd>(simd: S, rows: &[&Record; LANES], slots: &Slots) -> ([Edge<S>; 3], [F<S>; 3], F<S>) {
-    let ([c0, a0, b0, c1], [a1, b1, c2, a2]) = (columns(simd, rows, 0), columns(simd, rows, 4));
-    let [b2, x0, y0, next] = columns(simd, rows, 8);
-    let x = F32x8::from_slice(simd, &slots.x) - x0;
-    let y = F32x8::from_slice(simd, &slots.y) - y0;
+fn weighed<S: Simd, V: Floats<S>>(
+    simd: S,
+    rows: &[[&Record; LANES]; 2],
+    slots: [&Slots; 2],
+) -> ([Edge<V>; 3], [V; 3], V) {
+    let ([c0, a0, b0, c1], [a1, b1, c2, a2]): ([V; 4], [V; 4]) = (columns_of(simd, rows, 0), columns_of(simd, rows, 4));
+    let [b2, x0, y0, next]: [V; 4] = columns_of(simd, rows, 8);
+    let place = V::by_eights(
+        simd,
+        [],
+        #[inline(always)]
+        |lane, []| {
+            let Slots { x, y, .. } = slots[lane / LANES];
+            [F32x8::from_slice(simd, x), F32x8::from_slice(simd, y)]
+        },
+    );
+    let (x, y) = (place[0] - x0, place[1] - y0);
     let edges = [Edge { a: a0, b: b0 }, Edge { a: a1, b: b1 }, Edge { a: a2, b: b2 }];
     (edges, [c0 + a0 * x + b0 * y, c1 + a1 * x + b1 * y, c2 + a2 * x + b2 * y], next)
 }
@@ -256,16 +241,18 @@ fn rows<'a>(records: &'a [Record], slots: &Slots) -> [&'a Record; LANES] {
 /// [`Surface::weights`] alone.
 #[inline(always)]
 pub(super) fn point_weights<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> [F<S>; 3] {
-    let (_, values, _) = weighed(simd, &rows(records, slots), slots);
+    let rows = rows(records, slots);
+    let (_, values, _) = weighed(simd, &[rows; 2], [slots; 2]);
     on_facet(values)
 }
 
+/// [`surface`] under eight points and eight more, or the first eight alone.
 #[inline(always)]
-fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surface<S> {
-    let rows = rows(records, slots);
+pub(super) fn surfaces<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots: [&Slots; 2]) -> Surface<V> {
+    let rows = [rows(records, slots[0]), rows(records, slots[1])];
     let q = lanes::inlined(
         #[inline(always)]
-        |i: usize| columns(simd, &rows, 4 * i),
+        |i: usize| columns_of::<S, V>(simd, &rows, 4 * i),
     );
     let (edges, values, nx) = weighed(simd, &rows, slots);
     let [ny, nz, p0x, p0y] = q(3);
@@ -281,11 +268,11 @@ fn surface_inlined<S: Simd>(simd: S, records: &[Record], slots: &Slots) -> Surfa
     }
 }
 
-impl<S: Simd> Surface<S> {
+impl<T: Lanes> Surface<T> {
     /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives; they may leave
     /// `0..=1`.
     #[inline(always)]
-    pub(crate) fn neighbours(&self) -> [[F<S>; 3]; 2] {
+    pub(crate) fn neighbours(&self) -> [[T; 3]; 2] {
         let ([v0, v1, v2], [e0, e1, e2]) = (self.values, self.edges);
         [normalized([v0 + e0.a, v1 + e1.a, v2 + e2.a]), normalized([v0 + e0.b, v1 + e1.b, v2 + e2.b])]
     }

@@ -24,7 +24,7 @@ pub(super) fn glow<S: Simd>(
     simd: S,
     eight: &Eight<'_>,
     looks: &Looks<S>,
-    surface: &Surface<S>,
+    surface: &Surface<F<S>>,
     constants: &FrameConstants<'_>,
 ) -> V3<F<S>> {
     simd.vectorize(

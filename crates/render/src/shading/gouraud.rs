@@ -20,7 +20,7 @@ use vitral_math::lanes::{self, F32x8, Simd};
 #[inline(always)]
 pub(crate) fn shade<S: Simd>(
     simd: S,
-    surface: &Surface<S>,
+    surface: &Surface<F32x8<S>>,
     lighting: &Lighting<'_>,
     corner_coefficients: &[Coefficients<F32x8<S>>; 3],
 ) -> Reflected<F32x8<S>> {

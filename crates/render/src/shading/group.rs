@@ -462,7 +462,7 @@ fn irradiance<S: Simd>(
     solution: &Solution,
     subject: &Subject<'_>,
     slots: &Slots,
-    surface: &Surface<S>,
+    surface: &Surface<F<S>>,
 ) -> V3<F<S>> {
     // Which side is seen? The facet's normal was turned to it.
     let [a, b, c] = surface.positions;

@@ -4,11 +4,11 @@
 //! Cost: linear in points, times the number of lights.
 
 use super::FrameConstants;
+use super::geometry::every;
 use super::group::{Eight, Model};
 use super::hits::Along;
 use crate::shadow::Parts;
 use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, cook_torrance};
-use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
 
 /// Reflection coefficients at points, a lane each.
@@ -89,12 +89,6 @@ pub(crate) fn towards_viewer<S: Simd, V: Floats<S>>(
         None if perspective => (-*position).normalize(),
         None => V3::splat(every(simd, 1.0), [0.0, 0.0, 1.0]),
     }
-}
-
-/// A number in all lanes.
-#[inline(always)]
-pub(super) fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
-    <V as SimdBase<S>>::splat(simd, value)
 }
 
 impl Lighting<'_> {

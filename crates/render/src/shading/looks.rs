@@ -49,7 +49,7 @@ impl<S: Simd> Looks<S> {
         simd: S,
         mesh: &Mesh,
         slots: &Slots,
-        surface: &Surface<S>,
+        surface: &Surface<F<S>>,
         material: &MaterialConstants<'_>,
         raw: bool,
     ) -> Self {
@@ -129,7 +129,7 @@ impl<S: Simd> Looks<S> {
     pub(super) fn let_through(
         &mut self,
         simd: S,
-        surface: &Surface<S>,
+        surface: &Surface<F<S>>,
         material: &MaterialConstants<'_>,
         constants: &FrameConstants<'_>,
         along: Option<&Along>,
@@ -216,7 +216,7 @@ impl<S: Simd> Looks<S> {
         simd: S,
         mesh: &Mesh,
         slots: &Slots,
-        surface: &Surface<S>,
+        surface: &Surface<F<S>>,
         material: &MaterialConstants<'_>,
     ) -> Option<V3<F<S>>> {
         let texture = material.normal.as_ref()?;
@@ -327,7 +327,7 @@ fn sample<S: Simd>(
     simd: S,
     mesh: &Mesh,
     slots: &Slots,
-    surface: &Surface<S>,
+    surface: &Surface<F<S>>,
     t: &TextureConstants<'_>,
 ) -> Option<[F<S>; 4]> {
     simd.vectorize(

@@ -98,7 +98,7 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 #[inline(always)]
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
-    surface: &Surface<S>,
+    surface: &Surface<F<S>>,
     arriving: &[Parts],
     first: usize,
 ) -> [[f32; LANES]; 2] {

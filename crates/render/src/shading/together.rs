@@ -7,9 +7,9 @@
 
 use super::FrameConstants;
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Placed, placed, surface};
+use super::geometry::{F, Placed, every, surface, surfaces};
 use super::group::{Eight, Lit, Model, asks, premultiplied, put_colors};
-use super::lighting::{Coefficients, NUMBERS, every, lighting};
+use super::lighting::{Coefficients, NUMBERS, lighting};
 use super::looks::{self, Looks};
 use super::phong;
 use crate::{Shading, Transparency};
@@ -110,7 +110,7 @@ impl<T: Lanes> PointNumbers<T> {
     {
         let (one, material) = (every(simd, 1.0), eights[0].material);
         let (coefficients, alpha) = looks::unvaried(one, material);
-        let placed = placed(simd, eights[0].records, [eights[0].slots, eights[1].slots]);
+        let placed = Placed::new(&surfaces(simd, eights[0].records, [eights[0].slots, eights[1].slots]));
         Self { placed, emission: V3::splat(one, material.material.emission), alpha, coverage: one, coefficients }
     }
 }

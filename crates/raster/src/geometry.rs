@@ -95,6 +95,38 @@ impl ViewportTransform {
     }
 }
 
+/// What becomes of triangles whose corners run clockwise as the viewer sees them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BackFaces<'a> {
+    /// They are drawn.
+    Kept,
+    /// They are dropped.
+    Dropped,
+    /// They are dropped if bit `t % 32` of word `t / 32` is set for triangle `t`.
+    DroppedOf(&'a [u32]),
+}
+
+impl BackFaces<'_> {
+    /// Whether a triangle is dropped if it faces away.
+    pub fn drops(self, triangle: u32) -> bool {
+        self.eight(triangle) & 1 == 1
+    }
+
+    /// The same for eight triangles in a row, a bit each. Those behind the last one are dropped or not.
+    #[inline(always)]
+    fn eight(self, first: u32) -> u32 {
+        match self {
+            Self::Kept => 0,
+            Self::Dropped => 0xff,
+            Self::DroppedOf(words) => {
+                let at = first as usize / 32;
+                let next = words.get(at + 1).copied().unwrap_or(0);
+                ((u64::from(next) << 32 | u64::from(words[at])) >> (first % 32)) as u32 & 0xff
+            }
+        }
+    }
+}
+
 /// Triangles of one mesh under one transform.
 #[derive(Clone, Debug)]
 pub struct Draw<'a> {
@@ -108,8 +140,8 @@ pub struct Draw<'a> {
     pub clip_from_model: Mat4,
     /// Facet id of triangle 0.
     pub first_facet: u32,
-    /// Drops triangles whose corners run clockwise as the viewer sees them.
-    pub cull_back: bool,
+    /// Which triangles are dropped if they face away.
+    pub back_faces: BackFaces<'a>,
     /// The transform mirrors: what runs clockwise in model space is the front.
     pub mirrored: bool,
 }
@@ -291,13 +323,14 @@ impl Batch {
         screen: &Screen,
     ) {
         let Viewport { width, height, .. } = screen.viewport;
-        let culls = [draw.cull_back && draw.mirrored, draw.cull_back && !draw.mirrored];
-        let sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls, clip: [0, 0, width as i32, height as i32] };
+        let clip = [0, 0, width as i32, height as i32];
+        let mut sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls: [0; 2], clip };
         self.counters.triangles += u64::from(range.end - range.start);
         let triangles = &draw.triangles[range.start as usize..range.end as usize];
         for (eight, first) in triangles.chunks(LANES).zip((range.start..).step_by(LANES)) {
             // A short last chunk repeats its first triangle.
             let corners = eight.try_into().unwrap_or_else(|_| padded(eight));
+            sieve.culls[usize::from(!draw.mirrored)] = draw.back_faces.eight(first);
             let sifted = sift(simd, screen, &sieve, vertices, &corners);
             let whole = 0xff >> (LANES - eight.len());
             let count = |set: u32| u64::from((set & whole).count_ones());
@@ -335,13 +368,14 @@ impl Batch {
         facet: u32,
         screen: &Screen,
     ) {
+        let cull_back = draw.back_faces.drops(facet - draw.first_facet);
         let [a, b, c] = corners.map(|i| vertices[i as usize]);
         if (a.flags | b.flags | c.flags) & flag::CLIP == 0 {
             let corners = [a.corner(), b.corner(), c.corner()];
-            self.add_corners(corners, draw.cull_back, draw.mirrored, facet, screen);
+            self.add_corners(corners, cull_back, draw.mirrored, facet, screen);
         } else {
             let corners = corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
-            self.add_clipped(corners, draw.cull_back, draw.mirrored, facet, screen);
+            self.add_clipped(corners, cull_back, draw.mirrored, facet, screen);
         }
     }
 

@@ -29,7 +29,7 @@ mod testing;
 mod tile;
 
 pub use fragments::{Fragment, FragmentSink};
-pub use geometry::{Batch, Draw, GeometryCounters, ScreenVertex, TileLists, Unsorted};
+pub use geometry::{BackFaces, Batch, Draw, GeometryCounters, ScreenVertex, TileLists, Unsorted};
 pub use kernel::block::{Block, BlockSink, InBlocks, RowSink};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::plane::RowPlane;

@@ -13,7 +13,7 @@ use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
 use vitral_math::{DMat4, DVec3, DVec4};
 use vitral_raster::geometry::Screen;
-use vitral_raster::{Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
+use vitral_raster::{BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
 use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
 
 /// One instance's triangles, ready for the rasteriser.
@@ -81,20 +81,22 @@ impl<'a> PreparedView<'a> {
         let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
         for visible in frustum::cull(session, &clip_from_world, cull_objects, counters) {
             let instance = &session.world.instances[visible.instance];
-            let solid = |double_sided: bool| {
-                settings.cull.back_face
-                    && !double_sided
-                    && is_solid(session, instance, camera, &view, settings, execution)
+            let drops = settings.cull.back_face && is_outside(instance, camera, &view);
+            let back_faces = |class: Class| {
+                if !drops || class.double_sided || class.layered {
+                    return BackFaces::Kept;
+                }
+                session.back_faces(instance.mesh_index, settings.transparency, &execution.workers)
             };
             let draws = if surfaces {
-                draws(session, instance, &visible.ranges, &clip_from_world, settings, solid)
+                draws(session, instance, &visible.ranges, &clip_from_world, settings, back_faces)
             } else {
                 Vec::new()
             };
             let (layered, opaque): (Vec<_>, Vec<_>) = draws.into_iter().partition(|(class, _)| class.layered);
             let strip = |list: Vec<(Class, Draw<'a>)>| list.into_iter().map(|(_, draw)| draw).collect::<Vec<_>>();
             let (opaque, layered) = (strip(opaque), strip(layered));
-            counters.back_face_culled_instances += u64::from(opaque.iter().chain(&layered).any(|d| d.cull_back));
+            counters.back_face_culled_instances += u64::from(opaque.iter().any(|d| d.back_faces != BackFaces::Kept));
             instances.push(PreparedInstance { instance: visible.instance, opaque, layered });
         }
         let screen = Screen::new(viewport, &pattern);
@@ -143,7 +145,7 @@ impl<'a> PreparedView<'a> {
 
     /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports
     /// and algorithms that take facets one by one.
-    pub fn setups(&self, facet: u32, cull_back: bool) -> Vec<Setup> {
+    pub fn setups(&self, facet: u32, back_faces: BackFaces<'_>) -> Vec<Setup> {
         let instance = &self.session.world.instances[self.session.world.instance_of_facet(facet)];
         let mesh = &instance.mesh;
         let triangle = (facet - instance.first_facet) as usize;
@@ -158,7 +160,7 @@ impl<'a> PreparedView<'a> {
             ranges: Vec::new(),
             clip_from_model,
             first_facet: facet,
-            cull_back,
+            back_faces: if back_faces.drops(triangle as u32) { BackFaces::Dropped } else { BackFaces::Kept },
             mirrored: mirrors(&instance.world_from_model),
         };
         let mut batch = Batch::default();
@@ -177,8 +179,13 @@ pub fn is_solid(
     settings: &Settings,
     execution: &Execution,
 ) -> bool {
-    depth_range(camera, &instance.bounds).0 > view.near
+    is_outside(instance, camera, view)
         && session.is_solid(instance.mesh_index, settings.transparency, &execution.workers)
+}
+
+/// Whether an instance lies wholly beyond the near plane, so that nothing is seen from within.
+fn is_outside(instance: &Instance, camera: &Camera, view: &ViewTransform) -> bool {
+    depth_range(camera, &instance.bounds).0 > view.near
 }
 
 /// How many layers each tile may have when all of them together take `bytes`.
@@ -213,7 +220,7 @@ fn draws<'a>(
     ranges: &[Range<u32>],
     clip_from_world: &DMat4,
     settings: &Settings,
-    solid: impl Fn(bool) -> bool,
+    back_faces: impl Fn(Class) -> BackFaces<'a>,
 ) -> Vec<(Class, Draw<'a>)> {
     let mesh = &*instance.mesh;
     let (positions, clip_from_model) = session.placed_positions(instance, clip_from_world);
@@ -235,7 +242,7 @@ fn draws<'a>(
                         ranges: Vec::new(),
                         clip_from_model,
                         first_facet: instance.first_facet,
-                        cull_back: solid(class.double_sided) && !class.layered,
+                        back_faces: back_faces(class),
                         mirrored: mirrors(&instance.world_from_model),
                     };
                     draws.push((class, draw));

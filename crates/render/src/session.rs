@@ -20,10 +20,10 @@ use vitral_frame::Frame;
 use vitral_light::AlphaMode;
 use vitral_math::lanes::Level;
 use vitral_math::{Aabb, DMat4, Mat4, Vec3};
-use vitral_raster::{Batch, ScreenVertex, Tile, TileGrid, Unsorted};
+use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Instance, Mesh, Part, Scene, Solidity, World};
+use vitral_scene::{Instance, Part, Scene, Solids, World};
 
 /// Who computes, with which instructions, and how much is allowed.
 #[derive(Clone, Debug)]
@@ -122,9 +122,9 @@ pub(crate) fn keep_for<K: PartialEq, T, E>(
 /// What is found out about a mesh when it is first needed.
 #[derive(Debug, Default)]
 struct MeshKnowledge {
-    solidity: OnceLock<Solidity>,
-    /// Of what is opaque, without and with blended materials.
-    opaque_solidity: [OnceLock<Solidity>; 2],
+    solids: OnceLock<Solids>,
+    /// Of what is opaque, if that is not all and not nothing; without and with blended materials.
+    opaque_solids: [OnceLock<Option<Solids>>; 2],
     tree: OnceLock<BoundsTree>,
     faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
@@ -145,8 +145,8 @@ fn far_middle(bounds: &Aabb) -> Option<Vec3> {
 impl MeshKnowledge {
     fn count(&self) -> usize {
         let known = [
-            self.solidity.get().is_some(),
-            self.opaque_solidity.iter().any(|s| s.get().is_some()),
+            self.solids.get().is_some(),
+            self.opaque_solids.iter().any(|s| s.get().is_some()),
             self.tree.get().is_some(),
             self.faces.get().is_some(),
             self.edges.get().is_some(),
@@ -245,36 +245,43 @@ impl Session {
         (centred, (clip_from_model * DMat4::from_translation(middle.as_dvec3())).as_mat4())
     }
 
-    /// Whether a mesh is closed, consistently wound and wound outwards.
-    pub fn solidity(&self, mesh: u32, workers: &Workers) -> Solidity {
-        let known = &self.meshes[mesh as usize].solidity;
-        *known.get_or_init(|| Solidity::of(&self.scene.meshes[mesh as usize], workers))
+    /// Whether a mesh is closed, consistently wound and wound outwards, and which of its bodies are.
+    pub fn solids(&self, mesh: u32, workers: &Workers) -> &Solids {
+        let known = &self.meshes[mesh as usize].solids;
+        known.get_or_init(|| Solids::of(&self.scene.meshes[mesh as usize], workers))
     }
 
     /// Whether back faces of a mesh can never be seen from outside: neither past its skin nor through a window in it.
     pub fn is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
-        backface::applies(self.solidity(mesh, workers)) && self.opaque_is_solid(mesh, transparency, workers)
+        let opaque = self.opaque_solids(mesh, transparency, workers);
+        let all = [Some(self.solids(mesh, workers)), opaque];
+        all.into_iter().flatten().all(|solids| backface::applies(solids.solidity))
     }
 
-    /// Whether what is opaque of a mesh is solid by itself, if that is not all and not nothing.
-    fn opaque_is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
-        let known = &self.meshes[mesh as usize].opaque_solidity[usize::from(transparency == Transparency::None)];
-        let mesh = &self.scene.meshes[mesh as usize];
-        let is_opaque = |part: &&Part| {
-            let material = part.material.and_then(|m| self.scene.materials.get(m as usize));
-            !is_layered(material, transparency)
-        };
-        let opaque = mesh.parts.iter().filter(is_opaque);
-        let count: usize = opaque.clone().map(|part| part.triangles.len()).sum();
-        if count == 0 || count == mesh.triangles.len() {
-            return true;
+    /// Which of a mesh's opaque triangles are never seen from behind, from outside the mesh.
+    pub fn back_faces(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> BackFaces<'_> {
+        let solids = self.opaque_solids(mesh, transparency, workers).unwrap_or_else(|| self.solids(mesh, workers));
+        match solids.some() {
+            _ if backface::applies(solids.solidity) => BackFaces::Dropped,
+            Some(triangles) => BackFaces::DroppedOf(triangles),
+            None => BackFaces::Kept,
         }
-        let solidity = known.get_or_init(|| {
-            let of = |part: &Part| &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
-            let triangles = opaque.flat_map(of).copied().collect();
-            Solidity::of(&Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() }, workers)
-        });
-        backface::applies(*solidity)
+    }
+
+    /// The solids that what is opaque of a mesh makes by itself, if that is not all and not nothing.
+    fn opaque_solids(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> Option<&Solids> {
+        let known = &self.meshes[mesh as usize].opaque_solids[usize::from(transparency == Transparency::None)];
+        let mesh = &self.scene.meshes[mesh as usize];
+        let make = || {
+            let is_opaque = |part: &&Part| {
+                let material = part.material.and_then(|m| self.scene.materials.get(m as usize));
+                !is_layered(material, transparency)
+            };
+            let opaque: Vec<_> = mesh.parts.iter().filter(is_opaque).map(|part| part.triangles.clone()).collect();
+            let count: usize = opaque.iter().map(|triangles| triangles.len()).sum();
+            (count != 0 && count != mesh.triangles.len()).then(|| Solids::of_some(mesh, &opaque, workers))
+        };
+        known.get_or_init(make).as_ref()
     }
 
     /// The list of all triangles, made when it is first asked for, as are the structures over it: the views of a

@@ -39,7 +39,7 @@ pub struct CullCounters {
     pub triangles: u64,
     /// Triangles thrown away with the box round them.
     pub triangles_culled: u64,
-    /// Instances whose faces turned away are thrown away.
+    /// Instances of which faces turned away are thrown away: all, or those of the bodies that are solid.
     pub back_face_culled_instances: u64,
 }
 

@@ -17,7 +17,7 @@ use crate::buckets::shift_and_count;
 use crate::normals::{DEFAULT_NORMAL, face_corner_list, unit};
 use crate::solidity::{Seen, Skins};
 use crate::weld::Weld;
-use crate::{Faces, Mesh, Solidity};
+use crate::{Faces, Mesh, Solids};
 use bucket::{AllFaces, Bucket};
 use fan::Fan;
 use std::sync::OnceLock;
@@ -61,7 +61,7 @@ pub(crate) struct FanNormals {
     /// For each corner of a face, which normal it takes, if some vertex has two.
     pub(crate) of_corner: Option<Vec<u32>>,
     /// What was seen on the way, if faces are triangles.
-    pub(crate) solidity: Option<Solidity>,
+    pub(crate) solids: Option<Solids>,
 }
 
 /// What the threads keep between buckets.
@@ -135,7 +135,7 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
     workers.for_each(buckets, |(b, (first, further))| spare.lend(|scratch| make(b, first, further, scratch)));
     drop(all);
     let spare = spare.into_inner();
-    let solidity = skins.map(|skins| skins.solidity(spare.iter().map(|scratch| &scratch.seen), workers));
+    let solids = skins.map(|skins| skins.solids(spare.iter().map(|scratch| &scratch.seen), workers));
 
     // One normal a vertex: no indices needed.
     let Some(which) = which.into_inner() else {
@@ -147,7 +147,7 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
                 }
             });
         }
-        return FanNormals { values: first, of_corner: None, solidity };
+        return FanNormals { values: first, of_corner: None, solids };
     };
 
     // What was welded to another vertex has no normal of its own. Further normals follow the first ones.
@@ -179,7 +179,7 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
             *index = index.checked_sub(1).map_or(first, |further| before[(v >> shift) as usize] + further);
         }
     });
-    FanNormals { values, of_corner: Some(of_corner), solidity }
+    FanNormals { values, of_corner: Some(of_corner), solids }
 }
 
 /// Whether a face's normal is within an angle of another direction; a face without area always is.

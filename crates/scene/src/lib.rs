@@ -33,6 +33,6 @@ pub use extent::{Extent1, Extent2};
 pub use framing::{Axis, Lens, View, depth_range, frame};
 pub use mesh::{Attribute, Corners, Faces, FreePart, Mesh, Part, TRIANGLES_A_RUN};
 pub use scene::{Node, NodeTransform, Scene};
-pub use solidity::{KnownSolidity, Solidity};
+pub use solidity::{KnownSolidity, Solidity, Solids};
 pub use topology::{Topology, is_closed};
 pub use world::{Instance, World, WorldError};

@@ -19,7 +19,7 @@ mod faces;
 
 use crate::corner_fans::{Rule, fan_normals};
 use crate::weld::Weld;
-use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solidity};
+use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solids};
 use faces::outline_normal;
 use std::f64::consts::PI;
 use vitral_exec::Workers;
@@ -45,8 +45,8 @@ pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
     if mesh.triangles.is_empty() || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing)) {
         return;
     }
-    let (made, solidity) = all_normals(mesh, crease_angle, workers);
-    mesh.solidity = solidity.map(|solidity| KnownSolidity::new(mesh, solidity, workers));
+    let (made, solids) = all_normals(mesh, crease_angle, workers);
+    mesh.solidity = solids.map(|solids| KnownSolidity::new(mesh, solids, workers));
     mesh.normals = Some(match mesh.normals.take() {
         None => made,
         Some(given) => fill_gaps(given, made, &mesh.triangles, missing),
@@ -85,7 +85,7 @@ fn first_corner(mesh: &Mesh, f: usize) -> usize {
     }
 }
 
-fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solidity>) {
+fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solids>) {
     let weld = Weld::new(&mesh.positions, workers);
     let rule = match &mesh.smoothing_groups {
         Some(groups) if groups.len() == mesh.face_count() => Rule::Groups(groups),
@@ -96,7 +96,7 @@ fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<
     };
     let made = fan_normals(mesh, &weld, rule, workers);
     let corners = made.of_corner.map(|of_corner| triangle_corners(mesh, &of_corner, workers));
-    (Attribute { values: made.values, corners }, made.solidity)
+    (Attribute { values: made.values, corners }, made.solids)
 }
 
 /// One normal per vertex, all faces averaged.

@@ -2,10 +2,12 @@
 //!
 //! Idea: if every edge has exactly two triangles and they run along it in opposite directions, the surface is the skin of
 //! solids, and back faces can never be seen from outside; but only if the triangles look outwards, which the sign of the
-//! enclosed volume tells, body by body.
+//! enclosed volume tells, body by body. A mesh is often many bodies, some of them solid and others not: a body is solid whatever
+//! the others are. Where more than two triangles meet in an edge, as where two boxes touch, it is those of each body that
+//! must run both ways equally often.
 //!
 //! In:   a mesh, model space. Faces with more than three corners count as triangulated.
-//! Out:  [`Solidity`] for back-face culling.
+//! Out:  [`Solidity`] and [`Solids`] for back-face culling.
 //! Cost: `O(triangles)` expected. Who lists the triangles round every vertex anyway, as for normals, has most of it for
 //!       nothing: the mesh keeps the answer, and what it is an answer to.
 //! Source: [Mirtich 1996] and others for the volume as a sum of signed tetrahedra.
@@ -15,6 +17,10 @@ use crate::edge_table::{MAX_FACES, Use, is_collapsed};
 use crate::triangle_buckets::{Around, TriangleBuckets};
 use crate::weld::Weld;
 use crate::{Corners, Mesh};
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 use vitral_exec::{Spare, Workers};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
@@ -33,12 +39,33 @@ pub struct Solidity {
 }
 
 impl Solidity {
-    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges.
+    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges of two triangles.
+    pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
+        Solids::of(mesh, workers).solidity
+    }
+
+    /// Whether back faces can never be seen from a point outside the mesh.
+    pub fn is_solid(&self) -> bool {
+        self.closed && self.consistent && self.outward
+    }
+}
+
+/// A mesh's solidity, and which triangles belong to solid bodies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Solids {
+    /// That of the whole mesh.
+    pub solidity: Solidity,
+    /// A bit for each triangle, 32 a word, from the lowest; none at all if all are of one kind. Shared by copies.
+    triangles: Arc<[u32]>,
+}
+
+impl Solids {
+    /// Looks at all edges, unless the mesh knows.
     pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
         if let Some(known) = &mesh.solidity
             && known.surface == fingerprint(mesh, workers)
         {
-            return known.solidity;
+            return known.solids.clone();
         }
         let weld = Weld::new(&mesh.positions, workers);
         let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
@@ -51,26 +78,46 @@ impl Solidity {
             });
         });
         drop(triangles);
-        skins.solidity(spare.into_inner().iter().map(|(_, seen)| seen), workers)
+        skins.solids(spare.into_inner().iter().map(|(_, seen)| seen), workers)
     }
 
-    /// Whether back faces can never be seen from a point outside the mesh.
-    pub fn is_solid(&self) -> bool {
-        self.closed && self.consistent && self.outward
+    /// [`Self::of`] what these ranges of triangles are by themselves, as if the mesh had no others; their numbers stay what they are.
+    ///
+    /// # Panics
+    /// If a range goes beyond the mesh's triangles.
+    pub fn of_some(mesh: &Mesh, ranges: &[Range<u32>], workers: &Workers) -> Self {
+        let numbers = || ranges.iter().cloned().flatten();
+        let triangles = numbers().map(|t| mesh.triangles[t as usize]).collect();
+        let apart = Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() };
+        let Self { solidity, triangles } = Self::of(&apart, workers);
+        if triangles.is_empty() {
+            return Self { solidity, triangles };
+        }
+        let mut words = vec![0; mesh.triangles.len().div_ceil(32)];
+        for (_, t) in numbers().enumerate().filter(|&(k, _)| triangles[k / 32] >> (k % 32) & 1 == 1) {
+            words[t as usize / 32] |= 1 << (t % 32);
+        }
+        Self { solidity, triangles: words.into() }
+    }
+
+    /// The triangles of solid bodies in a mesh that is not solid as a whole but has some: bit `t % 32` of word `t / 32` for
+    /// triangle `t`. From a point outside all bodies, the back face of one of these is never seen.
+    pub fn some(&self) -> Option<&[u32]> {
+        (!self.triangles.is_empty()).then_some(&*self.triangles)
     }
 }
 
-/// A mesh's solidity, and what surface it is that of.
+/// What is known of a mesh's bodies, and of what surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KnownSolidity {
-    solidity: Solidity,
+    solids: Solids,
     surface: u64,
 }
 
 impl KnownSolidity {
-    /// `solidity`, found out for the mesh as it is now.
-    pub(crate) fn new(mesh: &Mesh, solidity: Solidity, workers: &Workers) -> Self {
-        Self { solidity, surface: fingerprint(mesh, workers) }
+    /// `solids`, found out for the mesh as it is now.
+    pub(crate) fn new(mesh: &Mesh, solids: Solids, workers: &Workers) -> Self {
+        Self { solids, surface: fingerprint(mesh, workers) }
     }
 }
 
@@ -98,6 +145,27 @@ pub(crate) struct Skins<'a> {
     mesh: &'a Mesh,
     weld: &'a Weld,
     bodies: DisjointSets,
+    /// A bit for each triangle: whether its body cannot be solid.
+    unsound: Bits,
+}
+
+/// A bit for each triangle, set by several threads at once.
+struct Bits(Vec<AtomicU32>);
+
+impl Bits {
+    fn new(count: usize) -> Self {
+        Self((0..count.div_ceil(32)).map(|_| AtomicU32::new(0)).collect())
+    }
+
+    fn set(&self, t: u32) {
+        if !self.has(t) {
+            self.0[t as usize / 32].fetch_or(1 << (t % 32), Relaxed);
+        }
+    }
+
+    fn has(&self, t: u32) -> bool {
+        self.0[t as usize / 32].load(Relaxed) >> (t % 32) & 1 == 1
+    }
 }
 
 /// What was seen of some of the edges.
@@ -112,11 +180,15 @@ pub(crate) struct Seen {
     newest: Vec<u32>,
     /// The uses of edges at vertices with many corners, with the lower vertex.
     long: Vec<(u32, Use)>,
+    /// Uses beyond an edge's second one, with the number of the edge.
+    further: Vec<(u32, Use)>,
+    /// The uses of edges with more than two, edge by edge: the first of each edge has `true`.
+    crossings: Vec<(bool, Use)>,
 }
 
 /// An edge, at its lower vertex.
 struct Edge {
-    /// The first one, and the last one if there are more.
+    /// The first one, and the second one if there are more.
     uses: [Use; 2],
     count: u32,
     /// The edge before it at this vertex.
@@ -128,8 +200,12 @@ impl Seen {
         let mut at = self.newest[vertex];
         while let Some(edge) = self.edges.get_mut(at as usize) {
             if edge.uses[0].higher() == side.higher() {
-                edge.uses[1] = side;
                 edge.count += 1;
+                if edge.count == 2 {
+                    edge.uses[1] = side;
+                } else {
+                    self.further.push((at, side));
+                }
                 return;
             }
             at = edge.older;
@@ -143,22 +219,34 @@ impl<'a> Skins<'a> {
     /// `None` if there are no triangles, or more than can be told apart.
     pub(crate) fn new(mesh: &'a Mesh, weld: &'a Weld) -> Option<Self> {
         let countable = !mesh.triangles.is_empty() && mesh.triangles.len() < MAX_FACES;
-        countable.then(|| Self { mesh, weld, bodies: DisjointSets::new(mesh.triangles.len()) })
+        let count = mesh.triangles.len();
+        countable.then(|| Self { mesh, weld, bodies: DisjointSets::new(count), unsound: Bits::new(count) })
     }
 
     fn welded(&self, corners: &[u32; 3]) -> [u32; 3] {
         corners.map(|i| self.weld.of(i))
     }
 
-    /// Looks at an edge that `count` triangles use, of which it needs no more than two.
-    fn edge(&self, seen: &mut Seen, uses: &[Use], count: u32) {
+    /// Looks at an edge that these triangles use.
+    fn edge(&self, seen: &mut Seen, uses: &[Use]) {
         seen.some = true;
         match uses {
-            [a, b] if count == 2 => {
-                seen.twisted |= a.reversed() == b.reversed();
+            [a, b] => {
                 self.bodies.join(a.face(), b.face());
+                if a.reversed() == b.reversed() {
+                    seen.twisted = true;
+                    self.unsound.set(a.face());
+                }
             }
-            _ => seen.open = true,
+            [alone] => {
+                seen.open = true;
+                self.unsound.set(alone.face());
+            }
+            // Which bodies these are of is not known yet.
+            _ => {
+                seen.open = true;
+                seen.crossings.extend(uses.iter().enumerate().map(|(i, side)| (i == 0, *side)));
+            }
         }
     }
 
@@ -166,6 +254,7 @@ impl<'a> Skins<'a> {
     pub(crate) fn look_at(&self, seen: &mut Seen, around: &Around) {
         let Around { first_vertex, degrees, faces, welded } = around;
         seen.edges.clear();
+        seen.further.clear();
         seen.long.clear();
         seen.newest.clear();
         seen.newest.resize(degrees.len(), NONE);
@@ -184,27 +273,87 @@ impl<'a> Skins<'a> {
             }
         }
 
-        let edges = std::mem::take(&mut seen.edges);
-        edges.iter().for_each(|edge| self.edge(seen, &edge.uses[..(edge.count as usize).min(2)], edge.count));
-        seen.edges = edges;
+        let (edges, mut further) = (std::mem::take(&mut seen.edges), std::mem::take(&mut seen.further));
+        for edge in edges.iter().filter(|edge| edge.count <= 2) {
+            self.edge(seen, &edge.uses[..edge.count as usize]);
+        }
+        further.sort_unstable();
+        for more in further.chunk_by(|a, b| a.0 == b.0) {
+            let first = edges[more[0].0 as usize].uses;
+            let all: Vec<Use> = first.into_iter().chain(more.iter().map(|(_, side)| *side)).collect();
+            self.edge(seen, &all);
+        }
+        (seen.edges, seen.further) = (edges, further);
         let mut long = std::mem::take(&mut seen.long);
         long.sort_unstable();
+        let mut uses = Vec::new();
         for edge in long.chunk_by(|a, b| (a.0, a.1.higher()) == (b.0, b.1.higher())) {
-            self.edge(seen, &[edge[0].1, edge[edge.len() - 1].1], edge.len() as u32);
+            uses.clear();
+            uses.extend(edge.iter().map(|(_, side)| *side));
+            self.edge(seen, &uses);
         }
         seen.long = long;
     }
 
     /// The answer, when all edges were looked at.
-    pub(crate) fn solidity<'b>(self, seen: impl IntoIterator<Item = &'b Seen> + Clone, workers: &Workers) -> Solidity {
+    pub(crate) fn solids<'b>(self, seen: impl IntoIterator<Item = &'b Seen> + Clone, workers: &Workers) -> Solids {
         let any = |of: fn(&Seen) -> bool| seen.clone().into_iter().any(of);
         let closed = any(|s| s.some) && !any(|s| s.open);
         let consistent = !any(|s| s.twisted);
-        Solidity { closed, consistent, outward: closed && consistent && self.all_outward(workers) }
+        seen.into_iter().for_each(|seen| self.weigh_crossings(&seen.crossings));
+        self.blame_bodies();
+        let inside_out = self.find_inside_out(workers);
+        let solidity = Solidity { closed, consistent, outward: closed && consistent && !inside_out };
+        let triangles = if solidity.is_solid() { Vec::new() } else { self.of_solid_bodies(workers) };
+        Solids { solidity, triangles: triangles.into() }
     }
 
-    /// Whether no body has a negative volume. A flat body (two sheets back to back) has none at all and passes.
-    fn all_outward(&self, workers: &Workers) -> bool {
+    /// Finds the bodies that run along an edge more often one way than the other, among edges of many triangles.
+    fn weigh_crossings(&self, crossings: &[(bool, Use)]) {
+        let mut ways: Vec<(u32, i32)> = Vec::new();
+        for edge in crossings.chunk_by(|_, next| !next.0) {
+            ways.clear();
+            ways.extend(
+                edge.iter().map(|(_, side)| (self.bodies.find(side.face()), 1 - 2 * i32::from(side.reversed()))),
+            );
+            ways.sort_unstable();
+            for of_body in ways.chunk_by(|a, b| a.0 == b.0) {
+                if of_body.iter().map(|(_, way)| way).sum::<i32>() != 0 {
+                    self.unsound.set(of_body[0].0);
+                }
+            }
+        }
+    }
+
+    /// What one triangle of a body is blamed for, its root is, which stands for all of them.
+    fn blame_bodies(&self) {
+        for (t, word) in (0u32..).step_by(32).zip(&self.unsound.0) {
+            let mut left = word.load(Relaxed);
+            while left != 0 {
+                self.unsound.set(self.bodies.find(t + left.trailing_zeros()));
+                left &= left - 1;
+            }
+        }
+    }
+
+    /// A bit for each triangle: whether its body is solid. Empty if none is.
+    fn of_solid_bodies(&self, workers: &Workers) -> Vec<u32> {
+        const WORDS: usize = 1 << 10;
+        let triangles = &self.mesh.triangles;
+        let mut words = vec![0; triangles.len().div_ceil(32)];
+        workers.for_each_chunk(&mut words, WORDS, |chunk, words| {
+            for (word, first) in words.iter_mut().zip((32 * WORDS * chunk..).step_by(32)) {
+                for (bit, t) in (first..triangles.len().min(first + 32)).enumerate() {
+                    *word |= u32::from(!self.unsound.has(self.bodies.find(t as u32))) << bit;
+                }
+            }
+        });
+        if words.iter().any(|word| *word != 0) { words } else { Vec::new() }
+    }
+
+    /// Whether bodies have a negative volume. These are blamed for it, and flat ones (two sheets back to back): the sheets
+    /// are equally far away, so that the one behind may be seen.
+    fn find_inside_out(&self, workers: &Workers) -> bool {
         const BATCH: usize = 1 << 14;
         let mesh = self.mesh;
         // Volumes are taken as seen from some place near.
@@ -218,6 +367,7 @@ impl<'a> Skins<'a> {
             for ((t, corners), tetrahedron) in (first as u32..).zip(triangles).zip(tetrahedra) {
                 // What has collapsed is no part of a body: its volume is nothing but rounding.
                 if is_collapsed(self.welded(corners)) {
+                    self.unsound.set(t);
                     continue;
                 }
                 let body = self.bodies.find(t);
@@ -233,10 +383,16 @@ impl<'a> Skins<'a> {
         });
         let mut volumes = batches.into_iter().flatten().collect::<Vec<_>>();
         volumes.sort_by_key(|v| v.body);
-        volumes.chunk_by(|a, b| a.body == b.body).all(|parts| {
+        let mut any = false;
+        for parts in volumes.chunk_by(|a, b| a.body == b.body) {
             let sum = |of: fn(&Volume) -> f64| parts.iter().map(of).sum::<f64>();
-            sum(|v| v.signed) >= -1e-9 * sum(|v| v.magnitude)
-        })
+            let (volume, rounding) = (sum(|v| v.signed), 1e-9 * sum(|v| v.magnitude));
+            if volume.is_nan() || volume <= rounding {
+                self.unsound.set(parts[0].body);
+            }
+            any |= volume.is_nan() || volume < -rounding;
+        }
+        any
     }
 }
 
@@ -283,7 +439,7 @@ mod tests {
         let alone = Solidity::of(&ball, &Workers::single());
         assert!(alone.is_solid());
         normals::generate(&mut ball, 1.0, &Workers::new(2));
-        assert_eq!(ball.solidity.as_ref().map(|known| known.solidity), Some(alone));
+        assert_eq!(ball.solidity.as_ref().map(|known| known.solids.solidity), Some(alone));
         assert_eq!(fingerprint(&ball, &Workers::single()), fingerprint(&ball, &Workers::new(3)));
 
         // The mesh still carries the old answer, which is none any more.
@@ -306,6 +462,118 @@ mod tests {
         assert!(Solidity::of(&ball, &Workers::single()).is_solid());
         normals::generate(&mut ball, 1.0, &Workers::single());
         assert!(Solidity::of(&ball, &Workers::single()).is_solid());
+    }
+
+    /// A ball, triangles alone, with this middle and radius; inside out if wanted.
+    fn ball(middle: f32, radius: f64, inside_out: bool) -> Mesh {
+        let mut ball = solids::sphere(radius, 12, 8);
+        (ball.normals, ball.faces, ball.solidity, ball.uvs) = (None, crate::Faces::Triangles, None, Vec::new());
+        ball.positions.iter_mut().for_each(|p| p[0] += middle);
+        if inside_out {
+            ball.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        }
+        ball
+    }
+
+    /// All bodies in one mesh, and for each how many triangles it has.
+    fn together(bodies: &[Mesh]) -> (Mesh, Vec<usize>) {
+        let mut all = Mesh::default();
+        for body in bodies {
+            let first = all.positions.len() as u32;
+            all.positions.extend(&body.positions);
+            all.triangles.extend(body.triangles.iter().map(|t| t.map(|i| i + first)));
+        }
+        (all, bodies.iter().map(|body| body.triangles.len()).collect())
+    }
+
+    /// Which of the bodies are solid, by the bits of their triangles, which must agree.
+    fn solid_bodies(solids: &Solids, counts: &[usize]) -> Vec<bool> {
+        let words = solids.some().expect("some are solid");
+        let mut first = 0;
+        counts
+            .iter()
+            .map(|count| {
+                let bits: Vec<_> = (first..first + count).map(|t| words[t / 32] >> (t % 32) & 1 == 1).collect();
+                first += count;
+                assert!(bits.iter().all(|bit| *bit == bits[0]));
+                bits[0]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_body_is_solid_whatever_the_others_are() {
+        let mut holed = ball(3.0, 1.0, false);
+        holed.triangles.pop();
+        // Two sheets back to back, and a ball with one triangle turned.
+        let sheet = Mesh {
+            positions: ball(9.0, 1.0, false).positions,
+            triangles: vec![[0, 13, 1], [0, 1, 13]],
+            ..Mesh::default()
+        };
+        let mut turned = ball(12.0, 1.0, false);
+        turned.triangles[20].swap(1, 2);
+        let bodies = [
+            ball(0.0, 1.0, false),
+            holed,
+            ball(6.0, 1.0, true),
+            ball(6.0, 2.0, false),
+            sheet,
+            turned,
+            ball(20.0, 0.1, false),
+        ];
+        let (mut mesh, counts) = together(&bodies);
+        let solids = Solids::of(&mesh, &Workers::new(2));
+        assert_eq!(solids.solidity, Solidity::default());
+        assert_eq!(solid_bodies(&solids, &counts), [true, false, false, true, false, false, true]);
+        normals::generate(&mut mesh, 1.0, &Workers::single());
+        assert_eq!(mesh.solidity.as_ref().map(|known| &known.solids), Some(&solids));
+
+        // Of some of them alone.
+        let end = counts[..4].iter().sum::<usize>() as u32;
+        let all = end..mesh.triangles.len() as u32;
+        assert_eq!(
+            Solids::of_some(&mesh, &[0..counts[0] as u32, all.end - 3..all.end], &Workers::single())
+                .some()
+                .map(|words| words[0]),
+            Some(u32::MAX)
+        );
+        assert!(Solids::of_some(&mesh, &[0..counts[0] as u32], &Workers::single()).solidity.is_solid());
+        let last = solids.some().expect("some are").to_vec();
+        let others = Solids::of_some(&mesh, &[all], &Workers::single());
+        let others = others.some().expect("the small ball is");
+        assert!((0..mesh.triangles.len()).all(|t| {
+            let bit = |words: &[u32]| words[t / 32] >> (t % 32) & 1;
+            bit(others) == if t < end as usize { 0 } else { bit(&last) }
+        }));
+    }
+
+    #[test]
+    fn bodies_that_share_an_edge_are_solid_and_those_that_make_one_only_together_are_not() {
+        let cube = |middle: [f32; 3]| {
+            let mut cube = solids::cuboid(DVec3::ONE);
+            (cube.normals, cube.faces, cube.solidity, cube.uvs) = (None, crate::Faces::Triangles, None, Vec::new());
+            cube.positions.iter_mut().for_each(|p| *p = [0, 1, 2].map(|k| p[k] + middle[k]));
+            cube
+        };
+        let cubes = [cube([0.0; 3]), cube([1.0, 1.0, 0.0])];
+        let shared = |p: &[f32; 3]| cubes[1].positions.contains(p);
+        assert_eq!(cubes[0].positions.iter().filter(|p| shared(p)).count(), 2, "one edge");
+        let (mesh, counts) = together(&cubes);
+        let solids = Solids::of(&mesh, &Workers::single());
+        assert!(!solids.solidity.closed);
+        assert_eq!(solid_bodies(&solids, &counts), [true, true]);
+
+        // A third one inside out, which shares another edge, is none; nor is what is there twice.
+        let mut inside_out = cube([-1.0, -1.0, 0.0]);
+        inside_out.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        let twice = [cube([5.0, 0.0, 0.0]), cube([5.0, 0.0, 0.0])];
+        let (mesh, counts) =
+            together(&[cubes[0].clone(), cubes[1].clone(), inside_out, twice[0].clone(), twice[1].clone()]);
+        let found = Solids::of(&mesh, &Workers::single());
+        assert!(!found.solidity.closed);
+        let solid = solid_bodies(&found, &counts);
+        assert_eq!(solid, [true, true, false, false, false]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use vitral_exec::Workers;
 use vitral_math::{Aabb, DVec3, Obb, Sphere};
 use vitral_scene::edges::{EdgeKind, edges};
-use vitral_scene::{Faces, Mesh, Part, Solidity, Topology, is_closed, normals};
+use vitral_scene::{Faces, Mesh, Part, Solidity, Solids, Topology, is_closed, normals};
 
 /// Up to 12 vertices on a small grid (so that many coincide), some of them not finite, and up to 30 faces.
 fn mesh() -> impl Strategy<Value = Mesh> {
@@ -78,8 +78,9 @@ proptest! {
         prop_assert_eq!(t.inconsistent_edges, sides.iter().filter(twisted).count());
         prop_assert_eq!(t.duplicate_triangles, mesh.triangles.len() - corners.len());
         prop_assert_eq!(t.closed, is_closed(&mesh, &Workers::single()));
-        let solidity = Solidity::of(&mesh, &Workers::single());
-        prop_assert_eq!(solidity, Solidity::of(&mesh, &Workers::new(3)));
+        let solids = Solids::of(&mesh, &Workers::single());
+        prop_assert_eq!(&solids, &Solids::of(&mesh, &Workers::new(3)));
+        let solidity = solids.solidity;
         prop_assert!(!solidity.outward || solidity.closed && solidity.consistent);
 
         // The same of sound triangles alone, and what normals find out on the way.
@@ -94,7 +95,20 @@ proptest! {
         prop_assert_eq!(solidity.consistent, !mesh.triangles.is_empty() && sound.values().all(opposite));
         let mut triangles = Mesh { faces: Faces::Triangles, smoothing_groups: None, ..mesh.clone() };
         normals::generate(&mut triangles, 0.5, &Workers::single());
+        prop_assert_eq!(Solids::of(&triangles, &Workers::single()), solids.clone());
         prop_assert_eq!(Solidity::of(&triangles, &Workers::single()), solidity);
+
+        // The triangles of solid bodies together run along every edge as often one way as the other.
+        let is_solid = |t: usize| solids.some().is_some_and(|words| words[t / 32] >> (t % 32) & 1 == 1);
+        let mut balance: BTreeMap<_, i32> = BTreeMap::new();
+        for t in (0..mesh.triangles.len()).filter(|t| is_solid(*t)) {
+            let [a, b, c] = mesh.triangles[t].map(|i| place(&mesh, i));
+            for (a, b) in [(a, b), (b, c), (c, a)] {
+                prop_assert!(a != b, "of area");
+                *balance.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        prop_assert!(balance.values().all(|b| *b == 0));
     }
 
     #[test]

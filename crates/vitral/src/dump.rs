@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 use vitral_math::{Aabb, DMat4};
-use vitral_raster::{SUBPIXEL, SamplePattern, Viewport};
+use vitral_raster::{BackFaces, SUBPIXEL, SamplePattern, Viewport};
 use vitral_render::stats::CullCounters;
 use vitral_render::{ColorSpace, PreparedView, Settings};
 use vitral_scene::Camera;
@@ -175,7 +175,11 @@ fn culled(view: &PreparedView<'_>, counters: &CullCounters) -> Value {
         let draw = |d: &vitral_raster::Draw<'_>| {
             json!({
                 "triangles": d.ranges.iter().map(|r| [r.start, r.end]).collect::<Vec<_>>(),
-                "back-faces": if d.cull_back { "dropped" } else { "kept" },
+                "back-faces": match d.back_faces {
+                    BackFaces::Kept => "kept",
+                    BackFaces::Dropped => "dropped",
+                    BackFaces::DroppedOf(_) => "dropped of solid bodies",
+                },
             })
         };
         draws.iter().map(draw).collect::<Vec<_>>()
@@ -216,7 +220,7 @@ fn facets(view: &PreparedView<'_>) -> String {
         for draw in instance.opaque.iter().chain(&instance.layered) {
             for triangle in draw.ranges.iter().cloned().flatten() {
                 let facet = draw.first_facet + triangle;
-                for s in view.setups(facet, draw.cull_back) {
+                for s in view.setups(facet, draw.back_faces) {
                     let [a, b, c] = [0, 1, 2].map(|i| format!("{},{}", pixels(s.x[i]), pixels(s.y[i])));
                     let surface = world.surface_of_facet(facet);
                     // Writing to a String cannot fail.

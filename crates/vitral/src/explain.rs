@@ -124,7 +124,7 @@ fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budg
             budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
             for triangle in draw.ranges.iter().cloned().flatten() {
                 let facet = draw.first_facet + triangle;
-                let setups = view.setups(facet, draw.cull_back);
+                let setups = view.setups(facet, draw.back_faces);
                 let Some(setup) = setups.iter().find(|s| s.covers(x, y)) else { continue };
                 let material = instance.mesh.material_of_triangle(triangle as usize);
                 found.push(Surface {

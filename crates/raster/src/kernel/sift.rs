@@ -24,8 +24,8 @@ pub(crate) struct Sieve {
     pub outside: u32,
     /// Those with a corner of one of these bits must be cut, and are left to the caller.
     pub cut: u32,
-    /// Those whose doubled area is negative, positive.
-    pub culls: [bool; 2],
+    /// Of the eight those whose doubled area is negative, positive: a bit for each that is dropped then.
+    pub culls: [u32; 2],
     /// Those without pixels in `[x0, y0, x1, y1]`, the upper ends excluded.
     pub clip: [i32; 4],
 }
@@ -134,11 +134,15 @@ fn sift_inlined<S: Simd>(
     let (dx2, dy2) = (c[0] - a[0], c[1] - a[1]);
     let area = dx1 * dy2 - dx2 * dy1;
     let mut shown = !area.simd_eq(zero);
-    if sieve.culls[1] {
-        shown &= area.simd_lt(zero);
+    let kept = lanes::inlined(
+        #[inline(always)]
+        |dropped: u32| Mask8::from_bitmask(simd, u64::from(!dropped)),
+    );
+    if sieve.culls[1] != 0 {
+        shown &= area.simd_lt(zero) | kept(sieve.culls[1]);
     }
-    if sieve.culls[0] {
-        shown &= area.simd_gt(zero);
+    if sieve.culls[0] != 0 {
+        shown &= area.simd_gt(zero) | kept(sieve.culls[0]);
     }
     let (pixels, holds) = pixels(simd, screen, sieve.clip, &low, &high);
     let mut seen = ours & shown & holds;
@@ -272,7 +276,7 @@ fn cover<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Batch, Draw, SamplePattern, Setup, Viewport};
+    use crate::{BackFaces, Batch, Draw, SamplePattern, Setup, Viewport};
     use vitral_math::Mat4;
     use vitral_math::lanes::available_levels;
 
@@ -316,9 +320,16 @@ mod tests {
         const COUNT: usize = 301;
         let vertices = vertices(COUNT);
         let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        for (samples, (cull_back, mirrored)) in
-            [(1, (false, false)), (4, (true, false)), (2, (true, true)), (16, (false, true))]
-        {
+        // Some are solid, in no regular order.
+        let solid: Vec<u32> = (1..=COUNT.div_ceil(32) as u32).map(|word| word.wrapping_mul(0x9e37_79b9)).collect();
+        for (samples, (back_faces, mirrored)) in [
+            (1, (BackFaces::Kept, false)),
+            (4, (BackFaces::Dropped, false)),
+            (2, (BackFaces::Dropped, true)),
+            (16, (BackFaces::Kept, true)),
+            (1, (BackFaces::DroppedOf(&solid), true)),
+            (4, (BackFaces::DroppedOf(&solid), false)),
+        ] {
             let pattern = SamplePattern::new(samples);
             let screen = Screen::new(VIEWPORT, &pattern);
             // One by one, without a look at the samples.
@@ -331,6 +342,7 @@ mod tests {
                     reference.counters.outside += 1;
                 } else {
                     let corners = [a, b, c].map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
+                    let cull_back = back_faces.drops(facet as u32);
                     reference.add_corners(corners, cull_back, mirrored, facet as u32, &screen);
                 }
             }
@@ -340,7 +352,7 @@ mod tests {
                 ranges: Vec::new(),
                 clip_from_model: Mat4::IDENTITY,
                 first_facet: 0,
-                cull_back,
+                back_faces,
                 mirrored,
             };
             for (name, level) in available_levels() {

@@ -28,7 +28,7 @@ fn brute_force(renderer: &Renderer) -> Vec<(u32, f32)> {
     let view =
         PreparedView::new(renderer.session(), &camera, &renderer.settings, viewport, pattern, execution, counters);
     let world = renderer.world();
-    let setups: Vec<Setup> = (0..world.facet_count).flat_map(|facet| view.setups(facet, false)).collect();
+    let setups: Vec<Setup> = (0..world.facet_count).flat_map(|facet| view.setups(facet, BackFaces::Kept)).collect();
     let center = |pixel: u32| pixel as i32 * SUBPIXEL + SUBPIXEL / 2;
     let mut out = Vec::new();
     for y in 0..HEIGHT {

@@ -110,6 +110,49 @@ fn p14_open_and_inside_out_meshes_keep_their_back_faces() {
 }
 
 #[test]
+fn p14_solid_bodies_of_an_open_mesh_lose_their_back_faces() {
+    // A ball, a torus that pierces it, an open sheet and a pane of glass in one mesh.
+    let mut mesh = solids::sphere(1.0, 48, 24);
+    (mesh.faces, mesh.normals, mesh.uvs) = (vitral::scene::Faces::Triangles, None, Vec::new());
+    let solid = [mesh.triangles.len(), solids::torus(1.2, 0.3, 48, 24).triangles.len()].into_iter().sum::<usize>();
+    for (more, z) in [
+        (solids::torus(1.2, 0.3, 48, 24), 0.2),
+        (solids::plane(3.0, 3.0, 4, 4), 0.1),
+        (solids::plane(1.0, 1.0, 1, 1), 2.0),
+    ] {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(more.positions.iter().map(|p| [p[0], p[1], p[2] + z]));
+        mesh.triangles.extend(more.triangles.iter().map(|t| t.map(|i| i + first)));
+    }
+    let all = mesh.triangles.len() as u32;
+    let part = |triangles, material| Part { name: String::new(), triangles, material: Some(material) };
+    mesh.parts = vec![part(0..all - 2, 0), part(all - 2..all, 1)];
+    let mut scene = Scene::default();
+    scene.add_material(Material::default());
+    scene.add_material(Material { opacity: 0.3, alpha_mode: AlphaMode::Blend, ..Material::default() });
+    for x in [1.0, -1.0] {
+        scene.add_mesh(
+            mesh.clone(),
+            DMat4::from_translation(DVec3::X * 3.0 * x) * DMat4::from_scale(DVec3::new(x, 1.0, 1.0)),
+        );
+    }
+    let mut renderer = exact(scene, 200, 150);
+    for position in [DVec3::new(4.0, -7.0, 6.0), DVec3::new(-3.0, 5.0, -7.0), DVec3::new(0.0, 0.0, 9.0)] {
+        renderer.camera = Some(Camera { position, ..on_z(1.0, 0.9) });
+        let kept = culled(&mut renderer, true, false);
+        let dropped = culled(&mut renderer, true, true);
+        assert_eq!((kept.stats.geometry.back_facing, dropped.stats.cull.back_face_culled_instances), (0, 2));
+        let share = dropped.stats.geometry.back_facing as f64 / (2 * solid) as f64;
+        assert!((0.35..0.65).contains(&share), "{share}");
+        assert!(dropped.frame == kept.frame, "from {position}");
+    }
+    // From among them nothing may be dropped.
+    renderer.camera =
+        Some(Camera { position: DVec3::new(3.0, 0.0, 0.5), focal_point: DVec3::new(3.0, 1.0, 0.5), ..on_z(1.0, 1.2) });
+    assert_eq!(culled(&mut renderer, true, true).stats.geometry.back_facing, 0);
+}
+
+#[test]
 fn p14_a_mirrored_instance_shows_its_outside() {
     let mut scene = Scene::default();
     scene.add_mesh(solids::torus(1.0, 0.4, 48, 24), DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)));

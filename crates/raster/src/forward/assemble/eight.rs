@@ -15,8 +15,8 @@ impl Assembler<'_> {
 
     #[inline(always)]
     fn by_eights_inlined<S: Simd>(&mut self, simd: S, triangles: &[[u32; 3]]) {
-        let [negative, positive] = [-1, 1].map(|area| self.state.cull[usize::from(self.is_back(area))]);
-        let sieve = Sieve { outside: self.outside(), cut: CUT, culls: [negative, positive], clip: self.state.clip };
+        let culls = [-1, 1].map(|area| if self.state.cull[usize::from(self.is_back(area))] { 0xff } else { 0 });
+        let sieve = Sieve { outside: self.outside(), cut: CUT, culls, clip: self.state.clip };
         let (eights, rest) = triangles.as_chunks::<LANES>();
         for corners in eights {
             let eight = sift(simd, self.screen, &sieve, self.vertices.screen, corners);

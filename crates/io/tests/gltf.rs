@@ -408,7 +408,7 @@ fn materials_and_their_extensions() {
     let scene = load_text(
         r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[]}],"extensionsUsed":["KHR_materials_clearcoat","KHR_materials_ior"],
         "materials":[
-        {"name":"glass","emissiveFactor":[1,0.5,0],"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75},
+        {"name":"glass","emissiveFactor":[1,0.5,0],"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1],"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75},
          "KHR_materials_ior":{"ior":1.33},"KHR_materials_emissive_strength":{"emissiveStrength":4}}},
         {"alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,0.5]}},
         {"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"metallicFactor":0,"roughnessFactor":0.3},

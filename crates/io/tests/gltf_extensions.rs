@@ -13,12 +13,32 @@ use vitral_math::DVec3;
 use vitral_scene::{Instance, World};
 
 #[test]
+fn metals_are_not_transmissive() {
+    let material = |metallic: &str| {
+        format!(
+            r#"{{"pbrMetallicRoughness":{{{metallic}}},
+            "extensions":{{"KHR_materials_transmission":{{"transmissionFactor":0.8}}}}}}"#
+        )
+    };
+    let texture = r#""metallicRoughnessTexture":{"index":0}"#;
+    let list = ["", r#""metallicFactor":0.5"#, r#""metallicFactor":0"#, texture].map(material).join(",");
+    let scene = load_text(&format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[]}}],"materials":[{list}],
+        "textures":[{{"source":0}}],"images":[{{"uri":"missing.png"}}]}}"#
+    ))
+    .unwrap();
+    let seen: Vec<_> = scene.materials.iter().map(|m| (m.glass, (m.opacity * 100.0).round())).collect();
+    // Where a texture says what is metal, it is asked point by point.
+    assert_eq!(seen, [(false, 100.0), (true, 60.0), (true, 20.0), (true, 20.0)]);
+}
+
+#[test]
 fn a_transmission_texture_says_where_a_surface_is_glass() {
     let pixels = vec![[0, 255, 255, 255], [255, 0, 0, 255], [102, 9, 9, 0]];
     let picture = png(&Plane::from_rows(3, 1, pixels).unwrap(), PngOptions::default()).unwrap();
     let material = |factor: f32, image: usize, more: &str| {
         format!(
-            r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}},{more}"extensions":{{
+            r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}},"metallicFactor":0}},{more}"extensions":{{
             "KHR_materials_transmission":{{"transmissionFactor":{factor},"transmissionTexture":{{"index":{image},"texCoord":1}}}}}}}}"#
         )
     };
@@ -39,7 +59,9 @@ fn a_transmission_texture_says_where_a_surface_is_glass() {
         let texture = &scene.textures[reference.texture as usize];
         assert_eq!((reference.uv_set, texture.encoding), (1, Encoding::Linear));
         assert_eq!(texture.levels[0].data(), greys.map(|grey| [grey, grey, grey, 255]));
-        assert_ne!(material.base_texture.unwrap().texture, reference.texture);
+        // Alpha of an opaque material counts for nothing, transmissive or not.
+        let base = &scene.textures[material.base_texture.unwrap().texture as usize];
+        assert_eq!(base.levels[0].data(), [[0, 255, 255, 255], [255, 0, 0, 255], [102, 9, 9, 255]]);
     }
     assert_eq!((none.opacity, none.alpha_mode, none.opacity_texture), (1.0, AlphaMode::Opaque, None));
     assert_eq!((lost.opacity, lost.opacity_texture), (1.0, None), "rather opaque than not to be seen");

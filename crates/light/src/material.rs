@@ -21,7 +21,7 @@ pub struct Material {
     /// What kind of transparency the surface has.
     pub transmission: Transmission,
     /// `opacity` is that of glass, not of a surface with holes: highlights stay whole, and what the surface mirrors (Fresnel)
-    /// does not pass, so that clear bodies have a rim.
+    /// does not pass, so that clear bodies have a rim. Where a texture says that it is metal, nothing passes.
     pub glass: bool,
     /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
     pub filter: Rgb,
@@ -39,7 +39,8 @@ pub struct Material {
     pub specular_texture: Option<TextureRef>,
     /// Multiplies `emission`.
     pub emission_texture: Option<TextureRef>,
-    /// Its red channel multiplies `opacity` (`map_d`).
+    /// Its red channel multiplies `opacity` (`map_d`): of `glass` how much light the surface keeps, of all else how much of
+    /// the surface there is.
     pub opacity_texture: Option<TextureRef>,
     /// Green multiplies roughness, blue multiplies metallic (glTF).
     pub metallic_roughness_texture: Option<TextureRef>,
@@ -47,7 +48,8 @@ pub struct Material {
     pub occlusion_texture: Option<TextureRef>,
     /// How much the occlusion texture counts, 0 to 1.
     pub occlusion_strength: f32,
-    /// Normals in tangent space, `0..=255` for `-1..=1`.
+    /// Normals in tangent space, `0..=255` for `-1..=1`: red along growing u, green along falling v, which is upwards in the
+    /// picture, blue outwards.
     pub normal_texture: Option<TextureRef>,
     /// Scales x and y of the normal texture.
     pub normal_scale: f32,

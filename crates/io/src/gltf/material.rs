@@ -3,7 +3,8 @@
 //! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
 //! `specular_glossiness.rs`.
 //! Departs from it: a transmissive surface becomes glass, a blended one whose opacity is what transmission leaves, with the
-//! base colour as the colour of what passes; a base texture does not colour what passes.
+//! base colour as the colour of what passes; a base texture does not colour what passes. Tangents are not read: normal maps follow
+//! the texture coordinates, facet by facet.
 
 use super::accessor::Source;
 use super::specular_glossiness::SpecularGlossiness;
@@ -25,7 +26,14 @@ pub(crate) fn read(
     let json = &source.root.materials[index];
     let path = format!("materials[{index}]");
     let pbr = &json.pbr_metallic_roughness;
-    let older = SpecularGlossiness::find(source, json, &path)?;
+    let mut older = SpecularGlossiness::find(source, json, &path)?;
+    if older.as_ref().is_some_and(|o| o.specular_glossiness_texture.is_some()) {
+        let newer = pbr.base_color_texture.is_some() || pbr.metallic_roughness_texture.is_some();
+        let instead = if newer { "its metallic-roughness form is" } else { "a usual reflection is" };
+        let what = format!("the specularGlossinessTexture is not used, {instead} shown instead");
+        warnings.push(format!("{}: {path}: {what}", source.file));
+        older = older.filter(|_| !newer);
+    }
     let color = older.as_ref().map_or(pbr.base_color_factor.0, |o| o.diffuse_factor);
     let [r, g, b, alpha] = color.map(|v| unit(v, 1.0));
     let mut material = Material {
@@ -51,8 +59,8 @@ pub(crate) fn read(
     ask_textures(source, json, older.as_ref(), &path, &mut material, wanted, warnings)?;
     if let Some(older) = older {
         material.reflectance = older.reflectance();
-        if older.specular_glossiness_texture.is_some() {
-            warnings.push(format!("{}: {path}: the specularGlossinessTexture is not used", source.file));
+        if older.is_mirror() && material.alpha_mode == AlphaMode::Opaque {
+            material.base_texture = None;
         }
     }
     Ok(material)
@@ -69,17 +77,20 @@ fn ask_textures(
     warnings: &mut Vec<String>,
 ) -> Result<(), Error> {
     let pbr = &json.pbr_metallic_roughness;
+    // Transmission blends what alpha leaves opaque.
+    let alpha_counts = !matches!(json.alpha_mode, Checked::Valid(JsonAlphaMode::Opaque) | Checked::Invalid);
+    let base = if material.glass && !alpha_counts { Meaning::OpaqueColor } else { Meaning::Color };
     let mut ask = |info: &Option<Info>, meaning, name: &str| -> Option<TextureRef> {
         ask_info(source, info.as_ref()?, meaning, &format!("{path}.{name}"), wanted, warnings)
     };
     match older {
         // The older form takes the place of the other.
         Some(older) => {
-            material.base_texture = ask(&older.diffuse_texture, Meaning::Color, "diffuseTexture");
+            material.base_texture = ask(&older.diffuse_texture, base, "diffuseTexture");
         }
         None => {
             let name = "pbrMetallicRoughness.baseColorTexture";
-            material.base_texture = ask(&pbr.base_color_texture, Meaning::Color, name);
+            material.base_texture = ask(&pbr.base_color_texture, base, name);
             let name = "pbrMetallicRoughness.metallicRoughnessTexture";
             material.metallic_roughness_texture = ask(&pbr.metallic_roughness_texture, Meaning::Data, name);
         }
@@ -155,7 +166,12 @@ fn apply_transmission(
     warnings: &mut Vec<String>,
 ) {
     let Some(transmission) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else { return };
-    let factor = unit(transmission.transmission_factor.0, 0.0);
+    // Metals let no light through. Where a texture says what is metal, shading finds out.
+    let dielectric = match material.reflectance {
+        Reflectance::MetallicRoughness { metallic, .. } if !has_metal_texture(json) => 1.0 - metallic,
+        _ => 1.0,
+    };
+    let factor = unit(transmission.transmission_factor.0, 0.0) * dielectric;
     if factor == 0.0 {
         return;
     }
@@ -175,6 +191,11 @@ fn apply_transmission(
     material.alpha_mode = AlphaMode::Blend;
     material.transmission = Transmission::Transparent;
     material.glass = true;
+}
+
+/// Whether a texture varies how metallic the material is.
+fn has_metal_texture(json: &JsonMaterial) -> bool {
+    json.pbr_metallic_roughness.metallic_roughness_texture.is_some()
 }
 
 /// The colour of all light that passes a material of which the part `factor` is transmissive: what goes through the surface

@@ -7,7 +7,9 @@
 //!
 //! In:   the JSON of `KHR_materials_pbrSpecularGlossiness`. Out: factors and the diffuse texture.
 //! Cost: constant. Source: KHR_materials_pbrSpecularGlossiness, \[glTF 2.0\], appendix B.
-//! Departs from it: the texture of specular colour and glossiness is left out, as it would need a new image.
+//! Departs from it: the texture of specular colour and glossiness is left out, as it would need a new image. A material that
+//! has one is shown as its metallic-roughness form says, if it has that, too, else with [`USUAL_SPECULAR`]. The diffuse texture varies
+//! the specular colour as well, if there is anything diffuse.
 
 use super::accessor::Source;
 use super::document::plain_message;
@@ -18,6 +20,11 @@ use vitral_light::{DIELECTRIC_F0, Reflectance};
 
 /// The name in files.
 pub(crate) const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// Specular colour where the texture that would give it is left out: that of most things but metals.
+const USUAL_SPECULAR: f32 = DIELECTRIC_F0;
+/// Glossiness likewise.
+const USUAL_GLOSSINESS: f32 = 0.5;
 
 /// The extension's object.
 #[derive(Debug, Deserialize)]
@@ -62,11 +69,20 @@ impl SpecularGlossiness {
         Ok(Some(read))
     }
 
+    /// Whether nothing is reflected diffusely, so that the diffuse texture does not show.
+    pub(crate) fn is_mirror(&self) -> bool {
+        self.specular_glossiness_texture.is_none() && self.specular_factor.iter().any(|c| *c >= 1.0)
+    }
+
     /// The metallic-roughness surface that reflects as much.
     pub(crate) fn reflectance(&self) -> Reflectance {
         let unit = |c: f32| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 };
         let [r, g, b, _] = self.diffuse_factor.map(unit);
-        let specular = self.specular_factor.map(unit);
+        // Factors say little without the texture that they multiply.
+        let (specular, glossiness) = match &self.specular_glossiness_texture {
+            Some(_) => ([USUAL_SPECULAR; 3], USUAL_GLOSSINESS),
+            None => (self.specular_factor.map(unit), unit(self.glossiness_factor)),
+        };
         let strongest = specular.into_iter().fold(0.0, f32::max);
         let diffuse = [r, g, b].map(|c| c * (1.0 - strongest));
 
@@ -79,7 +95,7 @@ impl SpecularGlossiness {
         Reflectance::MetallicRoughness {
             base_color: [0, 1, 2].map(|k| unit(diffuse[k] + specular[k] - low)),
             metallic,
-            roughness: 1.0 - unit(self.glossiness_factor),
+            roughness: 1.0 - glossiness,
         }
     }
 }
@@ -118,6 +134,27 @@ mod tests {
     }
 
     #[test]
+    fn the_newer_form_and_mirrors() {
+        let materials = format!(
+            r#"{{"asset":{{"version":"2.0"}},"extensionsUsed":["{NAME}"],"textures":[{{"source":0}}],"images":[{{"uri":"data:image/png;base64,{PIXEL}"}}],"materials":[
+            {{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}},"roughnessFactor":0.25}},"extensions":{{"{NAME}":{{"diffuseFactor":[1,0,0,1],"specularGlossinessTexture":{{"index":0}}}}}}}},
+            {{"extensions":{{"{NAME}":{{"diffuseTexture":{{"index":0}},"specularFactor":[1,0.5,0.5]}}}}}},
+            {{"extensions":{{"{NAME}":{{"diffuseTexture":{{"index":0}},"specularFactor":[0.1,0.1,0.1]}}}}}}]}}"#
+        );
+        let scene = crate::gltf::load(materials.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single());
+        let scene = scene.unwrap();
+        let [both, mirror, diffuse] = &scene.materials[..] else { panic!() };
+        let newer = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 1.0, roughness: 0.25 };
+        assert_eq!(both.reflectance, newer, "the one whose textures are read");
+        assert!(both.base_texture.is_some() && diffuse.base_texture.is_some());
+        assert_eq!(mirror.base_texture, None, "nothing diffuse is left that it could colour");
+    }
+
+    /// A white pixel.
+    const PIXEL: &str =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg==";
+
+    #[test]
     fn the_older_form_takes_the_place_of_the_other() {
         let material = |extension: &str| {
             let text = format!(
@@ -128,15 +165,22 @@ mod tests {
         };
         let factors =
             r#""diffuseFactor":[0.5,0.25,0.125,0.75],"specularFactor":[0.04,0.04,0.04],"glossinessFactor":0.5"#;
-        let scene = material(&format!(r#"{{{factors},"specularGlossinessTexture":{{"index":0}}}}"#)).unwrap();
+        let scene = material(&format!("{{{factors}}}")).unwrap();
+        assert!(!scene.warnings.iter().any(|w| w.contains("Texture")), "{:?}", scene.warnings);
         let seen = &scene.materials[0];
         let Reflectance::MetallicRoughness { base_color, metallic, roughness } = seen.reflectance else {
             panic!("{seen:?}");
         };
         assert!(metallic < 1e-4 && (roughness, seen.opacity) == (0.5, 0.75), "{seen:?}");
         assert!((base_color[0] - 0.48).abs() < 1e-3 && (base_color[2] - 0.12).abs() < 1e-3, "{base_color:?}");
-        let told = "a.gltf: materials[0]: the specularGlossinessTexture is not used";
+        // Without the texture that they multiply, factors of 1 would make mirrors of all things.
+        let scene = material(r#"{"specularGlossinessTexture":{"index":0}}"#).unwrap();
+        let told =
+            "a.gltf: materials[0]: the specularGlossinessTexture is not used, a usual reflection is shown instead";
         assert!(scene.warnings.iter().any(|w| w == told), "{:?}", scene.warnings);
+        let seen = &scene.materials[0];
+        let dull = matches!(seen.reflectance, Reflectance::MetallicRoughness { metallic, roughness, .. } if metallic < 1e-4 && roughness == 0.5);
+        assert!(dull, "{seen:?}");
         for (extension, place) in [
             (r#"{"diffuseTexture":{"index":3}}"#, "diffuseTexture.index: the index points at nothing"),
             (r#"{"glossinessFactor":"x"}"#, "KHR_materials_pbrSpecularGlossiness: invalid type"),

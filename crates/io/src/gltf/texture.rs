@@ -24,6 +24,8 @@ use vitral_math::func;
 pub(crate) enum Meaning {
     /// sRGB colours.
     Color,
+    /// The same, of a surface whose alpha counts for nothing.
+    OpaqueColor,
     /// Linear values.
     Data,
     /// Red is how much a surface transmits, times this factor; the texture gets what is left, as opacity.
@@ -147,6 +149,7 @@ fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dy
     };
     let (plane, encoding) = match meaning {
         Meaning::Color => (plane, Encoding::Srgb),
+        Meaning::OpaqueColor => (plane.map(|&[r, g, b, _]| [r, g, b, 255]), Encoding::Srgb),
         Meaning::Data => (plane, Encoding::Linear),
         Meaning::Transmission(factor) => (plane.map(|&[r, ..]| opaque_part(r, factor)), Encoding::Linear),
     };

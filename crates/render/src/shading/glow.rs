@@ -35,7 +35,7 @@ pub(super) fn glow<S: Simd>(
             let normal = match constants.shading {
                 Shading::Flat => surface.facet_normal,
                 _ => looks
-                    .mapped_normal(simd, subject.mesh, eight.slots, surface, material)
+                    .mapped_normal(simd, subject, eight.slots, surface, material)
                     .unwrap_or_else(|| phong::interpolated_normal(surface)),
             };
 

@@ -349,7 +349,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         Model::Empirical(_) | Model::Microfacet => match constants.shading {
             Shading::Phong => {
                 let k = looks.coefficients(simd, material, looks.base);
-                let normal = looks.mapped_normal(simd, mesh, slots, &surface, material);
+                let normal = looks.mapped_normal(simd, subject, slots, &surface, material);
                 phong::shade(simd, &surface, normal, &lighting, &k)
             }
             Shading::Flat => {
@@ -406,7 +406,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         let normal = match constants.shading {
             Shading::Flat => surface.facet_normal,
             _ => looks
-                .mapped_normal(simd, mesh, slots, &surface, material)
+                .mapped_normal(simd, subject, slots, &surface, material)
                 .unwrap_or_else(|| phong::interpolated_normal(&surface)),
         };
         let mirror = looks.mirror(simd, material).scale(looks.coverage);

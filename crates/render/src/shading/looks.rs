@@ -8,6 +8,7 @@
 //! Source: \[Foley et al. 1990\], 16.3, for textures; the transparency models name their own.
 
 use super::FrameConstants;
+use super::facets::Subject;
 use super::frame_constants::{MaterialConstants, TextureConstants};
 use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather};
 use super::group::Model;
@@ -86,12 +87,24 @@ impl<S: Simd> Looks<S> {
             texture = V3::new(t[0], t[1], t[2]);
             alpha *= t[3];
         }
-        if let Some(t) = lookup(&material.opacity) {
-            alpha *= t[0];
+        let (mut metallic_factor, mut roughness_factor) = (one, one);
+        if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
+            (metallic_factor, roughness_factor) = (b, g);
+        }
+        // See `Material::opacity_texture`.
+        let mut kept = one;
+        match lookup(&material.opacity) {
+            Some(t) if material.material.glass => kept = t[0],
+            Some(t) => alpha *= t[0],
+            None => {}
         }
         // Only blended surfaces have degrees of opacity; Kay's model changes it later.
         let coverage = Lanes::saturate(alpha);
-        let kt = constant(simd, if material.blend { linear::opacity(material.material.opacity) } else { 0.0 });
+        let mut kt = constant(simd, 0.0);
+        if material.blend {
+            kt = linear::opacity(kept * material.material.opacity);
+            kt = kt * dielectric_part(material, metallic_factor);
+        }
         let alpha = opaque_part(material, alpha);
         let mut emission = V3::splat(one, material.material.emission);
         if let Some([r, g, b, _]) = lookup(&material.emission) {
@@ -100,10 +113,6 @@ impl<S: Simd> Looks<S> {
         let mut specular = white;
         if let Some([r, g, b, _]) = lookup(&material.specular) {
             specular = V3::new(r, g, b);
-        }
-        let (mut metallic_factor, mut roughness_factor) = (one, one);
-        if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
-            (metallic_factor, roughness_factor) = (b, g);
         }
         let mut occlusion = one;
         if let Some([r, ..]) = lookup(&material.occlusion) {
@@ -210,16 +219,18 @@ impl<S: Simd> Looks<S> {
         )
     }
 
-    /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates.
+    /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates. Red leans it along
+    /// growing u, green along falling v, which is upwards in the picture, on both sides of a surface and however its texture is
+    /// mirrored (glTF's convention).
     pub(super) fn mapped_normal(
         &self,
         simd: S,
-        mesh: &Mesh,
+        subject: &Subject<'_>,
         slots: &Slots,
         surface: &Surface<F<S>>,
         material: &MaterialConstants<'_>,
     ) -> Option<V3<F<S>>> {
-        let texture = material.normal.as_ref()?;
+        let (texture, mesh) = (material.normal.as_ref()?, subject.mesh);
         simd.vectorize(
             #[inline(always)]
             || {
@@ -228,7 +239,6 @@ impl<S: Simd> Looks<S> {
                 let uv = gather_attribute(simd, attribute, mesh, slots);
                 let n = phong::interpolated_normal(surface);
 
-                // The tangent runs along growing u, the bitangent completes a right-handed frame (glTF's convention).
                 let (e1, e2) =
                     (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
                 let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
@@ -238,10 +248,18 @@ impl<S: Simd> Looks<S> {
                 let tangent = e1.scale(dv2) - e2.scale(dv1);
                 let tangent = V3::select(flipped, -tangent, tangent);
                 let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
+
+                // The normal, u and falling v make a right-handed frame where corners run counter-clockwise on the
+                // surface and clockwise in the picture, whose v grows downwards, or both the other way.
+                let clockwise = Lanes::lt(e1.cross(e2).dot(surface.facet_normal), zero);
                 let bitangent = n.cross(tangent);
+                let bitangent = V3::select(clockwise ^ flipped, bitangent, -bitangent);
                 let scale = material.material.normal_scale;
                 let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
-                Some((tangent.scale(x) + bitangent.scale(y) + n.scale(z)).normalize())
+                let leaning = tangent.scale(x) + bitangent.scale(y);
+                // The back of a bump is a dent: seen from there, the normal was turned, and leans the other way.
+                let back = if subject.instance.mirrored { !clockwise } else { clockwise };
+                Some((V3::select(back, -leaning, leaning) + n.scale(z)).normalize())
             },
         )
     }
@@ -293,6 +311,19 @@ pub(super) fn unvaried<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (C
     let white = V3::new(one, one, one);
     let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
     (coefficients(material, white, &factors), opaque_part(material, one))
+}
+
+/// What a metallic texture leaves of the light that glass lets through: metals let nothing through.
+#[inline(always)]
+fn dielectric_part<T: Lanes>(material: &MaterialConstants<'_>, metallic_factor: T) -> T {
+    match material.material.reflectance {
+        Reflectance::MetallicRoughness { metallic, .. }
+            if material.material.glass && material.metallic_roughness.is_some() =>
+        {
+            (-metallic_factor * metallic + 1.0).saturate()
+        }
+        _ => metallic_factor.splat(1.0),
+    }
 }
 
 /// Opacity of a material where textures and vertex colours leave `alpha` of the surface.

@@ -132,7 +132,7 @@ fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants
             let surface = surface(simd, records, slots);
             let mut looks = Looks::new(simd, subject.mesh, slots, &surface, material, constants.raw);
             looks.let_through(simd, &surface, material, constants, None);
-            let normal = looks.mapped_normal(simd, subject.mesh, slots, &surface, material);
+            let normal = looks.mapped_normal(simd, subject, slots, &surface, material);
             let numbers = PointNumbers {
                 placed: phong::placed(&surface, normal),
                 emission: looks.emission,

@@ -5,7 +5,7 @@ use crate::shading::DecodeTables;
 use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
 use vitral_frame::Encoding;
-use vitral_light::{AlphaMode, Material, Rgb, TextureRef};
+use vitral_light::{AlphaMode, Material, Reflectance, Rgb, TextureRef};
 use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Attribute, Mesh};
 
@@ -62,8 +62,9 @@ impl<'a> Occluders<'a> {
     pub(super) fn passing_anywhere(&self, facet: u32) -> Option<Rgb> {
         let (mesh, _, material) = self.look(facet);
         let Some(material) = material else { return Some([0.0; 3]) };
-        let differs = mesh.colors.is_some() || material.base_texture.is_some() || material.opacity_texture.is_some();
-        (!differs).then(|| self.let_through(material, 1.0))
+        let textures = [material.base_texture, material.opacity_texture, metal_texture(material)];
+        let differs = mesh.colors.is_some() || textures.iter().any(Option::is_some);
+        (!differs).then(|| self.let_through(material, 1.0, material.opacity))
     }
 
     /// The facet's mesh, its triangle there, and its material if that lets light through.
@@ -87,20 +88,27 @@ impl<'a> Occluders<'a> {
         if let Some(texel) = self.sample(material.base_texture, mesh, triangle, weights) {
             coverage *= texel[3];
         }
-        if let Some(texel) = self.sample(material.opacity_texture, mesh, triangle, weights) {
-            coverage *= texel[0];
+        let mut opacity = material.opacity;
+        match self.sample(material.opacity_texture, mesh, triangle, weights) {
+            Some(texel) if material.glass => opacity *= texel[0],
+            Some(texel) => coverage *= texel[0],
+            None => {}
         }
-        self.let_through(material, coverage)
+        if let Some(texel) = self.sample(metal_texture(material), mesh, triangle, weights)
+            && let Reflectance::MetallicRoughness { metallic, .. } = material.reflectance
+        {
+            opacity = 1.0 - linear::opacity(opacity) * linear::opacity(texel[2] * metallic);
+        }
+        self.let_through(material, coverage, opacity)
     }
 
-    /// What passes a material, of which textures and colours leave so much; opacity as shading finds it.
-    fn let_through(&self, material: &Material, coverage: f32) -> Rgb {
-        let alpha = (material.opacity * coverage).clamp(0.0, 1.0);
+    /// What passes a material of this opacity, of which textures and colours leave so much; as shading finds it.
+    fn let_through(&self, material: &Material, coverage: f32, opacity: f32) -> Rgb {
+        let alpha = (opacity * coverage).clamp(0.0, 1.0);
         match material.alpha_mode {
             AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < AlphaMode::least_opacity(cutoff))); 3],
             AlphaMode::Blend if self.filtered => {
-                let passes =
-                    filtered::passes(coverage.clamp(0.0, 1.0), linear::opacity(material.opacity), material.filter);
+                let passes = filtered::passes(coverage.clamp(0.0, 1.0), linear::opacity(opacity), material.filter);
                 [passes.x, passes.y, passes.z]
             }
             _ => [1.0 - alpha; 3],
@@ -116,6 +124,11 @@ impl<'a> Occluders<'a> {
     ) -> Option<[f32; 4]> {
         texel(self.session, &self.tables, reference, mesh, triangle, weights, 0.0)
     }
+}
+
+/// The texture that says where glass is metal, which lets nothing through.
+fn metal_texture(material: &Material) -> Option<TextureRef> {
+    material.metallic_roughness_texture.filter(|_| material.glass)
 }
 
 /// A texture at a point of a triangle, at a level of detail (0: the finest); `None` where there is none.

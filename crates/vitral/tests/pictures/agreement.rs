@@ -7,7 +7,7 @@ use crate::traps;
 use std::sync::Mutex;
 use vitral::exec::{Budget, Clock, Limit, Workers};
 use vitral::math::{DVec3, func};
-use vitral::raster::{LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
+use vitral::raster::{BackFaces, LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
 use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;

@@ -7,6 +7,7 @@ mod determinism;
 mod interpolation;
 mod lighting;
 mod marks;
+mod normal_maps;
 mod ray_trace;
 mod robust;
 mod translucent;

@@ -23,7 +23,7 @@ use vitral_math::{Aabb, DMat4, Mat4, Vec3};
 use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Instance, Part, Scene, Solids, World};
+use vitral_scene::{Attribute, Instance, Part, Scene, Solids, World, tangents};
 
 /// Who computes, with which instructions, and how much is allowed.
 #[derive(Clone, Debug)]
@@ -130,6 +130,8 @@ struct MeshKnowledge {
     edges: OnceLock<Vec<Edge>>,
     sides: OnceLock<Vec<Side>>,
     centred: OnceLock<Vec<[f32; 3]>>,
+    /// For each set of texture coordinates.
+    tangents: [OnceLock<Option<Attribute<[f32; 3]>>>; 2],
 }
 
 /// Half sides of its box that a mesh lies away from the origin before its positions are moved there.
@@ -152,6 +154,7 @@ impl MeshKnowledge {
             self.edges.get().is_some(),
             self.sides.get().is_some(),
             self.centred.get().is_some(),
+            self.tangents.iter().any(|t| t.get().is_some()),
         ];
         known.into_iter().filter(|known| *known).count()
     }
@@ -349,6 +352,12 @@ impl Session {
     pub(crate) fn faces(&self, mesh: u32) -> &FaceTable {
         let known = &self.meshes[mesh as usize].faces;
         known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
+    }
+
+    /// The tangents of a mesh along a set of texture coordinates, if it has these and normals.
+    pub(crate) fn tangents(&self, mesh: u32, set: u32) -> Option<&Attribute<[f32; 3]>> {
+        let known = self.meshes[mesh as usize].tangents.get(set as usize)?;
+        known.get_or_init(|| tangents(&self.scene.meshes[mesh as usize], set as usize)).as_ref()
     }
 
     /// For each triangle where its body is; asked of transparent materials where any bends light. One whose index is 1 is a

@@ -16,7 +16,7 @@ use super::points::Points;
 use crate::Interpolation;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
-use vitral_scene::Mesh;
+use vitral_scene::{Attribute, Mesh};
 
 /// Numbers of a facet, in view space:
 /// `c a b` of the three corners' weights, anchor `x y`, facet normal, three positions, three normals.
@@ -39,6 +39,8 @@ pub(crate) struct Viewing {
 #[derive(Clone, Copy)]
 pub(crate) struct Subject<'a> {
     pub mesh: &'a Mesh,
+    /// Tangents for the normal texture, model space, if there is one and the mesh has normals.
+    pub tangents: Option<&'a Attribute<[f32; 3]>>,
     pub instance: &'a InstanceConstants,
     /// Facet id of the mesh's first triangle.
     pub first_facet: u32,

@@ -283,8 +283,10 @@ pub(crate) fn subject<'a>(
         layered: material.cutoff.is_some() || material.blend,
     };
     let instance = &constants.instances[group.instance as usize];
+    let normal_set = material.normal.as_ref().map(|texture| texture.reference.uv_set);
     let subject = Subject {
         mesh,
+        tangents: normal_set.and_then(|set| constants.view.session.tangents(world_instance.mesh_index, set)),
         instance,
         first_facet: world_instance.first_facet,
         mesh_index: world_instance.mesh_index,

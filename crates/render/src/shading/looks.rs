@@ -10,7 +10,7 @@
 use super::FrameConstants;
 use super::facets::Subject;
 use super::frame_constants::{MaterialConstants, TextureConstants};
-use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather};
+use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather, linear as linear_map};
 use super::group::Model;
 use super::hits::Along;
 use super::lighting::Coefficients;
@@ -247,6 +247,13 @@ impl<S: Simd> Looks<S> {
                 let flipped = Lanes::lt(du1 * dv2 - du2 * dv1, zero);
                 let tangent = e1.scale(dv2) - e2.scale(dv1);
                 let tangent = V3::select(flipped, -tangent, tangent);
+                let tangent = match subject.tangents {
+                    Some(attribute) => {
+                        let smooth = interpolated_tangent(simd, attribute, subject, slots, surface);
+                        V3::select(Lanes::lt(zero, smooth.dot(smooth)), smooth, tangent)
+                    }
+                    None => tangent,
+                };
                 let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
 
                 // The normal, u and falling v make a right-handed frame where corners run counter-clockwise on the
@@ -263,6 +270,24 @@ impl<S: Simd> Looks<S> {
             },
         )
     }
+}
+
+/// Between the tangents at the corners of each lane's facet, view space.
+#[inline(always)]
+fn interpolated_tangent<S: Simd>(
+    simd: S,
+    attribute: &Attribute<[f32; 3]>,
+    subject: &Subject<'_>,
+    slots: &Slots,
+    surface: &Surface<F<S>>,
+) -> V3<F<S>> {
+    let to_view = subject.instance.view_from_model.map(|[x, y, z, _]| [x, y, z]);
+    let corners = gather_attribute(simd, attribute, subject.mesh, slots);
+    let corner = lanes::inlined(
+        #[inline(always)]
+        |c: usize| linear_map(&to_view, &corners[c]).normalize(),
+    );
+    blend3(&surface.weights, &[corner(0), corner(1), corner(2)])
 }
 
 /// What textures make of a material's coefficients, besides its colour.

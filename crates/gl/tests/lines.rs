@@ -309,3 +309,37 @@ fn polygon_offset_of_edges_and_corners_has_the_slope_of_the_polygon() {
         assert!((found - expected).abs() < 1e-5, "{found} instead of {expected}");
     }
 }
+
+/// What has no area is a back face; it has no inside, but edges and corners.
+#[test]
+fn polygons_without_area_have_edges_and_corners() {
+    let flat: [&[[f32; 2]]; 2] = [&[[1.5, 1.5], [1.5, 1.5], [6.5, 1.5]], &[[1.5, 1.5], [3.5, 1.5], [6.5, 1.5]]];
+    for corners in flat {
+        for (mode, expected) in [(gl::FILL, "........"), (gl::LINE, ".######."), (gl::POINT, ".#....#.")] {
+            let mut c = paper(8, 3);
+            c.polygon_mode(gl::FRONT_AND_BACK, mode);
+            draw(&mut c, gl::TRIANGLES, corners);
+            let row = rows(&mut c)[1].clone();
+            let middle = mode == gl::POINT && corners[1] == [3.5, 1.5];
+            assert_eq!(row, if middle { ".#.#..#." } else { expected }, "{corners:?} {mode:#x}");
+            for (side, drawn) in [(gl::BACK, false), (gl::FRONT, mode != gl::FILL)] {
+                let mut c = paper(8, 3);
+                c.enable(gl::CULL_FACE);
+                c.cull_face(side);
+                c.polygon_mode(gl::FRONT_AND_BACK, mode);
+                draw(&mut c, gl::TRIANGLES, corners);
+                assert_eq!(rows(&mut c)[1].contains('#'), drawn, "{corners:?} {mode:#x} {side:#x}");
+            }
+        }
+    }
+    // Seen edge-on.
+    let mut c = Stage::new(32, 32);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    c.polygon_mode(gl::FRONT_AND_BACK, gl::LINE);
+    c.begin(gl::QUADS);
+    for [x, z] in [[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8]] {
+        c.vertex_3f(x, 0.0, z);
+    }
+    c.end();
+    assert_eq!(rows(&mut c).concat().matches('#').count(), 26);
+}

@@ -62,19 +62,30 @@ fn chunk_colors(bytes: &[u8], format: PixelFormat, scratch: &mut Vec<f32>, out: 
         }
         None => numbers(bytes, format.kind, scratch),
     }
-    let places = format.places();
-    let luminance = matches!(format.format, LUMINANCE | LUMINANCE_ALPHA);
-    for pixel in scratch.chunks_exact(places.len()) {
-        let mut color = [0.0, 0.0, 0.0, 1.0];
-        for (&place, &value) in places.iter().zip(pixel) {
-            color[place] = value;
+    // The usual ones by themselves: components whose places are known are moved together.
+    match *format.places() {
+        _ if format.format == LUMINANCE => out.extend(scratch.iter().map(|&l| [l, l, l, 1.0])),
+        _ if format.format == LUMINANCE_ALPHA => out.extend(pixels::<2>(scratch).map(|[l, a]| [l, l, l, a])),
+        [0, 1, 2, 3] => out.extend(pixels::<4>(scratch)),
+        [2, 1, 0, 3] => out.extend(pixels::<4>(scratch).map(|[b, g, r, a]| [r, g, b, a])),
+        [0, 1, 2] => out.extend(pixels::<3>(scratch).map(|[r, g, b]| [r, g, b, 1.0])),
+        [2, 1, 0] => out.extend(pixels::<3>(scratch).map(|[b, g, r]| [r, g, b, 1.0])),
+        [0] => out.extend(scratch.iter().map(|&r| [r, 0.0, 0.0, 1.0])),
+        ref places => {
+            for pixel in scratch.chunks_exact(places.len()) {
+                let mut color = [0.0, 0.0, 0.0, 1.0];
+                for (&place, &value) in places.iter().zip(pixel) {
+                    color[place] = value;
+                }
+                out.push(color);
+            }
         }
-        if luminance {
-            color[1] = color[0];
-            color[2] = color[0];
-        }
-        out.push(color);
     }
+}
+
+/// The numbers of each pixel.
+fn pixels<const N: usize>(numbers: &[f32]) -> impl Iterator<Item = [f32; N]> + '_ {
+    numbers.as_chunks().0.iter().copied()
 }
 
 /// The integers of index pixels; floating-point ones are rounded down.
@@ -158,9 +169,10 @@ pub(crate) fn stencils(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<u8> 
 /// Pixels that are such words but for the order of red and blue stay in the image's own memory.
 pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, ClientImage>> {
     let PixelFormat { format, kind } = image.format;
-    if matches!(format, RGBA | BGRA) && matches!(kind, UNSIGNED_BYTE | UNSIGNED_INT_8_8_8_8_REV) {
+    let whole = matches!(kind, UNSIGNED_INT_8_8_8_8 | UNSIGNED_INT_8_8_8_8_REV);
+    if matches!(format, RGBA | BGRA) && (whole || kind == UNSIGNED_BYTE) {
         let mut words = image.into_owned().bytes.into_words();
-        if kind == UNSIGNED_BYTE && cfg!(target_endian = "big") {
+        if kind == UNSIGNED_INT_8_8_8_8 || kind == UNSIGNED_BYTE && cfg!(target_endian = "big") {
             words.iter_mut().for_each(|w| *w = w.swap_bytes());
         }
         if format == BGRA {
@@ -168,17 +180,28 @@ pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, Cli
         }
         return Ok(words);
     }
+    let bytes = &image.bytes;
+    let word = |r, g, b, a| u32::from_le_bytes([r, g, b, a]);
+    if (format, kind) == (RGB, UNSIGNED_SHORT_5_6_5) {
+        let byte = |bits: u16, largest: u16| ((f32::from(bits) / f32::from(largest)) * 255.0 + 0.5) as u8;
+        let fives: [u8; 32] = std::array::from_fn(|bits| byte(bits as u16, 31));
+        let sixes: [u8; 64] = std::array::from_fn(|bits| byte(bits as u16, 63));
+        let pixel = |[a, b]: &[u8; 2]| {
+            let p = usize::from(u16::from_ne_bytes([*a, *b]));
+            word(fives[p >> 11 & 31], sixes[p >> 5 & 63], fives[p & 31], 255)
+        };
+        return Ok(bytes.as_chunks().0.iter().map(pixel).collect());
+    }
     if kind != UNSIGNED_BYTE {
         return Err(image);
     }
-    let bytes = &image.bytes;
-    let word = |r, g, b, a| u32::from_le_bytes([r, g, b, a]);
     Ok(match format {
         RGB => bytes.chunks_exact(3).map(|p| word(p[0], p[1], p[2], 255)).collect(),
         BGR => bytes.chunks_exact(3).map(|p| word(p[2], p[1], p[0], 255)).collect(),
         LUMINANCE => bytes.iter().map(|&l| word(l, l, l, 255)).collect(),
         LUMINANCE_ALPHA => bytes.chunks_exact(2).map(|p| word(p[0], p[0], p[0], p[1])).collect(),
         ALPHA => bytes.iter().map(|&a| word(0, 0, 0, a)).collect(),
+        RED => bytes.iter().map(|&r| word(r, 0, 0, 255)).collect(),
         _ => return Err(image),
     })
 }
@@ -236,10 +259,16 @@ mod tests {
 
     #[test]
     fn the_fast_way_agrees_with_the_general_one() {
-        let bytes = [RGBA, BGRA, RGB, BGR, LUMINANCE, LUMINANCE_ALPHA, ALPHA].map(|format| (format, UNSIGNED_BYTE));
-        let packed = [RGBA, BGRA].map(|format| (format, UNSIGNED_INT_8_8_8_8_REV));
-        for (format, kind) in bytes.into_iter().chain(packed) {
-            let bytes: Vec<u8> = (0..12).map(|i| i * 20).collect();
+        let bytes =
+            [RGBA, BGRA, RGB, BGR, LUMINANCE, LUMINANCE_ALPHA, ALPHA, RED].map(|format| (format, UNSIGNED_BYTE));
+        let packed = [UNSIGNED_INT_8_8_8_8, UNSIGNED_INT_8_8_8_8_REV].iter();
+        let packed = packed.flat_map(|&kind| [(RGBA, kind), (BGRA, kind)]);
+        for (format, kind) in bytes.into_iter().chain(packed).chain([(RGB, UNSIGNED_SHORT_5_6_5)]) {
+            // Of two bytes, all there are.
+            let bytes: Vec<u8> = match kind {
+                UNSIGNED_SHORT_5_6_5 => (0..=u16::MAX).flat_map(u16::to_ne_bytes).collect(),
+                _ => (0..12).map(|i| i * 20).collect(),
+            };
             let image = image(format, kind, &bytes);
             let state = PixelTransfer::default();
             let general: Vec<u32> = colors(&image, &Transfer::new(&state))
@@ -248,7 +277,7 @@ mod tests {
                 .collect();
             assert_eq!(words(Cow::Owned(image)).unwrap(), general, "{format:#x} {kind:#x}");
         }
-        assert!(words(Cow::Owned(image(RED, UNSIGNED_BYTE, &[1, 2, 3]))).is_err());
-        assert!(words(Cow::Owned(image(RGB, UNSIGNED_SHORT_5_6_5, &[1, 2]))).is_err());
+        assert!(words(Cow::Owned(image(GREEN, UNSIGNED_BYTE, &[1, 2, 3]))).is_err());
+        assert!(words(Cow::Owned(image(RGB, UNSIGNED_SHORT_5_6_5_REV, &[1, 2]))).is_err());
     }
 }

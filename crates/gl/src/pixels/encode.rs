@@ -132,19 +132,46 @@ pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &m
 
 /// Whether [`words`] makes pixels of a format.
 pub(crate) fn takes_words(format: PixelFormat) -> bool {
-    format.kind == UNSIGNED_BYTE && matches!(format.format, RGBA | BGRA | RGB | BGR)
+    match format.kind {
+        UNSIGNED_BYTE => matches!(format.format, RGBA | BGRA | ABGR_EXT | RGB | BGR | RED | GREEN | BLUE | ALPHA),
+        UNSIGNED_INT_8_8_8_8 | UNSIGNED_INT_8_8_8_8_REV => matches!(format.format, RGBA | BGRA),
+        _ => false,
+    }
 }
 
-/// Words (red lowest) as unsigned bytes of `RGBA`, `BGRA`, `RGB` or `BGR`.
+/// Words (red lowest) as pixels of a format that [`takes_words`].
 pub(crate) fn words(words: &[u32], format: PixelFormat, out: &mut [u8]) {
-    if matches!(format.format, RGBA | BGRA) {
-        let swapped = format.format == BGRA;
-        for (pixel, &word) in out.chunks_exact_mut(4).zip(words) {
-            let word = if swapped { word.swap_bytes().rotate_right(8) } else { word };
-            pixel.copy_from_slice(&word.to_le_bytes());
+    match format.pixel_bytes() {
+        1 => {
+            let shift = 8 * format.places()[0] as u32;
+            out.iter_mut().zip(words).for_each(|(byte, word)| *byte = (word >> shift) as u8);
         }
-        return;
+        4 => {
+            let bgra = |w: u32| w.swap_bytes().rotate_right(8);
+            let whole = format.kind != UNSIGNED_BYTE;
+            let reversed = format.format == ABGR_EXT || format.kind == UNSIGNED_INT_8_8_8_8;
+            match (format.format == BGRA, reversed) {
+                (false, false) => wholes(words, whole, out, |w| w),
+                (true, false) => wholes(words, whole, out, bgra),
+                (false, true) => wholes(words, whole, out, u32::swap_bytes),
+                (true, true) => wholes(words, whole, out, |w| bgra(w).swap_bytes()),
+            }
+        }
+        _ => threes(words, format, out),
     }
+}
+
+/// Pixels of four bytes: integers if `whole`, else bytes from the lowest one on.
+#[inline(always)]
+fn wholes(words: &[u32], whole: bool, out: &mut [u8], order: impl Fn(u32) -> u32) {
+    for (pixel, &word) in out.as_chunks_mut().0.iter_mut().zip(words) {
+        let word = order(word);
+        *pixel = if whole { word } else { word.to_le() }.to_ne_bytes();
+    }
+}
+
+/// Pixels of `RGB` or `BGR`.
+fn threes(words: &[u32], format: PixelFormat, out: &mut [u8]) {
     let swapped = format.format == BGR;
     let level = Level::new();
     let done = if cfg!(target_endian = "little") && orders_bytes(level) {
@@ -227,14 +254,21 @@ mod tests {
     }
 
     #[test]
-    fn words_keep_their_bytes() {
-        let mut out = [0; 10];
-        for (token, place) in [(BGRA, 0..4), (RGB, 4..7), (BGR, 7..10)] {
-            assert!(takes_words(format(token, UNSIGNED_BYTE)));
-            words(&[0x0403_0201], format(token, UNSIGNED_BYTE), &mut out[place]);
+    fn words_become_what_colors_become() {
+        let bytes = [RGBA, BGRA, ABGR_EXT, RGB, BGR, RED, GREEN, BLUE, ALPHA].map(|token| (token, UNSIGNED_BYTE));
+        let kinds = [UNSIGNED_INT_8_8_8_8, UNSIGNED_INT_8_8_8_8_REV];
+        let wholes = kinds.iter().flat_map(|&kind| [(RGBA, kind), (BGRA, kind)]);
+        let source = [0x0403_0201u32, 0xf3f2_f1f0, 0x00ff_8001];
+        let pixels = source.map(|word| word.to_le_bytes().map(|byte| f32::from(byte) / 255.0));
+        for (token, kind) in bytes.into_iter().chain(wholes) {
+            let format = format(token, kind);
+            assert!(takes_words(format));
+            let (mut fast, mut general) = (vec![0; 3 * format.pixel_bytes()], Vec::new());
+            words(&source, format, &mut fast);
+            colors(&pixels, format, &mut general);
+            assert_eq!(fast, general, "{token:#x} {kind:#x}");
         }
-        assert!(!takes_words(format(RED, UNSIGNED_BYTE)) && !takes_words(format(RGB, BYTE)));
-        assert_eq!(out, [3, 2, 1, 4, 1, 2, 3, 3, 2, 1]);
+        assert!(!takes_words(format(LUMINANCE, UNSIGNED_BYTE)) && !takes_words(format(RGB, BYTE)));
     }
 
     #[test]

@@ -284,6 +284,15 @@ impl TextureImage {
         }
     }
 
+    /// Lends words (red lowest) as `GetTexImage` returns them, if they are stored so. Everything recorded must have run.
+    pub(crate) fn with_words<T>(&mut self, take: impl FnOnce(&[u32]) -> T) -> Option<T> {
+        let kept = matches!(self.format.base, crate::enums::RGB | crate::enums::RGBA);
+        match self.level().texels() {
+            Texels::Rgba8(words) | Texels::Srgb8(words) if kept => Some(take(words)),
+            _ => None,
+        }
+    }
+
     /// Colours as `GetTexImage` returns them: luminance and intensity in red alone. Everything recorded must have run.
     pub(crate) fn colors(&mut self) -> Vec<[f32; 4]> {
         let level = self.level();

@@ -130,7 +130,16 @@ impl Context {
         }
         // No pixel transfer here, unlike in `ReadPixels`.
         let mut bytes = Vec::new();
-        if format.content() == Content::Color {
+        let encode_words = |words: &[u32]| {
+            let mut bytes = vec![0; words.len() * format.pixel_bytes()];
+            encode::words(words, format, &mut bytes);
+            bytes
+        };
+        if encode::takes_words(format)
+            && let Some(encoded) = image.with_words(encode_words)
+        {
+            bytes = encoded;
+        } else if format.content() == Content::Color {
             let mut colors = image.colors();
             if image.format.component_type() != FLOAT || !matches!(kind, FLOAT | HALF_FLOAT_ARB) {
                 clamp_colors(&mut colors);

@@ -19,7 +19,7 @@ use crate::kernel::traverse::{Placed, Window, traverse_window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Level, Simd, dispatch};
+use vitral_math::lanes::{F32x8, LANES, Level, Simd, columns_of_rows, dispatch};
 
 /// A tile of the target and its planes.
 pub(crate) struct TileRun<'a> {
@@ -204,26 +204,36 @@ impl<'a> TileRun<'a> {
     #[inline(always)]
     fn image_inlined<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
         let [x0, y0, x1, y1] = self.part(image.bounds(state.clip));
+        if x0 >= x1 || y0 >= y1 {
+            return;
+        }
+        // Source columns of the tile's columns, the same in all rows.
+        let (mut shown, mut sources) = (0u64, [0; TILE]);
+        for x in x0..x1 {
+            if let Some(i) = image.source(0, self.x as i32 + x) {
+                shown |= 1 << x;
+                sources[x as usize] = i;
+            }
+        }
         for y in y0..y1 {
             let Some(j) = image.source(1, self.y as i32 + y) else { continue };
-            let first = x0 & !(LANES as i32 - 1);
-            for x in (first..x1).step_by(LANES) {
-                let mut bits = columns(x, x0, x1);
-                let mut at = [0usize; LANES];
+            let row = j * image.size[0] as usize;
+            for x in (x0 as usize & !(LANES - 1)..x1 as usize).step_by(LANES) {
+                let mut bits = (shown >> x) as u32 & 0xff;
+                if bits == 0 {
+                    continue;
+                }
+                let mut at = [row; LANES];
                 for lane in 0..LANES {
-                    if bits >> lane & 1 == 1 {
-                        match image.source(0, self.x as i32 + x + lane as i32) {
-                            Some(i) => at[lane] = j * image.size[0] as usize + i,
-                            None => bits &= !(1 << lane),
-                        }
-                        if image.bits.as_ref().is_some_and(|b| !b[at[lane]]) {
-                            bits &= !(1 << lane);
-                        }
+                    at[lane] += sources[x + lane];
+                }
+                if let Some(set) = &image.bits {
+                    for lane in 0..LANES {
+                        bits &= !(u32::from(!set[at[lane]]) << lane);
                     }
                 }
                 if bits != 0 {
-                    let row = Row { at: y as usize * TILE + x as usize };
-                    self.image_row(simd, image, state, ops, row, bits, &at);
+                    self.image_row(simd, image, state, ops, Row { at: y as usize * TILE + x }, bits, &at);
                 }
             }
         }
@@ -302,18 +312,12 @@ fn image_color<S: Simd>(
 ) -> Rgba<S> {
     let mut primary = splat_rgba(simd, image.color);
     if let Some(colors) = &image.colors {
-        let mut soa = [[0.0f32; LANES]; 4];
-        for lane in 0..LANES {
-            for k in 0..4 {
-                soa[k][lane] = colors[at[lane]][k];
-            }
-        }
-        primary = [
-            F32x8::from_slice(simd, &soa[0]),
-            F32x8::from_slice(simd, &soa[1]),
-            F32x8::from_slice(simd, &soa[2]),
-            F32x8::from_slice(simd, &soa[3]),
-        ];
+        let [r, g, b, a] = columns_of_rows(
+            simd,
+            #[inline(always)]
+            |lane| bytemuck::cast(colors[at[lane]]),
+        );
+        primary = [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()];
     }
     let mut color = primary;
     if !state.units.is_empty() {

@@ -48,10 +48,11 @@ impl Assembler<'_> {
                 largest = (part.abs(), triangle);
             }
         }
-        if outside || area == 0.0 {
+        if outside {
             return;
         }
-        let back = (area > 0.0) != self.state.counter_clockwise;
+        // What has no area, as what is seen edge-on, is a back face; its edges and corners are drawn.
+        let back = area == 0.0 || (area > 0.0) != self.state.counter_clockwise;
         if self.state.cull[usize::from(back)] {
             return;
         }

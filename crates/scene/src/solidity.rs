@@ -538,9 +538,10 @@ mod tests {
                 .map(|words| words[0]),
             Some(u32::MAX)
         );
-        assert!(Solids::of_some(&mesh, &[0..counts[0] as u32], &Workers::single()).solidity.is_solid());
+        let first = 0..counts[0] as u32;
+        assert!(Solids::of_some(&mesh, std::slice::from_ref(&first), &Workers::single()).solidity.is_solid());
         let last = solids.some().expect("some are").to_vec();
-        let others = Solids::of_some(&mesh, &[all], &Workers::single());
+        let others = Solids::of_some(&mesh, std::slice::from_ref(&all), &Workers::single());
         let others = others.some().expect("the small ball is");
         assert!((0..mesh.triangles.len()).all(|t| {
             let bit = |words: &[u32]| words[t / 32] >> (t % 32) & 1;

@@ -102,8 +102,8 @@ impl<S: Simd> Looks<S> {
         let coverage = Lanes::saturate(alpha);
         let mut kt = constant(simd, 0.0);
         if material.blend {
-            kt = linear::opacity(kept * material.material.opacity);
-            kt = kt * dielectric_part(material, metallic_factor);
+            let passing = linear::opacity(kept * material.material.opacity);
+            kt = passing * dielectric_part(material, metallic_factor);
         }
         let alpha = opaque_part(material, alpha);
         let mut emission = V3::splat(one, material.material.emission);

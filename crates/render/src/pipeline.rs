@@ -112,7 +112,11 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
     let mut warnings = Vec::new();
     if settings.global == Global::RayTrace && settings.transparency != Transparency::None {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
-            format!("rays pass straight through the surfaces of material `{name}` that are not closed, whatever its index of refraction")
+            let of =
+                if name.is_empty() { "a material without a name".to_owned() } else { format!("material `{name}`") };
+            format!(
+                "rays pass straight through the surfaces of {of} that are not closed, whatever its index of refraction"
+            )
         }));
     }
     if settings.global == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {

@@ -7,6 +7,9 @@ use vitral_math::DVec3;
 const FEW: usize = 6;
 /// Cuts above a part.
 const DEEPEST: u32 = 40;
+/// Cuts in a row that may leave more than three quarters of the solids to a part. Where solids meet in a line, cutting goes on and on
+/// along it and separates none: they are clipped one by one, too.
+const PATIENCE: u32 = 6;
 
 /// A part of a facet.
 #[derive(Clone, Copy, Debug)]
@@ -84,6 +87,16 @@ impl Detail {
     }
 }
 
+/// The cuts above a part.
+#[derive(Clone, Copy, Debug)]
+struct Cuts {
+    depth: u32,
+    /// Solids of the last part that had a quarter less than such a part before it.
+    last: usize,
+    /// Cuts since then.
+    in_vain: u32,
+}
+
 /// Clips one facet.
 pub(super) struct Cutter<'a> {
     pub(super) detail: &'a mut Detail,
@@ -112,11 +125,12 @@ impl Cutter<'_> {
         if winding.dot(self.normal) < 0.0 {
             corners.reverse();
         }
-        self.part(corners, &(0..self.solids.len() as u32).collect::<Vec<_>>(), 0)
+        let solids: Vec<_> = (0..self.solids.len() as u32).collect();
+        self.part(corners, &solids, Cuts { depth: 0, last: usize::MAX, in_vain: 0 })
     }
 
     /// Adds a part of it, which these solids may reach.
-    fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], depth: u32) -> u32 {
+    fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], mut cuts: Cuts) -> u32 {
         // Keep the solids that reach it; one that covers it decides.
         let mut reaching = Vec::with_capacity(solids.len());
         let mut covered = false;
@@ -134,9 +148,15 @@ impl Cutter<'_> {
         if covered {
             return self.detail.dark();
         }
-        if solids.len() <= FEW || depth == DEEPEST {
+        if solids.len() <= cuts.last / 4 * 3 {
+            (cuts.last, cuts.in_vain) = (solids.len(), 0);
+        } else {
+            cuts.in_vain += 1;
+        }
+        if solids.len() <= FEW || cuts.depth == DEEPEST || cuts.in_vain > PATIENCE {
             return self.clip(polygon, &solids);
         }
+        cuts.depth += 1;
 
         // Cut it in the middle of its longest side.
         let (middle, half) = box_around(polygon.iter().copied(), 0.0);
@@ -145,8 +165,8 @@ impl Cutter<'_> {
         if below.len() < 3 || above.len() < 3 {
             return self.clip(polygon, &solids);
         }
-        let lower = self.part(below, &solids, depth + 1);
-        let upper = self.part(above, &solids, depth + 1);
+        let lower = self.part(below, &solids, cuts);
+        let upper = self.part(above, &solids, cuts);
         // Nothing to tell apart: two dark halves are a dark whole.
         let empty = |node: &Node| matches!(node, Node::Lit([first, end]) if first == end);
         if [lower, upper].iter().all(|&n| empty(&self.detail.nodes[n as usize])) {
@@ -253,7 +273,7 @@ fn less(polygon: &[DVec3], solid: &Solid, eps: f64) -> Left {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::{DVec4, dvec3};
+    use vitral_math::{DVec4, dvec3, func};
 
     fn area(polygon: &[DVec3]) -> f64 {
         let doubled: DVec3 =
@@ -291,6 +311,28 @@ mod tests {
             let p = dvec3(next() * 6.0 - 3.0, 0.0, next() * 6.0 - 3.0);
             assert_eq!(detail.lights(root, p, 1e-12), !solids.iter().any(|s| s.contains(p)), "{p}");
         }
+    }
+
+    #[test]
+    fn solids_that_meet_in_a_line_are_not_cut_apart() {
+        // Light falls along a wall, all but; on its upper edge lies a fan, whose wedges meet above a corner of the wall.
+        let light = DVec4::new(0.0, 1.0, 0.0, 0.0);
+        let rim = |k: i32| {
+            let angle = std::f64::consts::PI * f64::from(k) / 64.0;
+            dvec3(func::cos(angle), 1.0, -func::sin(angle))
+        };
+        let wedges = (0..64).filter_map(|k| Solid::new(&[dvec3(0.0, 1.0, 0.0), rim(k), rim(k + 1)], light, 1e-9));
+        let solids: Vec<_> =
+            wedges.map(|solid| Solid { planes: solid.planes.map(|(n, at)| (n.normalize(), at)) }).collect();
+        assert_eq!(solids.len(), 64);
+        let mut detail = Detail::default();
+        let wall = [dvec3(0.0, 0.0, -1e-6), dvec3(0.0, 1.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(1.0, 0.0, -1e-6)];
+        let normal = (wall[1] - wall[0]).cross(wall[2] - wall[0]).normalize();
+        let mut cutter = Cutter { detail: &mut detail, normal, eps: 1e-13, solids: &solids };
+        cutter.add(wall[..3].to_vec());
+        cutter.add(vec![wall[0], wall[2], wall[3]]);
+        assert!(detail.nodes.len() < 1000, "{} parts", detail.nodes.len());
+        assert!(detail.polygons.len() < 10_000, "{} polygons", detail.polygons.len());
     }
 
     #[test]

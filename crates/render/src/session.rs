@@ -256,9 +256,10 @@ impl Session {
 
     /// Whether back faces of a mesh can never be seen from outside: neither past its skin nor through a window in it.
     pub fn is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
+        // What is opaque is asked about first: of a mesh with windows that is known already.
         let opaque = self.opaque_solids(mesh, transparency, workers);
-        let all = [Some(self.solids(mesh, workers)), opaque];
-        all.into_iter().flatten().all(|solids| backface::applies(solids.solidity))
+        opaque.is_none_or(|solids| backface::applies(solids.solidity))
+            && backface::applies(self.solids(mesh, workers).solidity)
     }
 
     /// Which of a mesh's opaque triangles are never seen from behind, from outside the mesh.

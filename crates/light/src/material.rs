@@ -21,7 +21,7 @@ pub struct Material {
     /// What kind of transparency the surface has.
     pub transmission: Transmission,
     /// `opacity` is that of glass, not of a surface with holes: highlights stay whole, and what the surface mirrors (Fresnel)
-    /// does not pass, so that clear bodies have a rim. Where a texture says that it is metal, nothing passes.
+    /// does not pass, so that clear bodies have a rim. Metal lets nothing pass.
     pub glass: bool,
     /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
     pub filter: Rgb,

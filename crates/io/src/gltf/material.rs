@@ -38,11 +38,14 @@ pub(crate) fn read(
     let [r, g, b, alpha] = color.map(|v| unit(v, 1.0));
     let mut material = Material {
         name: json.name.clone().unwrap_or_default(),
-        reflectance: Reflectance::MetallicRoughness {
-            base_color: [r, g, b],
-            metallic: unit(pbr.metallic_factor.0, 1.0),
-            roughness: unit(pbr.roughness_factor.0, 1.0),
-        },
+        reflectance: older.as_ref().map_or_else(
+            || Reflectance::MetallicRoughness {
+                base_color: [r, g, b],
+                metallic: unit(pbr.metallic_factor.0, 1.0),
+                roughness: unit(pbr.roughness_factor.0, 1.0),
+            },
+            SpecularGlossiness::reflectance,
+        ),
         double_sided: json.double_sided,
         ..Material::default()
     };
@@ -57,11 +60,8 @@ pub(crate) fn read(
     apply_transmission(source, json, &path, &mut material, wanted, warnings);
 
     ask_textures(source, json, older.as_ref(), &path, &mut material, wanted, warnings)?;
-    if let Some(older) = older {
-        material.reflectance = older.reflectance();
-        if older.is_mirror() && material.alpha_mode == AlphaMode::Opaque {
-            material.base_texture = None;
-        }
+    if older.is_some_and(|o| o.is_mirror()) && material.alpha_mode == AlphaMode::Opaque {
+        material.base_texture = None;
     }
     Ok(material)
 }
@@ -166,13 +166,11 @@ fn apply_transmission(
     warnings: &mut Vec<String>,
 ) {
     let Some(transmission) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else { return };
-    // Metals let no light through. Where a texture says what is metal, shading finds out.
-    let dielectric = match material.reflectance {
-        Reflectance::MetallicRoughness { metallic, .. } if !has_metal_texture(json) => 1.0 - metallic,
-        _ => 1.0,
-    };
-    let factor = unit(transmission.transmission_factor.0, 0.0) * dielectric;
-    if factor == 0.0 {
+    let factor = unit(transmission.transmission_factor.0, 0.0);
+    // Of glass that is partly metal, or in places, shading knows how much passes.
+    let textured = json.pbr_metallic_roughness.metallic_roughness_texture.is_some();
+    let metal = matches!(material.reflectance, Reflectance::MetallicRoughness { metallic: 1.0, .. }) && !textured;
+    if factor == 0.0 || metal {
         return;
     }
     if matches!(material.alpha_mode, AlphaMode::Mask { .. }) {
@@ -191,11 +189,6 @@ fn apply_transmission(
     material.alpha_mode = AlphaMode::Blend;
     material.transmission = Transmission::Transparent;
     material.glass = true;
-}
-
-/// Whether a texture varies how metallic the material is.
-fn has_metal_texture(json: &JsonMaterial) -> bool {
-    json.pbr_metallic_roughness.metallic_roughness_texture.is_some()
 }
 
 /// The colour of all light that passes a material of which the part `factor` is transmissive: what goes through the surface

@@ -136,7 +136,7 @@ fn sift_inlined<S: Simd>(
     let mut shown = !area.simd_eq(zero);
     let kept = lanes::inlined(
         #[inline(always)]
-        |dropped: u32| Mask8::from_bitmask(simd, u64::from(!dropped)),
+        |dropped: u32| Mask8::from_bitmask(simd, u64::from(!dropped & 0xff)),
     );
     if sieve.culls[1] != 0 {
         shown &= area.simd_lt(zero) | kept(sieve.culls[1]);

@@ -5,8 +5,8 @@
 //! area on the screen, which is what the rasteriser tests. (The notes say "not negative" in the text and `> 0` in the
 //! list: the list is right.)
 //!
-//! It may be used only where the mesh is closed, consistently wound and wound outwards, and the material is not
-//! double-sided: an open mesh shows its inside.
+//! It may be used only for bodies that are closed, consistently wound and wound outwards, whatever else their mesh has, and
+//! where the material is not double-sided: an open surface shows its inside.
 //! Source: [Foley et al. 1990], 15.2.4.
 
 use vitral_math::DVec3;

@@ -103,7 +103,7 @@ impl<S: Simd> Looks<S> {
         let mut kt = constant(simd, 0.0);
         if material.blend {
             let passing = linear::opacity(kept * material.material.opacity);
-            kt = passing * dielectric_part(material, metallic_factor);
+            kt = passing * linear::dielectric_part(&material.material, metallic_factor);
         }
         let alpha = opaque_part(material, alpha);
         let mut emission = V3::splat(one, material.material.emission);
@@ -336,19 +336,6 @@ pub(super) fn unvaried<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (C
     let white = V3::new(one, one, one);
     let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
     (coefficients(material, white, &factors), opaque_part(material, one))
-}
-
-/// What a metallic texture leaves of the light that glass lets through: metals let nothing through.
-#[inline(always)]
-fn dielectric_part<T: Lanes>(material: &MaterialConstants<'_>, metallic_factor: T) -> T {
-    match material.material.reflectance {
-        Reflectance::MetallicRoughness { metallic, .. }
-            if material.material.glass && material.metallic_roughness.is_some() =>
-        {
-            (-metallic_factor * metallic + 1.0).saturate()
-        }
-        _ => metallic_factor.splat(1.0),
-    }
 }
 
 /// Opacity of a material where textures and vertex colours leave `alpha` of the surface.

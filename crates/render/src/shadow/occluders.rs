@@ -5,7 +5,7 @@ use crate::shading::DecodeTables;
 use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
 use vitral_frame::Encoding;
-use vitral_light::{AlphaMode, Material, Reflectance, Rgb, TextureRef};
+use vitral_light::{AlphaMode, Material, Rgb, TextureRef};
 use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Attribute, Mesh};
 
@@ -64,7 +64,7 @@ impl<'a> Occluders<'a> {
         let Some(material) = material else { return Some([0.0; 3]) };
         let textures = [material.base_texture, material.opacity_texture, metal_texture(material)];
         let differs = mesh.colors.is_some() || textures.iter().any(Option::is_some);
-        (!differs).then(|| self.let_through(material, 1.0, material.opacity))
+        (!differs).then(|| self.let_through(material, 1.0, opaque_part(material, material.opacity, 1.0)))
     }
 
     /// The facet's mesh, its triangle there, and its material if that lets light through.
@@ -94,12 +94,8 @@ impl<'a> Occluders<'a> {
             Some(texel) => coverage *= texel[0],
             None => {}
         }
-        if let Some(texel) = self.sample(metal_texture(material), mesh, triangle, weights)
-            && let Reflectance::MetallicRoughness { metallic, .. } = material.reflectance
-        {
-            opacity = 1.0 - linear::opacity(opacity) * linear::opacity(texel[2] * metallic);
-        }
-        self.let_through(material, coverage, opacity)
+        let metallic = self.sample(metal_texture(material), mesh, triangle, weights).map_or(1.0, |texel| texel[2]);
+        self.let_through(material, coverage, opaque_part(material, opacity, metallic))
     }
 
     /// What passes a material of this opacity, of which textures and colours leave so much; as shading finds it.
@@ -124,6 +120,14 @@ impl<'a> Occluders<'a> {
     ) -> Option<[f32; 4]> {
         texel(self.session, &self.tables, reference, mesh, triangle, weights, 0.0)
     }
+}
+
+/// An opacity, more where glass is metal.
+fn opaque_part(material: &Material, opacity: f32, metallic_factor: f32) -> f32 {
+    if !material.glass {
+        return opacity;
+    }
+    linear::opacity(linear::opacity(opacity) * linear::dielectric_part(material, metallic_factor))
 }
 
 /// The texture that says where glass is metal, which lets nothing through.

@@ -8,12 +8,22 @@
 //! Source: \[Newell, Newell & Sancha 1972\]. Departs from the notes: they stop the recursion unless `kt = 1`; it goes on
 //! for any `kt > 0` (COURSE.md, E2).
 
+use vitral_light::{Material, Reflectance};
 use vitral_math::lanes::Lanes;
 
 /// Opacity of a surface.
 #[inline(always)]
 pub fn opacity<T: Lanes>(kt: T) -> T {
     (-kt + 1.0).saturate()
+}
+
+/// Which part of its `kt` glass keeps where it is metal in part, as a texture of metals says: metals let nothing through.
+#[inline(always)]
+pub fn dielectric_part<T: Lanes>(material: &Material, metallic_factor: T) -> T {
+    match material.reflectance {
+        Reflectance::MetallicRoughness { metallic, .. } if material.glass => opacity(metallic_factor * metallic),
+        _ => metallic_factor.splat(1.0),
+    }
 }
 
 #[cfg(test)]

@@ -114,7 +114,7 @@ fn p14_solid_bodies_of_an_open_mesh_lose_their_back_faces() {
     // A ball, a torus that pierces it, an open sheet and a pane of glass in one mesh.
     let mut mesh = solids::sphere(1.0, 48, 24);
     (mesh.faces, mesh.normals, mesh.uvs) = (vitral::scene::Faces::Triangles, None, Vec::new());
-    let solid = [mesh.triangles.len(), solids::torus(1.2, 0.3, 48, 24).triangles.len()].into_iter().sum::<usize>();
+    let solid = mesh.triangles.len() + solids::torus(1.2, 0.3, 48, 24).triangles.len();
     for (more, z) in [
         (solids::torus(1.2, 0.3, 48, 24), 0.2),
         (solids::plane(3.0, 3.0, 4, 4), 0.1),

@@ -1,7 +1,9 @@
 //! Transparent surfaces in whole pictures: models, orders, and what they do to each other.
 
 use crate::common::{colors, exact, largest_difference, on_z, one, sun};
-use vitral::light::{AlphaMode, Reflectance};
+use std::sync::Arc;
+use vitral::frame::{Encoding, Plane, Texture};
+use vitral::light::{AlphaMode, Reflectance, TextureRef};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;
 use vitral::render::transparency::registry::ORDERS;
@@ -243,6 +245,58 @@ fn clear_bodies_of_glass_keep_highlights_and_rim() {
         let away = 1.0 - nz;
         let kt = 0.96 * (1.0 - away * away * away * away * away);
         assert!((seen - (1.0 - kt * kt)).abs() < 0.012, "{seen} at {x}, not {}", 1.0 - kt * kt);
+    }
+}
+
+#[test]
+fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
+    // Opacity and metal, by factors and by textures of one texel. A wall behind shows what passes, and how light the shadow is.
+    let pane = |opacity: f32, metallic: f32, textured: bool| {
+        let mut pane = square(0.0, 0.0);
+        pane.uvs = vec![Attribute::per_vertex(vec![[0.5; 2]; pane.positions.len()])];
+        let number = |value: f32| if textured { 1.0 } else { value };
+        let base_color = [0.0; 3];
+        let reflectance = Reflectance::MetallicRoughness { base_color, metallic: number(metallic), roughness: 0.5 };
+        let texture = |number| textured.then(|| TextureRef::new(number));
+        let material = Material {
+            reflectance,
+            opacity: number(opacity),
+            alpha_mode: AlphaMode::Blend,
+            glass: true,
+            unlit: true,
+            opacity_texture: texture(0),
+            metallic_roughness_texture: texture(1),
+            ..Material::default()
+        };
+        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let wall = (square(-0.5, 0.0), Material { reflectance, ..Material::default() });
+        let mut scene = scene_of([wall, (pane, material)]);
+        for value in [opacity, metallic] {
+            let byte = (value * 255.0).round() as u8;
+            let plane = Plane::filled(1, 1, [byte, 255, byte, 255]);
+            scene.textures.push(Arc::new(Texture::new("number".into(), plane, Encoding::Linear)));
+        }
+        scene
+    };
+    let seen = |opacity, metallic, textured, shadows: &str| {
+        let mut r = exact(pane(opacity, metallic, textured), 20, 20);
+        (r.camera, r.lights, r.ambient) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]), [0.0; 3]);
+        r.settings.shadows = shadows.to_owned();
+        i32::from(colors(&mut r)[210][0])
+    };
+    for (opacity, metallic) in [(0.0f32, 0.0f32), (0.4, 0.0), (0.0, 0.6), (0.4, 0.6), (0.2, 1.0)] {
+        let kt = (1.0 - opacity) * (1.0 - metallic);
+        // Schlick's formula takes 0.04 of what the viewer sees straight on.
+        for (shadows, expected) in [("none", 0.96 * kt), ("ray", 0.96 * kt * kt)] {
+            for textured in [false, true] {
+                let found = seen(opacity, metallic, textured, shadows);
+                let expected = (expected * 255.0).round() as i32;
+                assert!(
+                    (found - expected).abs() <= 2,
+                    "{opacity} {metallic} {textured} {shadows}: {found}, not {expected}"
+                );
+            }
+        }
     }
 }
 

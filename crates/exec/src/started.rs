@@ -1,13 +1,18 @@
 //! Work that goes on while the thread that asked for it does something else.
 //!
+//! It runs on a thread of its own, which shares what there is to share among the workers: a worker that waits for others takes
+//! up whatever is waiting meanwhile, another such work included, and would stand before locks that it holds itself.
+//!
 //! A process that forks while such work is going on would leave half of it to the child, whose threads are not there. So
 //! whoever may be part of a process that forks has [`hold_for_fork`] called before it, and after it [`forked`] and, in the child,
 //! [`born_of_fork`].
 
 #[cfg(feature = "threads")]
 use crate::Workers;
+#[cfg(feature = "threads")]
+use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 /// How many works are going on in the process.
@@ -15,6 +20,18 @@ static GOING_ON: AtomicUsize = AtomicUsize::new(0);
 
 /// How many threads are about to fork.
 static FORKING: AtomicUsize = AtomicUsize::new(0);
+
+#[cfg(feature = "threads")]
+thread_local! {
+    /// Whether the thread runs nothing but a work that was started.
+    static IS_STARTED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether the calling thread is one that [`Workers::start`] has made.
+#[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+pub(crate) fn is_started() -> bool {
+    IS_STARTED.get()
+}
 
 /// What [`Workers::start`](crate::Workers::start) has started. To drop it is not to stop it.
 pub struct Started {
@@ -38,14 +55,17 @@ impl std::fmt::Debug for Started {
 
 impl Started {
     #[cfg(feature = "threads")]
-    pub(crate) fn on<F>(pool: &rayon::ThreadPool, workers: &Workers, f: F) -> Result<Self, F>
+    pub(crate) fn new<F>(workers: &Workers, f: F) -> Result<Self, F>
     where
         F: FnOnce() + Send + 'static,
     {
         GOING_ON.fetch_add(1, SeqCst);
-        if FORKING.load(SeqCst) != 0 {
+        let give_back = |f| {
             GOING_ON.fetch_sub(1, SeqCst);
-            return Err(f);
+            Err(f)
+        };
+        if FORKING.load(SeqCst) != 0 {
+            return give_back(f);
         }
         let outcome = Arc::new(Outcome::default());
         #[cfg(not(all(target_os = "linux", not(miri))))]
@@ -55,27 +75,35 @@ impl Started {
             workers: workers.clone(),
             outcome: Arc::clone(&outcome),
         };
-        pool.spawn(move || {
-            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(f));
-            *outcome.done.lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        // If there is no thread for it, it must come back.
+        let work = Arc::new(Mutex::new(Some(f)));
+        let taken = Arc::clone(&work);
+        let run = move || {
+            IS_STARTED.set(true);
+            let work = lock(&taken).take();
+            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.map_or((), |work| work())));
+            *lock(&outcome.done) = Some(result);
             outcome.told.notify_all();
             drop(outcome);
             GOING_ON.fetch_sub(1, SeqCst);
-        });
-        Ok(started)
+        };
+        match thread::Builder::new().name("vitral-ahead".into()).spawn(run) {
+            Ok(_) => Ok(started),
+            Err(_) => give_back(lock(&work).take().expect("no thread took it")),
+        }
     }
 
     /// Whether it has ended.
     pub fn is_done(&self) -> bool {
-        self.outcome.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+        lock(&self.outcome.done).is_some()
     }
 
     /// Returns when it has ended.
     ///
     /// # Panics
-    /// If it did.
+    /// If the work panicked: its panic goes on here.
     pub fn wait(self) {
-        let mut done = self.outcome.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut done = lock(&self.outcome.done);
         #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
         let _lent = done.is_none().then(|| self.workers.lend());
         while done.is_none() {
@@ -86,6 +114,10 @@ impl Started {
             std::panic::resume_unwind(panic);
         }
     }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Waits until nothing is going on, and lets nothing start until [`forked`] or [`born_of_fork`] is called.
@@ -118,7 +150,7 @@ mod tests {
 
     #[test]
     fn work_goes_on_beside_the_caller_and_shares_its_threads() {
-        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let _alone = lock(&ALONE);
         let workers = Workers::new(2);
         let (to, from) = channel();
         let (back, answer) = channel();
@@ -138,9 +170,34 @@ mod tests {
         assert!(Workers::single().start(|| ()).is_err(), "there is no thread that could");
     }
 
+    /// The first work holds a lock and waits for workers, the second one wants the lock: no worker may take up the second
+    /// one while the first waits there.
+    #[test]
+    fn works_that_hold_locks_do_not_stand_before_their_own() {
+        let _alone = lock(&ALONE);
+        let workers = Workers::new(2);
+        let (held, sum) = (Arc::new(Mutex::new(())), Arc::new(AtomicUsize::new(0)));
+        let start = || {
+            let (own, held, sum) = (workers.clone(), Arc::clone(&held), Arc::clone(&sum));
+            let work = move || {
+                let _held = lock(&held);
+                for _ in 0..20 {
+                    own.for_each((0..8).collect(), |i: usize| {
+                        thread::yield_now();
+                        sum.fetch_add(i, SeqCst);
+                    });
+                }
+            };
+            workers.start(work).unwrap_or_else(|_| panic!("there are threads"))
+        };
+        let all: Vec<Started> = (0..6).map(|_| start()).collect();
+        all.into_iter().for_each(Started::wait);
+        assert_eq!(sum.load(SeqCst), 6 * 20 * 28);
+    }
+
     #[test]
     fn nothing_is_going_on_when_a_process_forks() {
-        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let _alone = lock(&ALONE);
         let workers = Workers::new(2);
         let (to, from) = channel::<()>();
         let started = workers.start(move || from.recv().unwrap()).unwrap_or_else(|_| panic!("there are threads"));

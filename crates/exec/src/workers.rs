@@ -111,7 +111,7 @@ impl Workers {
             && items.len() > 1
         {
             #[cfg(all(target_os = "linux", not(miri)))]
-            if pool.current_thread_index().is_none() {
+            if pool.current_thread_index().is_none() && !crate::started::is_started() {
                 self.placement.make_way();
             }
             let others = self.threads.min(items.len()) - 1;
@@ -135,8 +135,10 @@ impl Workers {
         items.by_ref().for_each(f);
     }
 
-    /// Has `f` run while the calling thread goes on; it may share work among the same threads. Where there are none, and while
-    /// the process is about to fork ([`hold_for_fork`](crate::hold_for_fork)), `f` comes back.
+    /// Has `f` run while the calling thread goes on; it may share work among the same threads.
+    ///
+    /// # Errors
+    /// `f` itself, where there are no threads, and while the process is about to fork ([`hold_for_fork`](crate::hold_for_fork)).
     pub fn start<F: FnOnce() + Send + 'static>(&self, f: F) -> Result<Started, F> {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
@@ -144,7 +146,9 @@ impl Workers {
             if pool.current_thread_index().is_none() {
                 self.placement.make_way();
             }
-            return Started::on(pool, self, f);
+            #[cfg(not(all(target_os = "linux", not(miri))))]
+            let _ = pool;
+            return Started::new(self, f);
         }
         Err(f)
     }

@@ -90,13 +90,18 @@ impl Blit {
     }
 }
 
-/// Locks two planes, of which the first is copied if they are one.
+/// Locks two planes, of which the first is copied if they are one. Two threads may copy between the same two in opposite
+/// directions: both lock them in the order of their addresses.
 fn with_both<T: Clone>(from: &Shared<T>, into: &Shared<T>, f: impl FnOnce(&T, &mut T)) {
     if Arc::ptr_eq(from, into) {
         let copy = lock(from).clone();
         f(&copy, &mut lock(into));
+    } else if Arc::as_ptr(from) < Arc::as_ptr(into) {
+        let from = lock(from);
+        f(&from, &mut lock(into));
     } else {
-        f(&lock(from), &mut lock(into));
+        let mut into = lock(into);
+        f(&lock(from), &mut into);
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
         "fork" => fork(&gl),
         "fork-while-drawing" => fork_while_drawing(&gl),
         "threads" => threads(&gl),
+        "shared-map" => shared_map(&gl),
         "moved" => moved(&gl),
         "growth" => growth(&gl),
         "destroyed-elsewhere" => destroyed_elsewhere(&gl),
@@ -150,6 +151,45 @@ fn threads(gl: &Gl) -> Result<(), String> {
             Ok(())
         };
         let all: Vec<_> = (0..4).map(|_| scope.spawn(work)).collect();
+        all.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
+    })
+}
+
+/// Two threads look the same depth texture up, which was drawn, while more is given. Neither pass may wait for the other.
+fn shared_map(gl: &Gl) -> Result<(), String> {
+    let first = Window::new(gl);
+    let (mut names, mut buffers) = ([0], [0]);
+    gl.glGenTextures(1, &mut names);
+    gl.glBindTexture(TEXTURE_2D, names[0]);
+    gl.glTexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
+    gl.glTexImage2D(TEXTURE_2D, 0, DEPTH_COMPONENT24 as i32, SIDE, SIDE, 0, DEPTH_COMPONENT, FLOAT, 0);
+    gl.glGenFramebuffers(1, &mut buffers);
+    gl.glBindFramebuffer(FRAMEBUFFER, buffers[0]);
+    gl.glFramebufferTexture2D(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_2D, names[0], 0);
+    gl.glDrawBuffer(NONE);
+    gl.glReadBuffer(NONE);
+    same("the map is complete", gl.glCheckFramebufferStatus(FRAMEBUFFER), FRAMEBUFFER_COMPLETE)?;
+    gl.glClear(DEPTH_BUFFER_BIT);
+    gl.glBindFramebuffer(FRAMEBUFFER, 0);
+    gl.glFinish();
+    let context = gl.OSMesaCreateContextExt(RGBA, 24, 8, 0, first.context);
+    gl.OSMesaMakeCurrent(0, 0, 0, 0, 0);
+    let second = Window { context, buffer: first.buffer.clone() };
+    std::thread::scope(|scope| {
+        let work = move |mut window: Window| {
+            window.make_current(gl);
+            gl.glBindTexture(TEXTURE_2D, names[0]);
+            gl.glEnable(TEXTURE_2D);
+            for _ in 0..30 {
+                gl.glViewport(0, 0, 2, 2);
+                window.give_many(gl, 9000);
+                gl.glViewport(0, 0, SIDE, SIDE);
+                window.give_many(gl, 1);
+                window.finish_many(gl)?;
+            }
+            Ok(())
+        };
+        let all = [first, second].map(|window| scope.spawn(move || work(window)));
         all.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
     })
 }

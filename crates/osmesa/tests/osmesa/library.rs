@@ -28,6 +28,13 @@ fn each_thread_has_its_contexts() {
 }
 
 #[test]
+fn contexts_that_look_up_one_shadow_map_do_not_wait_for_each_other() {
+    for threads in ["1", "2", "8"] {
+        lifecycle("shared-map", Some(threads));
+    }
+}
+
+#[test]
 fn a_context_moves_from_thread_to_thread() {
     lifecycle("moved", None);
 }

@@ -281,7 +281,7 @@ impl Runner {
         }
         let again = shown_again(&pass.commands);
         let sampled = sampled_planes(&pass.commands);
-        let sampled: Held<'_> = sampled.iter().map(|p| (Arc::as_ptr(p), lock(p))).collect();
+        let (sampled, mut depth) = hold(&sampled, pass.target.depth.as_ref());
         let rounds = rounds(&order);
         // What was seen in a tile is kept from round to round.
         let mut seen = Vec::new();
@@ -301,7 +301,7 @@ impl Runner {
             let jobs = self.emit_all(&plans, numbers, pass, &forward, None);
             let items: Vec<Item<'_>> =
                 round.iter().map(|item| self.item(item, pass, &plans, (first, &jobs), (&sampled, &again))).collect();
-            self.tiles(&pass.target, &items, &mut seen);
+            self.tiles(&pass.target, &mut depth, &items, &mut seen);
             drop(items);
             self.spare.give(jobs);
         }
@@ -417,10 +417,15 @@ impl Runner {
         }
     }
 
-    /// Walks all tiles. `seen` is what was seen in each before, or empty.
-    fn tiles(&self, target: &Target, items: &[Item<'_>], seen: &mut [Seen]) {
+    /// Walks all tiles. `depth` is the target's depth plane; `seen` is what was seen in each tile before, or empty.
+    fn tiles(
+        &self,
+        target: &Target,
+        depth: &mut Option<MutexGuard<'_, DepthPlane>>,
+        items: &[Item<'_>],
+        seen: &mut [Seen],
+    ) {
         let mut color = target.color.as_ref().map(|p| lock(p));
-        let mut depth = target.depth.as_ref().map(|p| lock(p));
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
         let count = (target.viewport.tiles_x() * target.viewport.tiles_y()) as usize;
         let mut colors = color_tiles(&mut color, target.viewport);
@@ -463,6 +468,21 @@ pub(super) fn intersection(a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Locks the depth planes that a pass samples, and the one that it draws to, in the order of their addresses: passes of other
+/// threads, which may draw to what this one samples, do the same.
+fn hold<'a>(
+    sampled: &'a [Arc<Mutex<DepthPlane>>],
+    drawn: Option<&'a Arc<Mutex<DepthPlane>>>,
+) -> (Held<'a>, Option<MutexGuard<'a, DepthPlane>>) {
+    let held = |plane: &'a Arc<Mutex<DepthPlane>>| (Arc::as_ptr(plane), lock(plane));
+    let before = |plane: &Arc<Mutex<DepthPlane>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
+    let (before, behind) = sampled.split_at(sampled.partition_point(before));
+    let mut all: Held<'a> = before.iter().map(held).collect();
+    let depth = drawn.map(|plane| lock(plane));
+    all.extend(behind.iter().map(held));
+    (all, depth)
 }
 
 /// The target's tiles of the colour plane, one after the other; none if there is no plane.
@@ -563,7 +583,7 @@ fn shown_again(commands: &[Command]) -> Vec<Shown> {
     again
 }
 
-/// The depth planes that are held for the whole pass, each once, in an order that all threads share: those that draws sample
+/// The depth planes that are held for the whole pass, each once, in the order of their addresses: those that draws sample
 /// as textures of one level. Others are locked at each lookup, and must not be held besides.
 fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
     let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());

@@ -16,7 +16,9 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("fbo-cube-face", Close, cube_face),
     scene("fbo-depth-float", Close, depth_float),
     scene("fbo-status", Exact, status),
-    scene("shadow-map", Close, shadow_map),
+    scene("shadow-map", Close, |gl| shadow_map(gl, [LINEAR, LINEAR])),
+    scene("shadow-map-nearest-above", Close, |gl| shadow_map(gl, [LINEAR, NEAREST])),
+    scene("shadow-map-nearest-below", Close, |gl| shadow_map(gl, [NEAREST, LINEAR])),
     scene("clip-control", Close, clip_control),
     scene("read-framebuffer", Rounded, read_framebuffer),
 ];
@@ -329,15 +331,16 @@ fn ball_and_floor(gl: &Gl) {
     gl.glEnd();
 }
 
-fn shadow_map(gl: &mut Stage<'_>) {
+/// With filters for minification and magnification.
+fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     // The light's view, as depth.
     framebuffer(gl);
     let texture = name_of(|names| gl.glGenTextures(1, names));
     gl.glBindTexture(TEXTURE_2D, texture);
     gl.glTexImage2D(TEXTURE_2D, 0, DEPTH_COMPONENT24 as i32, 64, 64, 0, DEPTH_COMPONENT, UNSIGNED_INT, 0);
     for (name, value) in [
-        (TEXTURE_MIN_FILTER, LINEAR),
-        (TEXTURE_MAG_FILTER, LINEAR),
+        (TEXTURE_MIN_FILTER, min),
+        (TEXTURE_MAG_FILTER, mag),
         (TEXTURE_WRAP_S, CLAMP_TO_EDGE),
         (TEXTURE_WRAP_T, CLAMP_TO_EDGE),
         (TEXTURE_COMPARE_MODE, COMPARE_R_TO_TEXTURE),

@@ -8,6 +8,7 @@
 use super::fetch::{interior, level_of};
 use super::mip::{dimensions, lod};
 use super::sample;
+use crate::forward::plane::DepthPlane;
 use crate::forward::texture::{Texture, TextureKind};
 use crate::forward::wide::{Rgba, bits_of, clamp, mask_of, max, min, select, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
@@ -21,7 +22,7 @@ const MOST_PROBES: f32 = 16.0;
 #[inline(never)]
 pub(crate) fn sample_anisotropic<S: Simd>(
     simd: S,
-    texture: &Texture,
+    (texture, plane): (&Texture, Option<&DepthPlane>),
     coords: [F32x8<S>; 4],
     derivatives: [[F32x8<S>; 3]; 2],
     bias: F32x8<S>,
@@ -36,7 +37,7 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                 (TextureKind::Rectangle, Some(_)) => [1; 3],
                 _ => {
                     let lod = lod(dx[0], dx[1], dx[2], dy[0], dy[1], dy[2]);
-                    return sample(simd, texture, None, coords, lod + bias, active);
+                    return sample(simd, texture, plane, coords, lod + bias, active);
                 }
             };
             let footprint = Footprint::new(simd, dx, dy, texture.sampler.anisotropy);
@@ -55,7 +56,7 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                     break;
                 }
                 let at = splat(simd, i) / (footprint.probes + 1.0) - 0.5;
-                let color = sample(simd, texture, None, [s + step_s * at, t + step_t * at, r, one], detail, lanes);
+                let color = sample(simd, texture, plane, [s + step_s * at, t + step_t * at, r, one], detail, lanes);
                 let counts = mask_of(simd, lanes);
                 for k in 0..4 {
                     sum[k] = select(counts, sum[k] + color[k], sum[k]);

@@ -212,8 +212,8 @@ impl<'d> Shader<'d> {
             sprite = Some(1.0 / size);
         }
         let anisotropic = texture.sampler.anisotropy > 1.0;
+        let plane = self.draw.planes[unit.index % UNITS];
         if !needs_lod(texture) && !anisotropic {
-            let plane = self.draw.planes[unit.index % UNITS];
             return sample(simd, texture, plane, coords, bias, active);
         }
         let [dx, dy] = match sprite {
@@ -225,10 +225,10 @@ impl<'d> Shader<'d> {
         };
         let steps = derivatives(simd, texture, coords, dx, dy);
         if anisotropic {
-            return sample_anisotropic(simd, texture, coords, steps, bias, active);
+            return sample_anisotropic(simd, (texture, plane), coords, steps, bias, active);
         }
         let level = lod(steps[0][0], steps[0][1], steps[0][2], steps[1][0], steps[1][1], steps[1][2]);
-        sample(simd, texture, None, coords, level + bias, active)
+        sample(simd, texture, plane, coords, level + bias, active)
     }
 
     /// How s, t, r, q change with one pixel to the right, and one up.

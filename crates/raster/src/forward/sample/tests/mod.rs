@@ -170,7 +170,7 @@ fn anisotropic_probes_average_along_the_long_side() {
                 let v = |x| crate::forward::wide::splat(simd, x);
                 let steps = [[v(along), v(0.0), v(0.0)], [v(0.0), v(width), v(0.0)]];
                 let coords = [v(0.3), v(row_centre), v(0.0), v(1.0)];
-                sample_anisotropic(simd, texture, coords, steps, v(0.0), 0xff)[0].to_array()[6]
+                sample_anisotropic(simd, (texture, None), coords, steps, v(0.0), 0xff)[0].to_array()[6]
             }));
         }
         assert!(all.iter().all(|v| v.to_bits() == all[0].to_bits()));

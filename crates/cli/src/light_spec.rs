@@ -143,7 +143,8 @@ fn intensity(text: &str) -> Result<[f32; 3], String> {
     if rgb.iter().any(|&c| c < 0.0) {
         return Err("intensities of at least 0 are required".to_owned());
     }
-    Ok(rgb.map(|c| c as f32))
+    let single = rgb.map(|c| c as f32);
+    if single.iter().all(|c| c.is_finite()) { Ok(single) } else { Err("finite intensities are required".to_owned()) }
 }
 
 fn half_angle(text: &str) -> Result<f64, String> {

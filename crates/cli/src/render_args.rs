@@ -188,8 +188,8 @@ pub(crate) struct LightArgs {
     pub(crate) light: Vec<Light>,
     /// Multiplies all lights [default: 1, and what brings a model's own lights to where a picture shows them: files have
     /// them in candela and lux]
-    #[arg(long, value_name = "FACTOR", value_parser = values::not_negative, allow_negative_numbers = true)]
-    pub(crate) light_intensity: Option<f64>,
+    #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
+    pub(crate) light_intensity: Option<f32>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
 }

@@ -281,7 +281,7 @@ fn set_lights(state: &mut State, args: &LightArgs) {
     if !args.light.is_empty() {
         state.lights = Some(args.light.clone());
     }
-    state.light_intensity = args.light_intensity.map(|factor| factor as f32).or(state.light_intensity);
+    state.light_intensity = args.light_intensity.or(state.light_intensity);
     state.materials.extend(args.material.iter().cloned());
 }
 

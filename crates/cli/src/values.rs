@@ -27,6 +27,14 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("a number of at least 0 is required".to_owned()) })
 }
 
+/// A finite number of at least 0, in single precision.
+pub(crate) fn intensity(text: &str) -> Result<f32, String> {
+    not_negative(text).and_then(|v| {
+        let single = v as f32;
+        if single.is_finite() { Ok(single) } else { Err(format!("a number of at most {:e} is required", f32::MAX)) }
+    })
+}
+
 /// A share, `0..=1`.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     number(text)

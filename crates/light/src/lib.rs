@@ -25,7 +25,7 @@ pub use light::{AreaShape, Attenuation, Light, LightKind};
 pub use mapping::{microfacet_from_phong, phong_from_microfacet};
 pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, constant_color};
 pub use phong::{Phong, phong};
-pub use prepared::{Incident, PreparedLight};
+pub use prepared::{DIRECTION_ROUNDING, Incident, PreparedLight};
 pub use refraction::transmitted;
 pub use surface::{Reflected, Surface, reflect};
 pub use translucency::{scattered, scattering_exponent, transmitted_light};

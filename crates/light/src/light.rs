@@ -244,9 +244,9 @@ impl Light {
     /// # Errors
     /// A sentence on what is required.
     pub fn check(&self) -> Result<(), &'static str> {
-        let sound = |intensity: &Rgb| intensity.iter().all(|&channel| channel >= 0.0);
+        let sound = |intensity: &Rgb| intensity.iter().all(|&channel| channel.is_finite() && channel >= 0.0);
         if ![self.ambient, self.diffuse, self.specular].iter().all(sound) {
-            return Err("ambient, diffuse, specular: intensities of at least 0 are required");
+            return Err("ambient, diffuse, specular: finite intensities of at least 0 are required");
         }
         self.kind.check()?;
         self.attenuation.check()

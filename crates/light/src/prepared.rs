@@ -20,7 +20,7 @@ const FARTHEST: f32 = 1e18;
 /// four steps of single precision. What lies between is rounding, which has no direction.
 const SAME_PLACE2: f32 = 1.0 / (1u64 << 42) as f32;
 /// What is left of the rounding of places and normals, each a few times `2^-24`, in a cosine.
-const DIRECTION_ROUNDING: f32 = 1.0 / (1u32 << 20) as f32;
+pub const DIRECTION_ROUNDING: f32 = 1.0 / (1u32 << 20) as f32;
 /// Square of the least distance that the inverse square laws tell apart from zero.
 const LEAST_DISTANCE2: f64 = 1e-18;
 /// Brightest intensity of a channel.

@@ -1,6 +1,6 @@
 //! The entry points: names and types from the Khronos registry (`gl.xml`), one line for each method of [`vitral_gl::Context`]
 //! with all names it has. Pointers are addresses, but for those at a few numbers that are taken at the call.
-#![allow(non_snake_case, clippy::missing_safety_doc)]
+#![allow(non_snake_case)]
 
 use crate::current::{call, call_unless};
 use crate::memory::Argument;
@@ -10,12 +10,23 @@ use crate::procedures::{Procedure, procedures};
 /// drawn is drawn before, unless the method is in brackets: such calls leave it waiting, and some are done by another method
 /// if it can.
 macro_rules! entry_points {
-    ($($($name:ident)+ => $method:tt $arguments:tt -> $result:ty;)+) => {
-        $($(entry_points! { @ $name $method $arguments $result })+)+
-        pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($($name)+)+ };
+    ($($name:ident $($alias:ident)* => $method:tt $arguments:tt -> $result:ty;)+) => {
+        $(
+            entry_points! { @ $name $method $arguments $result }
+            $(entry_points! { @ $alias = $name $arguments $result })*
+        )+
+        pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($name $($alias)*)+ };
+    };
+    // Another name of a function leads to it, which makes the library smaller than to have its code again.
+    (@ $alias:ident = $name:ident ($($argument:ident: $kind:ty),*) $result:ty) => {
+        #[unsafe(no_mangle)]
+        pub(crate) extern "C" fn $alias($($argument: $kind),*) -> $result {
+            $name($($argument),*)
+        }
     };
     (@ $name:ident $method:ident ($($argument:ident: $kind:ty),*) $result:ty) => {
         #[unsafe(no_mangle)]
+        #[inline(never)]
         pub(crate) extern "C" fn $name($($argument: $kind),*) -> $result {
             call(stringify!($name), |context| {
                 context.flush_vertices();
@@ -25,18 +36,21 @@ macro_rules! entry_points {
     };
     (@ $name:ident [$method:ident] ($($argument:ident: $kind:ty),*) $result:ty) => {
         #[unsafe(no_mangle)]
+        #[inline(never)]
         pub(crate) extern "C" fn $name($($argument: $kind),*) -> $result {
             call(stringify!($name), |context| context.$method($($argument.given()),*))
         }
     };
     (@ $name:ident [$method:ident unless $quick:ident] ($v:ident: *const [f32; $n:literal]) $result:ty) => {
         #[unsafe(no_mangle)]
+        #[inline(never)]
         pub(crate) extern "C" fn $name($v: *const [f32; $n]) -> $result {
             call_unless(stringify!($name), move |context| context.$quick($v.given()), move |context| context.$method($v.given()))
         }
     };
     (@ $name:ident [$method:ident unless $quick:ident] ($($x:ident: f32),+) $result:ty) => {
         #[unsafe(no_mangle)]
+        #[inline(never)]
         pub(crate) extern "C" fn $name($($x: f32),+) -> $result {
             call_unless(stringify!($name), move |context| context.$quick(Some([$($x),+])), move |context| context.$method($($x),+))
         }

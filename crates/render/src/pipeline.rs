@@ -5,7 +5,7 @@ use crate::marks;
 use crate::radiosity::enclosure::{direct_lights, partly_transparent};
 use crate::radiosity::solution;
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants, TileRows};
-use crate::stats::{Stats, TracingCounters};
+use crate::stats::{CullCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::transparency::registry::{ORDERS, order};
 use crate::visible::{Nowhere, charged};
@@ -247,8 +247,8 @@ fn render_data(
 ) -> Result<(), Error> {
     let pattern = SamplePattern::new(1);
     let mut grid = take_grid(session, viewport, 1, execution)?;
-    stats.cull = crate::stats::CullCounters::default();
-    let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut stats.cull);
+    let mut cull = CullCounters::default();
+    let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut cull);
     let tables = DecodeTables::new(settings.color_space);
     let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
     let constants =
@@ -256,7 +256,10 @@ fn render_data(
     let sink = ChannelSink::new(&constants, settings.channels, grid.tiles.len());
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
-    (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
+    if !settings.channels.color {
+        // Beside a colour picture, its numbers count.
+        (stats.cull, stats.geometry, stats.visibility) = (cull, resolved.geometry, resolved.counters);
+    }
     let (tiles, workers) = (&sink.tiles, &execution.workers);
     let (w, h) = (viewport.width, viewport.height);
     let wanted = settings.channels;
@@ -302,7 +305,7 @@ fn render_steps(
         let recorder = Arc::new(Recorder::new(viewport.width, viewport.height));
         let watched = Execution { observer: Some(Arc::clone(&recorder) as Arc<dyn Observer>), ..execution.clone() };
         let mut grid = TileGrid::new(viewport, 1);
-        let culled = &mut crate::stats::CullCounters::default();
+        let culled = &mut CullCounters::default();
         let pattern = SamplePattern::new(1);
         let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, &watched, culled);
         let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;

@@ -25,7 +25,7 @@ const DARKENED: f32 = 0.5;
 type Picture = Plane<[u8; 4]>;
 
 /// The panels of `renderer`'s shadow algorithm, seen by `camera`; each has the size of a picture. Light and shadow are those
-/// of the first light that has a place or a direction.
+/// of the first light that casts shadows.
 ///
 /// # Errors
 /// Shadows without panels, a scene without such a light, and whatever ends a picture.
@@ -37,7 +37,7 @@ pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Erro
         return Err(vitral_render::Error::from(error).into());
     };
     let lights = renderer.frame_lights(camera);
-    let number = lights.iter().position(|l| l.kind != LightKind::Ambient);
+    let number = lights.iter().position(|l| l.kind != LightKind::Ambient && l.shadow);
     let Some(number) = number else {
         return Err(Error::usage("no light casts shadows", "add one: --light directional:direction=0,-1,-1"));
     };

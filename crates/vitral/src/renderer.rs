@@ -6,7 +6,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
-use vitral_render::{Execution, Global, Rendered, Session, Settings, Shot, render};
+use vitral_render::{ColorSpace, Execution, Global, Rendered, Session, Settings, Shot, render};
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, exposure, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -27,7 +27,7 @@ pub struct Renderer {
     /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has none.
     pub lights: Option<Vec<Light>>,
     /// Multiplies all lights; `None`: 1, and for the scene's own lights what brings them to where pictures show them
-    /// ([`exposure`]), with a warning.
+    /// ([`exposure`]), with a warning; not in raw colours.
     pub light_intensity: Option<f32>,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
@@ -160,7 +160,9 @@ impl Renderer {
 
     /// What the lights of a picture are multiplied with where no intensity was chosen: 1 unless they are the scene's own.
     fn frame_exposure(&self) -> f32 {
-        if self.lights.is_none() && self.light_intensity.is_none() { self.exposure } else { 1.0 }
+        // Raw colours are made of the numbers of the file.
+        let own = self.lights.is_none() && self.light_intensity.is_none();
+        if own && self.settings.color_space != ColorSpace::Raw { self.exposure } else { 1.0 }
     }
 
     /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the

@@ -103,8 +103,8 @@ impl State {
 
     /// Values that the options of the command line would refuse, too: the field, and what is required.
     fn check(&self) -> Result<(), (String, &'static str)> {
-        const INTENSITIES: &str = "intensities of at least 0 are required";
-        let positive = |color: &[f32; 3]| color.iter().all(|&channel| channel >= 0.0);
+        const INTENSITIES: &str = "finite intensities of at least 0 are required";
+        let positive = |color: &[f32; 3]| color.iter().all(|&channel| channel.is_finite() && channel >= 0.0);
         for (i, light) in self.lights.iter().flatten().enumerate() {
             light.check().map_err(|what| (format!("lights[{i}]"), what))?;
         }
@@ -113,8 +113,8 @@ impl State {
             _ if self.turntable.is_some_and(|views| !(1..=MOST_VIEWS).contains(&views)) => {
                 ("turntable", "a whole number from 1 to 1000000 is required")
             }
-            _ if self.light_intensity.is_some_and(|factor| factor.is_nan() || factor < 0.0) => {
-                ("light-intensity", "a number of at least 0 is required")
+            _ if self.light_intensity.is_some_and(|factor| !factor.is_finite() || factor < 0.0) => {
+                ("light-intensity", "a finite number of at least 0 is required")
             }
             _ if !positive(&self.ambient) => ("ambient", INTENSITIES),
             Background::Color { color } if !displayed(&color) => ("settings.background.color", COLOR),
@@ -297,11 +297,11 @@ mod tests {
             (r#""viewpoint": {"view-up": [0, 0, 0]}"#, "viewpoint.view-up: a direction of some length is required"),
             (r#""viewpoint": {"zoom-factor": 0}"#, "viewpoint.zoom-factor: a number above 0 is required"),
             (r#""turntable": 0"#, "turntable: a whole number from 1 to 1000000 is required"),
-            (r#""light-intensity": -1"#, "light-intensity: a number of at least 0 is required"),
-            (r#""ambient": [0, -1, 0]"#, "ambient: intensities of at least 0 are required"),
+            (r#""light-intensity": -1"#, "light-intensity: a finite number of at least 0 is required"),
+            (r#""ambient": [0, -1, 0]"#, "ambient: finite intensities of at least 0 are required"),
             (
                 r#""lights": [{"diffuse": [0, -1, 0]}]"#,
-                "lights[0]: ambient, diffuse, specular: intensities of at least 0",
+                "lights[0]: ambient, diffuse, specular: finite intensities of at least 0",
             ),
             (
                 r#""settings": {"background": {"type": "color", "color": [0, 2, 0]}}"#,

@@ -319,10 +319,8 @@ impl Context {
     /// Lets go of the client's buffer, after storing what was drawn. Call it before another context becomes current.
     pub fn release(&mut self) {
         self.store_default_framebuffer();
-        if Arc::strong_count(&self.shared) > 1 {
-            // Contexts with the same objects must see what was drawn to them.
-            self.flush_recorded();
-        }
+        // Contexts with the same objects must see what was drawn to them.
+        self.flush_recorded();
         let fb = &mut self.default_framebuffer;
         fb.buffer = None;
         fb.version += 1;

@@ -167,7 +167,7 @@ impl<'a> Whitted<'a> {
         let ray = Ray::new(eye, ASKEW);
         let mut hits = Hits { tree: &self.tree, ray: &ray, hits: Vec::new() };
         self.tree.traverse(&Beam::around(&ray, self.tree.triangles().extent), &mut hits);
-        hits.hits.sort_unstable_by(|a, b| b.partial_cmp(a).expect("parameters are numbers"));
+        hits.hits.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
         let towards = -ASKEW.as_dvec3();
         let crossing = |&(_, facet): &(f32, u32)| self.crossing(facet, self.seen(towards, facet).1);
         Media::around(hits.hits.iter().filter_map(crossing))

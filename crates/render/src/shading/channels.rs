@@ -182,7 +182,8 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         (|_: &_| true, &mut 0),
         #[inline(always)]
         |eight| {
-            let surface = surface(simd, eight.records, eight.slots);
+            let mut surface = surface(simd, eight.records, eight.slots);
+            surface.screen_linear = eight.subject.viewing.screen_linear();
             let [attached, cast] = shadow_shares(constants, &surface, eight.arriving, eight.first);
             for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];

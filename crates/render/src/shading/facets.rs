@@ -35,6 +35,13 @@ pub(crate) struct Viewing {
     pub layered: bool,
 }
 
+impl Viewing {
+    /// Whether interpolation is linear on the screen where that is not linear in space.
+    pub(crate) fn screen_linear(&self) -> bool {
+        self.interpolation == Interpolation::Linear && self.perspective
+    }
+}
+
 /// An object and a way to look at it.
 #[derive(Clone, Copy)]
 pub(crate) struct Subject<'a> {
@@ -146,8 +153,14 @@ fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subj
     for c in 0..3 {
         let (p, q) = (s[(c + 1) % 3], s[(c + 2) % 3]);
         edges[c] = [p.x * q.y - q.x * p.y, q.z * p.y - p.z * q.y, q.x * p.z - p.x * q.z];
-        if viewing.interpolation == Interpolation::Linear {
-            edges[c] = [edges[c][0] * s[c].z, edges[c][1] * s[c].z, edges[c][2] * s[c].z];
+    }
+    if viewing.screen_linear() {
+        // Linear on the screen. A facet that reaches behind the eye has corners that are nowhere on it.
+        let before =
+            lanes::Lanes::lt(constant(simd, 0.0), lanes::Lanes::min(lanes::Lanes::min(s[0].z, s[1].z), s[2].z));
+        for c in 0..3 {
+            let scale = lanes::Lanes::select(before, s[c].z, constant(simd, 1.0));
+            edges[c] = [edges[c][0] * scale, edges[c][1] * scale, edges[c][2] * scale];
         }
     }
 
@@ -245,11 +258,12 @@ fn facing<S: Simd>(
         geometric.z
     };
     let facet_normal = V3::select(lanes::Lanes::lt(towards, constant(simd, 0.0)), -geometric, geometric);
-    // A normal in the facet's plane, but for rounding, is on neither side: it stays as it is.
-    let hair = constant(simd, -1e-4);
-    for c in 0..3 {
-        let behind = lanes::Lanes::lt(normals[c].dot(facet_normal), hair);
-        normals[c] = V3::select(behind, -normals[c], normals[c]);
+    // All three together: between a normal and one that was turned lies nothing that means anything. Normals in the facet's plane,
+    // but for rounding, are on neither side: they stay as they are.
+    let sum = normals[0] + normals[1] + normals[2];
+    let behind = lanes::Lanes::lt(sum.dot(facet_normal), constant(simd, -1e-4));
+    for normal in &mut normals {
+        *normal = V3::select(behind, -*normal, *normal);
     }
     (facet_normal, normals)
 }

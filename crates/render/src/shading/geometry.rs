@@ -88,7 +88,7 @@ impl<T: Lanes> Placed<T> {
     /// At a surface's points, with the normal between the corners'.
     #[inline(always)]
     pub(crate) fn new(surface: &Surface<T>) -> Self {
-        Self { position: blend3(&surface.weights, &surface.positions), normal: phong::interpolated_normal(surface) }
+        Self { position: surface.position(), normal: phong::interpolated_normal(surface) }
     }
 }
 
@@ -100,8 +100,10 @@ pub(crate) struct Surface<T> {
     pub normals: [V3<T>; 3],
     /// Unit normal of the facet, view space, turned likewise.
     pub facet_normal: V3<T>,
-    /// Barycentric coordinates of the point, not negative, sum 1.
+    /// Barycentric coordinates of the point, not negative, sum 1: what is interpolated has these weights of the corners.
     pub weights: [T; 3],
+    /// The weights are linear on the screen, and thus not those of the place, see [`Self::place_weights`].
+    pub screen_linear: bool,
     edges: [Edge<T>; 3],
     /// Barycentric coordinates before they were scaled to the sum 1.
     values: [T; 3],
@@ -263,12 +265,33 @@ pub(super) fn surfaces<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots
         normals: [V3::new(n0x, n0y, n0z), V3::new(n1x, n1y, n1z), V3::new(n2x, n2y, n2z)],
         facet_normal: V3::new(nx, ny, nz),
         weights: on_facet(values),
+        screen_linear: false,
         edges,
         values,
     }
 }
 
 impl<T: Lanes> Surface<T> {
+    /// Weights of the corners in the place of the point. What is interpolated linearly on the screen shows a defect; the place, with
+    /// the ways to lights and shadows, is the real one.
+    #[inline(always)]
+    pub(crate) fn place_weights(&self) -> [T; 3] {
+        if !self.screen_linear {
+            return self.weights;
+        }
+        let ([w0, w1, w2], [a, b, c]) = (self.weights, self.positions.map(|p| -p.z));
+        // See `super::facets`: where a corner is not before the eye, weights are not linear.
+        let before = a.splat(0.0).lt(a.min(b).min(c));
+        let of_place = normalized([w0 / a, w1 / b, w2 / c]);
+        [T::select(before, of_place[0], w0), T::select(before, of_place[1], w1), T::select(before, of_place[2], w2)]
+    }
+
+    /// The point, view space.
+    #[inline(always)]
+    pub(crate) fn position(&self) -> V3<T> {
+        blend3(&self.place_weights(), &self.positions)
+    }
+
     /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives; they may leave
     /// `0..=1`.
     #[inline(always)]

@@ -9,7 +9,7 @@
 //! Source: \[Rushmeier & Torrance 1990\], see `vitral_light::transmitted_light`.
 
 use super::FrameConstants;
-use super::geometry::{F, Surface, blend3, constant};
+use super::geometry::{F, Surface, constant};
 use super::group::Eight;
 use super::lighting::towards_viewer;
 use super::looks::Looks;
@@ -31,7 +31,7 @@ pub(super) fn glow<S: Simd>(
         #[inline(always)]
         || {
             let (subject, material, one) = (eight.subject, eight.material, constant(simd, 1.0));
-            let position = blend3(&surface.weights, &surface.positions);
+            let position = surface.position();
             let normal = match constants.shading {
                 Shading::Flat => surface.facet_normal,
                 _ => looks

@@ -337,7 +337,8 @@ fn shade_eight<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'
 fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>, lit: &mut Lit) {
     let &Eight { subject, material, points, slots, records, along, .. } = eight;
     let (mesh, instance) = (subject.mesh, subject.instance);
-    let surface = surface(simd, records, slots);
+    let mut surface = surface(simd, records, slots);
+    surface.screen_linear = along.is_none() && subject.viewing.screen_linear();
     let mut looks = Looks::new(simd, mesh, slots, &surface, material, constants.raw);
     looks.let_through(simd, &surface, material, constants, along);
 
@@ -414,7 +415,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         let mirror = looks.mirror(simd, material).scale(looks.coverage);
         let places = match along {
             Some(along) => along.places,
-            None => shadowed::world_places(simd, constants, subject, slots, &surface.weights),
+            None => shadowed::world_places(simd, constants, subject, slots, &surface.place_weights()),
         };
         let soa = [normal, mirror].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]);
         for (lane, &p) in points.iter().enumerate() {
@@ -469,7 +470,7 @@ fn irradiance<S: Simd>(
     // Which side is seen? The facet's normal was turned to it.
     let [a, b, c] = surface.positions;
     let turned = (b - a).cross(c - a).dot(surface.facet_normal).to_array();
-    let [a, b, c] = surface.weights;
+    let [a, b, c] = surface.place_weights();
     let weights = [a.to_array(), b.to_array(), c.to_array()];
     let mut soa = [[0.0; LANES]; 3];
     for lane in 0..LANES {

@@ -151,7 +151,7 @@ impl<S: Simd> Looks<S> {
         let n = if flat { surface.facet_normal } else { phong::interpolated_normal(surface) };
         let facing = match along {
             Some(along) => {
-                let position = blend3(&surface.weights, &surface.positions);
+                let position = surface.position();
                 let towards = n.dot((along.origin(simd) - position).normalize());
                 // As the eye sees it without rays, as long as they come straight from there.
                 let straight = Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &along.straight));

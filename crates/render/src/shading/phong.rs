@@ -24,8 +24,7 @@ pub(crate) fn shade<S: Simd>(
 /// Where each point is, and its normal.
 #[inline(always)]
 pub(super) fn placed<S: Simd>(surface: &Surface<F32x8<S>>, normal: Option<V3<F32x8<S>>>) -> Placed<F32x8<S>> {
-    let position = blend3(&surface.weights, &surface.positions);
-    Placed { position, normal: normal.unwrap_or_else(|| interpolated_normal(surface)) }
+    Placed { position: surface.position(), normal: normal.unwrap_or_else(|| interpolated_normal(surface)) }
 }
 
 /// The unit normal between the corners'.

@@ -201,7 +201,7 @@ impl Points {
     /// [`Self::collect_opaque`] for few samples and no rays that go on: where facets are small, whether they fill a
     /// pixel is anyone's guess, so everything is written in any case, and kept where it is needed.
     fn collect_samples<const SAMPLES: usize>(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
-        let Some(middles) = constants.middles.get(..1 << SAMPLES) else { return };
+        let middles = &constants.middles[..1 << SAMPLES];
         let (width, height) = visible_part(tile, constants);
         let [mut points, mut pixels, mut mixed] = [0; 3];
         for y in 0..height {

@@ -6,7 +6,7 @@
 use super::FrameConstants;
 use super::facets::{FacetTable, Subject};
 use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Slots, Surface, blend3, point_weights};
+use super::geometry::{F, Slots, Surface, point_weights, surface};
 use super::group::slots;
 use super::phong::interpolated_normal;
 use super::points::Points;
@@ -36,7 +36,13 @@ pub(crate) fn arriving<S: Simd>(
             #[inline(always)]
             || {
                 let slots = slots(points, eight, records, subject.first_facet);
-                let weights = point_weights(simd, &facets.records, &slots);
+                let weights = if subject.viewing.screen_linear() {
+                    let mut surface = surface(simd, &facets.records, &slots);
+                    surface.screen_linear = true;
+                    surface.place_weights()
+                } else {
+                    point_weights(simd, &facets.records, &slots)
+                };
                 let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
                 let places = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
                 all.push(places, eight.len());
@@ -102,7 +108,7 @@ pub(crate) fn shadow_shares<S: Simd>(
     arriving: &[Parts],
     first: usize,
 ) -> [[f32; LANES]; 2] {
-    let (position, normal) = (blend3(&surface.weights, &surface.positions), interpolated_normal(surface));
+    let (position, normal) = (surface.position(), interpolated_normal(surface));
     let soa = |v: V3<_>| {
         let V3 { x, y, z }: V3<F<S>> = v;
         [x.to_array(), y.to_array(), z.to_array()]

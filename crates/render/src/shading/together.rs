@@ -12,7 +12,7 @@ use super::group::{Eight, Lit, Model, asks, premultiplied, put_colors};
 use super::lighting::{Coefficients, NUMBERS, lighting};
 use super::looks::{self, Looks};
 use super::phong;
-use crate::{Shading, Transparency};
+use crate::{Interpolation, Shading, Transparency};
 use vitral_math::lanes::{Floats, LANES, Lanes, Simd, V3};
 
 /// Whether the picture takes nothing of a material's points but what they reflect and shine.
@@ -24,6 +24,7 @@ pub(super) fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConst
         && constants.transparency != Transparency::Filtered
         && material.scatters.is_none()
         && !constants.follows_rays()
+        && constants.interpolation == Interpolation::Perspective
 }
 
 /// Illuminates what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.

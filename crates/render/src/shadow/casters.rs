@@ -6,6 +6,7 @@
 
 use super::Place;
 use super::occluders::Occluders;
+use super::place::horizon;
 use super::ray::clearance;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::shaft::Shaft;
@@ -99,7 +100,7 @@ pub(super) fn lifted(place: &Place, extent: f32) -> DVec3 {
 
 /// Whether a place looks at the light. If not it is in its own shadow.
 pub(super) fn faces(place: &Place, light: DVec4) -> bool {
-    place.normal.dot(away(light, place.position)) < 0.0
+    -place.normal.dot(away(light, place.position)) > horizon(place.position, light)
 }
 
 impl Solid {

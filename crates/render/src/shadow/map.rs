@@ -29,6 +29,7 @@ mod slice;
 #[cfg(test)]
 mod testing;
 
+use super::casters::faces;
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
 use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
@@ -275,7 +276,7 @@ impl Shadows for Prepared {
             }
             LightMaps::Infinity { towards, map } => {
                 parts.fill([0.0; 3]);
-                let facing = places.iter().enumerate().filter(|(_, place)| place.normal.dot(*towards) > 0.0);
+                let facing = places.iter().enumerate().filter(|(_, place)| faces(place, towards.extend(0.0)));
                 let questions: Vec<_> = facing.map(|(number, _)| (0, number)).collect();
                 let answers = self.answers(light, &[map], &questions, places);
                 questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));

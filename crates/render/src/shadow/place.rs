@@ -10,9 +10,10 @@ use super::{EightPlaces, clearance};
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
+use vitral_light::DIRECTION_ROUNDING;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd, U32x8};
-use vitral_math::{DVec3, dvec3};
+use vitral_math::{DVec3, DVec4, dvec3};
 use vitral_scene::Instance;
 
 /// A facet in the world, less the scene's middle.
@@ -63,6 +64,15 @@ pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec
     let corners = [corner(a), corner(b), corner(c)];
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
     (corners, if mirrored { -normal } else { normal })
+}
+
+/// What the product of a facet's unit normal and the way from a place of it to a light (homogeneous) exceeds where the facet
+/// faces the light: less is rounding, and a light in the facet's plane shines past it.
+#[inline(always)]
+pub(crate) fn horizon(position: DVec3, light: DVec4) -> f64 {
+    let sum = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
+    let at = sum(light.truncate());
+    f64::from(DIRECTION_ROUNDING) * (at + light.w * (2.0 * sum(position) + at))
 }
 
 /// The point with these weights of the corners.

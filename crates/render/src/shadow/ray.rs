@@ -18,6 +18,7 @@
 
 use super::casters::{near, turned, wide};
 use super::occluders::Occluders;
+use super::place::horizon;
 use super::sources::{Shares, Source, hash};
 use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
@@ -134,10 +135,7 @@ impl Prepared<'_> {
         feelers.clear();
         for (of, (place, way)) in ways.enumerate() {
             match self.feeler(&place, way, ends) {
-                Ok((ray, far)) => {
-                    let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
-                    feelers.push(Feeler { ray, far, light, own: place.facet, of });
-                }
+                Ok((ray, far, light)) => feelers.push(Feeler { ray, far, light, own: place.facet, of }),
                 Err(part) => parts[of] = part,
             }
         }
@@ -149,10 +147,12 @@ impl Prepared<'_> {
         });
     }
 
-    /// The ray from a place along `way` and the parameter of its end; or what arrives, where that is known without one.
-    fn feeler(&self, place: &Place, way: DVec3, ends: bool) -> Result<(Ray, f32), Rgb> {
+    /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or what arrives, where that is known
+    /// without one.
+    fn feeler(&self, place: &Place, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
         // Attached shadow; also a light in the facet's plane, or at the very place.
-        if place.normal.dot(way) <= 0.0 {
+        let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
+        if place.normal.dot(way) <= horizon(place.position, light) {
             return Err([0.0; 3]);
         }
         let above = clearance(place.position, f64::from(self.tree.triangles().extent));
@@ -164,7 +164,7 @@ impl Prepared<'_> {
             return Err([1.0; 3]);
         }
         // What the light itself is fixed to does not hide it.
-        Ok((ray, if ends { (length - above) as f32 } else { f32::INFINITY }))
+        Ok((ray, if ends { (length - above) as f32 } else { f32::INFINITY }, light))
     }
 
     /// What of the light of one to eight rays is left at their ends.

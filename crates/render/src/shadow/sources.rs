@@ -16,6 +16,7 @@
 //! Cost: one ray for each cell.
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
+use super::place::horizon;
 use super::{Parts, Place, Places};
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
@@ -108,7 +109,7 @@ impl Emitter {
         let way = self.at.truncate() - place.position * self.at.w;
         let cos = place.normal.dot(way);
         if self.normal == DVec3::ZERO {
-            return f32::from(u8::from(cos > 0.0));
+            return f32::from(u8::from(cos > horizon(place.position, self.at)));
         }
         // Behind the light, too, the places are told apart.
         let square = way.length_squared();

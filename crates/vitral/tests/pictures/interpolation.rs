@@ -1,14 +1,15 @@
 //! Texture coordinates between vertices: as on the plane in space, or linearly on the screen, which is the classical
 //! defect.
 
-use crate::common::{all_channels, exact, one};
+use crate::common::{all_channels, colors, exact, on_z, one};
 use std::sync::Arc;
 use vitral::frame::{Encoding, Filter, MipFilter, Plane, Sampler, Texture};
-use vitral::light::TextureRef;
-use vitral::math::{DVec3, DVec4};
-use vitral::render::Interpolation;
+use vitral::light::{Light, LightKind, TextureRef};
+use vitral::math::{DMat4, DVec3, DVec4};
+use vitral::render::{Channels, Interpolation};
 use vitral::scene::builtin::solids;
-use vitral::{Camera, Frame, Material, Projection, Renderer};
+use vitral::scene::{Attribute, Part};
+use vitral::{Camera, Frame, Material, Mesh, Projection, Renderer};
 
 const CELLS: f64 = 8.0;
 const SIDE: u32 = 200;
@@ -91,4 +92,69 @@ fn p27_linear_interpolation_on_the_screen_bends_them() {
     let (decided, wrong) = mistakes(Interpolation::Linear);
     let share = wrong as f64 / decided as f64;
     assert!((0.2..0.8).contains(&share), "neither right nor exchanged: {share}");
+}
+
+/// What is interpolated shows the defect; places are those of space, so that shadows fall where they do.
+#[test]
+fn f19_shadows_stay_where_they_are() {
+    for shadows in ["ray", "map", "volume", "scan-line", "object-precision"] {
+        let picture = |interpolation| {
+            let mut scene = one(solids::plane(12.0, 12.0, 1, 1), Material::default());
+            scene.add_mesh(solids::sphere(1.0, 32, 16), DMat4::from_translation(DVec3::new(0.0, 1.2, -1.0)));
+            scene
+                .lights
+                .push(Light { kind: LightKind::Point { position: DVec3::new(3.0, 6.0, 2.0) }, ..Light::default() });
+            let mut renderer = exact(scene, 160, 120);
+            renderer.camera = Some(Camera {
+                position: DVec3::new(0.0, 2.0, 8.0),
+                focal_point: DVec3::new(0.0, 0.8, 0.0),
+                view_up: DVec3::Y,
+                projection: Projection::Perspective { view_angle: 0.8 },
+                clip: None,
+            });
+            renderer.settings.interpolation = interpolation;
+            renderer.settings.shadows = shadows.to_owned();
+            renderer.settings.channels = Channels { cast_shadow: true, ..all_channels() };
+            let frame = renderer.render().unwrap().frame;
+            (frame.cast_shadow.unwrap().into_data(), frame.color.unwrap().into_data())
+        };
+        let [(there, right), (linear, defect)] = [Interpolation::Perspective, Interpolation::Linear].map(picture);
+        let dark = there.iter().filter(|&&s| s > 0.5).count();
+        let apart = there.iter().zip(&linear).filter(|(a, b)| (*a - *b).abs() > 0.5).count();
+        assert!(dark > 200 && apart <= 3, "{shadows}: {apart} of {dark}");
+        // The floor's colours are the same: of its corners' normals all are one.
+        let apart =
+            right.iter().zip(&defect).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2)).count();
+        assert!(apart < 1000, "{shadows}: {apart} colours differ");
+    }
+}
+
+/// A corner behind the eye is nowhere on the screen: such facets are interpolated in space.
+#[test]
+fn p27_facets_that_reach_behind_the_eye_keep_their_colours() {
+    let picture = |interpolation| {
+        let mut scene = one(
+            Mesh {
+                positions: vec![[-6.0, 0.0, 4.0], [6.0, 0.0, 4.0], [0.0, 0.0, -20.0]],
+                triangles: vec![[0, 1, 2]],
+                parts: vec![Part { name: String::new(), triangles: 0..1, material: None }],
+                colors: Some(Attribute {
+                    values: vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.5, 0.5, 0.0, 1.0]],
+                    corners: None,
+                }),
+                ..Mesh::default()
+            },
+            Material::default(),
+        );
+        scene.lights.clear();
+        let mut renderer = exact(scene, 201, 151);
+        renderer.settings.lighting = false;
+        renderer.settings.interpolation = interpolation;
+        renderer.camera =
+            Some(Camera { position: DVec3::Y, focal_point: DVec3::new(0.0, 1.0, -1.0), ..on_z(1.0, 1.0) });
+        colors(&mut renderer)
+    };
+    let [space, linear] = [Interpolation::Perspective, Interpolation::Linear].map(picture);
+    let seen: std::collections::HashSet<_> = linear.iter().collect();
+    assert!(seen.len() > 50 && space == linear, "{} colours", seen.len());
 }

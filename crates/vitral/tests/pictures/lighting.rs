@@ -7,9 +7,10 @@ use std::collections::{BTreeMap, HashSet};
 use vitral::frame::{Encoding, Plane, Texture};
 use vitral::light::{Light, LightKind, Reflectance, TextureRef};
 use vitral::math::{DMat4, DQuat, DVec2, DVec3};
+use vitral::render::ColorSpace;
 use vitral::scene::builtin::solids;
-use vitral::scene::{NodeTransform, lab};
-use vitral::{Frame, Illumination, Material, Projection, Renderer, Scene, Shading, load_builtin};
+use vitral::scene::{Attribute, NodeTransform, Part, lab};
+use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, Scene, Shading, View, load_builtin};
 
 const BLACK: [u8; 4] = [0, 0, 0, 255];
 
@@ -143,7 +144,7 @@ fn l20_highlight_lies_where_a_mirror_would_show_the_light() {
     let mut renderer =
         exact(one(solids::sphere(1.0, 128, 64), Material { reflectance, ..Material::default() }), 320, 240);
     let eye = DVec3::new(0.5, 0.8, 5.0);
-    renderer.camera = Some(vitral::Camera { position: eye, ..on_z(1.0, 0.5) });
+    renderer.camera = Some(Camera { position: eye, ..on_z(1.0, 0.5) });
     let mut last: Option<(DVec2, DVec2)> = None;
     for light in [DVec3::new(-3.0, 3.0, 6.0), DVec3::new(0.0, 4.0, 6.0), DVec3::new(4.0, 1.0, 5.0)] {
         renderer.lights = Some(vec![Light { kind: LightKind::Point { position: light }, ..sun(DVec3::Z, 1.0) }]);
@@ -176,7 +177,7 @@ fn white_sphere(offset: DVec3, exercise: bool) -> Vec<[u8; 4]> {
     let mut renderer = exact(scene, 90, 90);
     let camera = on_z(5.0, 0.5);
     let (position, focal_point) = (camera.position + offset, camera.focal_point + offset);
-    renderer.camera = Some(vitral::Camera { position, focal_point, ..camera });
+    renderer.camera = Some(Camera { position, focal_point, ..camera });
     colors(&mut renderer)
 }
 
@@ -206,7 +207,7 @@ fn without_normals(turn: f64) -> BTreeMap<u32, HashSet<[u8; 4]>> {
     scene.lights = vec![sun(DVec3::new(0.4, 0.5, 1.0), 0.8), sun(DVec3::new(-1.0, 0.3, 0.5), 0.2)];
     let mut renderer = exact(scene, 120, 90);
     let camera = renderer.world().cameras[0];
-    renderer.camera = Some(vitral::Camera { projection: Projection::Parallel { height: 6.0 }, ..camera });
+    renderer.camera = Some(Camera { projection: Projection::Parallel { height: 6.0 }, ..camera });
     renderer.settings.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     // The floor has two materials: tell objects apart by object and material.
@@ -251,7 +252,7 @@ fn p33_lambert_looks_the_same_from_everywhere() {
     renderer.settings.illumination = Illumination::Lambert;
     renderer.settings.channels = all_channels();
     let mut faces = |position: DVec3, projection| -> BTreeMap<u32, [u8; 4]> {
-        renderer.camera = Some(vitral::Camera { position, projection, ..on_z(1.0, 0.6) });
+        renderer.camera = Some(Camera { position, projection, ..on_z(1.0, 0.6) });
         let frame = renderer.render().unwrap().frame;
         colors_and_ids(&frame).map(|(color, id)| (id, color)).filter(|(id, _)| *id != Frame::BACKGROUND).collect()
     };
@@ -315,7 +316,7 @@ fn l16_lights_stay_in_the_world_while_the_objects_move() {
         let mut renderer = exact(scene, 80, 60);
         let camera = renderer.world().cameras[0];
         let (position, focal_point) = (camera.position + all_t, camera.focal_point + all_t);
-        renderer.camera = Some(vitral::Camera { position, focal_point, ..camera });
+        renderer.camera = Some(Camera { position, focal_point, ..camera });
         colors(&mut renderer)
     };
     assert_ne!(lit(DVec3::ZERO), lit(DVec3::new(6.0, 0.0, 0.0)), "LIGHT0 is now on the other side");
@@ -374,7 +375,7 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
             renderer.lights = Some(vec![light.clone()]);
             let camera = on_z(1.0, 0.7);
             let (position, view_up) = (DVec3::new(2.9, -2.9, 3.3), DVec3::new(0.3, 1.0, 0.0));
-            renderer.camera = Some(vitral::Camera { position, view_up, ..camera });
+            renderer.camera = Some(Camera { position, view_up, ..camera });
             let shades: HashSet<_> = colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
             assert_eq!(shades.len() == 1, in_plane, "{illumination}, shadows {shadows}: {}", shades.len());
         }
@@ -393,6 +394,7 @@ fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_a
                 .for_each(|c| *c *= strength);
         }
         let mut renderer = exact(scene, 60, 45);
+        renderer.settings.color_space = ColorSpace::Srgb;
         renderer.light_intensity = intensity;
         let rendered = renderer.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings)
@@ -408,6 +410,58 @@ fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_a
         assert!(most > 500, "{what}: {most}");
     }
     assert_eq!(picture(1.0, None), picture(1.0, Some(1.0)));
+}
+
+/// Raw colours are made of the numbers of the file, however dark or bright its lights are.
+#[test]
+fn raw_colours_are_those_of_the_lights_added_up() {
+    let shade = |strengths: &[f32]| {
+        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.5; 3], ks: [0.0; 3], shininess: 1.0 };
+        let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
+        scene.lights = strengths.iter().map(|&strength| sun(DVec3::Y, strength)).collect();
+        let mut renderer = exact(scene, 20, 20);
+        renderer.view = View::Top;
+        let rendered = renderer.render().unwrap();
+        assert!(rendered.warnings.is_empty(), "{:?}", rendered.warnings);
+        rendered.frame.color.unwrap().at(10, 10)[0]
+    };
+    assert_eq!([shade(&[0.02]), shade(&[0.2]), shade(&[0.02, 0.2]), shade(&[30.0])], [3, 26, 28, 255]);
+}
+
+/// A facet that has the light in its plane gets nothing of it, wherever rounding puts the light: the picture shows what the channel
+/// says.
+#[test]
+fn a_light_in_the_plane_of_a_facet_leaves_no_specks() {
+    for shadows in ["ray", "map", "volume", "scan-line", "object-precision"] {
+        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.8; 3], ks: [0.0; 3], shininess: 1.0 };
+        let mesh = Mesh {
+            positions: vec![[0.0, 0.0, -2.0], [0.0, 0.5, -1.0], [1.0, 0.5, -1.0], [1.0, -0.5, -2.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            parts: vec![Part { name: String::new(), triangles: 0..2, material: None }],
+            // As of the polygon: both facets' alike.
+            normals: Some(Attribute { values: vec![[0.5, 2.0, -1.5]; 4], corners: None }),
+            ..Mesh::default()
+        };
+        let mut scene = one(mesh, Material { reflectance, ..Material::default() });
+        let kind = LightKind::Point { position: DVec3::new(0.0, 3.0, 1.0) };
+        scene.lights.push(Light { kind, ..Light::default() });
+        let mut renderer = exact(scene, 198, 270);
+        renderer.camera = Some(Camera {
+            position: DVec3::new(3.410_679_92, -0.565_680_80, -2.069_570_58),
+            focal_point: DVec3::new(0.361_712_19, 0.435_892_14, -0.158_553_88),
+            view_up: DVec3::new(0.1, 1.0, 0.05),
+            projection: Projection::Parallel { height: 3.0 },
+            clip: Some((0.01, 20.0)),
+        });
+        renderer.settings.shadows = shadows.to_owned();
+        renderer.settings.channels = all_channels();
+        let frame = renderer.render().unwrap().frame;
+        let attached = frame.attached_shadow.as_ref().unwrap().data().to_vec();
+        let in_plane: Vec<_> = colors_and_ids(&frame).zip(attached).filter(|((_, id), _)| *id == 1).collect();
+        assert!(in_plane.len() > 100, "{} pixels", in_plane.len());
+        let lit = in_plane.iter().filter(|((color, _), attached)| *color != BLACK || *attached != 1.0).count();
+        assert_eq!(lit, 0, "{shadows}: of {}", in_plane.len());
+    }
 }
 
 /// What nothing varies takes a shorter way than what a texture of ones varies.

@@ -9,7 +9,7 @@
 use super::{BEYOND, DEPTH_BIAS, LIFT, Map, MapTile, SLOPE_BIAS};
 use crate::shadow::{EightPlaces, Parts, Places};
 use std::ops::{Add, Mul, Sub};
-use vitral_light::Rgb;
+use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 use vitral_math::{DMat4, DVec4};
@@ -59,6 +59,9 @@ impl Map {
     #[inline(always)]
     fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &Places, parts: &mut Parts) {
         let at = [light.x, light.y, light.z];
+        // See `horizon`, of which these are the operations.
+        let rounding = f64::from(DIRECTION_ROUNDING);
+        let sum = at[0].abs() + at[1].abs() + at[2].abs();
         for (places, parts) in places.eights().iter().zip(parts.eights_mut()) {
             *parts = [[0.0; LANES]; 3];
             let (position, normal) = (load(simd, &places.position), load(simd, &places.normal));
@@ -66,7 +69,9 @@ impl Map {
                 #[inline(always)]
                 |k: usize| normal[k] * (splat(simd, at[k]) - position[k] * light.w),
             );
-            let asked = (along(0) + along(1) + along(2)).simd_gt(splat(simd, 0.0)).to_bitmask() as u32;
+            let place = position[0].abs() + position[1].abs() + position[2].abs();
+            let horizon = ((place * 2.0 + sum) * light.w + sum) * rounding;
+            let asked = (along(0) + along(1) + along(2)).simd_gt(horizon).to_bitmask() as u32;
             if asked != 0 {
                 self.passing(simd, places, asked, parts);
             }
@@ -408,6 +413,7 @@ fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
 mod tests {
     use super::*;
     use crate::shadow::Place;
+    use crate::shadow::casters::faces;
     use crate::shadow::map::draw::When;
     use crate::shadow::map::testing::teapot;
     use vitral_math::dvec3;
@@ -452,7 +458,7 @@ mod tests {
                 for (number, eight) in places.eights().iter().enumerate() {
                     let expected = dispatch!(level, simd => one_by_one(simd, &map, eight));
                     for lane in 0..LANES.min(places.len() - number * LANES) {
-                        let faces = eight.get(lane).normal.dot(towards) > 0.0;
+                        let faces = faces(&eight.get(lane), towards.extend(0.0));
                         let expected = if faces { expected[lane] } else { [0.0; 3] };
                         assert_eq!(parts.get(number * LANES + lane), expected, "{name}: {:?}", eight.get(lane));
                         partly += usize::from(expected[0] > 0.0 && expected[0] < 1.0);

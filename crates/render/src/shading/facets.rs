@@ -258,11 +258,11 @@ fn facing<S: Simd>(
         geometric.z
     };
     let facet_normal = V3::select(lanes::Lanes::lt(towards, constant(simd, 0.0)), -geometric, geometric);
-    // All three together: between a normal and one that was turned lies nothing that means anything. Normals in the facet's plane,
-    // but for rounding, are on neither side: they stay as they are.
-    let sum = normals[0] + normals[1] + normals[2];
-    let behind = lanes::Lanes::lt(sum.dot(facet_normal), constant(simd, -1e-4));
+    // Each by itself: files have facets of which one corner's normal lies on the wrong side. A normal in the facet's plane, but for
+    // rounding, is on neither side: it stays as it is.
+    let hair = constant(simd, -1e-4);
     for normal in &mut normals {
+        let behind = lanes::Lanes::lt(normal.dot(facet_normal), hair);
         *normal = V3::select(behind, -*normal, *normal);
     }
     (facet_normal, normals)

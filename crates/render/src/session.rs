@@ -315,7 +315,8 @@ impl Session {
         keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))
     }
 
-    /// Forgets all that was found out for earlier pictures.
+    /// Forgets what the steps of a picture have found out for earlier ones: each picture of the steps is the first. Light from
+    /// other surfaces stays, which has no steps, and the background.
     pub(crate) fn forget(&mut self) {
         self.meshes.iter_mut().for_each(|known| *known = MeshKnowledge::default());
         self.bsp = Mutex::default();

@@ -43,7 +43,8 @@ pub struct Settings {
     pub max_depth: u32,
     /// Longest edge of a patch, in the world's unit, above 0; `None`: a sixteenth of the scene's diagonal.
     pub patch_size: Option<f64>,
-    /// Patches that may send light, at least 1; `None`: until a hundredth of it is left.
+    /// Patches that may send light, at least 1; `None`: until no more than
+    /// [`RESIDUAL`](crate::radiosity::RESIDUAL) of it is left.
     pub iterations: Option<u64>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,

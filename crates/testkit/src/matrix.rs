@@ -24,7 +24,7 @@ impl std::fmt::Display for Setting {
 }
 
 /// Every level of this machine with every count of [`THREADS`]; the slowest level with one thread comes first. Plain scalar
-/// code is among the levels where vitral is built with the feature `scalar`, as `cargo xtask test` does.
+/// code is among the levels where vitral is built with the feature `scalar`.
 pub fn settings() -> Vec<Setting> {
     let mut settings = Vec::new();
     for (level_name, level) in available_levels() {

@@ -12,7 +12,7 @@ use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{ACCELERATION, VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Acceleration, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
+use vitral_render::{Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
 use vitral_scene::{Camera, Scene};
 
 /// An algorithm of the registry, and for rays the structure.
@@ -34,6 +34,17 @@ impl Entrant {
             choices.into_iter().map(move |acceleration| Self { algorithm, acceleration })
         };
         VISIBILITY.iter().flat_map(of).collect()
+    }
+
+    /// These settings with the algorithm. It decides about opaque surfaces, since not every one has all orders of transparent ones.
+    pub(crate) fn settings(&self, settings: &Settings) -> Settings {
+        Settings {
+            visibility: self.algorithm.name.to_owned(),
+            acceleration: self.acceleration.map(|(_, value)| value),
+            transparency_order: TransparencyOrder::default(),
+            channels: Channels { passes: false, ..settings.channels },
+            ..settings.clone()
+        }
     }
 
     /// The algorithm's name, with the structure.
@@ -110,11 +121,7 @@ impl Seen {
 /// # Errors
 /// Settings or a scene that cannot be.
 pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Result<Result<Measured, Limit>, Error> {
-    let mut settings = task.settings.clone();
-    // What is measured are opaque surfaces, and not every algorithm has the order.
-    settings.transparency_order = TransparencyOrder::default();
-    settings.visibility = entrant.algorithm.name.to_owned();
-    settings.acceleration = entrant.acceleration.map(|(_, value)| value);
+    let settings = entrant.settings(task.settings);
     let viewport = settings.check()?;
     let session = Session::with_workers(Arc::clone(task.scene), &execution.workers)?;
     let budget = execution.budget.renewed().with_time_limit(task.time_limit).with_memory_limit(task.memory_limit);

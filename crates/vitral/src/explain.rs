@@ -12,7 +12,7 @@ use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, Step};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Execution, PreparedView, Session, TransparencyOrder};
+use vitral_render::{Execution, PreparedView, Session, Settings};
 use vitral_scene::Camera;
 
 /// Steps that are kept of one algorithm.
@@ -156,11 +156,7 @@ fn decide(
     entrant: &Entrant,
     time_limit: Option<f64>,
 ) -> Result<Decision, Error> {
-    let mut settings = renderer.settings.clone();
-    // It is opaque surfaces that are decided here, and not every algorithm has the order.
-    settings.transparency_order = TransparencyOrder::default();
-    (settings.visibility, settings.coherence) = (entrant.algorithm.name.to_owned(), None);
-    settings.acceleration = entrant.acceleration.map(|(_, value)| value);
+    let settings = Settings { coherence: None, ..entrant.settings(&renderer.settings) };
     let viewport = settings.check().map_err(vitral_render::Error::from)?;
     let onlooker = Arc::new(Onlooker { pixel, steps: Mutex::default() });
     let own = renderer.execution();

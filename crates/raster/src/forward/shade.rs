@@ -50,7 +50,7 @@ pub struct Layout {
     pub uniform: bool,
 }
 
-/// Most numbers in a record: `1 / w`, four colours, fog, eight units' coordinates.
+/// Most numbers in a record: `1 / w`, primary and secondary colours of both sides, fog, eight units' coordinates, the grid's.
 const MOST: usize = 64;
 
 /// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.

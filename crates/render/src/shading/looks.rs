@@ -133,7 +133,7 @@ impl<S: Simd> Looks<S> {
         }
     }
 
-    /// Kay's model: how much light a blended surface lets through depends on how it is turned.
+    /// Kay's model, and glass: how much light a blended surface lets through depends on how it is turned.
     #[inline(always)]
     pub(super) fn let_through(
         &mut self,

@@ -154,10 +154,7 @@ pub static TRANSLUCENCY: &[Blur] = &[
     },
 ];
 
-/// The row of an order.
-///
-/// # Panics
-/// Not at all: every order has a row, as a test says.
+/// The row of an order; every order has one, as a test says.
 pub fn order(order: TransparencyOrder) -> &'static Order {
     ORDERS.iter().find(|o| o.value == order).expect("every order has a row")
 }

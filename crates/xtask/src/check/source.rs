@@ -8,12 +8,10 @@ use super::tokens::{Token, in_tests, tokens};
 const MOST_LINES: usize = 700;
 
 /// Where `unsafe` may live, and why.
-const UNSAFE_PLACES: [&str; 5] = [
-    "crates/raster/src/kernel/", // where a measurement shows that it pays
-    "crates/osmesa/",            // the C ABI
-    "crates/python/",            // Python's
-    "crates/wasm-probe/",        // the attribute that exports a name to WebAssembly; no unsafe block
-    "fuzz/",                     // the fuzzer's entry
+const UNSAFE_PLACES: [&str; 3] = [
+    "crates/osmesa/",     // the C ABI
+    "crates/wasm-probe/", // the attribute that exports a name to WebAssembly; no unsafe block
+    "fuzz/",              // the fuzzer's entry
 ];
 
 /// Macros that no finished code holds.

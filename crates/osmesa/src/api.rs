@@ -49,9 +49,13 @@ unsafe fn machine<'a>(handle: *const Handle) -> Option<&'a mut Machine> {
     unsafe { handle.as_ref().map(|handle| &mut *handle.machine()) }
 }
 
-fn create(name: &str, attributes: Result<Attributes, String>, share: *const Handle) -> *const Handle {
+/// A new context.
+///
+/// # Safety
+/// `share` is null, or a context that was not destroyed before.
+unsafe fn create(name: &str, attributes: Result<Attributes, String>, share: *const Handle) -> *const Handle {
     guarded(name, ptr::null(), || match attributes {
-        // SAFETY: a context that the client gives is alive.
+        // SAFETY: promised by the caller.
         Ok(attributes) => Handle::create(attributes, unsafe { share.as_ref() }),
         Err(why) => {
             tell(&format!("{name}: {why}"));
@@ -60,13 +64,18 @@ fn create(name: &str, attributes: Result<Attributes, String>, share: *const Hand
     })
 }
 
+/// # Safety
+/// `share` is null, or a context that was not destroyed before.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn OSMesaCreateContext(format: u32, share: *const Handle) -> *const Handle {
-    create("OSMesaCreateContext", Attributes::new(format.cast_signed(), 24, 8, 0), share)
+pub(crate) unsafe extern "C" fn OSMesaCreateContext(format: u32, share: *const Handle) -> *const Handle {
+    // SAFETY: promised by the client.
+    unsafe { create("OSMesaCreateContext", Attributes::new(format.cast_signed(), 24, 8, 0), share) }
 }
 
+/// # Safety
+/// `share` is null, or a context that was not destroyed before.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn OSMesaCreateContextExt(
+pub(crate) unsafe extern "C" fn OSMesaCreateContextExt(
     format: u32,
     depth_bits: i32,
     stencil_bits: i32,
@@ -74,11 +83,12 @@ pub(crate) extern "C" fn OSMesaCreateContextExt(
     share: *const Handle,
 ) -> *const Handle {
     let attributes = Attributes::new(format.cast_signed(), depth_bits, stencil_bits, accum_bits);
-    create("OSMesaCreateContextExt", attributes, share)
+    // SAFETY: promised by the client.
+    unsafe { create("OSMesaCreateContextExt", attributes, share) }
 }
 
 /// # Safety
-/// `list` is null, or pairs of numbers that end with a 0.
+/// `list` is null, or pairs of numbers that end with a 0; `share` is null, or a context that was not destroyed before.
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(list: *const i32, share: *const Handle) -> *const Handle {
     let mut pairs = Vec::new();
@@ -91,7 +101,8 @@ pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(list: *const i32, sha
         // SAFETY: an attribute has a value behind it.
         pairs.push((attribute, unsafe { list.add(2 * pairs.len() + 1).read_unaligned() }));
     }
-    create("OSMesaCreateContextAttribs", Attributes::from_list(&pairs), share)
+    // SAFETY: promised by the client.
+    unsafe { create("OSMesaCreateContextAttribs", Attributes::from_list(&pairs), share) }
 }
 
 /// # Safety
@@ -103,7 +114,8 @@ pub(crate) unsafe extern "C" fn OSMesaDestroyContext(handle: *const Handle) {
     }
     guarded("OSMesaDestroyContext", (), || {
         if current() == handle {
-            replace(ptr::null());
+            // SAFETY: null.
+            unsafe { replace(ptr::null()) };
         }
         // SAFETY: the client gives back what `create` gave it.
         unsafe { Handle::release(handle) };
@@ -122,7 +134,8 @@ pub(crate) unsafe extern "C" fn OSMesaMakeCurrent(
 ) -> u8 {
     guarded("OSMesaMakeCurrent", 0, || {
         if handle.is_null() && buffer.is_null() {
-            leave(ptr::null());
+            // SAFETY: null.
+            unsafe { leave(ptr::null()) };
             return 1;
         }
         // SAFETY: the context is alive and the calling thread's to use; this is the only borrow of it.
@@ -134,7 +147,8 @@ pub(crate) unsafe extern "C" fn OSMesaMakeCurrent(
             tell(&format!("OSMesaMakeCurrent: {why}"));
             return 0;
         }
-        leave(handle);
+        // SAFETY: the context is alive, as above.
+        unsafe { leave(handle) };
         let address = buffer.expose_provenance();
         call("OSMesaMakeCurrent", |context| u8::from(context.make_current(address, kind, width, height)))
     })
@@ -156,10 +170,14 @@ fn refusal(attributes: &Attributes, buffer: *const c_void, kind: u32, size: [i32
 
 /// Makes `next` (null: none) current. The context before it, if it is another one, finishes its drawing and lets go of
 /// its buffer.
-fn leave(next: *const Handle) {
+///
+/// # Safety
+/// `next` is null or alive.
+unsafe fn leave(next: *const Handle) {
     if current() != next {
         call("OSMesaMakeCurrent", Context::release);
-        replace(next);
+        // SAFETY: promised by the caller.
+        unsafe { replace(next) };
     }
 }
 

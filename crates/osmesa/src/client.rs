@@ -24,7 +24,8 @@ struct Window {
 
 impl Window {
     fn new(share: *const Handle) -> Self {
-        let context = OSMesaCreateContextExt(gl::RGBA, 24, 8, 0, share);
+        // SAFETY: `share` is null or alive.
+        let context = unsafe { OSMesaCreateContextExt(gl::RGBA, 24, 8, 0, share) };
         assert!(!context.is_null());
         let window = Self { context, buffer: Box::into_raw(Box::new([[0_u8; 4]; SIDE * SIDE])).cast() };
         window.make_current();

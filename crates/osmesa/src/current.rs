@@ -16,7 +16,8 @@ struct AtThreadEnd;
 impl Drop for AtThreadEnd {
     fn drop(&mut self) {
         // The client's buffer may be gone by now: nothing is stored.
-        replace(ptr::null());
+        // SAFETY: null.
+        unsafe { replace(ptr::null()) };
     }
 }
 
@@ -31,8 +32,11 @@ pub(crate) fn current() -> *const Handle {
 }
 
 /// Makes `handle` (null: none) the calling thread's context, and lets go of the one before.
-pub(crate) fn replace(handle: *const Handle) {
-    // SAFETY: a handle that the client gives is alive.
+///
+/// # Safety
+/// `handle` is null or alive.
+pub(crate) unsafe fn replace(handle: *const Handle) {
+    // SAFETY: promised by the caller.
     if let Some(handle) = unsafe { handle.as_ref() } {
         handle.acquire();
         // A thread that is ending has nothing to register any more.

@@ -21,6 +21,12 @@ pub(crate) struct Machine {
     pub(crate) depths: Vec<u32>,
 }
 
+/// Threads hand a machine on to each other.
+const _: () = {
+    const fn can_be_sent<T: Send>() {}
+    can_be_sent::<Machine>();
+};
+
 /// What an `OSMesaContext` points to. One thread at a time may have the context current; others may destroy it: then
 /// it goes when that thread lets go of it.
 #[derive(Debug)]

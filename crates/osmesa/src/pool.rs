@@ -51,7 +51,7 @@ pub(crate) fn runner() -> Arc<Runner> {
     });
     if found.is_null() {
         // The child has the same handlers. Where two threads come here at the same time, there are two of each: no harm.
-        // SAFETY: the library is never unloaded, so that the functions stay.
+        // SAFETY: the library is linked to be never unloaded (`build.rs`), so that the functions stay.
         let failed = unsafe { pthread_atfork(before_fork, after_fork, in_child) };
         if failed != 0 {
             environment::say("no memory to be told of forks: do not fork while something is drawn");

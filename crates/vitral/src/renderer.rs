@@ -24,7 +24,8 @@ pub struct Renderer {
     pub lens: Lens,
     /// How a framed camera is moved.
     pub moves: Moves,
-    /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has none.
+    /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has neither
+    /// lights nor ambient light.
     pub lights: Option<Vec<Light>>,
     /// Multiplies all lights; `None`: 1, and for the scene's own lights what brings them to where pictures show them
     /// ([`exposure`]), with a warning; not in raw colours.
@@ -140,11 +141,13 @@ impl Renderer {
         framing::frame_world(self.world(), eye, view_up, lens, aspect, framing::FILL, &self.execution.workers)
     }
 
-    /// The lights of a picture from `camera`: the chosen ones, else the scene's, else default ones; with
+    /// The lights of a picture from `camera`: the chosen ones, else the scene's, else, without ambient light, default ones; with
     /// [`light_intensity`](Self::light_intensity) applied.
     pub fn frame_lights(&self, camera: &Camera) -> Vec<Light> {
         let mut lights = match &self.lights {
             Some(lights) => lights.clone(),
+            // A scene that has light from everywhere says what it is lit by.
+            None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
             None if self.world().lights.is_empty() && self.settings.global == Global::Radiosity => self.fixed_lights(),
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),

@@ -428,6 +428,17 @@ fn raw_colours_are_those_of_the_lights_added_up() {
     assert_eq!([shade(&[0.02]), shade(&[0.2]), shade(&[0.02, 0.2]), shade(&[30.0])], [3, 26, 28, 255]);
 }
 
+/// Ambient light alone: the formula's first term, and no light that nobody asked for.
+#[test]
+fn p31_a_scene_with_ambient_light_alone_has_no_other() {
+    let reflectance = Reflectance::Phong { ka: [0.5; 3], kd: [0.5; 3], ks: [0.5; 3], shininess: 1.0 };
+    let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
+    scene.ambient = [0.5, 0.25, 0.0];
+    let mut renderer = exact(scene, 20, 20);
+    renderer.view = View::Top;
+    assert_eq!(colors(&mut renderer)[210], [64, 32, 0, 255]);
+}
+
 /// A facet that has the light in its plane gets nothing of it, wherever rounding puts the light: the picture shows what the channel
 /// says.
 #[test]

@@ -71,6 +71,8 @@ enum Role {
     Face,
     Strips,
     Edge,
+    /// Faces or strips without corners, edges without ends.
+    Incomplete,
     Unknown,
 }
 
@@ -115,7 +117,14 @@ impl Layout {
             "edge" => Role::Edge,
             _ => Role::Unknown,
         };
-        let targets: Vec<Target> = element.properties.iter().map(|p| target(role, p)).collect();
+        let mut targets: Vec<Target> = element.properties.iter().map(|p| target(role, p)).collect();
+        let lacks = element.count > 0 && !is_complete(role, &targets);
+        let role = if lacks {
+            targets.fill(Target::Nothing);
+            Role::Incomplete
+        } else {
+            role
+        };
         let has = |slots: std::ops::Range<usize>| slots.into_iter().all(|s| targets.contains(&Target::Slot(s)));
         Self {
             has_normals: has(slot::NORMAL..slot::NORMAL + 3),
@@ -129,6 +138,16 @@ impl Layout {
 
     fn has_slots(&self, first: usize, count: usize) -> bool {
         (first..first + count).all(|s| self.targets.contains(&Target::Slot(s)))
+    }
+}
+
+/// Whether the element has what makes it one.
+fn is_complete(role: Role, targets: &[Target]) -> bool {
+    match role {
+        Role::Face | Role::Strips => targets.contains(&Target::Corners),
+        Role::Edge => [slot::ENDS, slot::ENDS + 1].into_iter().all(|s| targets.contains(&Target::Slot(s))),
+        // That vertices have positions is asked where they are counted.
+        Role::Vertex | Role::Incomplete | Role::Unknown => true,
     }
 }
 
@@ -162,6 +181,11 @@ fn note_unused(header: &Header, layouts: &[Layout], warnings: &mut Warnings) {
         let place = Place::Line(element.line);
         if layout.role == Role::Unknown {
             warnings.note("", place, || format!("element `{}` is not used", element.name));
+            continue;
+        }
+        if layout.role == Role::Incomplete {
+            let needed = if element.name == "edge" { "`vertex1` and `vertex2`" } else { "a list `vertex_indices`" };
+            warnings.note("", place, || format!("`{}` without {needed} is left out", element.name));
             continue;
         }
         let named = element.properties.iter().zip(&layout.targets);
@@ -271,7 +295,7 @@ impl Content {
                 let ends = [self.vertex(ends[0] as i64)?, self.vertex(ends[1] as i64)?];
                 self.lines.push(ends);
             }
-            Role::Unknown => {}
+            Role::Incomplete | Role::Unknown => {}
         }
         Ok(())
     }

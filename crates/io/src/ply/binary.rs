@@ -22,13 +22,15 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, w
     let mut at = reading.header.data;
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
         at = match element.stride() {
+            // Elements without properties have no data, however many there are.
+            Some(0) => at,
             Some(stride) => {
                 let end = end_of_rows(bytes, at, element, stride, reading.file)?;
                 let rows = Rows { bytes: &bytes[at..end], stride, element, layout, big };
                 match layout.role {
                     Role::Vertex => rows.vertices(content, workers),
                     Role::Edge => _ = read_rows(bytes, at, element, layout, big, reading, content)?,
-                    Role::Face | Role::Strips | Role::Unknown => {}
+                    Role::Face | Role::Strips | Role::Incomplete | Role::Unknown => {}
                 }
                 end
             }
@@ -52,7 +54,7 @@ fn end_of_rows(bytes: &[u8], at: usize, element: &Element, stride: usize, file: 
     match element.count.checked_mul(stride as u64) {
         Some(size) if size <= room => Ok(at + size as usize),
         _ => {
-            let there = room / stride.max(1) as u64;
+            let there = room / stride as u64;
             let what = format!(
                 "the file ends here: {} elements `{}` are announced, {there} are there",
                 element.count, element.name

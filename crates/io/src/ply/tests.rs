@@ -68,6 +68,29 @@ fn points_without_faces_and_missing_lists() {
 }
 
 #[test]
+fn elements_without_what_makes_them_are_left_out() {
+    let incomplete = "element face 1\nproperty uchar red\nelement edge 2\nproperty int vertex1\nelement tristrips 0\n";
+    let told = [
+        "t.ply: line 8: `face` without a list `vertex_indices` is left out",
+        "t.ply: line 10: `edge` without `vertex1` and `vertex2` is left out",
+    ];
+    let s = read(&text(&format!("element vertex 1\n{XYZ}{incomplete}"), "0 0 0\n7\n0\n0\n")).unwrap();
+    assert_eq!((&s.meshes[0].points, s.meshes[0].lines.len()), (&vec![0], 0));
+    assert_eq!(s.warnings, told);
+    let binary = "ply\nformat binary_little_endian 1.0\ncomment c\n";
+    let mut bytes = format!("{binary}element vertex 1\n{XYZ}{incomplete}end_header\n").into_bytes();
+    bytes.extend([0; 12 + 1 + 8]);
+    assert_eq!(read(&bytes).unwrap().warnings, told);
+
+    // A claim that nothing has to back.
+    for element in ["edge", "face", "user"] {
+        let elements = format!("element vertex 1\n{XYZ}element {element} 18446744073709551615\nend_header\n");
+        let s = read(&[format!("{binary}{elements}").as_bytes(), &[0; 12]].concat()).unwrap();
+        assert_eq!((s.meshes[0].points.len(), s.warnings.len()), (1, 1));
+    }
+}
+
+#[test]
 fn false_announcements_are_refused() {
     let vertex = |n: &str| format!("element vertex {n}\n{XYZ}");
     assert_eq!(

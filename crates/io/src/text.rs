@@ -10,7 +10,7 @@
 use std::borrow::Cow;
 
 /// The bytes as UTF-8 text without a byte-order mark, lines ended by `\n` or `\r\n`. UTF-16 is known by its mark or by
-/// its zero bytes and converted; a file that ends its lines with `\r` alone gets `\n` instead. Invalid UTF-8 is kept:
+/// its zero bytes and converted; a `\r` alone ends a line, too, and becomes `\n`. Invalid UTF-8 is kept:
 /// keywords and numbers are ASCII, and names are converted leniently.
 pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text = match bytes {
@@ -23,10 +23,22 @@ pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
             _ => Cow::Borrowed(bytes),
         },
     };
-    if text.contains(&b'\n') || !text.contains(&b'\r') {
+    if !has_lone_return(&text) {
         return text;
     }
-    Cow::Owned(text.iter().map(|&b| if b == b'\r' { b'\n' } else { b }).collect())
+    let next = text[1..].iter().copied().chain([0]);
+    Cow::Owned(text.iter().zip(next).map(|(&b, next)| if b == b'\r' && next != b'\n' { b'\n' } else { b }).collect())
+}
+
+/// Whether there is a `\r` that no `\n` follows. Looks at blocks without a branch for each byte, so that it costs next to nothing
+/// whether or not there are many `\r\n`.
+fn has_lone_return(text: &[u8]) -> bool {
+    const BLOCK: usize = 1 << 12;
+    let next = text.get(1..).unwrap_or_default();
+    let lone = |(a, b): (&[u8], &[u8])| {
+        a.iter().zip(b).fold(0, |lone, (&a, &b)| lone | (u8::from(a == b'\r') & u8::from(b != b'\n'))) != 0
+    };
+    text.last() == Some(&b'\r') || text.chunks(BLOCK).zip(next.chunks(BLOCK)).any(lone)
 }
 
 fn from_utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
@@ -447,6 +459,16 @@ mod tests {
         assert_eq!(&*to_utf8(&little[..8]), b"v 1\n");
         assert_eq!(&*to_utf8(b"\xEF\xBB\xBFv"), b"v");
         assert_eq!(&*to_utf8(b"a\rb\r"), b"a\nb\n");
+        assert_eq!(&*to_utf8(b"a\rb\r\nc\r\rd\ne\r"), b"a\nb\r\nc\n\nd\ne\n");
+        for plain in ["", "a", "a\r\nb\r\n", &"a\r\n".repeat(4096), &"a\n".repeat(4096)] {
+            assert!(matches!(to_utf8(plain.as_bytes()), Cow::Borrowed(_)));
+        }
+        for k in [0, 1, 4094, 4095, 4096, 9999] {
+            let mut text = vec![b'x'; 10_000];
+            text[k] = b'\r';
+            let lines = to_utf8(&text).iter().position(|&b| b == b'\n');
+            assert_eq!(lines, Some(k));
+        }
     }
 
     #[test]

@@ -133,7 +133,7 @@ impl Header {
                 return Err(error("the file ends here, `end_header` is required".to_owned()));
             }
             let length = bytes[at..].iter().position(|&b| b == end).unwrap_or(bytes.len() - at);
-            let text = String::from_utf8_lossy(&bytes[at..at + length]);
+            let text = crate::text::name(&bytes[at..at + length]);
             at = (at + length + 1).min(bytes.len());
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words.as_slice() {

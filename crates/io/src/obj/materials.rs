@@ -264,17 +264,18 @@ fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mu
     found
 }
 
-/// The names on a line; a blank behind `\` belongs to a name.
+/// The names on a line; a blank between quotes or behind `\` belongs to a name.
 fn words(line: &str) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
-    let mut goes_on = false;
-    for word in line.split_ascii_whitespace() {
-        let (part, continued) = word.strip_suffix('\\').map_or((word, false), |part| (part, true));
-        match words.last_mut().filter(|_| goes_on) {
-            Some(last) => *last += &format!(" {part}"),
-            None => words.push(part.to_owned()),
+    let mut words = vec![String::new()];
+    let (mut quoted, mut escaped) = (false, false);
+    for letter in line.chars() {
+        quoted ^= letter == '"';
+        if letter.is_ascii_whitespace() && !quoted && !escaped {
+            words.push(String::new());
+        } else if let Some(word) = words.last_mut() {
+            word.push(letter);
         }
-        goes_on = continued;
+        escaped = letter == '\\';
     }
-    words.iter().map(|w| mtl::file_name(w)).collect()
+    words.iter().filter(|w| !w.is_empty()).map(|w| mtl::file_name(w)).collect()
 }

@@ -27,7 +27,7 @@ mod chunk;
 mod materials;
 mod stitch;
 
-use crate::text::{cut_at_lines, to_utf8};
+use crate::text::{Cursor, cut_at_lines, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
 use chunk::{Chunk, Statement};
@@ -45,9 +45,17 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     load_in_pieces(bytes, file, resolver, workers, PIECE)
 }
 
-/// Whether `word` begins one of the usual statements of an OBJ file.
-pub(crate) fn is_statement(word: &[u8]) -> bool {
-    !matches!(Statement::of(word), Statement::Unknown | Statement::Unused | Statement::FreeForm)
+/// Whether the text reads like an OBJ file: a usual statement, behind nothing but seldom ones. Words as `end` or `call` alone could
+/// begin anything.
+pub(crate) fn begins(mut cursor: Cursor) -> bool {
+    while cursor.next_content() {
+        match Statement::of(cursor.word()) {
+            Statement::Unknown => return false,
+            Statement::Unused | Statement::FreeForm => cursor.next_line(),
+            _ => return true,
+        }
+    }
+    false
 }
 
 fn load_in_pieces(

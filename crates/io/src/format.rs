@@ -353,7 +353,9 @@ mod tests {
         let mut stl = vec![b' '; 84 + 50];
         stl[..5].copy_from_slice(b"solid");
         stl[80..84].copy_from_slice(&1u32.to_le_bytes());
-        for header in [&b"solid"[..], b"ply\nformat", b"glTF\x02", b"OFF 1 2", b"v 1 2 3", b"PK\x03\x04", b"\xEF\xBB\xBFply\n"] {
+        for header in
+            [&b"solid"[..], b"ply\nformat", b"glTF\x02", b"OFF 1 2", b"v 1 2 3", b"PK\x03\x04", b"\xEF\xBB\xBFply\n"]
+        {
             stl[..header.len()].copy_from_slice(header);
             assert_eq!(detect(&stl, "x"), Format::Stl);
         }

@@ -282,9 +282,8 @@ fn names_in_latin_1_are_told_apart_and_found() {
 #[test]
 fn library_names_with_blanks_may_stand_between_quotes() {
     let folder = Folder(&[("m 3.mtl", "newmtl a"), ("m.mtl", "newmtl b"), ("n 1.mtl", "newmtl c")]);
-    let text = format!(
-        "mtllib \"m 3.mtl\" m.mtl n\\ 1.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 4"
-    );
+    let text =
+        format!("mtllib \"m 3.mtl\" m.mtl n\\ 1.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 4");
     let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
     assert_eq!((s.materials.len(), s.warnings.len()), (3, 0), "{:?}", s.warnings);
 }

@@ -2,8 +2,8 @@
 //!
 //! Formats with a magic number are certain. STL has none: a binary one is known by its length, which its triangle count
 //! fixes, an ASCII one by its first word. OBJ is known by its first statements, the two kinds of JSON by the keys of their
-//! outermost object, OFF without its first word by its counts, where the name does not tell. What nobody claims is refused with the list of what is read; formats that are known but not read are
-//! named.
+//! outermost object, OFF without its first word by its counts, where the name does not tell. What nobody claims is refused
+//! with the list of what is read; formats that are known but not read are named.
 
 use crate::text::{Cursor, to_utf8};
 use crate::{Error, Place};

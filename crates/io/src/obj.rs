@@ -18,8 +18,9 @@
 //!   the index of a vertex that leads nowhere, is an error that names the line. Texture coordinates and normals that lead
 //!   nowhere are left out, with a warning: files refer to ones that they do not have.
 //! * Free-form curves and surfaces are left out, with a warning.
+//! * `\` at the end of a line joins the next one to it, in every statement but not in comments.
 //!
-//! In:   UTF-8 or UTF-16 text. Out: a scene in model space, right-handed, any orientation of axes.
+//! In:   UTF-8 or UTF-16 text; names in Latin-1, too. Out: a scene in model space, right-handed, any orientation of axes.
 //! Cost: `O(bytes)`; the memory of the mesh twice, for a moment.
 //! Source: \[OBJ\].
 

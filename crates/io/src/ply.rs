@@ -15,6 +15,8 @@
 //!   vertices show the first image.
 //! * `tristrips`: `vertex_indices`, restarted by a negative index; triangles with two equal corners only steer the strip
 //!   and are left out. `edge`: `vertex1 vertex2`, free lines.
+//! * Faces and strips without that list, and edges without both ends, are left out with a warning. Elements without properties
+//!   have no data, however many are announced.
 //! * Without faces, strips and edges the vertices are a point cloud. Other elements and properties are passed over; a
 //!   warning names them.
 //!

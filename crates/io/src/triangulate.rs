@@ -3,9 +3,9 @@
 //! The polygon is seen along its average normal (Newell's sum), so that a slightly bent polygon has a plane to live
 //! in. Three cases, from cheap to dear: a quadrangle is cut along the diagonal that starts at its inward corner, if it
 //! has one; a strictly convex polygon becomes a fan; anything else loses one *ear* after the other: a corner that
-//! bends outward and whose triangle holds no other corner, or one that comes twice in a row. A polygon that crosses itself or has no area may run out of
-//! ears; then corners that at least do not bend inward are cut, and at last any corner, so that there are always
-//! `n - 2` triangles.
+//! bends outward and whose triangle holds no other corner, or one that comes twice in a row. A polygon that crosses
+//! itself or has no area may run out of ears; then corners that at least do not bend inward are cut, and at last any
+//! corner, so that there are always `n - 2` triangles.
 //!
 //! In:   positions in model space and a polygon's corners, in order, either orientation.
 //! Out:  triangles with the polygon's orientation, as corner numbers `0..n`. The same for every run and machine.

@@ -255,8 +255,8 @@ fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mu
         return vec![(bare.to_owned(), bytes)];
     }
 
-    // Tell what is missing: the words, where some of them were found, else the whole.
-    if found.is_empty() {
+    // Tell what is missing: the words, where some of them were found or quotes part them, else the whole.
+    if found.is_empty() && !whole.contains('"') {
         missing(whole, &why);
     } else {
         failures.iter().for_each(|(word, why)| missing(word, why));

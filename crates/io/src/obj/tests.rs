@@ -286,6 +286,9 @@ fn library_names_with_blanks_may_stand_between_quotes() {
         format!("mtllib \"m 3.mtl\" m.mtl n\\ 1.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 4");
     let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
     assert_eq!((s.materials.len(), s.warnings.len()), (3, 0), "{:?}", s.warnings);
+    let s = read("mtllib \"none 1.mtl\" none.mtl\nv 0 0 0\n");
+    let told = |name| format!("t.obj: line 1: material library `{name}` is left out: there is no such file");
+    assert_eq!(s.warnings, [told("none 1.mtl"), told("none.mtl")]);
 }
 
 #[test]

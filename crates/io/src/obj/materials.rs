@@ -47,7 +47,7 @@ impl<'a> Events<'a> {
         let (mut faces, mut triangles, mut free) = (0, 0, [0, 0]);
         let mut name = Cow::Borrowed("");
         let mut material = None;
-        events.start_run(&name, material, 0);
+        events.start_run(name.clone(), material, 0);
         for ((chunk, &text), first_line) in chunks.iter().zip(pieces).zip(first_lines) {
             for event in &chunk.events {
                 let line = event.line + first_line;
@@ -71,7 +71,7 @@ impl<'a> Events<'a> {
                     Change::Smoothing(group) => events.smoothing.push((faces + event.face, *group)),
                     Change::Library(range) => events.libraries.push((line, text::name(&text[range.clone()]))),
                 }
-                events.start_run(&name, material, triangles + event.triangle);
+                events.start_run(name.clone(), material, triangles + event.triangle);
             }
             faces += chunk.faces.count as u32;
             triangles += chunk.faces.triangles() as u32;
@@ -82,12 +82,12 @@ impl<'a> Events<'a> {
     }
 
     /// Begins a run, unless it goes on with what there is; a run without triangles is overwritten.
-    fn start_run(&mut self, name: &Cow<'a, str>, material: Option<usize>, first_triangle: u32) {
+    fn start_run(&mut self, name: Cow<'a, str>, material: Option<usize>, first_triangle: u32) {
         if self.runs.last().is_some_and(|r| r.first_triangle == first_triangle) {
             self.runs.pop();
         }
-        if self.runs.last().is_none_or(|r| r.name != *name || r.material != material) {
-            self.runs.push(Run { name: name.clone(), material, first_triangle });
+        if self.runs.last().is_none_or(|r| r.name != name || r.material != material) {
+            self.runs.push(Run { name, material, first_triangle });
         }
     }
 

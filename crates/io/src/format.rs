@@ -1,9 +1,9 @@
 //! Which format a file has: by its content first, by its extension second.
 //!
 //! Formats with a magic number are certain. STL has none: a binary one is known by its length, which its triangle count
-//! fixes, an ASCII one by its first word. OBJ is known by its first statement, the two kinds of JSON by the keys of their
-//! outermost object. What nobody claims is refused with the list of what is read; formats that are known but not read are
-//! named.
+//! fixes, an ASCII one by its first word. OBJ is known by its first statements, the two kinds of JSON by the keys of their
+//! outermost object, OFF without its first word by its counts, where the name does not tell. What nobody claims is refused
+//! with the list of what is read; formats that are known but not read are named.
 
 use crate::text::{Cursor, to_utf8};
 use crate::{Error, Place};
@@ -98,6 +98,7 @@ impl Format {
             Some(format) => Ok(format),
             None => match FOREIGN_EXTENSIONS.iter().find(|(e, _)| *e == extension) {
                 Some((_, name)) => Err(not_read(file, name)),
+                None if crate::off::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
                 None => Err(not_read(file, "this format")),
             },
         }
@@ -147,10 +148,11 @@ pub(crate) fn extension_of(file: &str) -> String {
 }
 
 fn by_magic(bytes: &[u8]) -> Option<Format> {
-    match bytes {
+    match bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes) {
+        // Nothing else has this size by chance, and the header of an STL file may say anything.
+        _ if crate::stl::is_binary_size(bytes) => Some(Format::Stl),
         [b'g', b'l', b'T', b'F', ..] => Some(Format::Glb),
         [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..] => Some(Format::Ply),
-        _ if crate::stl::is_binary_size(bytes) => Some(Format::Stl),
         _ => None,
     }
 }
@@ -245,6 +247,7 @@ fn by_text(head: &[u8]) -> Option<Format> {
     if !cursor.next_content() {
         return None;
     }
+    let start = cursor;
     let word = cursor.word();
     if crate::off::Header::begin(word).is_some() {
         return Some(Format::Off);
@@ -252,8 +255,7 @@ fn by_text(head: &[u8]) -> Option<Format> {
     if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {
         return Some(Format::Stl);
     }
-    let is_statement = crate::obj::is_statement(word) && !head.contains(&0);
-    is_statement.then_some(Format::Obj)
+    (crate::obj::begins(start) && !head.contains(&0)).then_some(Format::Obj)
 }
 
 /// What a format holds.
@@ -351,7 +353,17 @@ mod tests {
         let mut stl = vec![b' '; 84 + 50];
         stl[..5].copy_from_slice(b"solid");
         stl[80..84].copy_from_slice(&1u32.to_le_bytes());
-        assert_eq!(detect(&stl, "x"), Format::Stl);
+        for header in
+            [&b"solid"[..], b"ply\nformat", b"glTF\x02", b"OFF 1 2", b"v 1 2 3", b"PK\x03\x04", b"\xEF\xBB\xBFply\n"]
+        {
+            stl[..header.len()].copy_from_slice(header);
+            assert_eq!(detect(&stl, "x"), Format::Stl);
+        }
+        assert_eq!(detect(b"\xEF\xBB\xBFply\nformat", "-"), Format::Ply);
+        for text in ["vp 0 1\nv 0 0 0", "# c\ncstype bezier\ndeg 3 \\\n3\nv 1 2 3", "mg 0\nlod 1\nbevel on\ng a\n"] {
+            assert_eq!(detect(text.as_bytes(), "-"), Format::Obj, "{text}");
+        }
+        assert_eq!(detect(b"# c\n3 1 0 # counts\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "-"), Format::Off);
         assert_eq!(detect(b"# nothing but a comment", "dir.ply/X.OBJ"), Format::Obj);
     }
 
@@ -365,6 +377,9 @@ mod tests {
         assert!(refuse(b"PK\x03\x04", "m.3mf").contains("3MF"));
         assert!(refuse(b"\x1f\x8b\x08\0", "m.obj").starts_with("m.obj: a gzip file (unpack it first) is not read; "));
         assert!(refuse(b"?", "m.blend").contains("Blender"));
+        for text in ["call\nme\n", "1 2 3\n", "1 2 3\n4 5 six\n", "1 2 3 4\n5 6 7\n"] {
+            assert!(refuse(text.as_bytes(), "-").contains("this format is not read"), "{text}");
+        }
         assert!(refuse(b"hello", "m.txt").starts_with("m.txt: this format is not read"));
     }
 

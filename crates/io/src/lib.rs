@@ -30,7 +30,7 @@ pub use format::{Format, FormatKind, FormatRow, formats};
 pub use resolve::{NoFiles, ResolveError, Resolver};
 
 use vitral_exec::Workers;
-use vitral_scene::{Axis, Mesh, Scene};
+use vitral_scene::{Axis, Mesh, Scene, normals};
 
 /// Reads a model or scene file of any readable [`Format`], known by its content first, by its extension second.
 ///
@@ -49,8 +49,13 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         Format::Stl => stl::load(bytes, file, workers),
         Format::Ply => ply::load(bytes, file, resolver, workers),
         Format::Off => off::load(bytes, file, workers),
-        Format::SceneJson => return scene_json::load(bytes, file, resolver, workers),
+        Format::SceneJson => scene_json::load(bytes, file, resolver, workers),
     }?;
+    scene.meshes.iter_mut().for_each(|mesh| normals::make_measurable(mesh, workers));
+    // A scene file says the rest itself.
+    if format == Format::SceneJson {
+        return Ok(scene);
+    }
     scene.ups = vec![if format == Format::Stl { Axis::PlusZ } else { Axis::PlusY }];
     // The default material of glTF is opaque, whatever the alpha of `COLOR_0`.
     let alpha_counts = !matches!(format, Format::Gltf | Format::Glb);

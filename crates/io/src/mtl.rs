@@ -20,7 +20,7 @@
 //! Source: \[MTL\].
 
 use crate::Place;
-use crate::text::{Cursor, to_utf8};
+use crate::text::{self, Cursor, to_utf8};
 use crate::textures::{Channel, Requests, Usage};
 use crate::warnings::Warnings;
 use vitral_frame::{Sampler, Wrap};
@@ -70,7 +70,7 @@ pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
         let place = Place::Line(cursor.line());
         let keyword = cursor.word();
         if keyword.eq_ignore_ascii_case(b"newmtl") {
-            let name = String::from_utf8_lossy(cursor.rest_of_line()).into_owned();
+            let name = text::name(cursor.rest_of_line()).into_owned();
             materials.push(MtlMaterial { name, ..MtlMaterial::default() });
         } else if let Some(material) = materials.last_mut() {
             material.statement(keyword, &mut cursor, warnings);
@@ -299,7 +299,7 @@ fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
         }
         *cursor = ahead;
     }
-    map.path = file_name(&String::from_utf8_lossy(cursor.rest_of_line()));
+    map.path = file_name(&text::name(cursor.rest_of_line()));
     if map.path.is_empty() {
         warnings.note("map name", Place::Line(line), || "texture statement without a file name".into());
         return None;

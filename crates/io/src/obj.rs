@@ -18,8 +18,9 @@
 //!   the index of a vertex that leads nowhere, is an error that names the line. Texture coordinates and normals that lead
 //!   nowhere are left out, with a warning: files refer to ones that they do not have.
 //! * Free-form curves and surfaces are left out, with a warning.
+//! * `\` at the end of a line joins the next one to it, in every statement but not in comments.
 //!
-//! In:   UTF-8 or UTF-16 text. Out: a scene in model space, right-handed, any orientation of axes.
+//! In:   UTF-8 or UTF-16 text; names in Latin-1, too. Out: a scene in model space, right-handed, any orientation of axes.
 //! Cost: `O(bytes)`; the memory of the mesh twice, for a moment.
 //! Source: \[OBJ\].
 
@@ -27,7 +28,7 @@ mod chunk;
 mod materials;
 mod stitch;
 
-use crate::text::{cut_at_lines, to_utf8};
+use crate::text::{Cursor, cut_at_lines, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
 use chunk::{Chunk, Statement};
@@ -45,9 +46,17 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     load_in_pieces(bytes, file, resolver, workers, PIECE)
 }
 
-/// Whether `word` begins one of the usual statements of an OBJ file.
-pub(crate) fn is_statement(word: &[u8]) -> bool {
-    !matches!(Statement::of(word), Statement::Unknown | Statement::Unused | Statement::FreeForm)
+/// Whether the text reads like an OBJ file: a usual statement, behind nothing but seldom ones. Words as `end` or `call` alone could
+/// begin anything.
+pub(crate) fn begins(mut cursor: Cursor) -> bool {
+    while cursor.next_content() {
+        match Statement::of(cursor.word()) {
+            Statement::Unknown => return false,
+            Statement::Unused | Statement::FreeForm => cursor.next_line(),
+            _ => return true,
+        }
+    }
+    false
 }
 
 fn load_in_pieces(

@@ -69,6 +69,14 @@ impl Header {
     }
 }
 
+/// Whether the text reads like an OFF file without its first word: a line of three counts, then a vertex.
+pub(crate) fn begins_bare(mut cursor: Cursor) -> bool {
+    let has_counts =
+        cursor.next_content() && (0..3).all(|_| matches!(cursor.integer(), Some(0..))) && cursor.at_line_end();
+    cursor.next_line();
+    has_counts && cursor.next_content() && (0..3).all(|_| cursor.float().is_some() && !cursor.take_ill_formed())
+}
+
 /// Reads an OFF file.
 ///
 /// # Errors

@@ -5,7 +5,8 @@
 //! (`binary`). Both hand each element to `Content` as a `Row`: a fixed set of slots for what vitral understands,
 //! and the list of corners. Binary data of the usual layouts go past the rows, block by block on all threads.
 //!
-//! * `vertex`: `x y z`, `nx ny nz`, `red green blue [alpha]` (sRGB; integers over their type's range, floats `0..=1`),
+//! * `vertex`: `x y z`, `nx ny nz`, `red green blue [alpha]` (sRGB; bytes in integers of 32 bits, others up to their
+//!   type's largest value; floats `0..=1`, or `0..=255` if any exceeds 1),
 //!   `s t`, `u v`, `texture_u texture_v` (upwards, turned to `1 - v`).
 //! * `face`: `vertex_indices` or `vertex_index`; its colours count where vertices have none. Fewer than three corners:
 //!   warning, left out.
@@ -14,6 +15,8 @@
 //!   vertices show the first image.
 //! * `tristrips`: `vertex_indices`, restarted by a negative index; triangles with two equal corners only steer the strip
 //!   and are left out. `edge`: `vertex1 vertex2`, free lines.
+//! * Faces and strips without that list, and edges without both ends, are left out with a warning. Elements without properties
+//!   have no data, however many are announced.
 //! * Without faces, strips and edges the vertices are a point cloud. Other elements and properties are passed over; a
 //!   warning names them.
 //!
@@ -28,7 +31,7 @@ mod textured;
 
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
-use header::{Element, Encoding, Header, Kind, Property};
+use header::{Element, Encoding, Header, Kind, Property, Type};
 use vitral_exec::Workers;
 use vitral_math::color::linear_from_srgb;
 use vitral_scene::{Attribute, Faces, Mesh, Part, Scene};
@@ -49,12 +52,16 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
         Encoding::Ascii => ascii::read(bytes, &mut reading, &mut content)?,
         Encoding::LittleEndian | Encoding::BigEndian => binary::read(bytes, &mut reading, &mut content, workers)?,
     }
+    content.decode_colors(&mut warnings, workers);
     let runs = content.texture_runs();
     let mut mesh = content.into_mesh(file, workers)?;
     let mut scene = Scene { warnings: warnings.into_messages(file), ..Scene::default() };
     textured::add(&mut mesh, &mut scene, &runs, &header.textures, file, resolver, workers);
     Ok(crate::finish(mesh, scene, file))
 }
+
+/// Colours that one worker takes at a time.
+const COLORS: usize = 1 << 14;
 
 /// What the encodings share while they read.
 struct Reading<'a> {
@@ -71,6 +78,8 @@ enum Role {
     Face,
     Strips,
     Edge,
+    /// Faces or strips without corners, edges without ends.
+    Incomplete,
     Unknown,
 }
 
@@ -115,7 +124,14 @@ impl Layout {
             "edge" => Role::Edge,
             _ => Role::Unknown,
         };
-        let targets: Vec<Target> = element.properties.iter().map(|p| target(role, p)).collect();
+        let mut targets: Vec<Target> = element.properties.iter().map(|p| target(role, p)).collect();
+        let lacks = element.count > 0 && !is_complete(role, &targets);
+        let role = if lacks {
+            targets.fill(Target::Nothing);
+            Role::Incomplete
+        } else {
+            role
+        };
         let has = |slots: std::ops::Range<usize>| slots.into_iter().all(|s| targets.contains(&Target::Slot(s)));
         Self {
             has_normals: has(slot::NORMAL..slot::NORMAL + 3),
@@ -127,8 +143,26 @@ impl Layout {
         }
     }
 
+    /// The type of what goes to `slot`.
+    fn type_of(&self, element: &Element, slot: usize) -> Option<Type> {
+        match element.properties[self.targets.iter().position(|t| *t == Target::Slot(slot))?].kind {
+            Kind::Scalar(kind) => Some(kind),
+            Kind::List { .. } => None,
+        }
+    }
+
     fn has_slots(&self, first: usize, count: usize) -> bool {
         (first..first + count).all(|s| self.targets.contains(&Target::Slot(s)))
+    }
+}
+
+/// Whether the element has what makes it one.
+fn is_complete(role: Role, targets: &[Target]) -> bool {
+    match role {
+        Role::Face | Role::Strips => targets.contains(&Target::Corners),
+        Role::Edge => [slot::ENDS, slot::ENDS + 1].into_iter().all(|s| targets.contains(&Target::Slot(s))),
+        // That vertices have positions is asked where they are counted.
+        Role::Vertex | Role::Incomplete | Role::Unknown => true,
     }
 }
 
@@ -164,6 +198,11 @@ fn note_unused(header: &Header, layouts: &[Layout], warnings: &mut Warnings) {
             warnings.note("", place, || format!("element `{}` is not used", element.name));
             continue;
         }
+        if layout.role == Role::Incomplete {
+            let needed = if element.name == "edge" { "`vertex1` and `vertex2`" } else { "a list `vertex_indices`" };
+            warnings.note("", place, || format!("`{}` without {needed} is left out", element.name));
+            continue;
+        }
         let named = element.properties.iter().zip(&layout.targets);
         let unused: Vec<&str> = named.filter(|(_, t)| **t == Target::Nothing).map(|(p, _)| p.name.as_str()).collect();
         if !unused.is_empty() {
@@ -188,7 +227,12 @@ struct Content {
     vertex_count: usize,
     positions: Vec<[f32; 3]>,
     normals: Option<Vec<[f32; 3]>>,
+    /// Encoded, until [`Content::decode_colors`].
     colors: Option<Vec<[f32; 4]>>,
+    /// Whether `colors` are linear from the beginning.
+    has_linear_colors: bool,
+    /// The types of the colours that count, and of their alpha.
+    color_types: [Option<Type>; 2],
     uvs: Option<Vec<[f32; 2]>>,
     /// Faces as triangles, where all of them are; otherwise `sizes` and `corners`.
     triangles: Vec<[u32; 3]>,
@@ -221,10 +265,14 @@ impl Content {
             return Err(Error::malformed(file, place, what));
         };
         let face_colors = layouts.iter().any(|l| l.role == Role::Face && l.has_colors) && !layout.has_colors;
+        let colored = layouts.iter().position(|l| l.has_colors && (l.role == Role::Vertex || face_colors));
+        let color_types = [slot::COLOR, slot::COLOR + 3]
+            .map(|slot| colored.and_then(|e| layouts[e].type_of(&header.elements[e], slot)));
         let corner_uvs = layouts.iter().any(|l| l.has_corner_uvs);
         let images = layouts.iter().any(|l| l.targets.contains(&Target::Slot(slot::IMAGE)));
         Ok(Self {
             vertex_count,
+            color_types,
             normals: layout.has_normals.then(Vec::new),
             colors: layout.has_colors.then(Vec::new),
             uvs: (layout.has_uvs && !corner_uvs).then(Vec::new),
@@ -258,7 +306,7 @@ impl Content {
                 }
                 self.sizes.push(row.corners.len() as u32);
                 if let Some(colors) = &mut self.face_colors {
-                    colors.push(color_of(row));
+                    colors.push(encoded_color(row));
                 }
                 if let Some(images) = &mut self.images {
                     images.push(row.slots[slot::IMAGE] as i64);
@@ -271,7 +319,7 @@ impl Content {
                 let ends = [self.vertex(ends[0] as i64)?, self.vertex(ends[1] as i64)?];
                 self.lines.push(ends);
             }
-            Role::Unknown => {}
+            Role::Incomplete | Role::Unknown => {}
         }
         Ok(())
     }
@@ -291,7 +339,7 @@ impl Content {
             normals.push(three(slot::NORMAL));
         }
         if let Some(colors) = &mut self.colors {
-            colors.push(color_of(row));
+            colors.push(encoded_color(row));
         }
         if let Some(uvs) = &mut self.uvs {
             uvs.push([number(slot::UV), 1.0 - number(slot::UV + 1)]);
@@ -325,7 +373,7 @@ impl Content {
                     self.corners.extend(if k % 2 == 0 { [a, b, c] } else { [b, a, c] });
                     self.sizes.push(3);
                     if let Some(colors) = &mut self.face_colors {
-                        colors.push([1.0; 4]);
+                        colors.push([f32::NAN; 4]);
                     }
                     if let Some(images) = &mut self.images {
                         images.push(0);
@@ -337,6 +385,37 @@ impl Content {
             }
         }
         Ok(())
+    }
+
+    /// Makes colours linear; NaN is 1 (white, opaque).
+    fn decode_colors(&mut self, warnings: &mut Warnings, workers: &Workers) {
+        let colors = match (&mut self.colors, &mut self.face_colors) {
+            (Some(colors), _) if !self.has_linear_colors => colors,
+            (None, Some(colors)) => colors,
+            _ => return,
+        };
+        let most = |a: [f32; 2], b: [f32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        let of_blocks = workers.map(colors.len().div_ceil(COLORS), |block| {
+            let colors = colors[block * COLORS..].iter().take(COLORS);
+            colors.map(|&[r, g, b, a]| [r.max(g).max(b), a]).fold([0.0; 2], most)
+        });
+        let largest = of_blocks.into_iter().fold([0.0; 2], most);
+        let scale = [0, 1].map(|k| match self.color_types[k] {
+            Some(kind) if largest[k] > 1.0 => (kind.wide_scale() / kind.full_scale()) as f32,
+            _ => 1.0,
+        });
+        if let Some(kind) = self.color_types[0].filter(|_| scale[0] > 1.0) {
+            let (full, wide) = (kind.full_scale(), kind.wide_scale());
+            warnings.note("", Place::File, || format!("colours exceed {full} and are read as 0 to {wide}"));
+        }
+        workers.for_each_chunk(colors, COLORS, |_, colors| {
+            let unit = |c: f32| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) };
+            for color in colors {
+                let [r, g, b, a] = *color;
+                let [r, g, b] = [r, g, b].map(|c| linear_from_srgb(unit(c / scale[0])));
+                *color = [r, g, b, unit(a / scale[1])];
+            }
+        });
     }
 
     /// Runs of triangles with one image: the end of each, and the image's number.
@@ -406,13 +485,9 @@ impl Content {
     }
 }
 
-/// A row's colour, linear.
-fn color_of(row: &Row) -> [f32; 4] {
-    let [r, g, b, a] = [0, 1, 2, 3].map(|k| {
-        let encoded = row.slots[slot::COLOR + k] as f32;
-        if encoded.is_nan() { 1.0 } else { encoded.clamp(0.0, 1.0) }
-    });
-    [linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), a]
+/// A row's colour, as in the file but for the scale of its type.
+fn encoded_color(row: &Row) -> [f32; 4] {
+    [0, 1, 2, 3].map(|k| row.slots[slot::COLOR + k] as f32)
 }
 
 #[cfg(test)]

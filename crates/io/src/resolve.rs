@@ -18,8 +18,8 @@ pub enum ResolveError {
 /// Access to the files beside a model.
 pub trait Resolver: Sync {
     /// The bytes of the file that the model calls `path`: `/`-separated, relative to the model's folder, already
-    /// freed of URI escapes. Implementations refuse absolute paths and those that leave the folder by `..`, unless the user
-    /// allowed them.
+    /// freed of URI escapes and in Unicode, whatever the model's encoding. Implementations refuse absolute paths and those that
+    /// leave the folder by `..`, unless the user allowed them.
     fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError>;
 }
 

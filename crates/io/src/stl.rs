@@ -13,7 +13,7 @@
 //! Cost: `O(bytes)`, welding included; records are read where they lie.
 //! Source: \[STL\].
 
-use crate::text::{Cursor, to_utf8};
+use crate::text::{self, Cursor, to_utf8};
 use crate::warnings::Warnings;
 use crate::weld::weld;
 use crate::{Error, Place};
@@ -171,7 +171,7 @@ impl<'a> Reader<'a> {
             loop {
                 let mut after = self.cursor;
                 if words.iter().all(|word| after.word().eq_ignore_ascii_case(word)) {
-                    return String::from_utf8_lossy(&name.join(&b' ')).into_owned();
+                    return text::name(&name.join(&b' ')).into_owned();
                 }
                 match self.cursor.word() {
                     b"" => break,
@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
             }
         }
         self.cursor = start;
-        String::from_utf8_lossy(self.cursor.rest_of_line()).into_owned()
+        text::name(self.cursor.rest_of_line()).into_owned()
     }
 
     fn unexpected(&self, word: &[u8], wanted: &str) -> Error {

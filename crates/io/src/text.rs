@@ -10,8 +10,8 @@
 use std::borrow::Cow;
 
 /// The bytes as UTF-8 text without a byte-order mark, lines ended by `\n` or `\r\n`. UTF-16 is known by its mark or by
-/// its zero bytes and converted; a file that ends its lines with `\r` alone gets `\n` instead. Invalid UTF-8 is kept:
-/// keywords and numbers are ASCII, and names are converted leniently.
+/// its zero bytes and converted; a `\r` alone ends a line, too, and becomes `\n`. Invalid UTF-8 is kept:
+/// keywords and numbers are ASCII, and names are converted by [`name`].
 pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text = match bytes {
         [0xEF, 0xBB, 0xBF, rest @ ..] => Cow::Borrowed(rest),
@@ -23,10 +23,38 @@ pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
             _ => Cow::Borrowed(bytes),
         },
     };
-    if text.contains(&b'\n') || !text.contains(&b'\r') {
+    if !has_lone_return(&text) {
         return text;
     }
-    Cow::Owned(text.iter().map(|&b| if b == b'\r' { b'\n' } else { b }).collect())
+    let next = text[1..].iter().copied().chain([0]);
+    Cow::Owned(text.iter().zip(next).map(|(&b, next)| if b == b'\r' && next != b'\n' { b'\n' } else { b }).collect())
+}
+
+/// Whether there is a `\r` that no `\n` follows. Looks at blocks without a branch for each byte, so that it costs next to nothing
+/// whether or not there are many `\r\n`.
+fn has_lone_return(text: &[u8]) -> bool {
+    const BLOCK: usize = 1 << 12;
+    let next = text.get(1..).unwrap_or_default();
+    let lone = |(a, b): (&[u8], &[u8])| {
+        a.iter().zip(b).fold(0, |lone, (&a, &b)| lone | (u8::from(a == b'\r') & u8::from(b != b'\n'))) != 0
+    };
+    text.last() == Some(&b'\r') || text.chunks(BLOCK).zip(next.chunks(BLOCK)).any(lone)
+}
+
+/// A name or a line of names as text: continued lines become one, with a blank between, and what is not UTF-8 is taken for
+/// Latin-1, as old programs wrote it.
+pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
+    if bytes.contains(&b'\n') {
+        let lines = bytes.split(|&b| b == b'\n').map(|line| {
+            let line = line.trim_ascii();
+            line.strip_suffix(b"\\").unwrap_or(line).trim_ascii_end()
+        });
+        return Cow::Owned(name(&lines.collect::<Vec<_>>().join(&b' ')).into_owned());
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
+    }
 }
 
 fn from_utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
@@ -52,12 +80,23 @@ pub(crate) fn is_blank(byte: u8) -> bool {
 
 /// `name` without a comment behind it: a `#` after a blank, unless a digit follows, since 3ds Max calls materials
 /// `Material #25`.
-pub(crate) fn without_comment(name: &[u8]) -> &[u8] {
+pub(crate) fn without_comment(name: &str) -> &str {
+    comment_behind(name.as_bytes()).map_or(name, |k| name[..k].trim_ascii_end())
+}
+
+/// Where the comment behind a name begins.
+fn comment_behind(name: &[u8]) -> Option<usize> {
     let begins = |k: &usize| {
         let next = name.get(k + 1).copied().unwrap_or(b' ');
         name[*k] == b'#' && is_blank(name[k - 1]) && !next.is_ascii_digit()
     };
-    (1..name.len()).find(begins).map_or(name, |k| name[..k].trim_ascii_end())
+    (1..name.len()).find(begins)
+}
+
+/// Whether the next line continues `line`: it ends with a `\`, which is not that of a comment.
+fn is_continued(line: &[u8]) -> bool {
+    let line = line.strip_suffix(b"\r").unwrap_or(line);
+    line.last() == Some(&b'\\') && line[0] != b'#' && comment_behind(line).is_none()
 }
 
 /// Cuts `text` into pieces of about `size` bytes, each ending after a line break that no `\` continues.
@@ -82,7 +121,7 @@ pub(crate) fn cut_at_lines(text: &[u8], size: usize) -> Vec<&[u8]> {
 }
 
 /// A place in a text. Every reading method first skips blanks; none but [`Cursor::next_line`] leaves the line, except
-/// that a `\` at the end of a line joins the next line to it.
+/// that a `\` at the end of a line, but for comments, joins the next line to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -161,16 +200,22 @@ impl<'a> Cursor<'a> {
             while is_blank(self.peek()) {
                 self.at += 1;
             }
-            let after = self.at + 1 + usize::from(self.byte(self.at + 1) == b'\r');
-            if self.peek() != b'\\' || self.byte(after) != b'\n' {
+            if !self.is_continuation(self.at) {
                 return;
             }
+            let after = self.at + 1 + usize::from(self.byte(self.at + 1) == b'\r');
             self.at = (after + 1).min(self.bytes.len());
             self.line += 1;
             if self.at_end() {
                 return;
             }
         }
+    }
+
+    /// Whether the byte at `at` is a `\` at the end of a line.
+    fn is_continuation(&self, at: usize) -> bool {
+        let after = at + 1 + usize::from(self.byte(at + 1) == b'\r');
+        self.byte(at) == b'\\' && self.byte(after) == b'\n'
     }
 
     /// Whether nothing but a comment (`#`) is left on the line.
@@ -180,16 +225,28 @@ impl<'a> Cursor<'a> {
         matches!(self.peek(), b'\n' | b'#')
     }
 
-    /// Goes to the beginning of the next line, whatever is left on this one.
+    /// Goes to the beginning of the next line, whatever is left on this one and those that continue it.
     #[inline]
     pub(crate) fn next_line(&mut self) {
-        let rest = &self.bytes[self.at..];
-        match rest.iter().position(|&b| b == b'\n') {
-            Some(length) => {
-                self.at += length + 1;
-                self.line += 1;
+        self.finish_line();
+        if !self.at_end() {
+            self.at += 1;
+            self.line += 1;
+        }
+    }
+
+    /// Goes to the end of the line, or of the last one that continues it.
+    #[inline]
+    fn finish_line(&mut self) {
+        loop {
+            let rest = &self.bytes[self.at..];
+            let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+            self.at += length;
+            if self.at_end() || !is_continued(&rest[..length]) {
+                return;
             }
-            None => self.at = self.bytes.len(),
+            self.at += 1;
+            self.line += 1;
         }
     }
 
@@ -212,6 +269,10 @@ impl<'a> Cursor<'a> {
         while !is_blank(self.peek()) && self.peek() != b'\n' {
             self.at += 1;
         }
+        // The sign of a continued line is no part of a word.
+        if self.at > start && self.bytes[self.at - 1] == b'\\' && self.is_continuation(self.at - 1) {
+            self.at -= 1;
+        }
         &self.bytes[start..self.at]
     }
 
@@ -220,13 +281,12 @@ impl<'a> Cursor<'a> {
         Self { at, ..*self }.word()
     }
 
-    /// What is left of the line, without blanks round it.
+    /// What is left of the line and those that continue it, for [`name`]; without blanks round it.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();
-        let rest = &self.bytes[self.at..];
-        let rest = &rest[..rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len())];
-        self.at += rest.len();
-        rest.trim_ascii()
+        let start = self.at;
+        self.finish_line();
+        self.bytes[start..self.at].trim_ascii()
     }
 
     /// The next number as `f32`, or `None` (and no step) if the next word does not begin as one. Anything glued to the
@@ -323,6 +383,9 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn tail_of_float(&mut self, value: f32) -> f32 {
         let start = self.at;
+        if self.is_continuation(start) {
+            return value;
+        }
         let tail = self.word().to_ascii_uppercase();
         match tail.as_slice() {
             [b'#', b'I', b'N', b'F', ..] => f32::INFINITY.copysign(value),
@@ -412,10 +475,10 @@ mod tests {
     #[test]
     fn comments_behind_names_begin_after_a_blank() {
         for (name, plain) in [("a # b", "a"), ("a b #c", "a b"), ("a\t#", "a"), ("a#b # c # d", "a#b")] {
-            assert_eq!(without_comment(name.as_bytes()), plain.as_bytes());
+            assert_eq!(without_comment(name), plain);
         }
         for name in ["", "#", "# a", "a#b", "Material #25", "ä"] {
-            assert_eq!(without_comment(name.as_bytes()), name.as_bytes());
+            assert_eq!(without_comment(name), name);
         }
     }
 
@@ -438,6 +501,22 @@ mod tests {
     }
 
     #[test]
+    fn whatever_stands_on_a_line_is_continued() {
+        let mut cursor = Cursor::new(b"v 1\\\n2 word\\\r\n 3 \\\n# c \\\nx\ng a \\\n b # c \\\ny");
+        assert_eq!((cursor.word(), cursor.float(), cursor.float()), (&b"v"[..], Some(1.0), Some(2.0)));
+        assert_eq!((cursor.word(), cursor.float(), cursor.take_ill_formed()), (&b"word"[..], Some(3.0), false));
+        cursor.next_line();
+        assert_eq!((cursor.line(), cursor.word()), (5, &b"x"[..]));
+        cursor.next_line();
+        let mut ahead = cursor;
+        ahead.next_line();
+        assert_eq!((ahead.line(), ahead.word()), (8, &b"y"[..]));
+        assert_eq!((cursor.word(), &*name(cursor.rest_of_line())), (&b"g"[..], "a b # c"));
+        cursor.next_line();
+        assert_eq!(cursor.line(), 8);
+    }
+
+    #[test]
     fn every_encoding_becomes_utf8() {
         let units: Vec<u16> = "v 1\né".encode_utf16().collect();
         let big: Vec<u8> = units.iter().flat_map(|u| u.to_be_bytes()).collect();
@@ -447,6 +526,22 @@ mod tests {
         assert_eq!(&*to_utf8(&little[..8]), b"v 1\n");
         assert_eq!(&*to_utf8(b"\xEF\xBB\xBFv"), b"v");
         assert_eq!(&*to_utf8(b"a\rb\r"), b"a\nb\n");
+        assert_eq!(&*to_utf8(b"a\rb\r\nc\r\rd\ne\r"), b"a\nb\r\nc\n\nd\ne\n");
+        for plain in ["", "a", "a\r\nb\r\n", &"a\r\n".repeat(4096), &"a\n".repeat(4096)] {
+            assert!(matches!(to_utf8(plain.as_bytes()), Cow::Borrowed(_)));
+        }
+        for k in [0, 1, 4094, 4095, 4096, 9999] {
+            let mut text = vec![b'x'; 10_000];
+            text[k] = b'\r';
+            let lines = to_utf8(&text).iter().position(|&b| b == b'\n');
+            assert_eq!(lines, Some(k));
+        }
+    }
+
+    #[test]
+    fn names_are_utf8_or_latin_1() {
+        assert_eq!((name("é".as_bytes()), name(b"M\xE9tal")), ("é".into(), "Métal".into()));
+        assert_eq!(name(b"a b \\\r\n  c\\\nd"), "a b c d");
     }
 
     #[test]

@@ -128,7 +128,7 @@ impl Image {
     /// paths of the machine they ran on. Then the same without a comment.
     fn read(&self, resolver: &dyn Resolver) -> Read {
         let folder = folder_of(&self.library);
-        let plain = self.path[..without_comment(self.path.as_bytes()).len()].trim_end_matches('"');
+        let plain = without_comment(&self.path).trim_end_matches('"');
         let mut names = Vec::new();
         for path in [self.path.as_str(), plain] {
             let bare = path.rsplit('/').next().unwrap_or(path);

@@ -3,9 +3,9 @@
 //! The polygon is seen along its average normal (Newell's sum), so that a slightly bent polygon has a plane to live
 //! in. Three cases, from cheap to dear: a quadrangle is cut along the diagonal that starts at its inward corner, if it
 //! has one; a strictly convex polygon becomes a fan; anything else loses one *ear* after the other: a corner that
-//! bends outward and whose triangle holds no other corner. A polygon that crosses itself or has no area may run out of
-//! ears; then corners that at least do not bend inward are cut, and at last any corner, so that there are always
-//! `n - 2` triangles.
+//! bends outward and whose triangle holds no other corner, or one that comes twice in a row. A polygon that crosses
+//! itself or has no area may run out of ears; then corners that at least do not bend inward are cut, and at last any
+//! corner, so that there are always `n - 2` triangles.
 //!
 //! In:   positions in model space and a polygon's corners, in order, either orientation.
 //! Out:  triangles with the polygon's orientation, as corner numbers `0..n`. The same for every run and machine.
@@ -124,7 +124,7 @@ fn fan(corners: &[u32], out: &mut Vec<[u32; 3]>) {
 /// What a corner must be, to be cut: requirements are given up one after the other when no corner meets them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Demand {
-    /// Bends outward, and its triangle holds no other corner.
+    /// Bends outward, and its triangle holds no other corner; or holds nothing at all.
     Ear,
     /// Bends outward or not at all.
     NotInward,
@@ -202,10 +202,17 @@ impl EarClipper {
     fn meets(&mut self, i: u32, demand: Demand) -> bool {
         self.work = self.work.saturating_sub(1);
         match demand {
-            Demand::Ear => self.bend(i) > 0.0 && self.is_empty_ear(i),
+            Demand::Ear => self.is_hair(i) || self.bend(i) > 0.0 && self.is_empty_ear(i),
             Demand::NotInward => self.bend(i) >= 0.0,
             Demand::Any => true,
         }
+    }
+
+    /// Whether the corner is that of the next one again, or the end of an edge to and fro: without it the outline is round the
+    /// same area, and with it neither it nor its double would ever bend.
+    fn is_hair(&self, i: u32) -> bool {
+        let [a, b, c] = self.corner(i).map(|k| self.points[k as usize]);
+        b == c || a == c
     }
 
     /// Whether no inward corner lies in the triangle at `i`, its border included. Corners at the place of the triangle's
@@ -290,6 +297,22 @@ mod tests {
     }
 
     #[test]
+    fn doubled_corners_and_hairs_hold_nothing() {
+        // An L whose corners come twice, and one with an edge to and fro.
+        let corner = |p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0];
+        let ell = [[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]].map(corner);
+        let doubled: Vec<[f32; 3]> = ell.iter().flat_map(|&p| [p, p, p]).collect();
+        for shift in 0..doubled.len() {
+            let mut outline = doubled.clone();
+            outline.rotate_left(shift);
+            assert_eq!(areas(&outline, &cut(&outline)), (6.0, 6.0), "{shift}");
+        }
+        let mut hairy = ell.to_vec();
+        hairy.splice(3..3, [[3, 1], [3, 2], [3, 1]].map(corner));
+        assert_eq!(areas(&hairy, &cut(&hairy)), (6.0, 6.0));
+    }
+
+    #[test]
     fn corners_on_a_straight_edge_make_no_empty_triangles() {
         let square: Vec<[f32; 3]> =
             [[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
@@ -331,6 +354,44 @@ mod tests {
             }).collect();
             let (signed, unsigned) = areas(&outline, &cut(&outline));
             prop_assert!((signed - unsigned).abs() <= 1e-9 * unsigned, "{signed} {unsigned}");
+        }
+
+        /// Corners that come several times change nothing: the triangles have the outline's area and cover each point once.
+        #[test]
+        fn doubled_corners_change_nothing(
+            spokes in proptest::collection::vec((0.2f64..2.0, 0usize..4), 5..30),
+            first in 0usize..100,
+            reverse: bool,
+        ) {
+            let n = spokes.len() as f64;
+            let at = |i: usize, part: f64| {
+                let (s, c) = vitral_math::func::sin_cos(i as f64 / n * std::f64::consts::TAU);
+                [(part * spokes[i].0 * c) as f32, (part * spokes[i].0 * s) as f32, 0.0]
+            };
+            let once: Vec<[f32; 3]> = (0..spokes.len()).map(|i| at(i, 1.0)).collect();
+            let copies = |(i, spoke): (usize, &(f64, usize))| std::iter::repeat_n(once[i], 1 + spoke.1 % 3);
+            let mut outline: Vec<[f32; 3]> = spokes.iter().enumerate().flat_map(copies).collect();
+            let shift = first % outline.len();
+            outline.rotate_left(shift);
+            if reverse {
+                outline.reverse();
+            }
+            let triangles = cut(&outline);
+            let (signed, unsigned) = areas(&outline, &triangles);
+            let (expected, _) = areas(&once, &cut(&once));
+            prop_assert!((signed.abs() - expected).abs() <= 1e-9 * expected, "{signed} for {expected}");
+            prop_assert!((unsigned - expected).abs() <= 1e-9 * expected, "{unsigned} for {expected}");
+            for i in 0..spokes.len() {
+                let flat = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
+                let p = flat(at(i, 0.618));
+                let holds = |t: &&[u32; 3]| {
+                    let [a, b, c] = t.map(|k| flat(outline[k as usize]));
+                    let sides = [cross(a, b, p), cross(b, c, p), cross(c, a, p)];
+                    sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0)
+                };
+                // None where the point is on a cut.
+                prop_assert!(triangles.iter().filter(holds).count() <= 1);
+            }
         }
     }
 }

@@ -270,18 +270,15 @@ impl Fit {
         let (aspect, angle) = (sane_aspect(aspect), lens.view_angle());
         let eye = eye.try_normalize().unwrap_or(DVec3::Z);
         let center = bounds.center();
-        let camera = Camera {
-            position: center + eye,
-            focal_point: center,
-            view_up,
-            projection: Projection::Perspective { view_angle: angle },
-            clip: None,
-        };
+        let projection = Projection::Perspective { view_angle: angle };
+        // Directions alone count, and far from the origin a step of 1 would be lost.
+        let camera = Camera { position: eye, focal_point: DVec3::ZERO, view_up, projection, clip: None };
+        let view_from_world = camera.view_from_world();
+        let camera = Camera { position: center + eye, focal_point: center, ..camera };
         let half = func::tan(angle * 0.5) * fill;
         let (per_width, per_height) =
             if lens == Lens::Parallel { (1.0 / aspect, 1.0) } else { (1.0 / (half * aspect), 1.0 / half) };
         let diagonal = bounds.diagonal();
-        let view_from_world = camera.view_from_world();
         Self { camera, lens, eye, view_from_world, per_width, per_height, least: 1e-3 * diagonal, diagonal, fill }
     }
 
@@ -365,12 +362,13 @@ fn sane_aspect(aspect: f64) -> f64 {
     if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
 
-/// The box, or one of size 2 round its middle if it has no extent.
+/// The box, or one of size 2 round its middle if it has no extent; larger where positions of single precision lie farther apart.
 fn presentable(bounds: &Aabb) -> Aabb {
     let sound = !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite();
     let center = if sound { bounds.center() } else { DVec3::ZERO };
     let visible = sound && bounds.diagonal() > 0.0;
-    if visible { *bounds } else { Aabb { min: center - 1.0, max: center + 1.0 } }
+    let half = (1e-7 * center.abs().max_element()).max(1.0);
+    if visible { *bounds } else { Aabb { min: center - half, max: center + half } }
 }
 
 #[cfg(test)]
@@ -414,6 +412,21 @@ mod tests {
         assert_eq!(View::Front.eye_and_up(Axis::PlusZ), (DVec3::NEG_Y, DVec3::Z));
         assert_eq!(View::Right.eye_and_up(Axis::PlusZ), (DVec3::X, DVec3::Z));
         assert_eq!(View::Top.eye_and_up(Axis::PlusZ), (DVec3::Z, DVec3::Y));
+    }
+
+    #[test]
+    fn what_is_far_away_is_seen_from_the_same_side() {
+        for far in [1e6, 1e16, 1e20, 1e30] {
+            let center = DVec3::new(far, -far, far);
+            for half in [0.0, 0.1 * far] {
+                let bounds = Aabb { min: center - half, max: center + half };
+                for view in VIEWS {
+                    let camera = frame(&bounds, view, Axis::PlusY, Lens::default(), 1.0);
+                    let eye = (camera.position - camera.focal_point).normalize();
+                    assert!(eye.distance(view.eye_and_up(Axis::PlusY).0) < 1e-6, "{far} {half} {view:?}: {eye}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -22,7 +22,9 @@ use crate::weld::Weld;
 use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solids};
 use faces::outline_normal;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use vitral_exec::Workers;
+use vitral_math::DVec3;
 
 pub(crate) use faces::{FaceData, face_data, measure_triangles};
 
@@ -51,6 +53,21 @@ pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
         None => made,
         Some(given) => fill_gaps(given, made, &mesh.triangles, missing),
     });
+}
+
+/// Makes normals unit whose length single precision cannot square, so that any length but 0 is as good as another.
+pub fn make_measurable(mesh: &mut Arc<Mesh>, workers: &Workers) {
+    let is_extreme = |n: &[f32; 3]| {
+        let length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        !(1e-24..=1e24).contains(&length) && *n != [0.0; 3] && n.iter().all(|c| c.is_finite())
+    };
+    let Some(normals) = &mesh.normals else { return };
+    let batches: Vec<_> = normals.values.chunks(BATCH).collect();
+    if !workers.map(batches.len(), |i| batches[i].iter().any(is_extreme)).contains(&true) {
+        return;
+    }
+    let normals = Arc::make_mut(mesh).normals.iter_mut().flat_map(|n| &mut n.values);
+    normals.filter(|n| is_extreme(n)).for_each(|n| *n = DVec3::from(n.map(f64::from)).normalize().as_vec3().to_array());
 }
 
 /// The unit normal of face `face`, counter-clockwise outlines towards the viewer; zero for a face without area.

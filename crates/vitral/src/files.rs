@@ -27,11 +27,20 @@ impl FolderResolver {
 
     /// Where `path` is, if the model may go there.
     fn locate(&self, path: &str) -> Result<PathBuf, ResolveError> {
-        let relative = Path::new(path);
         // `C:/x` and `C:x` are absolute for the model's author, wherever this runs.
         let drive = matches!(path.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic());
+        if !self.allow_external && (drive || path.starts_with('\\')) {
+            return Err(ResolveError::Outside);
+        }
+        match self.locate_below(Path::new(path)) {
+            Err(ResolveError::NotFound) => latin_1(path).map_or(Err(ResolveError::NotFound), |p| self.locate_below(&p)),
+            found => found,
+        }
+    }
+
+    fn locate_below(&self, relative: &Path) -> Result<PathBuf, ResolveError> {
         let inside = folded(relative);
-        if !self.allow_external && (drive || path.starts_with('\\') || inside.is_none()) {
+        if !self.allow_external && inside.is_none() {
             return Err(ResolveError::Outside);
         }
         let place = self.folder.join(inside.as_deref().unwrap_or(relative));
@@ -44,6 +53,20 @@ impl FolderResolver {
         }
         Ok(found)
     }
+}
+
+/// `path` as a program that knew Latin-1 alone named its file; `None` where that is the same name, or none at all.
+#[cfg(unix)]
+fn latin_1(path: &str) -> Option<PathBuf> {
+    use std::os::unix::ffi::OsStringExt;
+    let bytes: Option<Vec<u8>> = path.chars().map(|c| u8::try_from(c).ok()).collect();
+    bytes.filter(|bytes| !bytes.is_ascii()).map(|bytes| std::ffi::OsString::from_vec(bytes).into())
+}
+
+/// Elsewhere names are Unicode.
+#[cfg(not(unix))]
+fn latin_1(_: &str) -> Option<PathBuf> {
+    None
 }
 
 /// `path` without `.` and `..`, folded by its words alone; `None` if it leaves the folder that it starts from.
@@ -260,6 +283,21 @@ mod tests {
         let open = FolderResolver::new(folder.join("model"), true, 100);
         assert_eq!(open.read("../secret.png").unwrap(), b"secret");
         assert_eq!(open.read(&absolute).unwrap(), b"secret");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_in_latin_1_are_found() {
+        use std::os::unix::ffi::OsStrExt;
+        let folder = folder("latin");
+        fs::write(folder.join("model").join(std::ffi::OsStr::from_bytes(b"T\xFCr.png")), b"bytes").unwrap();
+        fs::write(folder.join("model/\u{e9}.png"), b"utf8").unwrap();
+        let closed = FolderResolver::new(folder.join("model"), false, 100);
+        assert_eq!(closed.read("T\u{fc}r.png").unwrap(), b"bytes");
+        assert_eq!(closed.read("\u{e9}.png").unwrap(), b"utf8");
+        assert_eq!(closed.read("\u{3b1}.png"), Err(ResolveError::NotFound));
+        assert_eq!(closed.read("../\u{fc}"), Err(ResolveError::Outside));
         fs::remove_dir_all(folder).unwrap();
     }
 

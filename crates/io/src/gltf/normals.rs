@@ -65,8 +65,7 @@ fn mend(blocks: &[Block], normals: &mut [Option<Vec<[f32; 3]>>], mesh: &Mesh) ->
 }
 
 fn is_bad(n: &[f32; 3]) -> bool {
-    let length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    !length.is_finite() || length == 0.0
+    *n == [0.0; 3] || n.iter().any(|c| !c.is_finite())
 }
 
 /// Twice the area of a triangle times its unit normal; zero where a corner is not finite.

@@ -2,10 +2,11 @@
 
 use super::chunk::{Change, Chunk};
 use crate::mtl::{self, MtlMaterial};
-use crate::text::without_comment;
+use crate::text::{self, without_comment};
 use crate::textures::Requests;
 use crate::warnings::Warnings;
 use crate::{Place, Resolver};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 use vitral_exec::Workers;
@@ -16,7 +17,7 @@ use vitral_scene::{FreePart, Mesh, Part};
 /// A stretch of triangles with one name and one material.
 #[derive(Debug)]
 struct Run<'a> {
-    name: &'a [u8],
+    name: Cow<'a, str>,
     /// Index into `Events::used`; `None` before the first `usemtl`.
     material: Option<usize>,
     first_triangle: u32,
@@ -29,9 +30,9 @@ pub(super) struct Events<'a> {
     /// Smoothing group from this face on.
     smoothing: Vec<(u32, u32)>,
     /// `mtllib` lines.
-    libraries: Vec<(u64, &'a [u8])>,
+    libraries: Vec<(u64, Cow<'a, str>)>,
     /// Materials in order of their first use, with its line.
-    used: Vec<(u64, &'a [u8])>,
+    used: Vec<(u64, Cow<'a, str>)>,
     /// The first free line and the first free point with a material (index into `used`).
     free: Vec<([usize; 2], usize)>,
     /// How many lines and points the file names.
@@ -44,18 +45,23 @@ impl<'a> Events<'a> {
         let mut events = Self::default();
         let mut number: HashMap<&[u8], usize> = HashMap::new();
         let (mut faces, mut triangles, mut free) = (0, 0, [0, 0]);
-        let mut name: &[u8] = b"";
+        let mut name = Cow::Borrowed("");
         let mut material = None;
-        events.start_run(name, material, 0);
+        events.start_run(name.clone(), material, 0);
         for ((chunk, &text), first_line) in chunks.iter().zip(pieces).zip(first_lines) {
             for event in &chunk.events {
                 let line = event.line + first_line;
                 match &event.change {
-                    Change::Name(range) => name = without_comment(&text[range.clone()]),
+                    Change::Name(range) => {
+                        name = match text::name(&text[range.clone()]) {
+                            Cow::Borrowed(name) => Cow::Borrowed(without_comment(name)),
+                            Cow::Owned(name) => Cow::Owned(without_comment(&name).to_owned()),
+                        }
+                    }
                     Change::Material(range) => {
                         let wanted = &text[range.clone()];
                         let chosen = *number.entry(wanted).or_insert_with(|| {
-                            events.used.push((line, wanted));
+                            events.used.push((line, text::name(wanted)));
                             events.used.len() - 1
                         });
                         material = Some(chosen);
@@ -63,9 +69,9 @@ impl<'a> Events<'a> {
                         events.free.push((first, chosen));
                     }
                     Change::Smoothing(group) => events.smoothing.push((faces + event.face, *group)),
-                    Change::Library(range) => events.libraries.push((line, &text[range.clone()])),
+                    Change::Library(range) => events.libraries.push((line, text::name(&text[range.clone()]))),
                 }
-                events.start_run(name, material, triangles + event.triangle);
+                events.start_run(name.clone(), material, triangles + event.triangle);
             }
             faces += chunk.faces.count as u32;
             triangles += chunk.faces.triangles() as u32;
@@ -76,7 +82,7 @@ impl<'a> Events<'a> {
     }
 
     /// Begins a run, unless it goes on with what there is; a run without triangles is overwritten.
-    fn start_run(&mut self, name: &'a [u8], material: Option<usize>, first_triangle: u32) {
+    fn start_run(&mut self, name: Cow<'a, str>, material: Option<usize>, first_triangle: u32) {
         if self.runs.last().is_some_and(|r| r.first_triangle == first_triangle) {
             self.runs.pop();
         }
@@ -91,7 +97,7 @@ impl<'a> Events<'a> {
         let material = |m: Option<usize>| m.and_then(|m| index[m]);
         let ends = self.runs.iter().skip(1).map(|r| r.first_triangle).chain([total]);
         let parts = self.runs.iter().zip(ends).map(|(run, end)| Part {
-            name: String::from_utf8_lossy(run.name).into_owned(),
+            name: run.name.clone().into_owned(),
             triangles: run.first_triangle..end,
             material: material(run.material),
         });
@@ -138,9 +144,9 @@ impl Known {
     /// Of two materials with one name the first counts.
     fn add(&mut self, library: &str, material: MtlMaterial) {
         let number = self.materials.len();
-        let plain = String::from_utf8_lossy(without_comment(material.name.as_bytes())).into_owned();
+        let plain = without_comment(&material.name);
         if plain != material.name {
-            self.plain.entry(plain).or_insert(number);
+            self.plain.entry(plain.to_owned()).or_insert(number);
         }
         self.whole.entry(material.name.clone()).or_insert(number);
         self.materials.push((library.to_owned(), material));
@@ -148,7 +154,7 @@ impl Known {
 
     /// The number of the material `name`, and its name: as it stands, for a name may hold a `#`, else without comments.
     fn find<'a>(&self, name: &'a str) -> Option<(&'a str, usize)> {
-        let plain = &name[..without_comment(name.as_bytes()).len()];
+        let plain = without_comment(name);
         let names = [(name, &self.whole), (name, &self.plain), (plain, &self.whole), (plain, &self.plain)];
         names.into_iter().find_map(|(name, numbers)| Some((name, *numbers.get(name)?)))
     }
@@ -160,8 +166,8 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
     let mut library = Library::default();
     let mut warnings = Warnings::default();
     let mut known = Known::default();
-    for &(line, names) in &events.libraries {
-        for (name, bytes) in read_libraries(line, names, resolver, &mut warnings) {
+    for (line, names) in &events.libraries {
+        for (name, bytes) in read_libraries(*line, names, resolver, &mut warnings) {
             let mut own = Warnings::default();
             mtl::parse(&bytes, &mut own).into_iter().for_each(|m| known.add(&name, m));
             library.warnings.extend(own.into_messages(&name));
@@ -170,9 +176,8 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
 
     let mut requests = Requests::default();
     let mut built = HashMap::new();
-    for &(line, name) in &events.used {
-        let name = String::from_utf8_lossy(name);
-        library.index.push(known.find(&name).map(|(called, number)| {
+    for (line, name) in &events.used {
+        library.index.push(known.find(name).map(|(called, number)| {
             *built.entry(number).or_insert_with(|| {
                 let (source, material) = &known.materials[number];
                 library.materials.push(Material { name: called.to_owned(), ..material.build(source, &mut requests) });
@@ -181,7 +186,7 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
         }));
         if library.index.last() == Some(&None) {
             warnings
-                .note("material", Place::Line(line), || format!("unknown material `{name}`; the default one is used"));
+                .note("material", Place::Line(*line), || format!("unknown material `{name}`; the default one is used"));
         }
     }
 
@@ -215,16 +220,15 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
 
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a comment, else each of its
 /// words, else what is called as the last part of the path, which may be that of another machine.
-fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
+fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
     let plain = without_comment(names);
     if plain.len() < names.len() {
-        let whole = mtl::file_name(&String::from_utf8_lossy(names));
+        let whole = mtl::file_name(names);
         if let Ok(bytes) = resolver.read(&whole) {
             return vec![(whole, bytes)];
         }
     }
-    let text = String::from_utf8_lossy(plain);
-    let whole = &mtl::file_name(&text);
+    let whole = &mtl::file_name(plain);
     let mut missing = |name: &str, why: &crate::ResolveError| {
         warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
     };
@@ -232,7 +236,7 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
         Ok(bytes) => return vec![(whole.to_owned(), bytes)],
         Err(why) => why,
     };
-    let words = words(&text);
+    let words = words(plain);
     let mut found = Vec::new();
     let mut failures = Vec::new();
     if words.len() > 1 {
@@ -251,8 +255,8 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
         return vec![(bare.to_owned(), bytes)];
     }
 
-    // Tell what is missing: the words, where some of them were found, else the whole.
-    if found.is_empty() {
+    // Tell what is missing: the words, where some of them were found or quotes part them, else the whole.
+    if found.is_empty() && !whole.contains('"') {
         missing(whole, &why);
     } else {
         failures.iter().for_each(|(word, why)| missing(word, why));
@@ -260,17 +264,18 @@ fn read_libraries(line: u64, names: &[u8], resolver: &dyn Resolver, warnings: &m
     found
 }
 
-/// The names on a line; a blank behind `\` belongs to a name.
+/// The names on a line; a blank between quotes or behind `\` belongs to a name.
 fn words(line: &str) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
-    let mut goes_on = false;
-    for word in line.split_ascii_whitespace() {
-        let (part, continued) = word.strip_suffix('\\').map_or((word, false), |part| (part, true));
-        match words.last_mut().filter(|_| goes_on) {
-            Some(last) => *last += &format!(" {part}"),
-            None => words.push(part.to_owned()),
+    let mut words = vec![String::new()];
+    let (mut quoted, mut escaped) = (false, false);
+    for letter in line.chars() {
+        quoted ^= letter == '"';
+        if letter.is_ascii_whitespace() && !quoted && !escaped {
+            words.push(String::new());
+        } else if let Some(word) = words.last_mut() {
+            word.push(letter);
         }
-        goes_on = continued;
+        escaped = letter == '\\';
     }
-    words.iter().map(|w| mtl::file_name(w)).collect()
+    words.iter().filter(|w| !w.is_empty()).map(|w| mtl::file_name(w)).collect()
 }

@@ -259,6 +259,52 @@ fn materials_come_from_all_libraries() {
 }
 
 #[test]
+fn names_in_latin_1_are_told_apart_and_found() {
+    struct Latin;
+    impl Resolver for Latin {
+        fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+            match path {
+                "é.mtl" => Ok(b"newmtl M\xE9tal\nmap_Kd T\xFCr.png\nnewmtl M\xE8tal\n".to_vec()),
+                "utf8.mtl" => Ok("newmtl Öl\n".as_bytes().to_vec()),
+                _ => Err(ResolveError::NotFound),
+            }
+        }
+    }
+    let start = format!("mtllib \\\n utf8.mtl\n{SQUARE}");
+    let text =
+        b"mtllib \xE9.mtl\ng T\xFCr\nusemtl M\xE9tal\nf 1 2 3\nusemtl M\xE8tal\nf 1 3 4\nusemtl \xD6l\nf 1 2 4\n";
+    let s = load(&[start.as_bytes(), text].concat(), "t.obj", &Latin, &Workers::single()).unwrap();
+    assert_eq!(s.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["Métal", "Mètal", "Öl"]);
+    assert_eq!((s.meshes[0].parts.len(), s.meshes[0].parts[0].name.as_str()), (3, "Tür"));
+    assert_eq!(s.warnings, ["é.mtl: line 2: texture `Tür.png` is left out: there is no such file"]);
+}
+
+#[test]
+fn library_names_with_blanks_may_stand_between_quotes() {
+    let folder = Folder(&[("m 3.mtl", "newmtl a"), ("m.mtl", "newmtl b"), ("n 1.mtl", "newmtl c")]);
+    let text =
+        format!("mtllib \"m 3.mtl\" m.mtl n\\ 1.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 4");
+    let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+    assert_eq!((s.materials.len(), s.warnings.len()), (3, 0), "{:?}", s.warnings);
+    let s = read("mtllib \"none 1.mtl\" none.mtl\nv 0 0 0\n");
+    let told = |name| format!("t.obj: line 1: material library `{name}` is left out: there is no such file");
+    assert_eq!(s.warnings, [told("none 1.mtl"), told("none.mtl")]);
+}
+
+#[test]
+fn every_statement_may_go_over_lines() {
+    let s = read(
+        "v 0 0 0\nv 1 0\\\n0\nv 1 1\\\r\n 0\ncurv 0 1 1 \\\n 2\nlod \\\n3\ng a b \\\nl r\nf 1 2\\\n 3\n# no \\\nf 3 2 1\nvx",
+    );
+    let mesh = &s.meshes[0];
+    assert_eq!(mesh.positions, [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+    assert_eq!((mesh.triangles.len(), mesh.parts.len(), mesh.parts[0].name.as_str()), (2, 1, "a b l r"));
+    let told = ["line 6: free-form curves and", "line 8: `lod` is not", "line 16: unknown statement `vx`"];
+    assert_eq!(s.warnings.len(), told.len(), "{:?}", s.warnings);
+    assert!(s.warnings.iter().zip(told).all(|(w, t)| w.contains(t)), "{:?}", s.warnings);
+}
+
+#[test]
 fn a_file_without_anything_is_an_empty_scene() {
     let s = read("# nothing\n");
     assert!(s.meshes.is_empty());

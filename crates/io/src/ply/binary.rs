@@ -11,7 +11,7 @@ use super::{Content, Layout, Reading, Role, Row, Target, slot};
 use crate::{Error, Place};
 use std::sync::atomic::{AtomicBool, Ordering};
 use vitral_exec::Workers;
-use vitral_math::color::{linear_from_srgb, linear_from_srgb_table};
+use vitral_math::color::linear_from_srgb_table;
 
 /// Rows that one worker takes at a time.
 const BLOCK: usize = 1 << 13;
@@ -22,13 +22,15 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, w
     let mut at = reading.header.data;
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
         at = match element.stride() {
+            // Elements without properties have no data, however many there are.
+            Some(0) => at,
             Some(stride) => {
                 let end = end_of_rows(bytes, at, element, stride, reading.file)?;
                 let rows = Rows { bytes: &bytes[at..end], stride, element, layout, big };
                 match layout.role {
                     Role::Vertex => rows.vertices(content, workers),
                     Role::Edge => _ = read_rows(bytes, at, element, layout, big, reading, content)?,
-                    Role::Face | Role::Strips | Role::Unknown => {}
+                    Role::Face | Role::Strips | Role::Incomplete | Role::Unknown => {}
                 }
                 end
             }
@@ -52,7 +54,7 @@ fn end_of_rows(bytes: &[u8], at: usize, element: &Element, stride: usize, file: 
     match element.count.checked_mul(stride as u64) {
         Some(size) if size <= room => Ok(at + size as usize),
         _ => {
-            let there = room / stride.max(1) as u64;
+            let there = room / stride as u64;
             let what = format!(
                 "the file ends here: {} elements `{}` are announced, {there} are there",
                 element.count, element.name
@@ -124,7 +126,7 @@ impl Rows<'_> {
             *uvs = self.column(self.fields(slot::UV), count, workers, |[u, v]: [f32; 2]| [u, 1.0 - v]);
         }
         if let Some(colors) = &mut content.colors {
-            *colors = self.colors(count, workers);
+            (*colors, content.has_linear_colors) = self.colors(count, workers);
         }
     }
 
@@ -158,27 +160,21 @@ impl Rows<'_> {
         out
     }
 
-    /// Colours of all rows, linear.
-    fn colors(&self, count: usize, workers: &Workers) -> Vec<[f32; 4]> {
+    /// Colours of all rows, and whether they are linear; else encoded.
+    fn colors(&self, count: usize, workers: &Workers) -> (Vec<[f32; 4]>, bool) {
         let fields = self.fields::<4>(slot::COLOR);
         if fields.iter().flatten().all(|f| f.1 == Type::U8) {
             let table = linear_from_srgb_table();
-            let mut colors = self.column(fields.map(|f| f.map(|(at, _)| (at, Type::U8))), count, workers, |c| {
+            let mut colors = self.column(fields, count, workers, |c| {
                 [table[c[0] as usize], table[c[1] as usize], table[c[2] as usize], c[3] / 255.0]
             });
             if fields[3].is_none() {
                 colors.iter_mut().for_each(|c| c[3] = 1.0);
             }
-            return colors;
+            return (colors, true);
         }
         let scale = fields.map(|f| f.map_or(1.0, |f| f.1.full_scale() as f32));
-        self.column(fields, count, workers, |c| {
-            let [r, g, b, a] = std::array::from_fn(|k| {
-                let encoded = c[k] / scale[k];
-                if encoded.is_nan() { 1.0 } else { encoded.clamp(0.0, 1.0) }
-            });
-            [linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), a]
-        })
+        (self.column(fields, count, workers, |c: [f32; 4]| std::array::from_fn(|k| c[k] / scale[k])), false)
     }
 }
 

@@ -57,9 +57,21 @@ impl Type {
     pub(super) fn full_scale(self) -> f64 {
         match self {
             Self::F32 | Self::F64 => 1.0,
-            Self::I16 | Self::U16 => 65535.0,
+            Self::I8 => 127.0,
+            Self::I16 => 32767.0,
+            Self::U16 => 65535.0,
             // Wider integers hold bytes, as far as known.
-            Self::I8 | Self::U8 | Self::I32 | Self::U32 => 255.0,
+            Self::U8 | Self::I32 | Self::U32 => 255.0,
+        }
+    }
+
+    /// What a full channel is in files that exceed [`Self::full_scale`]: floats that are bytes, text that takes signed for
+    /// unsigned types. The same for types that nothing exceeds but a slip.
+    pub(super) fn wide_scale(self) -> f64 {
+        match self {
+            Self::F32 | Self::F64 | Self::I8 => 255.0,
+            Self::I16 => 65535.0,
+            Self::U8 | Self::U16 | Self::I32 | Self::U32 => self.full_scale(),
         }
     }
 }
@@ -133,7 +145,7 @@ impl Header {
                 return Err(error("the file ends here, `end_header` is required".to_owned()));
             }
             let length = bytes[at..].iter().position(|&b| b == end).unwrap_or(bytes.len() - at);
-            let text = String::from_utf8_lossy(&bytes[at..at + length]);
+            let text = crate::text::name(&bytes[at..at + length]);
             at = (at + length + 1).min(bytes.len());
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words.as_slice() {

@@ -58,6 +58,51 @@ fn colours_of_faces_count_where_vertices_have_none() {
 }
 
 #[test]
+fn a_full_channel_is_what_the_type_can_hold() {
+    // The same grey of 100/255 in every type, as text and binary; with alpha and without.
+    let colors = |kind: &str, alpha: &str| {
+        let alpha = if alpha.is_empty() { String::new() } else { format!("property {alpha} alpha\n") };
+        format!("element vertex 2\n{XYZ}property {kind} red\nproperty {kind} green\nproperty {kind} blue\n{alpha}")
+    };
+    let check = |bytes: &[u8], grey: f32, told: &[&str]| {
+        let s = read(bytes).unwrap();
+        assert_eq!(s.warnings, told);
+        let found = s.meshes[0].colors.as_ref().unwrap().values[1];
+        let [r, .., a] = found;
+        assert!((r - linear_from_srgb(grey)).abs() < 1e-6 && a == 1.0, "{found:?} for {grey}");
+    };
+    for (kind, value, full, grey) in [
+        ("char", "50", "127", 50.0 / 127.0),
+        ("uchar", "50", "255", 50.0 / 255.0),
+        ("short", "16384", "32767", 16384.0 / 32767.0),
+        ("ushort", "16384", "65535", 16384.0 / 65535.0),
+        ("int", "50", "255", 50.0 / 255.0),
+        ("float", "0.25", "1", 0.25),
+        ("double", "0.25", "1", 0.25),
+    ] {
+        check(&text(&colors(kind, ""), &format!("0 0 0 0 0 0\n0 0 0 {value} {value} {value}\n")), grey, &[]);
+        let with_alpha = format!("0 0 0 {full} {full} {full} {full}\n0 0 0 {value} {value} {value} {full}\n");
+        check(&text(&colors(kind, kind), &with_alpha), grey, &[]);
+    }
+    let bytes = "t.ply: colours exceed 1 and are read as 0 to 255";
+    let data = "0 0 0 255 0 0 1\n0 0 0 50 50 50 1\n";
+    check(&text(&colors("float", "float"), data), 50.0 / 255.0, &[bytes]);
+    check(&text(&colors("double", ""), &data.replace(" 1\n", "\n")), 50.0 / 255.0, &[bytes]);
+    let signed = "t.ply: colours exceed 127 and are read as 0 to 255";
+    check(&text(&colors("char", ""), &data.replace(" 1\n", "\n")), 50.0 / 255.0, &[signed]);
+    check(&text(&colors("int", ""), "0 0 0 300 0 0\n0 0 0 50 50 50\n"), 50.0 / 255.0, &[]);
+
+    let binary = |kind: &str, rows: &[u8]| {
+        let header = String::from_utf8(text(&colors(kind, ""), "")).unwrap().replace("ascii", "binary_little_endian");
+        [header.as_bytes(), rows].concat()
+    };
+    let row = |color: &[u8]| [&[0; 12][..], color, color, color].concat();
+    check(&binary("float", &[255f32, 50.0].map(|c| row(&c.to_le_bytes())).concat()), 50.0 / 255.0, &[bytes]);
+    check(&binary("short", &[32767i16, 16384].map(|c| row(&c.to_le_bytes())).concat()), 16384.0 / 32767.0, &[]);
+    check(&binary("uchar", &[row(&[255]), row(&[50])].concat()), 50.0 / 255.0, &[]);
+}
+
+#[test]
 fn points_without_faces_and_missing_lists() {
     let s = read(&text(&format!("element vertex 2\n{XYZ}{LIST}property float confidence\n"), "0 0 0 0 1\n1 1 1 0 1\n"))
         .unwrap();
@@ -65,6 +110,29 @@ fn points_without_faces_and_missing_lists() {
     assert_eq!(s.warnings, ["t.ply: line 4: properties of `vertex` that are not used: `vertex_indices`, `confidence`"]);
     let s = read(&text(&format!("element vertex 1\n{XYZ}{LIST}"), "0 0 0\n")).unwrap();
     assert_eq!(s.warnings[1], "t.ply: line 10: the line ends before the list `vertex_indices`; taken as empty");
+}
+
+#[test]
+fn elements_without_what_makes_them_are_left_out() {
+    let incomplete = "element face 1\nproperty uchar red\nelement edge 2\nproperty int vertex1\nelement tristrips 0\n";
+    let told = [
+        "t.ply: line 8: `face` without a list `vertex_indices` is left out",
+        "t.ply: line 10: `edge` without `vertex1` and `vertex2` is left out",
+    ];
+    let s = read(&text(&format!("element vertex 1\n{XYZ}{incomplete}"), "0 0 0\n7\n0\n0\n")).unwrap();
+    assert_eq!((&s.meshes[0].points, s.meshes[0].lines.len()), (&vec![0], 0));
+    assert_eq!(s.warnings, told);
+    let binary = "ply\nformat binary_little_endian 1.0\ncomment c\n";
+    let mut bytes = format!("{binary}element vertex 1\n{XYZ}{incomplete}end_header\n").into_bytes();
+    bytes.extend([0; 12 + 1 + 8]);
+    assert_eq!(read(&bytes).unwrap().warnings, told);
+
+    // A claim that nothing has to back.
+    for element in ["edge", "face", "user"] {
+        let elements = format!("element vertex 1\n{XYZ}element {element} 18446744073709551615\nend_header\n");
+        let s = read(&[format!("{binary}{elements}").as_bytes(), &[0; 12]].concat()).unwrap();
+        assert_eq!((s.meshes[0].points.len(), s.warnings.len()), (1, 1));
+    }
 }
 
 #[test]

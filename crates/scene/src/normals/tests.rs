@@ -176,3 +176,14 @@ fn concave_corners_weigh_with_their_reflex_angle() {
         assert!((f64::from(*angle) - if k == 3 { 3.0 } else { 1.0 } * FRAC_PI_2).abs() < 1e-6);
     }
 }
+
+#[test]
+fn normals_of_any_length_can_be_squared() {
+    let values = vec![[3e-30, 0.0, -4e-30], [0.0, 1e30, 0.0], [0.0, 2.0, 0.0], [0.0; 3], [f32::NAN, 0.0, 0.0]];
+    let mut mesh = Arc::new(Mesh { normals: Some(Attribute::per_vertex(values)), ..Mesh::default() });
+    let shared = Arc::clone(&mesh);
+    make_measurable(&mut mesh, &Workers::single());
+    let made = &mesh.normals.as_ref().unwrap().values;
+    assert_eq!(made[..4], [[0.6, 0.0, -0.8], [0.0, 1.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3]]);
+    assert!(made[4][0].is_nan() && shared.normals.as_ref().unwrap().values[1] == [0.0, 1e30, 0.0]);
+}

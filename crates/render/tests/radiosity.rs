@@ -171,6 +171,50 @@ fn a_finished_solution_does_without_the_ambient_term() {
     assert!((arriving / expected - 1.0).abs() < 0.01, "{arriving}, by the form factor {expected}");
 }
 
+#[test]
+fn light_that_leaves_does_not_end_the_rest_early() {
+    // A furnace, and over it a lamp that shines away from all.
+    let mut scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.2; 6]);
+    let material = Some(scene.add_material(Material { emission: [1e4; 3], ..Material::default() }));
+    let mut lamp = solids::plane(1.0, 1.0, 1, 1);
+    lamp.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(lamp, DMat4::from_translation(DVec3::Y * 2.0));
+    let both = enclosure(scene, 0.5);
+    let progress = progressive::solve(&both, &[hemicube()], RESIDUAL, u64::MAX, &Execution::default()).unwrap();
+    let inside = (0..both.elements.len()).filter(|&e| both.elements[e].center.y < 0.4);
+    let light: Vec<f64> = inside.map(|e| progress.irradiance[2 * e][1]).collect();
+    assert!(light.len() > 12 && light.iter().all(|i| (i / 0.4 - 1.0).abs() < 0.01), "{light:?}");
+    let left = progress.emitted - progress.absorbed - progress.escaped;
+    assert!((progress.residual - left / (progress.absorbed + left)).abs() < 1e-4, "{progress:?}");
+}
+
+#[test]
+fn light_passes_where_surfaces_are_cut_out() {
+    // A sheet between a lamp and the floor, of which the texture leaves one half.
+    let lit = |alpha: [u8; 2]| {
+        let mut scene = parallel_squares();
+        let texels = (0..64 * 4).map(|i| [255, 255, 255, alpha[usize::from(i % 64 >= 32)]]).collect();
+        let texture = Texture::new("holes".to_owned(), Plane::from_rows(64, 4, texels).unwrap(), Encoding::Linear);
+        scene.textures.push(Arc::new(texture));
+        let material = scene.add_material(Material {
+            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 },
+            alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+            base_texture: Some(TextureRef::new(0)),
+            ..Material::default()
+        });
+        let mut sheet = solids::plane(1.0, 1.0, 1, 1);
+        sheet.parts.iter_mut().for_each(|p| p.material = Some(material));
+        scene.add_mesh(sheet, DMat4::from_translation(DVec3::Y * 0.95));
+        let room = enclosure(scene, 0.2);
+        let progress = progressive::solve(&room, &[hemicube()], 1e-3, u64::MAX, &Execution::default()).unwrap();
+        let floor = (0..room.elements.len()).filter(|&e| room.elements[e].center.y < -0.1);
+        floor.map(|e| progress.irradiance[2 * e][0] * room.elements[e].area).sum::<f64>()
+    };
+    let [open, half, closed] = [[0, 0], [0, 255], [255, 255]].map(lit);
+    assert!((open / (3.0 * 0.199_824_895_7) - 1.0).abs() < 0.01, "{open}");
+    assert!((half / open - 0.5).abs() < 0.05 && closed < 0.1 * open, "{half} {closed} of {open}");
+}
+
 /// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
 /// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
 /// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.

@@ -38,7 +38,7 @@ use vitral_scene::Attribute;
 const HEMICUBES: [u32; 13] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 /// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
-/// The part of the light that may be left: it is missing in the solution, where other errors are some tenths of a percent.
+/// The part of the light that stays in the scene that may be left: it is missing in the solution, where other errors are some tenths of a percent.
 pub const RESIDUAL: f64 = 0.002;
 /// The part that may be left before elements are cut again.
 const ROUGH: f64 = 0.2;

@@ -87,23 +87,19 @@ pub struct Enclosure {
     pub(super) tree: Arc<Bvh>,
 }
 
-/// The lights that light surfaces directly: without ambient light, and without area lights where surfaces shine.
-pub(crate) fn direct_lights(scene: &Scene, lights: &[Light]) -> Vec<Light> {
-    let shining = scene.materials.iter().any(|m| m.emission != [0.0; 3]);
-    let direct = lights.iter().map(|light| {
-        let stands_for = shining && matches!(light.kind, LightKind::Area { .. });
-        Light { ambient: [0.0; 3], enabled: light.enabled && !stands_for, ..light.clone() }
-    });
-    direct.collect()
-}
-
 /// Whether a material lets a part of the light pass, for which radiosity knows only all or nothing.
 pub(crate) fn partly_transparent(material: &Material) -> bool {
     material.alpha_mode == AlphaMode::Blend && material.opacity > 0.0 && material.opacity < 1.0
 }
 
+/// Whether textures cut parts out of a material's surfaces, or make them glass.
+pub(crate) fn has_holes(material: &Material) -> bool {
+    let textures = material.base_texture.is_some() || material.opacity_texture.is_some();
+    textures && material.alpha_mode != AlphaMode::Opaque
+}
+
 /// Whether a material's surfaces take part.
-fn takes_part(material: Option<&Material>) -> bool {
+pub(super) fn takes_part(material: Option<&Material>) -> bool {
     material.is_none_or(|m| m.alpha_mode != AlphaMode::Blend || m.opacity >= 0.5)
 }
 

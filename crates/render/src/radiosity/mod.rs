@@ -16,6 +16,7 @@ pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
 mod near;
+pub(crate) mod lamps;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
@@ -23,6 +24,7 @@ pub mod targets;
 
 pub use solution::Solution;
 
+pub use lamps::shines;
 use crate::stats::RadiosityCounters;
 use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
 use enclosure::Enclosure;

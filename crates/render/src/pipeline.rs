@@ -125,6 +125,10 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }
+    if settings.global == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
+        let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
+        warnings.push(holes.to_owned());
+    }
     let picture = &stats.picture;
     let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
     if settings.channels.color && !shown && !session.world.bounds.is_empty() {

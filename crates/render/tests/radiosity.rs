@@ -228,6 +228,11 @@ const PATH_TRACED: [[f64; 3]; 5] = [
 
 #[test]
 fn what_stands_on_a_shining_floor_is_lit_evenly_at_its_foot() {
+    // Mirrored corners run the other way.
+    [1.0, -1.0].into_iter().for_each(|x| shining_floor(DMat4::from_scale(dvec3(x, 1.0, 1.0))));
+}
+
+fn shining_floor(mirror: DMat4) {
     // A wall, askew to the patches of the floor, which it cuts in two.
     let mut scene = Scene::default();
     let material = |emission: f32| Material {
@@ -241,7 +246,7 @@ fn what_stands_on_a_shining_floor_is_lit_evenly_at_its_foot() {
         let mut plane = solids::plane(size.0, size.1, 1, 1);
         let material = Some(scene.add_material(material(emission)));
         plane.parts.iter_mut().for_each(|p| p.material = material);
-        scene.add_mesh(plane, place);
+        scene.add_mesh(plane, place * mirror);
     }
     let room = enclosure(scene, 0.4);
     let progress = progressive::solve(&room, &[hemicube()], 1e-4, u64::MAX, &Execution::default()).unwrap();

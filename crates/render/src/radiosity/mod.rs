@@ -21,6 +21,7 @@ pub mod patch;
 pub mod progressive;
 pub mod solution;
 pub mod targets;
+mod surface;
 
 pub use solution::Solution;
 
@@ -201,11 +202,12 @@ impl Session {
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
             let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);
-            let used = [m.base_texture, m.emission_texture, m.opacity_texture];
+            let used = [m.base_texture, m.emission_texture, m.opacity_texture, m.metallic_roughness_texture];
             hash = solution::mix(hash, format!("{surface:?} {used:?}").as_bytes());
             textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
         }
         for texture in textures.iter().filter_map(|&t| self.scene.textures.get(t as usize)) {
+            hash = solution::mix(hash, &[u8::from(mesh.colors_from_srgb)]);
             hash = solution::mix(hash, format!("{:?}", texture.encoding).as_bytes());
             for level in &texture.levels {
                 hash = solution::mix(hash, format!("{} {}", level.width(), level.height()).as_bytes());

@@ -493,6 +493,35 @@ fn what_lamps_light_lights_the_rest() {
 }
 
 #[test]
+fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
+    // A spot that is smaller than an element, and no element's middle: what its light is worth is known.
+    let mut scene = Scene::default();
+    let kd = [0.8; 3];
+    let material = Some(scene.add_material(Material {
+        reflectance: Reflectance::Phong { ka: [0.0; 3], kd, ks: [0.0; 3], shininess: 1.0 },
+        ..Material::default()
+    }));
+    let mut plane = solids::plane(2.0, 2.0, 1, 1);
+    plane.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(plane, DMat4::IDENTITY);
+    let session = Session::new(Arc::new(scene)).unwrap();
+    let triangles = Triangles::of_world(session.world(), &Workers::single());
+    let corners = |f: u32| Some(triangles.corners[f as usize].map(|c| c.as_dvec3()));
+    for (x, z) in [(0.013, 0.021), (0.05, 0.02), (0.1, -0.07), (-0.04, 0.09)] {
+        let trees = Trees::new(session.world().facet_count, corners, 0.4, 1 << 20).unwrap();
+        let (height, cutoff) = (2.0, 0.035f64);
+        let position = dvec3(x, height, z);
+        let kind = LightKind::Spot { position, direction: DVec3::NEG_Y, cutoff, inner: cutoff, exponent: 0.0 };
+        let lights = [Light { kind, ..Light::default() }];
+        let room = Enclosure::new(trees, &session, &lights, &Settings::default(), &Execution::default()).unwrap();
+        let sent: f64 =
+            room.elements.iter().enumerate().map(|(e, element)| room.emission[2 * e][0] * element.area).sum();
+        let expected = 0.8 * std::f64::consts::PI * (height * cutoff.tan()).powi(2);
+        assert!((sent / expected - 1.0).abs() < 0.15, "{x} {z}: {sent}, expected {expected}");
+    }
+}
+
+#[test]
 fn interpolated_light_has_no_steps_at_hanging_vertices() {
     // One leaf of the floor is cut twice, or a third of its edge once; along all edges, both sides must show the same light.
     for (longest, edges) in [(0.8, [0.125f32, 0.25, 0.5]), (0.5, [1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0])] {

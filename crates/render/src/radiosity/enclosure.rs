@@ -2,13 +2,14 @@
 //!
 //! Both sides of a surface may be lit, so each element counts twice: `2 e` is its front, from which its corners run
 //! counter-clockwise, `2 e + 1` its back. Light that surfaces send out leaves the front, and the back as well if the
-//! material is two-sided. What light sources bring (with shadows by rays) is reflected once before anything else happens.
-//! Surfaces that let more than half of the light pass take no part.
+//! material is two-sided. What light sources bring (`direct`) is reflected once before anything else happens. Surfaces that
+//! let more than half of the light pass take no part.
 //!
 //! In:   a session, lights. Out: [`Enclosure`].
 //! Cost: linear in elements, times lights and textures.
 //! Source: \[Goral et al. 1984\].
 
+use super::direct::Direct;
 use super::gather::Row;
 use super::near::Neighbours;
 use super::patch::{NONE, Trees, area};
@@ -16,13 +17,12 @@ use super::surface::{PARTS, Surface, Surfaces, middle};
 use super::targets::Targets;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Parts, Place, Places, Shadows, facet as facet_of, ray::RayShadows};
-use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
+use crate::shadow::{Place, facet as facet_of};
+use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{AlphaMode, Light, Material, PreparedLight};
-use vitral_math::lanes::V3;
-use vitral_math::{DVec3, DVec4};
+use vitral_light::{AlphaMode, Light, Material};
+use vitral_math::DVec3;
 
 /// Red, green, blue.
 pub type Color = [f64; 3];
@@ -77,6 +77,8 @@ pub struct Enclosure {
     /// Radiosity of each side of each element before light goes on from surface to surface: what it sends out by itself,
     /// and what it reflects of light sources.
     pub emission: Vec<Color>,
+    /// What light sources bring to each side of each element; empty without any.
+    pub(super) direct: Vec<Color>,
     /// The elements as hemicubes find them.
     pub targets: Targets,
     /// The elements by their places.
@@ -163,7 +165,7 @@ impl Enclosure {
         let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = targets.session.bvh(execution)?;
         let emission = own.into_flattened();
-        let mut enclosure = Self { trees, elements, patches, emission, targets, neighbours, tree };
+        let mut enclosure = Self { trees, elements, patches, emission, direct: Vec::new(), targets, neighbours, tree };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
     }
@@ -185,52 +187,23 @@ impl Enclosure {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<(), Limit> {
-        let center = Triangles::center_of(&session.world);
-        let here = vitral_math::DMat4::from_translation(-center);
-        let prepared = lights.iter().map(|l| PreparedLight::new(l, &here)).enumerate();
-        let prepared: Vec<_> = prepared.filter_map(|(i, l)| Some((i, l?))).collect();
-        if prepared.is_empty() || !settings.lighting {
-            return Ok(());
-        }
-        let shadows = RayShadows.prepare(session, lights, DVec4::Z, settings, execution)?;
-        let direct = execution.workers.map(self.emission.len(), |i| {
+        let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
+        let arriving = execution.workers.map(self.emission.len(), |i| {
             let element = &self.elements[i / 2];
-            let facet = self.trees.nodes[element.node as usize].facet;
-            let place = Place {
+            let side = Place {
                 position: element.center,
                 normal: element.normal * turned(i),
-                facet,
+                facet: self.trees.nodes[element.node as usize].facet,
                 seed: i as u32,
                 pixel: None,
             };
-            arriving(&prepared, &*shadows, &place)
+            direct.mean(&side, self.trees.places(element.node), element.there)
         });
-        for (i, arriving) in direct.into_iter().enumerate() {
+        for (i, arriving) in arriving.iter().enumerate() {
             let reflectance = self.elements[i / 2].reflectance;
             (0..3).for_each(|k| self.emission[i][k] += reflectance[k] * arriving[k]);
         }
+        self.direct = arriving;
         Ok(())
     }
-}
-
-/// Light that comes straight from light sources to a place, on its normal's side.
-fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Place) -> Color {
-    let three = |v: DVec3| V3::splat(0.0f32, v.as_vec3().to_array());
-    let (position, normal) = (three(place.position), three(place.normal));
-    let here: Places = std::iter::once(*place).collect();
-    let mut sum = [0.0; 3];
-    for (number, light) in lights {
-        let incident = light.incident(position);
-        let (intensity, cos) = match light.irradiance(position, normal) {
-            Some(irradiance) => (irradiance, 1.0),
-            None => (incident.intensity, normal.dot(incident.l)),
-        };
-        if cos > 0.0 && intensity > 0.0 {
-            let mut part = Parts::new(1, [0.0; 3]);
-            shadows.arriving(*number, &here, &mut part, &mut 0);
-            let part = part.get(0);
-            (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * intensity * cos));
-        }
-    }
-    sum
 }

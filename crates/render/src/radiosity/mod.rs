@@ -11,25 +11,27 @@
 //!
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
+mod direct;
 pub mod enclosure;
 pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
-mod near;
 pub(crate) mod lamps;
+mod near;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
-pub mod targets;
 mod surface;
-
-pub use solution::Solution;
+pub mod targets;
 
 pub use lamps::shines;
+pub use solution::Solution;
+
 use crate::stats::RadiosityCounters;
 use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
+use progressive::Progress;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -111,7 +113,7 @@ fn solve(
     for round in 0..ROUNDS {
         let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
         let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
-        let contrasts = Solution::new(&enclosure, &rough).contrasts();
+        let contrasts = contrasts(&enclosure, &rough);
         let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
         if cut.is_empty() {
@@ -136,6 +138,17 @@ fn solve(
         seconds: execution.budget.elapsed() - start,
     };
     Ok(solution)
+}
+
+/// How much light changes over each element, that of other surfaces or that of light sources.
+fn contrasts(enclosure: &Enclosure, rough: &Progress) -> Vec<f64> {
+    let contrasts = Solution::new(enclosure, rough).contrasts();
+    if enclosure.direct.is_empty() {
+        return contrasts;
+    }
+    let direct = Progress { irradiance: enclosure.direct.clone(), ..Progress::default() };
+    let direct = Solution::new(enclosure, &direct).contrasts();
+    contrasts.into_iter().zip(direct).map(|(a, b)| a.max(b)).collect()
 }
 
 /// `execution` for one of several solutions, whose progress is this part of the whole, in thousandths.
@@ -194,6 +207,7 @@ impl Session {
             mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
             mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
             hash = mix_attributes(hash, mesh.colors.as_slice());
+            hash = solution::mix(hash, &[u8::from(mesh.colors_from_srgb)]);
             hash = mix_attributes(hash, &mesh.uvs);
             for part in &mesh.parts {
                 hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
@@ -207,7 +221,6 @@ impl Session {
             textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
         }
         for texture in textures.iter().filter_map(|&t| self.scene.textures.get(t as usize)) {
-            hash = solution::mix(hash, &[u8::from(mesh.colors_from_srgb)]);
             hash = solution::mix(hash, format!("{:?}", texture.encoding).as_bytes());
             for level in &texture.levels {
                 hash = solution::mix(hash, format!("{} {}", level.width(), level.height()).as_bytes());

@@ -155,7 +155,7 @@ pub(crate) struct AlgorithmArgs {
     /// Longest edge of a patch, with --global radiosity [default: 1/16 of the scene's diagonal]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) patch_size: Option<f64>,
-    /// Patches that may send light, with --global radiosity [default: until 0.2 % of it is left]
+    /// Patches that may send light, with --global radiosity [default: until 0.2 % of what stays is left]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
     /// Edges alone, the hidden ones too

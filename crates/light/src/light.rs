@@ -271,7 +271,11 @@ impl Light {
                 LightKind::Area { shape: AreaShape::Disc { center: point(*center), normal, radius } }
             }
             LightKind::Area { shape: AreaShape::Polygon { corners } } => {
-                let corners = corners.iter().map(|&c| point(c)).collect();
+                let mut corners: Vec<DVec3> = corners.iter().map(|&c| point(c)).collect();
+                // Mirrored corners run the other way, and the light would leave the other side.
+                if DMat3::from_mat4(*to_from_here).determinant() < 0.0 {
+                    corners.reverse();
+                }
                 LightKind::Area { shape: AreaShape::Polygon { corners } }
             }
         };
@@ -310,6 +314,18 @@ mod tests {
         assert_eq!(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1e-4, 0.0]]), Ok(()));
         let rounded = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 1e-4], [0.0, 1.0, 0.0]];
         assert_eq!(polygon(&rounded), Ok(()));
+    }
+
+    #[test]
+    fn mirrored_polygons_shine_to_the_mirrored_side() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].to_vec();
+        let light = Light { kind: LightKind::Area { shape: AreaShape::Polygon { corners } }, ..Light::default() };
+        // It shines along z: mirroring in x leaves that as it is, in z turns it round.
+        for (scale, z) in [([1.0; 3], 1.0), ([-1.0, 1.0, 1.0], 1.0), ([1.0, 1.0, -1.0], -1.0), ([-1.0; 3], -1.0)] {
+            let kind = light.transformed(&DMat4::from_scale(DVec3::from_array(scale))).kind;
+            let LightKind::Area { shape: AreaShape::Polygon { corners } } = kind else { panic!("it is a polygon") };
+            assert_eq!((corners[1] - corners[0]).cross(corners[2] - corners[0]), DVec3::Z * z, "{scale:?}");
+        }
     }
 
     #[test]

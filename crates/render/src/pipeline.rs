@@ -2,8 +2,8 @@
 
 use crate::global::Whitted;
 use crate::marks;
-use crate::radiosity::enclosure::{direct_lights, partly_transparent};
-use crate::radiosity::solution;
+use crate::radiosity::enclosure::{has_holes, partly_transparent};
+use crate::radiosity::{lamps, solution};
 use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants, TileRows};
 use crate::stats::{CullCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
@@ -52,7 +52,8 @@ pub fn render(
     execution: &Execution,
 ) -> Result<Rendered, Error> {
     let viewport = settings.check()?;
-    let direct = (settings.global == Global::Radiosity).then(|| direct_lights(session.scene(), shot.lights));
+    let direct = (settings.global == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let left_out = direct.as_ref().and_then(|direct| lamps::left_out(shot.lights, direct));
     // What the ambient terms guess at is computed then.
     let solved = direct.as_deref().map(|lights| Shot { lights, ambient: [0.0; 3], ..shot.clone() });
     let shot = solved.as_ref().unwrap_or(shot);
@@ -84,7 +85,8 @@ pub fn render(
     }
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
-    let warnings = warnings(&stats, session, settings, &execution.workers);
+    let mut warnings = warnings(&stats, session, settings, &execution.workers);
+    warnings.extend(left_out);
     Ok(Rendered { frame, stats, warnings })
 }
 
@@ -122,6 +124,10 @@ fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Wor
     if settings.global == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
+    }
+    if settings.global == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
+        let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
+        warnings.push(holes.to_owned());
     }
     let picture = &stats.picture;
     let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;

@@ -277,7 +277,7 @@ pub struct RadiosityCounters {
     pub elements: u64,
     /// Patches that sent light, some of them several times.
     pub shots: u64,
-    /// Light not yet sent on, as a part of what was emitted.
+    /// Light not yet sent on, as a part of what has not left the scene.
     pub residual: f64,
     /// Light that was there in the beginning.
     pub emitted: f64,

@@ -171,6 +171,50 @@ fn a_finished_solution_does_without_the_ambient_term() {
     assert!((arriving / expected - 1.0).abs() < 0.01, "{arriving}, by the form factor {expected}");
 }
 
+#[test]
+fn light_that_leaves_does_not_end_the_rest_early() {
+    // A furnace, and over it a lamp that shines away from all.
+    let mut scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.2; 6]);
+    let material = Some(scene.add_material(Material { emission: [1e4; 3], ..Material::default() }));
+    let mut lamp = solids::plane(1.0, 1.0, 1, 1);
+    lamp.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(lamp, DMat4::from_translation(DVec3::Y * 2.0));
+    let both = enclosure(scene, 0.5);
+    let progress = progressive::solve(&both, &[hemicube()], RESIDUAL, u64::MAX, &Execution::default()).unwrap();
+    let inside = (0..both.elements.len()).filter(|&e| both.elements[e].center.y < 0.4);
+    let light: Vec<f64> = inside.map(|e| progress.irradiance[2 * e][1]).collect();
+    assert!(light.len() > 12 && light.iter().all(|i| (i / 0.4 - 1.0).abs() < 0.01), "{light:?}");
+    let left = progress.emitted - progress.absorbed - progress.escaped;
+    assert!((progress.residual - left / (progress.absorbed + left)).abs() < 1e-4, "{progress:?}");
+}
+
+#[test]
+fn light_passes_where_surfaces_are_cut_out() {
+    // A sheet between a lamp and the floor, of which the texture leaves one half.
+    let lit = |alpha: [u8; 2]| {
+        let mut scene = parallel_squares();
+        let texels = (0..64 * 4).map(|i| [255, 255, 255, alpha[usize::from(i % 64 >= 32)]]).collect();
+        let texture = Texture::new("holes".to_owned(), Plane::from_rows(64, 4, texels).unwrap(), Encoding::Linear);
+        scene.textures.push(Arc::new(texture));
+        let material = scene.add_material(Material {
+            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 },
+            alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+            base_texture: Some(TextureRef::new(0)),
+            ..Material::default()
+        });
+        let mut sheet = solids::plane(1.0, 1.0, 1, 1);
+        sheet.parts.iter_mut().for_each(|p| p.material = Some(material));
+        scene.add_mesh(sheet, DMat4::from_translation(DVec3::Y * 0.95));
+        let room = enclosure(scene, 0.2);
+        let progress = progressive::solve(&room, &[hemicube()], 1e-3, u64::MAX, &Execution::default()).unwrap();
+        let floor = (0..room.elements.len()).filter(|&e| room.elements[e].center.y < -0.1);
+        floor.map(|e| progress.irradiance[2 * e][0] * room.elements[e].area).sum::<f64>()
+    };
+    let [open, half, closed] = [[0, 0], [0, 255], [255, 255]].map(lit);
+    assert!((open / (3.0 * 0.199_824_895_7) - 1.0).abs() < 0.01, "{open}");
+    assert!((half / open - 0.5).abs() < 0.05 && closed < 0.1 * open, "{half} {closed} of {open}");
+}
+
 /// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
 /// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
 /// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.
@@ -184,6 +228,11 @@ const PATH_TRACED: [[f64; 3]; 5] = [
 
 #[test]
 fn what_stands_on_a_shining_floor_is_lit_evenly_at_its_foot() {
+    // Mirrored corners run the other way.
+    [1.0, -1.0].into_iter().for_each(|x| shining_floor(DMat4::from_scale(dvec3(x, 1.0, 1.0))));
+}
+
+fn shining_floor(mirror: DMat4) {
     // A wall, askew to the patches of the floor, which it cuts in two.
     let mut scene = Scene::default();
     let material = |emission: f32| Material {
@@ -197,7 +246,7 @@ fn what_stands_on_a_shining_floor_is_lit_evenly_at_its_foot() {
         let mut plane = solids::plane(size.0, size.1, 1, 1);
         let material = Some(scene.add_material(material(emission)));
         plane.parts.iter_mut().for_each(|p| p.material = material);
-        scene.add_mesh(plane, place);
+        scene.add_mesh(plane, place * mirror);
     }
     let room = enclosure(scene, 0.4);
     let progress = progressive::solve(&room, &[hemicube()], 1e-4, u64::MAX, &Execution::default()).unwrap();
@@ -441,6 +490,35 @@ fn what_lamps_light_lights_the_rest() {
     let local = Settings { global: Global::None, ..settings };
     let dark = render(&mut session, &shot, &local, &Execution::default()).unwrap();
     assert_eq!(dark.frame.color.unwrap().data()[32 * 64 + 32], [0, 0, 0, 255]);
+}
+
+#[test]
+fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
+    // A spot that is smaller than an element, and no element's middle: what its light is worth is known.
+    let mut scene = Scene::default();
+    let kd = [0.8; 3];
+    let material = Some(scene.add_material(Material {
+        reflectance: Reflectance::Phong { ka: [0.0; 3], kd, ks: [0.0; 3], shininess: 1.0 },
+        ..Material::default()
+    }));
+    let mut plane = solids::plane(2.0, 2.0, 1, 1);
+    plane.parts.iter_mut().for_each(|p| p.material = material);
+    scene.add_mesh(plane, DMat4::IDENTITY);
+    let session = Session::new(Arc::new(scene)).unwrap();
+    let triangles = Triangles::of_world(session.world(), &Workers::single());
+    let corners = |f: u32| Some(triangles.corners[f as usize].map(|c| c.as_dvec3()));
+    for (x, z) in [(0.013, 0.021), (0.05, 0.02), (0.1, -0.07), (-0.04, 0.09)] {
+        let trees = Trees::new(session.world().facet_count, corners, 0.4, 1 << 20).unwrap();
+        let (height, cutoff) = (2.0, 0.035f64);
+        let position = dvec3(x, height, z);
+        let kind = LightKind::Spot { position, direction: DVec3::NEG_Y, cutoff, inner: cutoff, exponent: 0.0 };
+        let lights = [Light { kind, ..Light::default() }];
+        let room = Enclosure::new(trees, &session, &lights, &Settings::default(), &Execution::default()).unwrap();
+        let sent: f64 =
+            room.elements.iter().enumerate().map(|(e, element)| room.emission[2 * e][0] * element.area).sum();
+        let expected = 0.8 * std::f64::consts::PI * (height * cutoff.tan()).powi(2);
+        assert!((sent / expected - 1.0).abs() < 0.15, "{x} {z}: {sent}, expected {expected}");
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
-use vitral_render::{ColorSpace, Execution, Global, Rendered, Session, Settings, Shot, render};
+use vitral_render::{ColorSpace, Execution, Global, Rendered, Session, Settings, Shot, radiosity, render};
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, exposure, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -171,7 +171,7 @@ impl Renderer {
     /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
     /// usual view.
     fn fixed_lights(&self) -> Vec<Light> {
-        if self.scene().materials.iter().any(|material| material.emission != [0.0; 3]) {
+        if radiosity::shines(self.scene(), self.world()) {
             return Vec::new();
         }
         let (view, lens) = (View::default(), Lens::default());
@@ -319,10 +319,15 @@ mod tests {
         let leak = |lights: &[Light]| lights.iter().any(|l| l.kind != LightKind::Ambient && !l.shadow);
         assert!(!leak(&fixed.frame_lights(&near)) && leak(&renderer_lights));
         let mut scene = load_builtin("teapot").unwrap();
-        scene.materials.push(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
-        let mut shining = Renderer::new(scene).unwrap();
-        shining.settings.global = Global::Radiosity;
-        assert!(shining.frame_lights(&near).is_empty());
+        let lamp = scene.add_material(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
+        let with_lamp = |scene: &Scene| {
+            let mut shining = Renderer::new(scene.clone()).unwrap();
+            shining.settings.global = Global::Radiosity;
+            shining.frame_lights(&near)
+        };
+        assert_eq!(with_lamp(&scene), fixed.frame_lights(&near), "nothing is made of the material");
+        Arc::make_mut(&mut scene.meshes[0]).parts[0].material = Some(lamp);
+        assert!(with_lamp(&scene).is_empty());
         let mut lab = small("sphere");
         lab.light_intensity = Some(0.5);
         let lights = lab.frame_lights(&camera);

@@ -2,35 +2,31 @@
 //!
 //! Both sides of a surface may be lit, so each element counts twice: `2 e` is its front, from which its corners run
 //! counter-clockwise, `2 e + 1` its back. Light that surfaces send out leaves the front, and the back as well if the
-//! material is two-sided. What light sources bring (with shadows by rays) is reflected once before anything else happens;
-//! area lights that stand for surfaces which shine by themselves are left out. Surfaces that let more than half of the
-//! light pass take no part.
+//! material is two-sided. What light sources bring (`direct`) is reflected once before anything else happens. Surfaces that
+//! let more than half of the light pass take no part.
 //!
 //! In:   a session, lights. Out: [`Enclosure`].
-//! Cost: linear in elements, times lights.
+//! Cost: linear in elements, times lights and textures.
 //! Source: \[Goral et al. 1984\].
 
+use super::direct::Direct;
 use super::gather::Row;
 use super::near::Neighbours;
-use super::patch::{NONE, Trees};
+use super::patch::{NONE, Trees, area};
+use super::surface::{PARTS, Surface, Surfaces, middle};
 use super::targets::Targets;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::DecodeTables;
-use crate::shadow::{Parts, Place, Places, Shadows, facet as facet_of, ray::RayShadows, texel};
-use crate::{Execution, Session, Settings, shadow::ShadowAlgorithm};
+use crate::shadow::{Place, facet as facet_of};
+use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_light::{AlphaMode, Light, LightKind, Material, PreparedLight, Reflectance};
-use vitral_math::lanes::V3;
-use vitral_math::{DVec3, DVec4};
-use vitral_scene::Scene;
+use vitral_light::{AlphaMode, Light, Material};
+use vitral_math::DVec3;
 
 /// Red, green, blue.
 pub type Color = [f64; 3];
 
-/// Reflectances above this count as this, so that light dies out.
-const MOST_REFLECTED: f64 = 0.99;
 /// More elements are not made.
 const MOST_ELEMENTS: usize = 4 << 20;
 
@@ -45,8 +41,10 @@ pub struct Element {
     pub center: DVec3,
     /// Unit normal of the front.
     pub normal: DVec3,
-    /// In squares of the world's unit.
+    /// Of the parts that are there, in squares of the world's unit.
     pub area: f64,
+    /// A bit for each of 16 parts: those that are not cut out.
+    pub there: u16,
     /// Reflected part of diffuse light.
     pub reflectance: Color,
 }
@@ -79,6 +77,8 @@ pub struct Enclosure {
     /// Radiosity of each side of each element before light goes on from surface to surface: what it sends out by itself,
     /// and what it reflects of light sources.
     pub emission: Vec<Color>,
+    /// What light sources bring to each side of each element; empty without any.
+    pub(super) direct: Vec<Color>,
     /// The elements as hemicubes find them.
     pub targets: Targets,
     /// The elements by their places.
@@ -87,23 +87,19 @@ pub struct Enclosure {
     pub(super) tree: Arc<Bvh>,
 }
 
-/// The lights that light surfaces directly: without ambient light, and without area lights where surfaces shine.
-pub(crate) fn direct_lights(scene: &Scene, lights: &[Light]) -> Vec<Light> {
-    let shining = scene.materials.iter().any(|m| m.emission != [0.0; 3]);
-    let direct = lights.iter().map(|light| {
-        let stands_for = shining && matches!(light.kind, LightKind::Area { .. });
-        Light { ambient: [0.0; 3], enabled: light.enabled && !stands_for, ..light.clone() }
-    });
-    direct.collect()
-}
-
 /// Whether a material lets a part of the light pass, for which radiosity knows only all or nothing.
 pub(crate) fn partly_transparent(material: &Material) -> bool {
     material.alpha_mode == AlphaMode::Blend && material.opacity > 0.0 && material.opacity < 1.0
 }
 
+/// Whether textures cut parts out of a material's surfaces, or make them glass.
+pub(crate) fn has_holes(material: &Material) -> bool {
+    let textures = material.base_texture.is_some() || material.opacity_texture.is_some();
+    textures && material.alpha_mode != AlphaMode::Opaque
+}
+
 /// Whether a material's surfaces take part.
-fn takes_part(material: Option<&Material>) -> bool {
+pub(super) fn takes_part(material: Option<&Material>) -> bool {
     material.is_none_or(|m| m.alpha_mode != AlphaMode::Blend || m.opacity >= 0.5)
 }
 
@@ -133,8 +129,15 @@ impl Enclosure {
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let leaves = trees.leaves();
-        let tables = DecodeTables::new(settings.color_space);
-        let found = execution.workers.map(leaves.len(), |i| element(&trees, leaves[i], session, &tables));
+        let surfaces = Surfaces::new(session, settings);
+        let found = execution.workers.map(leaves.len(), |i| {
+            let Surface { normal, there, reflectance, emission } = surfaces.of(&trees, leaves[i]);
+            let corners = trees.places(leaves[i]);
+            let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
+            let patch = trees.nodes[leaves[i] as usize].patch;
+            let center = middle(corners);
+            (Element { node: leaves[i], patch, center, normal, area, there, reflectance }, emission)
+        });
         let (elements, own): (Vec<Element>, Vec<[Color; 2]>) = found.into_iter().unzip();
         let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
         let mut patches = vec![none; trees.patches as usize];
@@ -148,11 +151,21 @@ impl Enclosure {
             (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
             *area += element.area;
         }
-        patches.iter_mut().zip(areas).for_each(|(patch, area)| patch.center /= area);
-        let (targets, neighbours) = (Targets::new(&trees), Neighbours::new(&elements));
+        for (patch, area) in patches.iter_mut().zip(areas) {
+            // Of a patch that is cut out nothing is asked.
+            if area > 0.0 {
+                patch.center /= area;
+            }
+            let [a, b, c] = patch.corners;
+            if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
+                patch.corners = [a, c, b];
+            }
+        }
+        let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
+        let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = targets.session.bvh(execution)?;
         let emission = own.into_flattened();
-        let mut enclosure = Self { trees, elements, patches, emission, targets, neighbours, tree };
+        let mut enclosure = Self { trees, elements, patches, emission, direct: Vec::new(), targets, neighbours, tree };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
     }
@@ -174,89 +187,23 @@ impl Enclosure {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<(), Limit> {
-        let center = Triangles::center_of(&session.world);
-        let here = vitral_math::DMat4::from_translation(-center);
-        let prepared = lights.iter().map(|l| PreparedLight::new(l, &here)).enumerate();
-        let prepared: Vec<_> = prepared.filter_map(|(i, l)| Some((i, l?))).collect();
-        if prepared.is_empty() || !settings.lighting {
-            return Ok(());
-        }
-        let shadows = RayShadows.prepare(session, lights, DVec4::Z, settings, execution)?;
-        let direct = execution.workers.map(self.emission.len(), |i| {
+        let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
+        let arriving = execution.workers.map(self.emission.len(), |i| {
             let element = &self.elements[i / 2];
-            let facet = self.trees.nodes[element.node as usize].facet;
-            let place = Place {
+            let side = Place {
                 position: element.center,
                 normal: element.normal * turned(i),
-                facet,
+                facet: self.trees.nodes[element.node as usize].facet,
                 seed: i as u32,
                 pixel: None,
             };
-            arriving(&prepared, &*shadows, &place)
+            direct.mean(&side, self.trees.places(element.node), element.there)
         });
-        for (i, arriving) in direct.into_iter().enumerate() {
+        for (i, arriving) in arriving.iter().enumerate() {
             let reflectance = self.elements[i / 2].reflectance;
             (0..3).for_each(|k| self.emission[i][k] += reflectance[k] * arriving[k]);
         }
+        self.direct = arriving;
         Ok(())
     }
-}
-
-/// Light that comes straight from light sources to a place, on its normal's side.
-fn arriving(lights: &[(usize, PreparedLight)], shadows: &dyn Shadows, place: &Place) -> Color {
-    let three = |v: DVec3| V3::splat(0.0f32, v.as_vec3().to_array());
-    let (position, normal) = (three(place.position), three(place.normal));
-    let here: Places = std::iter::once(*place).collect();
-    let mut sum = [0.0; 3];
-    for (number, light) in lights {
-        let incident = light.incident(position);
-        let (intensity, cos) = match light.irradiance(position, normal) {
-            Some(irradiance) => (irradiance, 1.0),
-            None => (incident.intensity, normal.dot(incident.l)),
-        };
-        if cos > 0.0 && intensity > 0.0 {
-            let mut part = Parts::new(1, [0.0; 3]);
-            shadows.arriving(*number, &here, &mut part, &mut 0);
-            let part = part.get(0);
-            (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * part[k] * intensity * cos));
-        }
-    }
-    sum
-}
-
-/// An element, and what its front and back send out by themselves.
-fn element(trees: &Trees, node: u32, session: &Session, tables: &DecodeTables) -> (Element, [Color; 2]) {
-    let corners = trees.places(node);
-    let number = trees.nodes[node as usize].facet;
-    let instance = &session.world.instances[session.world.instance_of_facet(number)];
-    let triangle = number - instance.first_facet;
-    let (_, normal) = facet_of(instance, triangle, DVec3::ZERO);
-    let mesh = &*instance.mesh;
-    let material = mesh.material_of_triangle(triangle as usize);
-    let default = Material::default();
-    let material = material.and_then(|m| session.scene.materials.get(m as usize)).unwrap_or(&default);
-
-    // Colours of the whole facet: a texture counts with its mean.
-    let weights = [1.0 / 3.0; 3];
-    let mean = |texture| {
-        const SMALLEST_LEVEL: f32 = 64.0;
-        let found = texel(session, tables, texture, mesh, triangle as usize, weights, SMALLEST_LEVEL);
-        found.map_or([1.0; 3], |t| [0, 1, 2].map(|k| f64::from(t[k])))
-    };
-    let (base, glow) = (mean(material.base_texture), mean(material.emission_texture));
-    let vertex = mesh.colors.as_ref().map_or([1.0; 3], |colors| {
-        let corners = colors.at(triangle as usize, &mesh.triangles);
-        [0, 1, 2].map(|k| corners.iter().map(|c| f64::from(c[k])).sum::<f64>() / 3.0)
-    });
-    let diffuse = match material.reflectance {
-        Reflectance::Phong { kd, .. } => kd,
-        Reflectance::MetallicRoughness { base_color, metallic, .. } => base_color.map(|c| c * (1.0 - metallic)),
-    };
-    let reflectance = [0, 1, 2].map(|k| (f64::from(diffuse[k]) * base[k] * vertex[k]).clamp(0.0, MOST_REFLECTED));
-    let front = [0, 1, 2].map(|k| f64::from(material.emission[k]).max(0.0) * glow[k]);
-    let back = if material.double_sided { front } else { [0.0; 3] };
-    let center = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
-    let patch = trees.nodes[node as usize].patch;
-    (Element { node, patch, center, normal, area, reflectance }, [front, back])
 }

@@ -15,6 +15,7 @@
 
 use super::patch::Trees;
 use super::targets::{Sums, Targets};
+use crate::shadow::clearance;
 use crate::stats::CullCounters;
 use crate::visible::{TileSink, zbuffer::resolve_in_passing};
 use crate::{Execution, PreparedView, Settings};
@@ -41,8 +42,8 @@ pub struct Hemicube {
     /// Form factors of the pixels of the top, and of the upper half of a side. Each row begins with 0, and has for each
     /// pixel the sum up to it.
     sums: [Vec<f64>; 2],
-    /// Distances of the near and far planes.
-    clip: (f64, f64),
+    /// Of the scene.
+    diagonal: f64,
 }
 
 impl Hemicube {
@@ -75,7 +76,7 @@ impl Hemicube {
             up_to.collect()
         });
         let settings = Settings { width: side, height: side, samples: 1, ..Settings::default() };
-        Self { settings, sums, clip: (diagonal * 1e-4, diagonal * 2.0) }
+        Self { settings, sums, diagonal }
     }
 
     /// Pixels along an edge of the top.
@@ -95,6 +96,9 @@ impl Hemicube {
         let turn = (FIRST_TURN + NEXT_TURN * number as f64).fract();
         let ((u, v), (sin, cos)) = (normal.any_orthonormal_pair(), func::sin_cos(turn * FRAC_PI_2));
         let (u, v) = (u * cos + v * sin, v * cos - u * sin);
+        // Whatever is nearer than this is the surface itself, rounded; the eye is lifted off it.
+        let near = clearance(point, 0.5 * self.diagonal);
+        let point = point + normal * near;
         // Points look from different threads: each draws alone.
         let execution = Execution { workers: Workers::single(), observer: None, ..execution.clone() };
         let mut seen = targets.sums();
@@ -106,7 +110,7 @@ impl Hemicube {
                 focal_point: point + towards,
                 view_up: up,
                 projection: Projection::Perspective { view_angle: FRAC_PI_2 },
-                clip: Some(self.clip),
+                clip: Some((near, 2.0 * self.diagonal)),
             };
             self.face((targets, trees), &camera, &self.sums[usize::from(face > 0)], &execution, &mut seen)?;
         }
@@ -255,6 +259,24 @@ mod tests {
             let exact = from_point(point, DVec3::Z, &[a, b, c]);
             assert!((factor - exact).abs() < 2e-4 + 0.01 * exact, "{number}: {factor}, {exact}");
         }
+    }
+
+    #[test]
+    fn what_is_near_hides_what_is_behind_it_in_large_scenes() {
+        // A ceiling, and a lid a fiftieth of a thousandth of the scene's diagonal above the eye.
+        let (diagonal, height) = (1000.0, 0.02);
+        let at = |f: u32, size: f64, z: f64| {
+            let [a, b, c, d] =
+                [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| dvec3(x * size, y * size, z));
+            if f == 0 { [a, b, c] } else { [a, c, d] }
+        };
+        let corners = |f: u32| Some(if f < 2 { at(f, 100.0, 100.0) } else { at(f - 2, 2.0, height) });
+        let trees = Trees::new(4, corners, 1000.0, 1 << 10).unwrap();
+        let (hemicube, targets) = (Hemicube::new(64, diagonal), Targets::new(&trees));
+        let seen = hemicube.look((&targets, &trees), (DVec3::ZERO, DVec3::Z), 0, &Execution::default()).unwrap();
+        let leaf = |number: u32| trees.nodes[trees.leaves()[number as usize] as usize];
+        assert!(seen.len() == 2 && seen.iter().all(|&(number, _)| leaf(number).facet >= 2), "{seen:?}");
+        assert!(seen.iter().map(|(_, factor)| factor).sum::<f64>() > 0.999, "{seen:?}");
     }
 
     #[test]

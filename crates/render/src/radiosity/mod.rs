@@ -11,22 +11,27 @@
 //!
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
+mod direct;
 pub mod enclosure;
 pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
+pub(crate) mod lamps;
 mod near;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
+mod surface;
 pub mod targets;
 
+pub use lamps::shines;
 pub use solution::Solution;
 
 use crate::stats::RadiosityCounters;
 use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
+use progressive::Progress;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -38,7 +43,7 @@ use vitral_scene::Attribute;
 const HEMICUBES: [u32; 13] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 /// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
-/// The part of the light that may be left: it is missing in the solution, where other errors are some tenths of a percent.
+/// The part of the light that stays in the scene that may be left: it is missing in the solution, where other errors are some tenths of a percent.
 pub const RESIDUAL: f64 = 0.002;
 /// The part that may be left before elements are cut again.
 const ROUGH: f64 = 0.2;
@@ -108,7 +113,7 @@ fn solve(
     for round in 0..ROUNDS {
         let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
         let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
-        let contrasts = Solution::new(&enclosure, &rough).contrasts();
+        let contrasts = contrasts(&enclosure, &rough);
         let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
         if cut.is_empty() {
@@ -133,6 +138,17 @@ fn solve(
         seconds: execution.budget.elapsed() - start,
     };
     Ok(solution)
+}
+
+/// How much light changes over each element, that of other surfaces or that of light sources.
+fn contrasts(enclosure: &Enclosure, rough: &Progress) -> Vec<f64> {
+    let contrasts = Solution::new(enclosure, rough).contrasts();
+    if enclosure.direct.is_empty() {
+        return contrasts;
+    }
+    let direct = Progress { irradiance: enclosure.direct.clone(), ..Progress::default() };
+    let direct = Solution::new(enclosure, &direct).contrasts();
+    contrasts.into_iter().zip(direct).map(|(a, b)| a.max(b)).collect()
 }
 
 /// `execution` for one of several solutions, whose progress is this part of the whole, in thousandths.
@@ -191,6 +207,7 @@ impl Session {
             mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
             mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
             hash = mix_attributes(hash, mesh.colors.as_slice());
+            hash = solution::mix(hash, &[u8::from(mesh.colors_from_srgb)]);
             hash = mix_attributes(hash, &mesh.uvs);
             for part in &mesh.parts {
                 hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
@@ -199,7 +216,7 @@ impl Session {
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
             let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);
-            let used = [m.base_texture, m.emission_texture, m.opacity_texture];
+            let used = [m.base_texture, m.emission_texture, m.opacity_texture, m.metallic_roughness_texture];
             hash = solution::mix(hash, format!("{surface:?} {used:?}").as_bytes());
             textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
         }

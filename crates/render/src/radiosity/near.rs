@@ -173,7 +173,7 @@ impl Sender {
 }
 
 /// A triangle's parts between the middles of its edges, all turned as it is.
-fn quarters([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
+pub(super) fn quarters([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
     let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
 }
@@ -197,10 +197,11 @@ fn above(corners: &[DVec3; 3], point: DVec3, normal: DVec3) -> Vec<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radiosity::surface::WHOLE;
     use vitral_math::dvec3;
 
     fn element(center: DVec3) -> Element {
-        Element { node: 0, patch: 0, center, normal: DVec3::Z, area: 1.0, reflectance: [0.0; 3] }
+        Element { node: 0, patch: 0, center, normal: DVec3::Z, area: 1.0, there: WHOLE, reflectance: [0.0; 3] }
     }
 
     #[test]

@@ -242,6 +242,11 @@ fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
+/// A triangle's.
+pub(super) fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
+}
+
 /// Leaves of a facet whose longest edge is this many times the longest that is wanted.
 fn leaves(length: f64, cuts: u32) -> f64 {
     let mut pieces = f64::from(cuts);
@@ -342,18 +347,13 @@ mod tests {
         Trees::new(2, corners, longest, 1 << 20).unwrap()
     }
 
-    fn area(trees: &Trees, node: u32) -> f64 {
-        let [a, b, c] = trees.places(node);
-        0.5 * (b - a).cross(c - a).length()
-    }
-
     #[test]
     fn patches_are_as_small_as_asked_for_and_share_their_vertices() {
         let trees = square(0.4);
         // The diagonal of 1.41 is halved twice.
         assert_eq!((trees.leaves().len(), trees.patches), (32, 32));
         assert_eq!(trees.vertices.len(), 25);
-        let sum: f64 = trees.leaves().iter().map(|&l| area(&trees, l)).sum();
+        let sum: f64 = trees.leaves().iter().map(|&l| area(trees.places(l))).sum();
         assert!((sum - 1.0).abs() < 1e-12);
         assert!(Trees::new(2, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 1e-4, 1000).is_none());
     }
@@ -370,7 +370,7 @@ mod tests {
         trees.balance();
         assert!(trees.leaves().iter().all(|&l| !trees.is_too_coarse(&trees.nodes[l as usize])));
         assert!(trees.nodes[1].children != NONE, "the neighbour was cut too");
-        let sum: f64 = trees.leaves().iter().map(|&l| area(&trees, l)).sum();
+        let sum: f64 = trees.leaves().iter().map(|&l| area(trees.places(l))).sum();
         assert!((sum - 1.0).abs() < 1e-12);
     }
 

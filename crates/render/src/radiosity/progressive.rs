@@ -46,7 +46,7 @@ pub struct Progress {
     pub ambient: Color,
     /// Shots so far.
     pub shots: u64,
-    /// Light not yet sent on, as a part of what was sent out in the beginning.
+    /// Light not yet sent on, as a part of what has not left the scene.
     pub residual: f64,
     /// Light that left the scene, of all colours.
     pub escaped: f64,
@@ -56,13 +56,16 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Pixels along the edge of a hemicube, if there is one so fine, for a patch that sends at least this part of all light, where
+/// Pixels along the edge of a hemicube, if there is one so fine, for a patch that sends at least this part of the light, where
 /// elements are few.
 const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
+/// Of all light that much more than stays in the scene counts when the patch's part is found: where nearly all leaves, what
+/// stays needs pixels, too.
+const MOST_LEAVING: f64 = 16.0;
 /// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
 const FEW: usize = 8192;
 
-/// Shoots until at most `residual` of the light is left, or `most` shots were made. Of the `hemicubes`, at least one, from
+/// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
 pub fn solve(
     enclosure: &Enclosure,
@@ -86,12 +89,21 @@ pub fn solve(
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
     let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
     let emitted = progress.emitted;
-    // The sides with the most light, and the hemicubes that they need.
-    let choose = |unsent: &[Color], shots: u64| -> Vec<(usize, usize)> {
+    // The sides with the most light, and the hemicubes that they need where so much light stays in the scene.
+    let choose = |unsent: &[Color], staying: f64, shots: u64| -> Vec<(usize, usize)> {
         let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
         sides
             .into_iter()
-            .map(|side| (side, fineness(hemicubes, power(&unsent[side]) / emitted, enclosure.elements.len())))
+            .map(|side| {
+                (
+                    side,
+                    fineness(
+                        hemicubes,
+                        power(&unsent[side]) / emitted.min(MOST_LEAVING * staying),
+                        enclosure.elements.len(),
+                    ),
+                )
+            })
             .collect()
     };
     // Whom they see.
@@ -108,7 +120,9 @@ pub fn solve(
     let (mut shooters, mut seen) = (Vec::new(), Vec::new());
     loop {
         let left: f64 = unsent.iter().map(power).sum();
-        progress.residual = if progress.emitted > 0.0 { left / progress.emitted } else { 0.0 };
+        // Light that leaves is no measure: however much of it there is, the rest is to go as far as without.
+        let staying = progress.absorbed + left;
+        progress.residual = if staying > 0.0 { left / staying } else { 0.0 };
         let finished = progress.residual <= residual || progress.shots >= most;
         let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
         tell(if finished { 1.0 } else { share }, execution);
@@ -117,11 +131,11 @@ pub fn solve(
         }
         execution.budget.check("radiosity")?;
         if shooters.is_empty() {
-            shooters = choose(&unsent, progress.shots);
+            shooters = choose(&unsent, staying, progress.shots);
             seen = look(&shooters, &known)?;
         }
         let powers: Vec<Color> = shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
-        let next = choose(&unsent, progress.shots + shooters.len() as u64);
+        let next = choose(&unsent, staying, progress.shots + shooters.len() as u64);
         let receive = || {
             powers
                 .iter()

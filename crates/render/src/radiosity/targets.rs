@@ -1,12 +1,14 @@
 //! What hemicubes look at: facets to be drawn, and the elements that lie in each.
 //!
 //! A facet's quadtrees are the same down to some depth: a grid, in which the cell at a point is found by dividing, however
-//! deep. Only below that a tree is gone down.
+//! deep. Only below that a tree is gone down. Of facets with holes the elements are drawn one by one, and of elements with
+//! holes the parts that are there.
 //!
 //! In:   quadtrees over facets. Out: the facets as a scene, and the element at a point of each.
 //! Cost: linear in nodes; a question takes a step, and one for each level of a tree below the grid.
 
 use super::patch::{Cell, NONE, Trees};
+use super::surface::{PARTS, WHOLE, parts};
 use crate::Session;
 use std::sync::{Arc, Mutex};
 use vitral_math::{DVec3, Vec3};
@@ -83,12 +85,21 @@ enum Content {
 impl Targets {
     /// The leaves of `trees`, in their order.
     pub fn new(trees: &Trees) -> Self {
+        Self::with_holes(trees, &vec![WHOLE; trees.leaves().len()])
+    }
+
+    /// The leaves of `trees`, and for each, in their order, which parts of it are there. Facets with holes are drawn in pieces.
+    pub(super) fn with_holes(trees: &Trees, there: &[u16]) -> Self {
         let mut numbers = vec![NONE; trees.nodes.len()];
         let leaves = trees.leaves();
         (0..).zip(&leaves).for_each(|(number, &leaf)| numbers[leaf as usize] = number);
-        let facets: Vec<u32> = (0..trees.roots.len() as u32).filter(|&f| trees.roots[f as usize] != NONE).collect();
-        let (mut grids, mut cells) = (Vec::with_capacity(facets.len()), Vec::new());
-        for &facet in &facets {
+        let mut whole: Vec<bool> = trees.roots.iter().map(|&root| root != NONE).collect();
+        let facet = |leaf: u32| trees.nodes[leaf as usize].facet as usize;
+        let with_holes = leaves.iter().zip(there).filter(|(_, there)| **there != WHOLE);
+        with_holes.for_each(|(&leaf, _)| whole[facet(leaf)] = false);
+
+        let (mut triangles, mut grids, mut cells) = (Vec::new(), Vec::new(), Vec::new());
+        for facet in (0..whole.len() as u32).filter(|&f| whole[f as usize]) {
             let roots = trees.roots_of(facet);
             let depth = roots.clone().map(|root| least_depth(trees, root)).min().unwrap_or(0);
             let (first, side) = (cells.len(), trees.cuts << depth);
@@ -96,10 +107,25 @@ impl Targets {
             for (number, root) in (0..).zip(roots) {
                 fill(trees, &numbers, (root, Cell::numbered(number, trees.cuts)), side, &mut cells[first..]);
             }
+            triangles.push(trees.corners_of(facet));
             grids.push(Grid { first: first as u32, side });
         }
-        let positions = facets.iter().flat_map(|&f| trees.corners_of(f)).map(|v| v.as_vec3().to_array()).collect();
-        let count = facets.len() as u32;
+        for ((&leaf, &there), number) in
+            leaves.iter().zip(there).zip(0..).filter(|((leaf, _), _)| !whole[facet(**leaf)])
+        {
+            let corners = trees.places(leaf);
+            let before = triangles.len();
+            match there {
+                WHOLE => triangles.push(corners),
+                _ => {
+                    triangles.extend((0..PARTS).filter(|part| there >> part & 1 == 1).map(|part| parts(corners)[part]))
+                }
+            }
+            grids.extend((before..triangles.len()).map(|_| Grid { first: cells.len() as u32, side: 1 }));
+            cells.push(Content::Leaf(number));
+        }
+        let positions = triangles.iter().flatten().map(|v| v.as_vec3().to_array()).collect();
+        let count = triangles.len() as u32;
         let triangles: Vec<_> = (0..count).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
         let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
         let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };

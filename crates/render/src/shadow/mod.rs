@@ -23,7 +23,7 @@ mod sources;
 pub mod volume;
 
 pub(crate) use casters::Casters;
-pub(crate) use occluders::{texel, weights};
+pub(crate) use occluders::{Occluders, texel, weights};
 pub(crate) use place::{Placing, facet, weighted};
 pub(crate) use places::EightPlaces;
 pub use places::{Parts, Places};

@@ -10,7 +10,7 @@ use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Attribute, Mesh};
 
 /// See the module.
-pub(super) struct Occluders<'a> {
+pub(crate) struct Occluders<'a> {
     session: &'a Session,
     /// For each material whether it keeps all light.
     opaque: Vec<bool>,
@@ -22,7 +22,7 @@ pub(super) struct Occluders<'a> {
 }
 
 impl<'a> Occluders<'a> {
-    pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
+    pub(crate) fn new(session: &'a Session, settings: &Settings) -> Self {
         let blend_is_opaque = settings.transparency == Transparency::None;
         let opaque = |m: &Material| match m.alpha_mode {
             AlphaMode::Opaque => true,
@@ -42,7 +42,7 @@ impl<'a> Occluders<'a> {
     }
 
     /// Whether a facet keeps all light.
-    pub(super) fn is_opaque(&self, facet: u32) -> bool {
+    pub(crate) fn is_opaque(&self, facet: u32) -> bool {
         if self.all_opaque {
             return true;
         }
@@ -54,7 +54,7 @@ impl<'a> Occluders<'a> {
 
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
-    pub(super) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
+    pub(crate) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
         if self.all_opaque { [0.0; 3] } else { self.passing_at(facet, corners, point()) }
     }
 

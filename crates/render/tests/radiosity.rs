@@ -4,7 +4,7 @@ use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_frame::{Encoding, Plane, Texture};
 use vitral_light::{AlphaMode, Light, LightKind, Material, Reflectance, TextureRef};
-use vitral_math::{DMat4, DVec3, dvec3};
+use vitral_math::{DMat4, DVec3, dvec3, func};
 use vitral_render::radiosity::enclosure::Enclosure;
 use vitral_render::radiosity::hemicube::Hemicube;
 use vitral_render::radiosity::patch::Trees;
@@ -516,7 +516,9 @@ fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
         let room = Enclosure::new(trees, &session, &lights, &Settings::default(), &Execution::default()).unwrap();
         let sent: f64 =
             room.elements.iter().enumerate().map(|(e, element)| room.emission[2 * e][0] * element.area).sum();
-        let expected = 0.8 * std::f64::consts::PI * (height * cutoff.tan()).powi(2);
+        let (sin, cos) = func::sin_cos(cutoff);
+        let radius = height * sin / cos;
+        let expected = 0.8 * std::f64::consts::PI * radius * radius;
         assert!((sent / expected - 1.0).abs() < 0.15, "{x} {z}: {sent}, expected {expected}");
     }
 }

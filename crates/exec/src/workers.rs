@@ -111,9 +111,7 @@ impl Workers {
             && items.len() > 1
         {
             #[cfg(all(target_os = "linux", not(miri)))]
-            if pool.current_thread_index().is_none() && !crate::started::is_started() {
-                self.placement.make_way();
-            }
+            self.make_way(pool);
             let others = self.threads.min(items.len()) - 1;
             let items = Mutex::new(items);
             let first = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -141,16 +139,20 @@ impl Workers {
     /// `f` itself, where there are no threads, and while the process is about to fork ([`hold_for_fork`](crate::hold_for_fork)).
     pub fn start<F: FnOnce() + Send + 'static>(&self, f: F) -> Result<Started, F> {
         #[cfg(feature = "threads")]
-        if let Some(pool) = &self.pool {
+        if self.pool.is_some() {
             #[cfg(all(target_os = "linux", not(miri)))]
-            if pool.current_thread_index().is_none() {
-                self.placement.make_way();
-            }
-            #[cfg(not(all(target_os = "linux", not(miri))))]
-            let _ = pool;
+            self.pool.iter().for_each(|pool| self.make_way(pool));
             return Started::new(self, f);
         }
         Err(f)
+    }
+
+    /// Keeps workers off the processor of the calling thread, unless it works for others itself.
+    #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+    fn make_way(&self, pool: &rayon::ThreadPool) {
+        if pool.current_thread_index().is_none() && !crate::started::is_started() {
+            self.placement.make_way();
+        }
     }
 
     /// Lets a worker have the processor of the calling thread, which waits as long as what is returned lives.

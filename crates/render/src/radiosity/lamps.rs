@@ -82,7 +82,8 @@ fn lies_on_a_lamp(session: &Session, shape: &AreaShape) -> bool {
             for triangle in part.triangles.clone() {
                 let (corners, facing) = facet_of(instance, triangle, center);
                 let cos = facing.dot(normal);
-                if if material.double_sided { cos.abs() } else { cos } < PARALLEL {
+                let cos = if material.double_sided { cos.abs() } else { cos };
+                if cos < PARALLEL {
                     continue;
                 }
                 let corner = corners[0];

@@ -36,7 +36,9 @@ pub(super) struct Neighbours(Vec<u32>);
 
 impl Neighbours {
     pub(super) fn new(elements: &[Element]) -> Self {
-        let mut order: Vec<u32> = (0..elements.len() as u32).collect();
+        // What is cut out has no area on which light could fall.
+        let there = |&e: &u32| elements[e as usize].there != 0;
+        let mut order: Vec<u32> = (0..elements.len() as u32).filter(there).collect();
         sort(elements, &mut order, 0);
         Self(order)
     }
@@ -207,13 +209,17 @@ mod tests {
     #[test]
     fn neighbours_are_those_within_the_radius() {
         let place = |i: u32| dvec3(f64::from(i * 37 % 101), f64::from(i * 53 % 89), f64::from(i * 29 % 7));
-        let elements: Vec<Element> = (0..500).map(|i| element(place(i))).collect();
+        let mut elements: Vec<Element> = (0..500).map(|i| element(place(i))).collect();
+        (elements[40].there, elements[77].there) = (0, 0);
         let neighbours = Neighbours::new(&elements);
         for (i, radius) in [(3, 0.5), (40, 9.0), (77, 30.0), (499, 200.0)] {
             let (point, mut found) = (place(i) + dvec3(0.1, -0.2, 0.3), Vec::new());
             neighbours.visit(&elements, point, radius, |number| found.push(number));
             found.sort_unstable();
-            let near = |number: &u32| elements[*number as usize].center.distance(point) < radius;
+            let near = |number: &u32| {
+                let element = &elements[*number as usize];
+                element.there != 0 && element.center.distance(point) < radius
+            };
             let expected: Vec<u32> = (0..500).filter(near).collect();
             assert_eq!(found, expected, "{radius}");
         }

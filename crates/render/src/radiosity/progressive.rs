@@ -92,19 +92,9 @@ pub fn solve(
     // The sides with the most light, and the hemicubes that they need where so much light stays in the scene.
     let choose = |unsent: &[Color], staying: f64, shots: u64| -> Vec<(usize, usize)> {
         let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
-        sides
-            .into_iter()
-            .map(|side| {
-                (
-                    side,
-                    fineness(
-                        hemicubes,
-                        power(&unsent[side]) / emitted.min(MOST_LEAVING * staying),
-                        enclosure.elements.len(),
-                    ),
-                )
-            })
-            .collect()
+        let (all, elements) = (emitted.min(MOST_LEAVING * staying), enclosure.elements.len());
+        let part = |side: usize| power(&unsent[side]) / all;
+        sides.into_iter().map(|side| (side, fineness(hemicubes, part(side), elements))).collect()
     };
     // Whom they see.
     let look = |shooters: &[(usize, usize)], known: &Known| -> Result<Vec<Arc<Seen>>, Limit> {

@@ -52,8 +52,9 @@ const VOLUME_COUNTING: [Choice<VolumeCounting>; 2] = [
     ("z-pass", "at the viewer", VolumeCounting::ZPass),
 ];
 
-const NORMALS: [Choice<Normals>; 2] = [
+const NORMALS: [Choice<Normals>; 3] = [
     ("file", "the file's, or made where it has none", Normals::File),
+    ("made", "made anew by the crease angle alone", Normals::Made),
     ("none", "no normals are given, as in exercise 5.2", Normals::None),
 ];
 

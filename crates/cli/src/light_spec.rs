@@ -1,6 +1,6 @@
 //! Lights as users type them: `point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1`.
 //!
-//! A kind, a colon, then fields `key=value`. Values may hold commas: what has no `=` belongs to the field before it.
+//! A kind, a colon, then [`Fields`].
 //!
 //! | kind | its fields |
 //! |---|---|
@@ -14,6 +14,7 @@
 //! which is `none`, `inverse-square`, `c1,c2,c3` for the course's `min(1 / (c1 + c2 d + c3 d²), 1)`,
 //! `gl,constant,linear,quadratic`, or `range,distance`.
 
+use crate::fields::Fields;
 use crate::values::{direction, not_negative, number, numbers, positive, switch, vector};
 use vitral::light::{AreaShape, Attenuation, Light, LightKind};
 use vitral::math::DVec3;
@@ -22,16 +23,21 @@ use vitral::names;
 /// Half angle of a spot light's cone in degrees where none is given.
 const CUTOFF: f64 = 30.0;
 
-/// The fields that have not been used yet.
-struct Fields<'a> {
+/// A light's kind and fields.
+struct LightFields<'a> {
     kind: &'a str,
-    fields: Vec<(&'a str, String)>,
+    fields: Fields<'a>,
 }
 
-/// Reads a light.
-pub(crate) fn parse(text: &str) -> Result<Light, String> {
+/// A light as typed, if it is one; what the names of colours mean is known when the colour space is.
+pub(crate) fn checked(text: &str) -> Result<String, String> {
+    parse(text, false).map(|_| text.to_owned())
+}
+
+/// Reads a light; `raw` is the colour space in which a colour's name stands for its bytes, not for light.
+pub(crate) fn parse(text: &str, raw: bool) -> Result<Light, String> {
     let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
-    let mut fields = Fields::split(kind, rest)?;
+    let mut fields = LightFields { kind, fields: Fields::split(rest)? };
     let kind = fields.kind_of_light()?;
     let attenuation = match kind {
         LightKind::Ambient | LightKind::Directional { .. } => Attenuation::None,
@@ -46,6 +52,7 @@ pub(crate) fn parse(text: &str) -> Result<Light, String> {
     if let Some(name) = fields.take("name", |text| Ok(text.to_owned()))? {
         light.name = name;
     }
+    let intensity = |text: &str| intensity(text, raw);
     light.ambient = fields.take("ambient", intensity)?.unwrap_or([if is_ambient { 0.2 } else { 0.0 }; 3]);
     light.diffuse = fields.take("diffuse", intensity)?.unwrap_or([if is_ambient { 0.0 } else { 1.0 }; 3]);
     light.specular = fields.take("specular", intensity)?.unwrap_or(light.diffuse);
@@ -57,32 +64,10 @@ pub(crate) fn parse(text: &str) -> Result<Light, String> {
     Ok(light)
 }
 
-impl<'a> Fields<'a> {
-    /// Cuts `a=1,2,b=3` at the commas before a key.
-    fn split(kind: &'a str, text: &'a str) -> Result<Self, String> {
-        let mut fields: Vec<(&str, String)> = Vec::new();
-        for piece in text.split(',').filter(|piece| !piece.is_empty()) {
-            let pair = piece.split_once('=');
-            if let Some((key, _)) = pair.filter(|(key, _)| fields.iter().any(|f| f.0 == *key)) {
-                return Err(format!("`{key}` is given twice"));
-            }
-            match (pair, fields.last_mut()) {
-                (Some((key, value)), _) => fields.push((key, value.to_owned())),
-                (None, Some((_, value))) => {
-                    value.push(',');
-                    value.push_str(piece);
-                }
-                (None, None) => return Err(format!("`{piece}` has no key: key=value is required")),
-            }
-        }
-        Ok(Self { kind, fields })
-    }
-
+impl LightFields<'_> {
     /// Takes a field out and reads it.
     fn take<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, String> {
-        let Some(index) = self.fields.iter().position(|f| f.0 == key) else { return Ok(None) };
-        let (_, value) = self.fields.swap_remove(index);
-        read(&value).map(Some).map_err(|why| format!("{key}: {why}"))
+        self.fields.take(key, read)
     }
 
     /// As [`Self::take`], for a field that the kind must have.
@@ -115,7 +100,7 @@ impl<'a> Fields<'a> {
         if let Some(corners) = self.take("corners", corners)? {
             return Ok(AreaShape::Polygon { corners });
         }
-        if self.fields.iter().all(|f| f.0 != "center") {
+        if !self.fields.has("center") {
             return Err("a light of kind `area` needs `center`, `normal`, `radius`, or `corners`".to_owned());
         }
         Ok(AreaShape::Disc {
@@ -127,16 +112,16 @@ impl<'a> Fields<'a> {
 
     /// Fails if a field was not used.
     fn finish(self) -> Result<(), String> {
-        match self.fields.first() {
+        match self.fields.unused() {
             None => Ok(()),
-            Some((key, _)) => Err(format!("a light of kind `{}` has no `{key}`", self.kind)),
+            Some(key) => Err(format!("a light of kind `{}` has no `{key}`", self.kind)),
         }
     }
 }
 
 /// One number for grey light, red, green and blue, or a colour's name.
-fn intensity(text: &str) -> Result<[f32; 3], String> {
-    if let Some(named) = names::linear_color(text) {
+fn intensity(text: &str, raw: bool) -> Result<[f32; 3], String> {
+    if let Some(named) = if raw { names::color(text) } else { names::linear_color(text) } {
         return Ok(named);
     }
     let rgb = if text.contains(',') { numbers::<3>(text)? } else { [number(text)?; 3] };
@@ -186,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_example_of_the_contract() {
-        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1,shadow=on").unwrap();
+        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1,shadow=on", false).unwrap();
         assert_eq!(light.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
         assert_eq!(light.attenuation, Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 0.1 });
         assert_eq!((light.diffuse, light.specular, light.ambient), ([1.0; 3], [1.0; 3], [0.0; 3]));
@@ -194,24 +179,27 @@ mod tests {
 
     #[test]
     fn every_kind() {
-        assert_eq!(parse("ambient:ambient=0.3").unwrap().ambient, [0.3; 3]);
-        assert_eq!(parse("point:position=0,0,0,diffuse=red").unwrap().specular, [1.0, 0.0, 0.0]);
-        let light = parse("spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off").unwrap();
+        assert_eq!(parse("ambient:ambient=0.3", false).unwrap().ambient, [0.3; 3]);
+        assert_eq!(parse("point:position=0,0,0,diffuse=red", false).unwrap().specular, [1.0, 0.0, 0.0]);
+        let grey = |raw| parse("ambient:ambient=gray", raw).unwrap().ambient[0];
+        assert_eq!((grey(true), (grey(false) - 0.2159).abs() < 1e-4), (128.0 / 255.0, true));
+        let light =
+            parse("spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off", false).unwrap();
         let LightKind::Spot { cutoff, inner, exponent, .. } = light.kind else { panic!("a spot light") };
         assert_eq!((cutoff, inner, exponent), (std::f64::consts::FRAC_PI_4, cutoff, 8.0));
         assert_eq!((light.name.as_str(), light.shadow), ("lamp", false));
-        let disc = parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0").unwrap();
+        let disc = parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0", false).unwrap();
         assert!(matches!(disc.kind, LightKind::Area { shape: AreaShape::Disc { radius: 2.0, .. } }));
         assert_eq!(disc.specular, [0.5, 0.25, 0.0], "specular follows diffuse");
-        assert!(parse("area:center=0,1,0,normal=0,-1,0,radius=0").is_ok(), "a point that shines to one side");
-        let polygon = parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square").unwrap();
+        assert!(parse("area:center=0,1,0,normal=0,-1,0,radius=0", false).is_ok(), "a point that shines to one side");
+        let polygon = parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square", false).unwrap();
         let LightKind::Area { shape: AreaShape::Polygon { corners } } = polygon.kind else { panic!("a polygon") };
         assert_eq!(corners, [DVec3::ZERO, DVec3::X, DVec3::Y]);
         assert_eq!(polygon.attenuation, Attenuation::InverseSquare);
-        assert!(matches!(parse("directional:direction=0,0,-1").unwrap().kind, LightKind::Directional { .. }));
-        let gl = parse("point:position=0,0,0,attenuation=gl,1,2,3").unwrap().attenuation;
+        assert!(matches!(parse("directional:direction=0,0,-1", false).unwrap().kind, LightKind::Directional { .. }));
+        let gl = parse("point:position=0,0,0,attenuation=gl,1,2,3", false).unwrap().attenuation;
         assert_eq!(gl, Attenuation::Gl { constant: 1.0, linear: 2.0, quadratic: 3.0 });
-        let range = parse("point:position=0,0,0,attenuation=range,5").unwrap().attenuation;
+        let range = parse("point:position=0,0,0,attenuation=range,5", false).unwrap().attenuation;
         assert_eq!(range, Attenuation::Range { range: 5.0 });
     }
 
@@ -240,7 +228,7 @@ mod tests {
             ("directional:direction=0,0,0", "direction: a direction of some length is required"),
             ("area:radius=1", "a light of kind `area` needs `center`, `normal`, `radius`, or `corners`"),
         ] {
-            assert_eq!(parse(text).unwrap_err(), expected, "{text}");
+            assert_eq!(parse(text, false).unwrap_err(), expected, "{text}");
         }
     }
 }

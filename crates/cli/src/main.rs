@@ -6,6 +6,8 @@ mod bench_plot;
 mod bench_report;
 mod choices;
 mod compare_command;
+mod depth_cue;
+mod fields;
 mod info_command;
 mod interrupt;
 mod light_spec;

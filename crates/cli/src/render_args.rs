@@ -1,14 +1,14 @@
 //! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
 
-use crate::{choices, light_spec, values};
+use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
 use vitral::render::{
-    Acceleration, ColorSpace, Culling, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+    Acceleration, ColorSpace, Culling, DepthCue, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
 };
-use vitral::{Axis, Channel, Illumination, Light, MaterialOverride, Normals, Shading, View};
+use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
 #[derive(Args, Debug, Default)]
@@ -124,6 +124,9 @@ pub(crate) struct AlgorithmArgs {
     /// How transparent surfaces are combined [default: linear]
     #[arg(long, value_name = "MODEL", value_parser = choices::transparency_model())]
     pub(crate) transparency: Option<Transparency>,
+    /// The larger, the thinner the glass; with --transparency kay [default: 3]
+    #[arg(long, value_name = "M", value_parser = values::exponent, allow_negative_numbers = true)]
+    pub(crate) kay_exponent: Option<f32>,
     /// In which order they are combined [default: a-buffer]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
@@ -158,6 +161,11 @@ pub(crate) struct AlgorithmArgs {
     /// Patches that may send light, with --global radiosity [default: until 0.2 % of what stays is left]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
+    /// Depth cueing: what is farther away fades into the background. Optional, after an equals sign, key=value,...: color (a name, #rrggbb
+    /// or r,g,b) instead of the background's; front and back, the distances from the viewer between which things fade (where the scene
+    /// begins and ends, if left out); front-scale and back-scale, how much of its own light a surface keeps there, 0 to 1 (1 and 0.2)
+    #[arg(long, value_name = "SPEC", value_parser = depth_cue::parse, num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    pub(crate) depth_cue: Option<DepthCue>,
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,
@@ -170,6 +178,9 @@ pub(crate) struct AlgorithmArgs {
     /// Which normals are used [default: file]
     #[arg(long, value_name = "KIND", value_parser = choices::normals())]
     pub(crate) normals: Option<Normals>,
+    /// Where normals are made: faces at a larger angle have an edge between them, 0 (all faces) to 180 (none) [default: 40]
+    #[arg(long, value_name = "DEGREES", value_parser = values::half_turn, allow_negative_numbers = true)]
+    pub(crate) crease_angle: Option<f64>,
 }
 
 /// Lights and materials.
@@ -184,8 +195,8 @@ pub(crate) struct LightArgs {
     /// name), attenuation (none, inverse-square, c1,c2,c3, gl,constant,linear,quadratic or range,distance), shadow,
     /// position, direction, cutoff (half angle of a spot's cone in degrees, 30 if left out), inner (half angle where its
     /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
-    #[arg(long, value_name = "SPEC", value_parser = light_spec::parse)]
-    pub(crate) light: Vec<Light>,
+    #[arg(long, value_name = "SPEC", value_parser = light_spec::checked)]
+    pub(crate) light: Vec<String>,
     /// Multiplies all lights [default: 1, and what brings a model's own lights to where a picture shows them: files have
     /// them in candela and lux]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]

@@ -1,6 +1,7 @@
 //! From options as typed to a whole plan: defaults, then the configuration file, then the state file, then the options.
 
 use crate::compare_command;
+use crate::light_spec;
 use crate::outputs::{Output, model_name};
 use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::{self, Failure};
@@ -9,8 +10,8 @@ use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::frame::Plane;
-use vitral::render::{Background, Channels, Global, Lines, registry};
-use vitral::{Channel, State, Viewpoint, default_camera};
+use vitral::render::{Background, Channels, ColorSpace, Global, Lines, Transparency, registry};
+use vitral::{Channel, Normals, State, Viewpoint, default_camera};
 
 /// Largest configuration or state file, in bytes.
 const MAX_STATE_BYTES: u64 = 64 << 20;
@@ -51,7 +52,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     {
         return Err(no_radiosity(option));
     }
-    set_lights(&mut state, &args.light);
+    set_lights(&mut state, &args.light)?;
     set_viewpoint(&mut state.viewpoint, &args.camera);
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
@@ -221,6 +222,11 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     settings.shading = args.shading.unwrap_or(settings.shading);
     settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
     settings.transparency = args.transparency.unwrap_or(settings.transparency);
+    if args.kay_exponent.is_some() && settings.transparency != Transparency::Kay {
+        return Err(Failure::usage("--kay-exponent: transparency is not Kay's").with_hint("add --transparency kay"));
+    }
+    settings.kay_exponent = args.kay_exponent.unwrap_or(settings.kay_exponent);
+    settings.depth_cue = args.depth_cue.or(settings.depth_cue);
     settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
     settings.scatter_samples = args.scatter_samples.unwrap_or(settings.scatter_samples);
     if let Some(name) = &args.shadows {
@@ -268,6 +274,10 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
         settings.lines = chosen;
     }
     state.load.normals = args.normals.unwrap_or(state.load.normals);
+    if args.crease_angle.is_some() && state.load.normals == Normals::None {
+        return Err(Failure::usage("--crease-angle: no normals are made with --normals none"));
+    }
+    state.load.crease_angle = args.crease_angle.map(f64::to_radians).or(state.load.crease_angle);
     Ok(())
 }
 
@@ -276,13 +286,16 @@ fn no_radiosity(option: &str) -> Failure {
     Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
 }
 
-fn set_lights(state: &mut State, args: &LightArgs) {
+fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
     state.settings.lighting = args.lighting.unwrap_or(state.settings.lighting);
     if !args.light.is_empty() {
-        state.lights = Some(args.light.clone());
+        let raw = state.settings.color_space == ColorSpace::Raw;
+        let lights = args.light.iter().map(|text| light_spec::parse(text, raw)).collect::<Result<_, _>>();
+        state.lights = Some(lights.map_err(|e| Failure::usage(format!("--light: {e}")))?);
     }
     state.light_intensity = args.light_intensity.or(state.light_intensity);
     state.materials.extend(args.material.iter().cloned());
+    Ok(())
 }
 
 fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {

@@ -48,6 +48,18 @@ pub(crate) fn view_angle(text: &str) -> Result<f64, String> {
     })
 }
 
+/// An angle between faces in degrees, 0 to 180.
+pub(crate) fn half_turn(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| {
+        if (0.0..=180.0).contains(&v) { Ok(v) } else { Err("an angle from 0 to 180 degrees is required".to_owned()) }
+    })
+}
+
+/// An exponent above 0, in single precision.
+pub(crate) fn exponent(text: &str) -> Result<f32, String> {
+    intensity(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })
+}
+
 /// A number of threads; 0 lets the machine decide.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
     whole(0..=Workers::MOST)(text)

@@ -509,6 +509,14 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         (&["--material", "glass.ior=0"], "a number above 0 is required", "ior: index of refraction"),
         (&["--material", "glass.filter=1,2,1"], "from 0 to 1", "filter: colour of light that passes"),
         (&["--scatter-samples", "0"], "1 to 4096", ""),
+        (&["--kay-exponent", "2"], "transparency is not Kay's", "add --transparency kay"),
+        (&["--transparency", "kay", "--kay-exponent", "0"], "above 0", ""),
+        (&["--material", "glass.kt-min=2"], "a number from 0 to 1 is required", "kt-min: what passes"),
+        (&["--depth-cue=near=2"], "no `near`", "back-scale"),
+        (&["--depth-cue=front=2,back=1"], "farther away", ""),
+        (&["--depth-cue", "--no-background"], "colour to fade into", ""),
+        (&["--normals", "none", "--crease-angle", "30"], "no normals are made", ""),
+        (&["--crease-angle", "200"], "0 to 180", ""),
     ] {
         let all = [&["render", "builtin:lens", "-o", "a.png"], &SMALL[..], arguments].concat();
         let output = folder.run(&all);

@@ -16,6 +16,8 @@ pub struct Material {
     pub emission: Rgb,
     /// 1: opaque, 0: invisible. With `kt` of the course, `opacity = 1 - kt`.
     pub opacity: f32,
+    /// What a blended surface lets through at its silhouette in Kay's model (`kmin`), 0 to 1; no more than `kt` counts.
+    pub kt_min: f32,
     /// How `opacity`, and the alpha of the base texture, are used.
     pub alpha_mode: AlphaMode,
     /// What kind of transparency the surface has.
@@ -62,6 +64,7 @@ impl Default for Material {
             reflectance: Reflectance::default(),
             emission: [0.0; 3],
             opacity: 1.0,
+            kt_min: 0.0,
             alpha_mode: AlphaMode::Opaque,
             transmission: Transmission::Transparent,
             glass: false,
@@ -198,7 +201,8 @@ impl Material {
         let unit = |value: f32| (0.0..=1.0).contains(&value);
         let positive = |value: f32| value >= 0.0 && value.is_finite();
         let bad = |what: &str, value: f32, required: &str| Err(format!("{what} {value}: {required} is required"));
-        let shares = [("opacity", self.opacity), ("occlusion-strength", self.occlusion_strength)];
+        let shares =
+            [("opacity", self.opacity), ("kt-min", self.kt_min), ("occlusion-strength", self.occlusion_strength)];
         let (mut shares, mut colors) = (shares.to_vec(), vec![("emission", self.emission)]);
         match self.reflectance {
             Reflectance::Phong { ka, kd, ks, shininess } => {

@@ -28,7 +28,7 @@ pub use pipeline::{Rendered, Shot, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, Global, Interpolation, Kay, Lines, Settings,
+    Acceleration, Background, Channels, ColorSpace, Culling, DepthCue, Global, Interpolation, Lines, Settings,
     SettingsError, Shading, Transparency, TransparencyOrder, VolumeCounting,
 };
 pub use stats::Stats;

@@ -19,10 +19,11 @@
 //! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
+use crate::shading::Fade;
 use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings, Transparency};
 use vitral_light::{AlphaMode, Reflectance};
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};
-use vitral_math::{Mat4, Vec2, Vec4};
+use vitral_math::{Mat4, Vec2, Vec3, Vec4};
 use vitral_raster::geometry::transform_point;
 use vitral_raster::{Batch, CornerPosition, snap};
 use vitral_scene::{FreePart, Instance};
@@ -58,6 +59,10 @@ pub struct MarkColors {
     colors: Vec<[f32; 4]>,
     /// The others, in the order of their marks.
     gradients: Vec<(u32, Gradient)>,
+    /// How distance shows.
+    fade: Option<Fade>,
+    /// Depth of each mark along the direction of sight, and how it goes on from there; a dot's stays. Empty where distance does not show.
+    depths: Vec<(f32, Gradient)>,
     /// Ends of each stroke on the screen, pixels; not numbers for dots. Empty where borders are not soft.
     ends: Vec<[Vec2; 2]>,
     /// Samples within a pixel, pixels; none where borders are not soft.
@@ -78,6 +83,9 @@ struct Gradient {
 }
 
 impl Gradient {
+    /// Of a mark that begins and ends with 0.
+    const NONE: Self = Self { origin: Vec2::ZERO, along: Vec2::ZERO, weights: [1.0; 2], end: [0.0; 4] };
+
     /// The colour at a place on the screen, of a line that begins with `start`.
     fn at(&self, start: [f32; 4], place: Vec2) -> [f32; 4] {
         let t = (place - self.origin).dot(self.along).clamp(0.0, 1.0);
@@ -94,12 +102,18 @@ impl MarkColors {
     }
 
     /// Premultiplied colour in the space of composition at the samples of a pixel that a mark hits, whichever of them are seen;
-    /// `corner` is the pixel's upper left one on the screen.
-    pub fn color(&self, mark: usize, corner: Vec2) -> [f32; 4] {
+    /// `corner` is the pixel's upper left one on the screen, `background` the background of its row.
+    pub(crate) fn color(&self, mark: usize, corner: Vec2, background: [f32; 4]) -> [f32; 4] {
         let color = self.colors[mark];
         let color = match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
             Ok(found) => self.gradients[found].1.at(color, corner + 0.5),
             Err(_) => color,
+        };
+        let color = match (&self.fade, self.depths.get(mark)) {
+            (Some(fade), Some((start, gradient))) => {
+                fade.faded(color, gradient.at([*start; 4], corner + 0.5)[0], background)
+            }
+            _ => color,
         };
         let covered = self.covered(mark, corner);
         color.map(|c| c * covered)
@@ -138,13 +152,27 @@ impl MarkColors {
         if !self.samples.is_empty() {
             self.ends.push([Vec2::NAN; 2]);
         }
+        if self.fade.is_some() {
+            self.depths.push((0.0, Gradient::NONE));
+        }
         Some(id)
     }
 
-    /// Says where the stroke with the newest id is.
-    fn place(&mut self, drawn: &Drawn) {
+    /// Says where the stroke with the newest id is; `depths` are those of the whole line's ends.
+    fn place(&mut self, drawn: &Drawn, depths: [f32; 2]) {
         if let Some(ends) = self.ends.last_mut() {
             *ends = drawn.ends;
+        }
+        if let Some(of_mark) = self.depths.last_mut() {
+            let ([start, ..], gradient) = drawn.gradient(depths.map(|d| [d; 4]), Interpolation::Perspective);
+            *of_mark = (start, gradient);
+        }
+    }
+
+    /// Says how deep the dot with the newest id is.
+    fn place_dot(&mut self, depth: f32) {
+        if let Some(of_mark) = self.depths.last_mut() {
+            *of_mark = (depth, Gradient { end: [depth; 4], ..Gradient::NONE });
         }
     }
 }
@@ -156,21 +184,24 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
     let samples =
         if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
     let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
-    let mut marks = MarkColors { first: world.facet_count, samples, ..MarkColors::default() };
-    let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
-    let mut pen = Pen { view, drawn, clip_from_model, lift, half };
     let raw = settings.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
+    let fade = settings.depth_cue.map(|cue| Fade::new(view, &cue, encode));
+    let mut marks = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
+    let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
+    let mut pen = Pen { view, drawn, clip_from_model, lift, half };
     let edge_color = encode(edge_color(&settings.background));
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
         let (positions, clip_from_model) = view.session.placed_positions(instance, &view.view.clip_from_world());
         pen.clip_from_model = clip_from_model;
+        let toward = (view.view.view_from_world * instance.world_from_model).row(2).as_vec4();
+        let depth = |i: u32| -toward.dot(Vec3::from(instance.mesh.positions[i as usize]).extend(1.0));
         if settings.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
                 if let Some(drawn) = pen.stroke(edge.ends.map(|i| positions[i as usize]), id) {
-                    marks.place(&drawn);
+                    marks.place(&drawn, edge.ends.map(depth));
                 }
             }
         }
@@ -181,7 +212,7 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
             let [start, end] = line.map(|vertex| paint.color(material, vertex));
             let Some(id) = marks.next(start) else { break };
             let Some(drawn) = pen.stroke(line.map(|i| positions[i as usize]), id) else { continue };
-            marks.place(&drawn);
+            marks.place(&drawn, line.map(depth));
             if start != end {
                 let mark = marks.colors.len() - 1;
                 let gradient = drawn.gradient([start, end], settings.interpolation);
@@ -193,6 +224,7 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
             let material = FreePart::material_of(&mesh.point_parts, i);
             let color = paint.color(material, point);
             let Some(id) = marks.next(color) else { break };
+            marks.place_dot(depth(point));
             pen.dot(positions[point as usize], id, color[3] >= 1.0);
         }
     }

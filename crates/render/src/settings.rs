@@ -54,8 +54,8 @@ pub struct Settings {
     pub color_space: ColorSpace,
     /// How transparent surfaces are combined.
     pub transparency: Transparency,
-    /// The numbers of [`Transparency::Kay`].
-    pub kay: Kay,
+    /// The exponent `m` of [`Transparency::Kay`], above 0: the larger, the thinner the glass; 2 or 3 are usual.
+    pub kay_exponent: f32,
     /// In which order they are.
     pub transparency_order: TransparencyOrder,
     /// Rays a pixel that each translucent surface scatters, about, `1..=4096`.
@@ -63,6 +63,8 @@ pub struct Settings {
     /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind others are dropped,
     /// and the picture comes with a warning. Two for each sample are always allowed.
     pub layer_memory: u64,
+    /// Distance shows: what is farther away fades into the background.
+    pub depth_cue: Option<DepthCue>,
     /// Edges instead of, or on top of, surfaces.
     pub lines: Lines,
     /// Behind everything.
@@ -96,10 +98,11 @@ impl Default for Settings {
             interpolation: Interpolation::default(),
             color_space: ColorSpace::default(),
             transparency: Transparency::default(),
-            kay: Kay::default(),
+            kay_exponent: 3.0,
             transparency_order: TransparencyOrder::default(),
             scatter_samples: 32,
             layer_memory: 1 << 30,
+            depth_cue: None,
             lines: Lines::default(),
             background: Background::default(),
             channels: Channels::default(),
@@ -214,28 +217,13 @@ pub enum Transparency {
     /// `opacity` of the surface, the rest of what is behind.
     #[default]
     Linear,
-    /// Less where the surface turns away from the viewer.
+    /// Less where the surface turns away from the viewer: with the material's `kt` and `kt-min` it is
+    /// `kt_min + (kt - kt_min) (1 - (1 - |nz|)^m)`.
     Kay,
     /// Tinted by the material's filter; highlights stay whole.
     Filtered,
     /// Everything is opaque (cut-outs stay).
     None,
-}
-
-/// `kt = least + (kt of the material - least) (1 - (1 - |nz|)^exponent)`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
-pub struct Kay {
-    /// Larger for thinner glass, above 0; 2 or 3 are usual.
-    pub exponent: f32,
-    /// Transmission at the silhouette, `0..=1`.
-    pub least: f32,
-}
-
-impl Default for Kay {
-    fn default() -> Self {
-        Self { exponent: 3.0, least: 0.0 }
-    }
 }
 
 /// The order in which transparent surfaces are combined.
@@ -255,6 +243,52 @@ pub enum TransparencyOrder {
     TwoBuffer,
     /// As they come: the error of the plain z-buffer.
     Submission,
+}
+
+/// Depth cueing: `I' = s I + (1 - s) Idc`, where `s` depends linearly on the distance between two planes across the direction of sight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct DepthCue {
+    /// `Idc` in the display's encoding, `0..=1`; `None`: the background of the pixel's row.
+    pub color: Option<[f32; 3]>,
+    /// Distance of the front plane from the viewer along the direction of sight, at least 0, world units; `None`: where the scene begins.
+    pub front: Option<f64>,
+    /// Distance of the back plane, farther away; `None`: where the scene ends.
+    pub back: Option<f64>,
+    /// `s` at the front plane and before it, `0..=1`.
+    pub front_scale: f32,
+    /// `s` at the back plane and behind it, `0..=1`.
+    pub back_scale: f32,
+}
+
+impl Default for DepthCue {
+    /// From a sphere's near side round the scene to its far side, where a fifth is left.
+    fn default() -> Self {
+        Self { color: None, front: None, back: None, front_scale: 1.0, back_scale: 0.2 }
+    }
+}
+
+impl DepthCue {
+    fn check(&self, background: &Background) -> Result<(), SettingsError> {
+        let bad = |what: &'static str| Err(SettingsError::DepthCue(what));
+        let unit = |value: f32| (0.0..=1.0).contains(&value);
+        if !(unit(self.front_scale) && unit(self.back_scale)) {
+            return bad("scales from 0 to 1 are required");
+        }
+        if ![self.front, self.back].into_iter().flatten().all(|d| d >= 0.0 && d.is_finite()) {
+            return bad("distances of at least 0 are required");
+        }
+        if let (Some(front), Some(back)) = (self.front, self.back)
+            && back <= front
+        {
+            return bad("the back plane must be farther away than the front plane");
+        }
+        match (self.color, background) {
+            (None, Background::Transparent) => bad("without a background there must be a colour to fade into"),
+            (Some(color), _) if !color.into_iter().all(unit) => bad("a colour from 0 to 1 is required"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Edges instead of, or on top of, surfaces.
@@ -368,9 +402,12 @@ pub enum SettingsError {
     /// Number of samples.
     #[error("{0} samples a pixel: 1 to 16 are possible")]
     Samples(u32),
-    /// The numbers of Kay's model.
-    #[error("kay: exponent {} and least {}: above 0, and 0 to 1, are required", .0.exponent, .0.least)]
-    Kay(Kay),
+    /// The exponent of Kay's model.
+    #[error("an exponent of {0} in Kay's model of transparency: a number above 0 is required")]
+    KayExponent(f32),
+    /// The numbers of depth cueing.
+    #[error("depth cueing: {0}")]
+    DepthCue(&'static str),
     /// The name of an algorithm.
     #[error("there is no visibility algorithm `{name}`: choose {choices}")]
     Visibility {
@@ -491,10 +528,10 @@ impl Settings {
         if !(1..=16).contains(&self.samples) {
             return Err(SettingsError::Samples(self.samples));
         }
-        let Kay { exponent, least } = self.kay;
-        if !(exponent > 0.0 && exponent.is_finite() && (0.0..=1.0).contains(&least)) {
-            return Err(SettingsError::Kay(self.kay));
+        if !(self.kay_exponent > 0.0 && self.kay_exponent.is_finite()) {
+            return Err(SettingsError::KayExponent(self.kay_exponent));
         }
+        self.depth_cue.map_or(Ok(()), |cue| cue.check(&self.background))?;
         let visibility = self.visibility.clone();
         let Some(algorithm) = registry::visibility(&visibility) else {
             let choices: Vec<_> = registry::VISIBILITY.iter().map(|a| a.name).collect();

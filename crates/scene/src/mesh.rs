@@ -35,6 +35,8 @@ pub struct Mesh {
     pub parts: Vec<Part>,
     /// Shading normals, any positive length (need not be unit).
     pub normals: Option<Attribute<[f32; 3]>>,
+    /// Normals are not the surface's: they stay as they are where its back is seen (exercise 5.2).
+    pub normals_stay: bool,
     /// Up to two sets of texture coordinates, `(0, 0)` at the image's top left.
     pub uvs: Vec<Attribute<[f32; 2]>>,
     /// Linear RGBA that multiplies the material's diffuse or base colour.

@@ -15,7 +15,7 @@ fn main() -> Result<(), Error> {
 
     // Read it. Normals that the file lacks are made, with edges where faces meet at more than the crease angle.
     let workers = Workers::new(0);
-    let options = LoadOptions { crease_angle: 30.0f64.to_radians(), ..LoadOptions::default() };
+    let options = LoadOptions { crease_angle: Some(30.0f64.to_radians()), ..LoadOptions::default() };
     let scene = load(&model, &options, &workers)?;
     print!("{}", info::info(&scene, &workers)?);
 

@@ -20,8 +20,9 @@ const TINY_MESH: usize = 1 << 11;
 pub struct LoadOptions {
     /// The model may name files outside its folder.
     pub allow_external: bool,
-    /// Where normals are made: faces that differ by more than this angle have an edge between them, radians.
-    pub crease_angle: f64,
+    /// Where normals are made: faces that differ by more than this angle have an edge between them, radians, `0..=π`; `None`:
+    /// [`CREASE_ANGLE`](Self::CREASE_ANGLE).
+    pub crease_angle: Option<f64>,
     /// Make the normals that the file lacks; otherwise such meshes are shaded facet by facet.
     pub make_normals: bool,
     /// Which normals are used.
@@ -31,17 +32,21 @@ pub struct LoadOptions {
 }
 
 impl Default for LoadOptions {
-    /// Files of the model's folder up to 4 GiB; a crease angle of 40 degrees, which keeps the rims of a 9-sided
-    /// cylinder smooth and the edges of an octagonal prism sharp.
+    /// Files of the model's folder up to 4 GiB.
     fn default() -> Self {
         Self {
             allow_external: false,
-            crease_angle: 40.0f64.to_radians(),
+            crease_angle: None,
             make_normals: true,
             normals: Normals::File,
             max_file_bytes: 4 << 30,
         }
     }
+}
+
+impl LoadOptions {
+    /// 40 degrees, which keep the rims of a 9-sided cylinder smooth and the edges of an octagonal prism sharp.
+    pub const CREASE_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 }
 
 /// Which normals are used.
@@ -51,6 +56,8 @@ pub enum Normals {
     /// The file's, or made ones.
     #[default]
     File,
+    /// Made anew by the crease angle alone, whatever the file has.
+    Made,
     /// None are given: `(0, 0, 1)` in model space for every vertex, as OpenGL does without glNormal (exercise 5.2).
     None,
 }
@@ -116,14 +123,27 @@ pub fn default_camera(path: impl AsRef<Path>) -> Option<usize> {
 fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
     match options.normals {
         Normals::None => lab::exercise_5_2(scene),
-        Normals::File if options.make_normals => make_normals(scene, options.crease_angle, workers),
-        Normals::File => {}
+        Normals::File if !options.make_normals => {}
+        Normals::File => make_normals(scene, options.crease_angle, workers),
+        Normals::Made => {
+            for mesh in scene.meshes.iter_mut().filter(|m| !m.triangles.is_empty()) {
+                let mesh = Arc::make_mut(mesh);
+                (mesh.normals, mesh.normals_stay, mesh.smoothing_groups) = (None, false, None);
+            }
+            make_normals(scene, options.crease_angle, workers);
+        }
     }
 }
 
 /// Makes missing normals, small meshes in parallel, large ones in parallel within.
-fn make_normals(scene: &mut Scene, crease_angle: f64, workers: &Workers) {
+fn make_normals(scene: &mut Scene, crease_angle: Option<f64>, workers: &Workers) {
     let lacking: Vec<_> = scene.meshes.iter_mut().filter(|m| lacks_normals(m)).collect();
+    if lacking.is_empty() && crease_angle.is_some() {
+        let unused = "the crease angle makes no difference, the model has all its normals (`made` normals are others)";
+        scene.warnings.push(unused.to_owned());
+        return;
+    }
+    let crease_angle = crease_angle.unwrap_or(LoadOptions::CREASE_ANGLE);
     let all: usize = lacking.iter().map(|m| m.triangles.len()).sum();
     // A thread with more than half of its fair share in one piece may be the last to end.
     let large = (all / (2 * workers.threads())).clamp(TINY_MESH, SMALL_MESH);
@@ -157,6 +177,28 @@ mod tests {
         assert!(made.meshes[0].normals.as_ref().unwrap().values.iter().all(|n| *n == [0.0, 0.0, 1.0]));
         let plain = square(&LoadOptions { make_normals: false, ..LoadOptions::default() });
         assert!(plain.meshes[0].normals.is_none());
+    }
+
+    #[test]
+    fn l8_the_crease_angle_decides_where_normals_are_averaged() {
+        // Two squares at a right angle, with normals of their own in the file.
+        let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 0 1 -1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\nf 1//1 4//1 6//1 5//1\n";
+        let of = |normals, crease_angle: Option<f64>| {
+            let options =
+                LoadOptions { normals, crease_angle: crease_angle.map(f64::to_radians), ..LoadOptions::default() };
+            let scene = load_bytes(text, "l.obj", &NoFiles, &options, &Workers::single()).unwrap();
+            let mesh = &scene.meshes[0];
+            (mesh.normals.as_ref().unwrap().at(0, &mesh.triangles)[0], scene.warnings.len())
+        };
+        assert_eq!(of(Normals::File, None), ([0.0, 0.0, 1.0], 0));
+        assert_eq!(of(Normals::File, Some(100.0)), ([0.0, 0.0, 1.0], 1), "nothing is made, and it says so");
+        assert_eq!(of(Normals::Made, None), ([0.0, 0.0, 1.0], 0));
+        let (smooth, warnings) = of(Normals::Made, Some(100.0));
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        assert!(
+            smooth.iter().zip([-half, 0.0, half]).all(|(a, b)| (a - b).abs() < 1e-6) && warnings == 0,
+            "{smooth:?}"
+        );
     }
 
     #[test]

@@ -32,6 +32,13 @@ impl MaterialOverride {
         Ok(Self { material: material.into(), property: property.into(), value: value.trim().into() })
     }
 
+    /// The change for the raw colour space, in which a colour's name or `#rrggbb` stands for its bytes, not for light.
+    #[must_use]
+    pub fn raw(&self) -> Self {
+        let value = names::color(&self.value).map(|[r, g, b]| format!("{r},{g},{b}"));
+        Self { value: value.unwrap_or_else(|| self.value.clone()), ..self.clone() }
+    }
+
     /// Changes the scene.
     ///
     /// # Errors
@@ -53,7 +60,7 @@ enum Failure {
 }
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 22] = [
+const PROPERTIES: [(&str, &str, Setter); 23] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -65,6 +72,7 @@ const PROPERTIES: [(&str, &str, Setter); 22] = [
     ("emission", "light sent out", |m, v| put(&mut m.emission, color(v))),
     ("opacity", "1 opaque, 0 invisible", |m, v| set_opacity(m, unit(v)?)),
     ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
+    ("kt-min", "what passes at the silhouette (--transparency kay)", |m, v| put(&mut m.kt_min, unit(v))),
     ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
     ("transmission", "transparent, translucent", set_transmission),
     ("glass", "true, false: highlights stay whole, and what is mirrored does not pass", |m, v| {
@@ -310,6 +318,19 @@ mod tests {
         assert_eq!(ball.emission, [1.0, 0.0, 0.0]);
         let Reflectance::Phong { kd, shininess, .. } = ball.reflectance else { panic!("the form stays") };
         assert_eq!((kd, shininess), ([0.1, 0.2, 0.3], 5.0));
+    }
+
+    #[test]
+    fn raw_names_of_colours_are_their_bytes() {
+        let grey = |raw: bool| {
+            let mut scene = load_builtin("sphere").unwrap();
+            let change = MaterialOverride::parse("ball.emission=gray").unwrap();
+            if raw { change.raw() } else { change }.apply(&mut scene).unwrap();
+            scene.materials[0].emission[0]
+        };
+        assert!((grey(false) - 0.2159).abs() < 1e-4 && (grey(true) - 128.0 / 255.0).abs() < 1e-6);
+        let other = MaterialOverride::parse("ball.transmission=translucent").unwrap();
+        assert_eq!(other.raw(), other);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settin
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
-use vitral_render::Background;
+use vitral_render::{Background, ColorSpace};
 
 /// The version of the form.
 pub const VERSION: u32 = 1;
@@ -177,7 +177,10 @@ impl State {
         for other in scenes {
             scene.append(other?);
         }
-        self.materials.iter().try_for_each(|change| change.apply(&mut scene))?;
+        let raw = self.settings.color_space == ColorSpace::Raw;
+        for change in &self.materials {
+            if raw { change.raw().apply(&mut scene)? } else { change.apply(&mut scene)? }
+        }
         if let ([up, other, ..], None) = (&scene.ups[..], self.viewpoint.up) {
             let warning =
                 format!("{up} is up, as in the first model; others usually have {other} up (--up says which)");

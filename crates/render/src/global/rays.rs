@@ -33,6 +33,13 @@ pub(super) struct Branch {
     pub(super) seed: u32,
 }
 
+/// Depth cueing at a surface that the eye sees on a straight way: what is kept of its light, and what that fades into. Light that turns
+/// there is its light.
+pub(super) struct Haze {
+    pub(super) kept: f32,
+    pub(super) color: [f32; 3],
+}
+
 /// Rays of one generation.
 #[derive(Default)]
 pub(super) struct Rays {
@@ -40,8 +47,8 @@ pub(super) struct Rays {
     pub(super) free: Vec<Branch>,
     /// Those within a pile.
     pub(super) piled: Vec<Branch>,
-    /// Points, and how opaque what they show becomes where branches end: black, not a hole.
-    pub(super) ended: Vec<(u32, f32)>,
+    /// Points, and what is added to them where branches end (black, not a hole) and where light fades.
+    pub(super) ended: Vec<(u32, [f32; 4])>,
 }
 
 impl Rays {
@@ -57,13 +64,23 @@ impl Rays {
     /// A branch with this weight ends.
     pub(super) fn end(&mut self, target: u32, weight: [f32; 4]) {
         if weight[3] > 0.0 {
-            self.ended.push((target, weight[3]));
+            self.ended.push((target, [0.0, 0.0, 0.0, weight[3]]));
         }
+    }
+
+    /// What is left of a branch with this weight where light fades that turns here; the rest is of the colour that it fades into.
+    pub(super) fn fade(&mut self, target: u32, weight: [f32; 4], haze: &Haze) -> [f32; 4] {
+        if haze.kept < 1.0 {
+            let [r, g, b] = haze.color;
+            let lost = weight.map(|w| w * (1.0 - haze.kept));
+            self.ended.push((target, [r * lost[0], g * lost[1], b * lost[2], lost[3]]));
+        }
+        weight.map(|w| w * haze.kept)
     }
 
     /// Adds what ended to the points' colours.
     pub(super) fn settle(&mut self, colors: &mut [[f32; 4]]) {
-        self.ended.drain(..).for_each(|(target, alpha)| colors[target as usize][3] += alpha);
+        self.ended.drain(..).for_each(|(target, color)| add(&mut colors[target as usize], [1.0; 4], color));
     }
 }
 

@@ -29,7 +29,7 @@
 
 use super::coincident::{Pile, Piles, unit_normal};
 use super::media::{Border, Media};
-use super::rays::{Branch, Rays, add, counts};
+use super::rays::{Branch, Haze, Rays, add, counts};
 use super::sky::Sky;
 use super::surface::Surface;
 use crate::marks::MarkColors;
@@ -398,8 +398,7 @@ impl<'a> Whitted<'a> {
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
         let place = Place { position, normal, facet, seed, pixel: None };
-        let straight = branch.row.is_some();
-        (Hit { weights, origin: origin.as_vec3().to_array(), place, straight }, from_behind)
+        (Hit { weights, origin: origin.as_vec3().to_array(), place, row: branch.row }, from_behind)
     }
 
     /// The rays that go on where `ray` meets a surface.
@@ -418,7 +417,9 @@ impl<'a> Whitted<'a> {
         let passes = lit.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
-        let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0]);
+        let haze = self.haze(ray, &place);
+        // The colour that it fades into was added with the surface's own light.
+        let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0].map(|m| m * haze.kept));
         let surface = self.surface(ray, normal, &place);
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.clearance(place.position);
@@ -428,9 +429,10 @@ impl<'a> Whitted<'a> {
             let pile = ray.pile.map(|pile| piles.get(pile).1).unwrap_or_default();
             if pile.len() > ray.layer as usize {
                 let branch = Branch { weight: passing, seed: place.seed, ..*ray };
-                self.pass_to_next(&branch, &surface, &place, rays, counters);
-            } else if !self.pass(ray, &branch, &surface, from_behind, pile, rays, counters) {
+                self.pass_to_next(&branch, (&surface, &haze), &place, rays, counters);
+            } else if !self.pass(ray, &branch, (&surface, &haze), from_behind, pile, rays, counters) {
                 counters.total_reflections += 1;
+                let passing = rays.fade(ray.target, passing, &haze);
                 mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
             }
         } else if passing != [0.0; 4] {
@@ -459,7 +461,7 @@ impl<'a> Whitted<'a> {
         &self,
         ray: &Branch,
         branch: &Branch,
-        surface: &Surface,
+        (surface, haze): (&Surface, &Haze),
         from_behind: bool,
         pile: &[u32],
         rays: &mut Rays,
@@ -475,7 +477,10 @@ impl<'a> Whitted<'a> {
         if !bent && scatters.is_none() {
             counters.passed += 1;
             rays.free.push(branch);
-        } else if ray.depth >= self.max_depth {
+            return true;
+        }
+        let branch = Branch { weight: rays.fade(branch.target, branch.weight, haze), ..branch };
+        if ray.depth >= self.max_depth {
             counters.stopped_by_depth += 1;
             rays.end(branch.target, branch.weight);
         } else if let Some(exponent) = scatters {
@@ -491,7 +496,7 @@ impl<'a> Whitted<'a> {
     fn pass_to_next(
         &self,
         branch: &Branch,
-        surface: &Surface,
+        (surface, haze): (&Surface, &Haze),
         place: &Place,
         rays: &mut Rays,
         counters: &mut TracingCounters,
@@ -501,6 +506,7 @@ impl<'a> Whitted<'a> {
             rays.piled.push(*branch);
             return;
         };
+        let branch = &Branch { weight: rays.fade(branch.target, branch.weight, haze), ..*branch };
         if branch.depth >= self.max_depth {
             counters.stopped_by_depth += 1;
             rays.end(branch.target, branch.weight);
@@ -546,6 +552,19 @@ impl<'a> Whitted<'a> {
         let world = &self.constants.view.session.world;
         let instance = &world.instances[world.instance_of_facet(number)];
         instance.mesh.material_of_triangle((number - instance.first_facet) as usize)
+    }
+
+    /// Depth cueing where a ray meets a surface; after a turn there is none.
+    #[inline]
+    fn haze(&self, ray: &Branch, place: &Place) -> Haze {
+        let (Some(fade), Some(row)) = (&self.constants.fade, ray.row) else {
+            return Haze { kept: 1.0, color: [0.0; 3] };
+        };
+        let world = place.position + self.tree.triangles().center;
+        let depth = -self.constants.view.view.view_from_world.transform_point3(world).z;
+        let backgrounds = &self.constants.background.colors;
+        let color = fade.into(backgrounds[(row as usize).min(backgrounds.len() - 1)]);
+        Haze { kept: fade.kept(depth as f32), color }
     }
 
     fn clearance(&self, position: DVec3) -> f64 {

@@ -333,7 +333,7 @@ impl DeepPicture<'_> {
         }
         if let Some((f, away)) = nearest {
             let exponent = self.exponent(tile, f);
-            let of = fragment(f, opaque, &tile.points, &tile.lit, self.marks);
+            let of = fragment(f, opaque, &tile.points, &tile.lit, self.constants, self.marks);
             return Next::Surface(Met { away, color: of.color, passes: of.passes, exponent });
         }
 

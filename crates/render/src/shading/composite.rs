@@ -134,7 +134,7 @@ impl Composer {
                     }
                     if !mine.is_empty() {
                         fragments.clear();
-                        fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, marks)));
+                        fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, constants, marks)));
                         if let Some((deep, index)) = deep {
                             let behind = mine.iter().map(|f| deep.behind(index, f, mine));
                             fragments.iter_mut().zip(behind).for_each(|(f, behind)| f.behind = behind);
@@ -166,12 +166,13 @@ pub(super) fn fragment<'a>(
     tile: &Tile,
     points: &'a Points,
     lit: &Lit,
+    constants: &FrameConstants<'_>,
     marks: &MarkColors,
 ) -> Fragment<'a> {
     let (start, source) = (f.start as usize, f.source as usize);
     let color = if f.is_mark {
         let (x, y) = (tile.x + f.pixel % TILE as u32, tile.y + f.pixel / TILE as u32);
-        marks.color(source, Vec2::new(x as f32, y as f32))
+        marks.color(source, Vec2::new(x as f32, y as f32), constants.background.colors[y as usize])
     } else {
         lit.colors[source]
     };

@@ -258,6 +258,9 @@ fn facing<S: Simd>(
         geometric.z
     };
     let facet_normal = V3::select(lanes::Lanes::lt(towards, constant(simd, 0.0)), -geometric, geometric);
+    if subject.mesh.normals_stay {
+        return (facet_normal, normals);
+    }
     // Each by itself: files have facets of which one corner's normal lies on the wrong side. A normal in the facet's plane, but for
     // rounding, is on neither side: it stays as it is.
     let hair = constant(simd, -1e-4);

@@ -1,11 +1,11 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
+use super::depth_cue::Fade;
 use super::group::{Model, model};
 use super::points::offset;
 use crate::prepare::{is_solid, mirrors};
 use crate::radiosity::Solution;
 use crate::session::keep_for;
-use crate::settings::Kay;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
 use crate::{
@@ -112,10 +112,12 @@ pub(crate) struct FrameConstants<'a> {
     pub raw: bool,
     /// How much transparent surfaces let through.
     pub transparency: Transparency,
-    /// The numbers of Kay's model.
-    pub kay: Kay,
+    /// The exponent of Kay's model.
+    pub kay_exponent: f32,
     /// How they are laid over each other.
     pub lay: Lay,
+    /// How distance shows; `None` where it does not.
+    pub fade: Option<Fade>,
     /// For each set of few samples their middle within the pixel, see `points`.
     pub middles: Vec<[f32; 2]>,
     /// Layers are wanted pass by pass.
@@ -180,7 +182,8 @@ impl<'a> FrameConstants<'a> {
             interpolation: settings.interpolation,
             raw,
             transparency: settings.transparency,
-            kay: settings.kay,
+            kay_exponent: settings.kay_exponent,
+            fade: settings.depth_cue.map(|cue| Fade::new(view, &cue, |color| composed(color, raw))),
             lay: registry::order(settings.transparency_order).lay,
             middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
             in_passes: settings.transparency_order == TransparencyOrder::MultiPass,
@@ -303,8 +306,13 @@ fn material_constants<'a>(
     }
 }
 
+/// A colour in the display's encoding, in the space in which colours are composed.
+fn composed(color: [f32; 3], raw: bool) -> [f32; 3] {
+    if raw { color } else { color.map(Lanes::linear_from_srgb) }
+}
+
 fn background_rows(background: &Background, height: u32, raw: bool) -> BackgroundRows {
-    let light = |c: [f32; 3]| if raw { c } else { c.map(Lanes::linear_from_srgb) };
+    let light = |c| composed(c, raw);
     let opaque = |c: [f32; 3]| [c[0], c[1], c[2], 1.0];
     let row = |y: u32| match background {
         Background::Transparent => [0.0; 4],

@@ -405,6 +405,13 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         }
         _ => color,
     };
+    let color = match &constants.fade {
+        Some(fade) => {
+            let backgrounds = &constants.background.colors;
+            fade.faded_eight(simd, (color, looks.alpha), &surface, (slots, along), backgrounds)
+        }
+        None => color,
+    };
     if material.follows && !lit.bounces.is_empty() {
         let normal = match constants.shading {
             Shading::Flat => surface.facet_normal,

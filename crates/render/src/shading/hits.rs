@@ -22,8 +22,8 @@ pub(crate) struct Hit {
     pub origin: [f32; 3],
     /// The place in the world.
     pub place: Place,
-    /// The ray took no turn since it left the eye.
-    pub straight: bool,
+    /// Row of the picture whose background the ray sees; `None` if it took a turn since it left the eye.
+    pub row: Option<u32>,
 }
 
 /// What eight hits have in place of a common eye.
@@ -32,8 +32,8 @@ pub(crate) struct Along {
     pub origins: [[f32; LANES]; 3],
     /// Where they hit.
     pub places: [Place; LANES],
-    /// 1 for rays that took no turn, else 0.
-    pub straight: [f32; LANES],
+    /// Rows of the picture, for rays that took no turn.
+    pub rows: [Option<u32>; LANES],
 }
 
 impl Along {
@@ -41,8 +41,14 @@ impl Along {
     fn new(hits: &[Hit]) -> Self {
         let hit = |lane: usize| &hits[lane.min(hits.len() - 1)];
         let origins = [0, 1, 2].map(|k| std::array::from_fn(|lane| hit(lane).origin[k]));
-        let straight = std::array::from_fn(|lane| f32::from(u8::from(hit(lane).straight)));
-        Self { origins, places: std::array::from_fn(|lane| hit(lane).place), straight }
+        let rows = std::array::from_fn(|lane| hit(lane).row);
+        Self { origins, places: std::array::from_fn(|lane| hit(lane).place), rows }
+    }
+
+    /// 1 for rays that took no turn, else 0.
+    #[inline(always)]
+    pub(crate) fn straight<S: Simd>(&self, simd: S) -> F<S> {
+        F32x8::from_slice(simd, &self.rows.map(|row| f32::from(u8::from(row.is_some()))))
     }
 
     /// Where the rays come from, view space.

@@ -154,14 +154,14 @@ impl<S: Simd> Looks<S> {
                 let position = surface.position();
                 let towards = n.dot((along.origin(simd) - position).normalize());
                 // As the eye sees it without rays, as long as they come straight from there.
-                let straight = Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &along.straight));
+                let straight = Lanes::lt(constant(simd, 0.0), along.straight(simd));
                 straight.select(n.z, towards)
             }
             None => n.z,
         };
         self.kt = if kay {
-            let least = Lanes::min(constant(simd, constants.kay.least), self.kt);
-            kay::transmission(least, self.kt, facing, constant(simd, constants.kay.exponent))
+            let least = Lanes::min(constant(simd, material.material.kt_min), self.kt);
+            kay::transmission(least, self.kt, facing, constant(simd, constants.kay_exponent))
         } else {
             // Kay's formula with these numbers is what Schlick's leaves.
             let most = self.kt * (1.0 - DIELECTRIC_F0);

@@ -14,6 +14,7 @@ pub mod phong;
 mod behind;
 mod channels;
 mod composite;
+mod depth_cue;
 mod facets;
 mod frame_constants;
 mod geometry;
@@ -35,6 +36,7 @@ pub(crate) use frame_constants::{BackgroundKey, BackgroundRows, DecodeTables, Fr
 pub(crate) use behind::DeepImage;
 
 use composite::Composer;
+pub(crate) use depth_cue::Fade;
 pub(crate) use group::{Bounce, Lit, shade_hits};
 pub(crate) use points::{InFront, Points};
 

@@ -49,7 +49,7 @@ impl ColorSink<'_> {
             dispatch!(self.constants.level, simd => group::shade_all(simd, points, facets, self.constants, lit));
             shaded += points.len() as u64;
             for of in &points.fragments {
-                let fragment = fragment(of, tile, points, lit, self.marks);
+                let fragment = fragment(of, tile, points, lit, self.constants, self.marks);
                 (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
                 for sample in samples_in(of.mask) {
                     fragment.over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);

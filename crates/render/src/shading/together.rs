@@ -25,6 +25,7 @@ pub(super) fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConst
         && material.scatters.is_none()
         && !constants.follows_rays()
         && constants.interpolation == Interpolation::Perspective
+        && constants.fade.is_none()
 }
 
 /// Illuminates what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.

@@ -3,6 +3,7 @@
 mod agreement;
 mod common;
 mod culling;
+mod depth_cue;
 mod determinism;
 mod interpolation;
 mod lighting;

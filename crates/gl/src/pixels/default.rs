@@ -72,6 +72,9 @@ impl ClientBuffer {
 
     /// Appends colours as the client's pixels.
     fn pack(&self, colors: &[[f32; 4]], out: &mut Vec<u8>) {
+        let first = out.len();
+        out.resize(first + colors.len() * self.pixel_bytes(), 0);
+        let out = &mut out[first..];
         if self.kind == UNSIGNED_SHORT_5_6_5 {
             let format = PixelFormat { format: RGB, kind: UNSIGNED_SHORT_5_6_5 };
             encode::colors(colors, format, out);
@@ -385,7 +388,9 @@ impl Context {
                 24 => row.iter().for_each(|&d| bytes.extend((d as u32).to_ne_bytes())),
                 _ => {
                     let format = PixelFormat { format: DEPTH_COMPONENT, kind: UNSIGNED_INT };
-                    encode::depths(&row, format, &mut bytes);
+                    let first = bytes.len();
+                    bytes.resize(first + 4 * row.len(), 0);
+                    encode::depths(&row, format, &mut bytes[first..]);
                 }
             }
         }

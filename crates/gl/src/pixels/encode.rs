@@ -25,26 +25,41 @@ fn quotient(value: f32) -> f64 {
     if quotient as f32 == value { quotient } else { f64::from(value) }
 }
 
-/// Appends the components at `places` of each colour, as `f` makes them bytes.
+/// The components at `places` of each colour, as `f` makes them bytes.
 #[inline]
-fn spread<const BYTES: usize>(
-    colors: &[[f32; 4]],
-    places: &[usize],
-    out: &mut Vec<u8>,
-    f: impl Fn(f32) -> [u8; BYTES],
-) {
-    let first = out.len();
-    let pixel = places.len() * BYTES;
-    out.resize(first + colors.len() * pixel, 0);
-    for (bytes, color) in out[first..].chunks_exact_mut(pixel).zip(colors) {
-        for (bytes, &place) in bytes.chunks_exact_mut(BYTES).zip(places) {
-            bytes.copy_from_slice(&f(color[place & 3]));
+fn spread<const BYTES: usize>(colors: &[[f32; 4]], places: &[usize], out: &mut [u8], f: impl Fn(f32) -> [u8; BYTES]) {
+    // Places that the compiler knows need no look at each component.
+    match *places {
+        [0, 1, 2, 3] => place(colors, [0, 1, 2, 3], out, f),
+        [2, 1, 0, 3] => place(colors, [2, 1, 0, 3], out, f),
+        [0, 1, 2] => place(colors, [0, 1, 2], out, f),
+        [first] => place(colors, [first], out, f),
+        _ => {
+            let pixels = out.chunks_exact_mut(places.len() * BYTES);
+            for (bytes, color) in pixels.zip(colors) {
+                for (bytes, &place) in bytes.chunks_exact_mut(BYTES).zip(places) {
+                    bytes.copy_from_slice(&f(color[place & 3]));
+                }
+            }
         }
     }
 }
 
-/// Appends the components at `places` of each colour as numbers of type `kind`.
-pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: &mut Vec<u8>) {
+#[inline]
+fn place<const N: usize, const BYTES: usize>(
+    colors: &[[f32; 4]],
+    places: [usize; N],
+    out: &mut [u8],
+    f: impl Fn(f32) -> [u8; BYTES],
+) {
+    let components = out.as_chunks_mut::<BYTES>().0.as_chunks_mut::<N>().0;
+    for (pixel, color) in components.iter_mut().zip(colors) {
+        *pixel = places.map(|place| f(color[place & 3]));
+    }
+}
+
+/// The components at `places` of each colour as numbers of type `kind`.
+pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: &mut [u8]) {
     const WHOLE: f64 = u32::MAX as f64;
     match kind {
         UNSIGNED_BYTE => spread(colors, places, out, |v| [(clamp_unit(v) * 255.0 + 0.5) as u8]),
@@ -54,78 +69,92 @@ pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: 
         UNSIGNED_INT => spread(colors, places, out, |v| unsigned(quotient(v), WHOLE).to_ne_bytes()),
         INT => spread(colors, places, out, |v| (signed(quotient(v), WHOLE) as i32).to_ne_bytes()),
         HALF_FLOAT_ARB => spread(colors, places, out, |v| half_from_float(v).to_ne_bytes()),
-        _ if *places == [0, 1, 2, 3] => out.extend_from_slice(bytemuck::cast_slice(colors)),
+        _ if *places == [0, 1, 2, 3] => out.copy_from_slice(bytemuck::cast_slice(colors)),
         _ => spread(colors, places, out, f32::to_ne_bytes),
     }
 }
 
-fn push_element(element: u32, bytes: usize, out: &mut Vec<u8>) {
-    match bytes {
-        1 => out.push(element as u8),
-        2 => out.extend((element as u16).to_ne_bytes()),
-        _ => out.extend(element.to_ne_bytes()),
-    }
-}
+/// Pixels whose luminance is summed up at a time.
+const SUMS: usize = 64;
 
 /// Colours in a colour format. Luminance is the sum of red, green and blue; where these are clamped, so is the sum.
-pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut Vec<u8>) {
+pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut [u8]) {
     let places = format.places();
     if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
         let sum = |c: &[f32; 4]| {
             let (sum, clamped) = (c[0] + c[1] + c[2], c[..3].iter().all(|v| (0.0..=1.0).contains(v)));
             [if clamped { sum.min(1.0) } else { sum }, 0.0, 0.0, c[3]]
         };
-        let sums: Vec<[f32; 4]> = colors.iter().map(sum).collect();
-        return components(&sums, places, format.kind, out);
+        let mut sums = [[0.0; 4]; SUMS];
+        for (colors, out) in colors.chunks(SUMS).zip(out.chunks_mut(SUMS * format.pixel_bytes())) {
+            sums.iter_mut().zip(colors).for_each(|(s, c)| *s = sum(c));
+            components(&sums[..colors.len()], places, format.kind, out);
+        }
+        return;
     }
     let Some(packed) = format.packed() else { return components(colors, places, format.kind, out) };
-    out.reserve(colors.len() * packed.bytes);
-    for color in colors {
+    for (bytes, color) in out.chunks_exact_mut(packed.bytes).zip(colors) {
         let mut element = 0;
         for (&place, &(shift, width)) in places.iter().zip(packed.fields) {
             let largest = ((1u32 << width) - 1) as f32;
             element |= ((clamp_unit(color[place]) * largest + 0.5) as u32) << shift;
         }
-        push_element(element, packed.bytes, out);
+        put(bytes, element);
+    }
+}
+
+/// An integer of as many bytes as there are.
+fn put(bytes: &mut [u8], element: u32) {
+    match bytes {
+        [byte] => *byte = element as u8,
+        [_, _] => bytes.copy_from_slice(&(element as u16).to_ne_bytes()),
+        _ => bytes.copy_from_slice(&element.to_ne_bytes()),
     }
 }
 
 /// Depths in format `DEPTH_COMPONENT`.
-pub(crate) fn depths(depths: &[f32], format: PixelFormat, out: &mut Vec<u8>) {
-    if format.kind == FLOAT {
-        out.extend_from_slice(bytemuck::cast_slice(depths));
-        return;
-    }
-    let colors: Vec<[f32; 4]> = depths.iter().map(|&depth| [depth, 0.0, 0.0, 0.0]).collect();
-    components(&colors, &[0], format.kind, out);
-}
-
-/// Stencil values (after transfer) in format `STENCIL_INDEX`.
-pub(crate) fn stencils(values: impl Iterator<Item = i64>, kind: u32, out: &mut Vec<u8>) {
-    for value in values {
-        match kind {
-            UNSIGNED_BYTE => out.push(value as u8),
-            BYTE => out.push((value & 0x7f) as u8),
-            BITMAP => out.push((value & 1) as u8),
-            UNSIGNED_SHORT => out.extend((value as u16).to_ne_bytes()),
-            SHORT => out.extend(((value & 0x7fff) as u16).to_ne_bytes()),
-            UNSIGNED_INT => out.extend((value as u32).to_ne_bytes()),
-            INT => out.extend(((value & 0x7fff_ffff) as u32).to_ne_bytes()),
-            HALF_FLOAT_ARB => out.extend(half_from_float(value as f32).to_ne_bytes()),
-            _ => out.extend((value as f32).to_ne_bytes()),
+pub(crate) fn depths(depths: &[f32], format: PixelFormat, out: &mut [u8]) {
+    const WHOLE: f64 = u32::MAX as f64;
+    match format.kind {
+        FLOAT => out.copy_from_slice(bytemuck::cast_slice(depths)),
+        UNSIGNED_INT => {
+            let numbers = out.as_chunks_mut().0.iter_mut().zip(depths);
+            numbers.for_each(|(number, &depth)| *number = unsigned(quotient(depth), WHOLE).to_ne_bytes());
+        }
+        kind => {
+            let numbers = out.chunks_exact_mut(format.pixel_bytes()).zip(depths);
+            numbers.for_each(|(number, &depth)| components(&[[depth, 0.0, 0.0, 0.0]], &[0], kind, number));
         }
     }
 }
 
+/// Stencil values (after transfer) in format `STENCIL_INDEX`.
+pub(crate) fn stencils(values: impl Iterator<Item = i64>, format: PixelFormat, out: &mut [u8]) {
+    for (bytes, value) in out.chunks_exact_mut(format.pixel_bytes()).zip(values) {
+        let number = match format.kind {
+            BYTE => value & 0x7f,
+            BITMAP => value & 1,
+            SHORT => value & 0x7fff,
+            INT => value & 0x7fff_ffff,
+            HALF_FLOAT_ARB => i64::from(half_from_float(value as f32)),
+            FLOAT => i64::from((value as f32).to_bits()),
+            _ => value,
+        };
+        put(bytes, number as u32);
+    }
+}
+
 /// Depth and stencil together.
-pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &mut Vec<u8>) {
-    for (&depth, &stencil) in depths.iter().zip(stencils) {
-        if kind == UNSIGNED_INT_24_8 {
+pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &mut [u8]) {
+    let values = depths.iter().zip(stencils);
+    if kind == UNSIGNED_INT_24_8 {
+        for (pixel, (&depth, &stencil)) in out.as_chunks_mut().0.iter_mut().zip(values) {
             let whole = (f64::from(clamp_unit(depth)) * 16_777_215.0 + 0.5) as u32;
-            out.extend(((whole << 8) | u32::from(stencil)).to_ne_bytes());
-        } else {
-            out.extend(depth.to_ne_bytes());
-            out.extend(u32::from(stencil).to_ne_bytes());
+            *pixel = ((whole << 8) | u32::from(stencil)).to_ne_bytes();
+        }
+    } else {
+        for ([first, second], (&depth, &stencil)) in out.as_chunks_mut().0.as_chunks_mut().0.iter_mut().zip(values) {
+            (*first, *second) = (depth.to_ne_bytes(), u32::from(stencil).to_ne_bytes());
         }
     }
 }
@@ -224,7 +253,7 @@ mod tests {
     }
 
     fn encoded(color: [f32; 4], token: u32, kind: u32) -> Vec<u8> {
-        let mut out = Vec::new();
+        let mut out = vec![0; format(token, kind).pixel_bytes()];
         colors(&[color], format(token, kind), &mut out);
         out
     }
@@ -263,7 +292,7 @@ mod tests {
         for (token, kind) in bytes.into_iter().chain(wholes) {
             let format = format(token, kind);
             assert!(takes_words(format));
-            let (mut fast, mut general) = (vec![0; 3 * format.pixel_bytes()], Vec::new());
+            let [mut fast, mut general] = [(); 2].map(|()| vec![0; 3 * format.pixel_bytes()]);
             words(&source, format, &mut fast);
             colors(&pixels, format, &mut general);
             assert_eq!(fast, general, "{token:#x} {kind:#x}");
@@ -285,7 +314,7 @@ mod tests {
 
     #[test]
     fn depth_and_stencil_share_a_word() {
-        let mut out = Vec::new();
+        let mut out = [0; 4];
         depth_stencils(&[1.0], &[5], UNSIGNED_INT_24_8, &mut out);
         assert_eq!(out, 0xffff_ff05u32.to_ne_bytes());
     }

@@ -43,22 +43,27 @@ pub(crate) fn inside(surfaces: &Surfaces, x: i32, y: i32, width: i32, height: i3
 
 /// Colours of a rectangle, as the buffer's format returns them.
 pub(crate) fn read_colors(plane: &ColorPlane, format: &InternalFormat, r: &Rectangle) -> Vec<[f32; 4]> {
-    let [width, height] = r.size;
-    let mut out = vec![[0.0; 4]; width * height];
-    let mut words = vec![0; width];
-    for (y, row) in out.chunks_exact_mut(width.max(1)).enumerate() {
-        match plane {
-            ColorPlane::Rgba8(plane) => {
-                plane.read_row(r.x, r.y + y as u32, 0, &mut words);
-                row.iter_mut().zip(&words).for_each(|(c, &w)| *c = color_from_word(w));
-            }
-            ColorPlane::RgbaF32(plane) => plane.read_row(r.x, r.y + y as u32, 0, row),
+    let mut out = vec![[0.0; 4]; r.size[0] * r.size[1]];
+    for (y, row) in (r.y..).zip(out.chunks_exact_mut(r.size[0].max(1))) {
+        let pieces = (r.x..).step_by(TILE).zip(row.chunks_mut(TILE));
+        pieces.for_each(|(x, piece)| read_color_row(plane, format, [x, y], piece));
+    }
+    out
+}
+
+/// Up to [`TILE`] colours of a row.
+fn read_color_row(plane: &ColorPlane, format: &InternalFormat, [x, y]: [u32; 2], out: &mut [[f32; 4]]) {
+    match plane {
+        ColorPlane::Rgba8(plane) => {
+            let words = &mut [0; TILE][..out.len()];
+            plane.read_row(x, y, 0, words);
+            out.iter_mut().zip(words).for_each(|(c, &mut w)| *c = color_from_word(w));
         }
+        ColorPlane::RgbaF32(plane) => plane.read_row(x, y, 0, out),
     }
     if format.missing() != [false; 4] {
         out.iter_mut().for_each(|color| *color = format.kept(*color));
     }
-    out
 }
 
 /// Words of a rectangle of a plane of bytes.
@@ -115,50 +120,57 @@ pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
     values
 }
 
-/// Row by row, from a plane of bytes to the client's bytes; none for other planes and formats.
-fn encode_words(
+/// Calls `encode` with places in the window and their part of the bytes of a rectangle: pieces of rows, so that what is between planes
+/// and bytes stays in the cache.
+fn encoded(
+    workers: &Workers,
+    format: PixelFormat,
+    r: &Rectangle,
+    encode: impl Fn([u32; 2], &mut [u8]) + Sync + Send,
+) -> Vec<u8> {
+    let pixel = format.pixel_bytes();
+    let mut out = vec![0; r.size[0] * r.size[1] * pixel];
+    each_row(workers, r, &mut out, |y, bytes| {
+        let pieces = bytes.chunks_mut(TILE * pixel);
+        (r.x..).step_by(TILE).zip(pieces).for_each(|(x, bytes)| encode([x, y], bytes));
+    });
+    out
+}
+
+/// Colours of a rectangle as the client's bytes.
+fn encode_colors(
     workers: &Workers,
     plane: &ColorPlane,
     stored: &InternalFormat,
     format: PixelFormat,
     r: &Rectangle,
-) -> Option<Vec<u8>> {
-    let ColorPlane::Rgba8(plane) = plane else { return None };
-    if !matches!(stored.base, RGB | RGBA) || !encode::takes_words(format) {
-        return None;
-    }
-    let mut out = vec![0; r.size[0] * r.size[1] * format.pixel_bytes()];
-    each_row(workers, r, &mut out, |y, bytes| {
-        // Pieces of a row, so that words need no memory of their own.
-        let mut words = [0; TILE];
-        let pieces = bytes.chunks_mut(TILE * format.pixel_bytes());
-        for (x, bytes) in (r.x..).step_by(TILE).zip(pieces) {
-            let words = &mut words[..bytes.len() / format.pixel_bytes()];
+    transfer: &Transfer<'_>,
+) -> Vec<u8> {
+    let pixel = format.pixel_bytes();
+    if let ColorPlane::Rgba8(plane) = plane
+        && transfer.keeps_colors()
+        && matches!(stored.base, RGB | RGBA)
+        && encode::takes_words(format)
+    {
+        return encoded(workers, format, r, |[x, y], bytes| {
+            let words = &mut [0; TILE][..bytes.len() / pixel];
             plane.read_row(x, y, 0, words);
             if stored.base == RGB {
                 words.iter_mut().for_each(|w| *w |= 0xff00_0000);
             }
             encode::words(words, format, bytes);
+        });
+    }
+    let clamps = stored.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
+    encoded(workers, format, r, |[x, y], bytes| {
+        let colors = &mut [[0.0; 4]; TILE][..bytes.len() / pixel];
+        read_color_row(plane, stored, [x, y], colors);
+        transfer.colors(colors);
+        if clamps {
+            clamp_colors(colors);
         }
-    });
-    Some(out)
-}
-
-/// Row by row, from a plane of depths to the client's floating-point numbers.
-fn encode_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<u8> {
-    const BYTES: usize = size_of::<f32>();
-    let scale = plane.scale;
-    let plane = &*plane.resolved();
-    let mut out = vec![0; r.size[0] * r.size[1] * BYTES];
-    each_row(workers, r, &mut out, |y, bytes| {
-        let mut depths = [0.0; TILE];
-        for (x, bytes) in (r.x..).step_by(TILE).zip(bytes.chunks_mut(TILE * BYTES)) {
-            let depths = &mut depths[..bytes.len() / BYTES];
-            read_depth_row(plane, scale, [x, y], depths);
-            bytes.copy_from_slice(bytemuck::cast_slice(depths));
-        }
-    });
-    out
+        encode::colors(colors, format, bytes);
+    })
 }
 
 /// Bytes of the client's format for a rectangle.
@@ -169,52 +181,54 @@ fn encode_rectangle(
     r: &Rectangle,
     transfer: &Transfer<'_>,
 ) -> Vec<u8> {
-    let mut out = Vec::new();
-    let depth_plane = surfaces.depth.as_ref().and_then(|s| s.depth.as_ref());
-    let depths = |clamp: bool| {
-        let mut depths = depth_plane.map_or_else(Vec::new, |plane| read_depths(workers, &mut lock(plane), r));
-        transfer.depths(&mut depths);
-        if clamp && !transfer.keeps_depths() {
+    let content = format.content();
+    if matches!(content, Content::Color | Content::Index) {
+        let Some(surface) = &surfaces.color else { return Vec::new() };
+        let Some(plane) = &surface.color else { return Vec::new() };
+        return encode_colors(workers, &lock(plane), &surface.format, format, r, transfer);
+    }
+    let of_depth = surfaces.depth.as_ref().filter(|_| content != Content::Stencil);
+    let of_stencil = surfaces.stencil.as_ref().filter(|_| content != Content::Depth);
+    let mut depth = of_depth.and_then(|s| s.depth.as_ref()).map(|plane| lock(plane));
+    let scale = depth.as_ref().map_or(1.0, |plane| plane.scale);
+    let depth = depth.as_mut().map(|plane| &*plane.resolved());
+    let stencil = of_stencil.and_then(|s| s.stencil.as_ref()).map(|plane| lock(plane));
+    let clamps = !transfer.keeps_depths();
+    let depths = |[x, y]: [u32; 2], depths: &mut [f32]| {
+        if let Some(plane) = depth {
+            read_depth_row(plane, scale, [x, y], depths);
+        }
+        transfer.depths(depths);
+        if clamps {
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
         }
-        depths
     };
-    let stencils = || {
-        let plane = surfaces.stencil.as_ref().and_then(|s| s.stencil.as_ref());
-        plane.map_or_else(Vec::new, |plane| read_stencils(&lock(plane), r))
+    let stencils = |[x, y]: [u32; 2], values: &mut [u8]| {
+        if let Some(plane) = &stencil {
+            plane.read_row(x, y, 0, values);
+        }
     };
-    match format.content() {
-        Content::Depth if format.kind == FLOAT && transfer.keeps_depths() => {
-            return depth_plane.map_or_else(Vec::new, |plane| encode_depths(workers, &mut lock(plane), r));
-        }
-        Content::Depth => encode::depths(&depths(true), format, &mut out),
-        Content::Stencil => {
-            let values = stencils().into_iter().map(|v| transfer.stencil(i64::from(v)));
-            encode::stencils(values, format.kind, &mut out);
-        }
-        Content::DepthStencil => {
-            let values: Vec<u8> =
-                stencils().into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect();
-            encode::depth_stencils(&depths(true), &values, format.kind, &mut out);
-        }
-        Content::Color | Content::Index => {
-            let Some(surface) = &surfaces.color else { return out };
-            let Some(plane) = &surface.color else { return out };
-            let plane = lock(plane);
-            if transfer.keeps_colors()
-                && let Some(bytes) = encode_words(workers, &plane, &surface.format, format, r)
-            {
-                return bytes;
+    encoded(workers, format, r, |place, bytes| {
+        let count = bytes.len() / format.pixel_bytes();
+        let (numbers, values) = (&mut [0.0; TILE][..count], &mut [0; TILE][..count]);
+        let transferred = |v: u8| transfer.stencil(i64::from(v));
+        match content {
+            Content::Depth => {
+                depths(place, numbers);
+                encode::depths(numbers, format, bytes);
             }
-            let mut colors = read_colors(&plane, &surface.format, r);
-            transfer.colors(&mut colors);
-            if surface.format.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB) {
-                clamp_colors(&mut colors);
+            Content::Stencil => {
+                stencils(place, values);
+                encode::stencils(values.iter().map(|&v| transferred(v)), format, bytes);
             }
-            encode::colors(&colors, format, &mut out);
+            _ => {
+                depths(place, numbers);
+                stencils(place, values);
+                values.iter_mut().for_each(|v| *v = (transferred(*v) & 255) as u8);
+                encode::depth_stencils(numbers, values, format.kind, bytes);
+            }
         }
-    }
-    out
+    })
 }
 
 /// Whether a framebuffer has what a pixel of `format` holds.

@@ -129,7 +129,7 @@ impl Context {
             return Ok(());
         }
         // No pixel transfer here, unlike in `ReadPixels`.
-        let mut bytes = Vec::new();
+        let mut bytes = vec![0; full.iter().product::<usize>() * format.pixel_bytes()];
         let encode_words = |words: &[u32]| {
             let mut bytes = vec![0; words.len() * format.pixel_bytes()];
             encode::words(words, format, &mut bytes);

@@ -45,7 +45,7 @@ impl Context {
         {
             return Some(texels::from_words(words, format));
         }
-        let mut colors = read_colors(&plane, &surface.format, r);
+        let mut colors = read_colors(&self.workers(), &plane, &surface.format, r);
         transfer.colors(&mut colors);
         if surface.format.component_type() != FLOAT || format.component_type() != FLOAT {
             clamp_colors(&mut colors);

@@ -5,9 +5,13 @@ use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
 use crate::enums::*;
 use std::borrow::Cow;
+use std::ops::Range;
+use vitral_exec::Workers;
 
 /// Pixels that are converted at once.
 const CHUNK: usize = 1024;
+/// Pixels in one piece of work: small images are one.
+const PIXELS_A_JOB: usize = 1 << 14;
 
 /// Appends each number of `bytes` as a float: integers become 0..=1 or -1..=1.
 pub(crate) fn numbers(bytes: &[u8], kind: u32, out: &mut Vec<f32>) {
@@ -106,10 +110,30 @@ fn indices(bytes: &[u8], kind: u32) -> Vec<i64> {
     }
 }
 
-/// Hands RGBA colours after transfer, not clamped, to `take`, some at a time. Indices go through the maps.
-pub(crate) fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, mut take: impl FnMut(&[[f32; 4]])) {
+/// What `make` makes of the RGBA colours of pixels after transfer, not clamped, some at a time. Indices go through the maps.
+pub(crate) fn from_colors<T: Copy + Default + Send>(
+    workers: &Workers,
+    image: &ClientImage,
+    transfer: &Transfer<'_>,
+    make: impl Fn(&[[f32; 4]], &mut [T]) + Sync + Send,
+) -> Vec<T> {
+    let mut out = vec![T::default(); image.bytes.len() / image.format.pixel_bytes()];
+    workers.for_each_chunk(&mut out, PIXELS_A_JOB, |job, out| {
+        let mut rest = out;
+        each_colors(image, transfer, job * PIXELS_A_JOB..job * PIXELS_A_JOB + rest.len(), &mut |colors| {
+            let (mine, behind) = std::mem::take(&mut rest).split_at_mut(colors.len());
+            make(colors, mine);
+            rest = behind;
+        });
+    });
+    out
+}
+
+/// Hands the colours of pixels to `take`, some at a time.
+fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, pixels: Range<usize>, take: &mut dyn FnMut(&[[f32; 4]])) {
+    let pixel = image.format.pixel_bytes();
     let (mut scratch, mut colors) = (Vec::new(), Vec::new());
-    for chunk in image.bytes.chunks(CHUNK * image.format.pixel_bytes()) {
+    for chunk in image.bytes[pixels.start * pixel..pixels.end * pixel].chunks(CHUNK * pixel) {
         colors.clear();
         if image.format.content() == Content::Index {
             colors.extend(indices(chunk, image.format.kind).into_iter().map(|i| transfer.color_of_index(i)));
@@ -121,11 +145,9 @@ pub(crate) fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, mut take
     }
 }
 
-/// All colours of [`each_colors`].
-pub(crate) fn colors(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<[f32; 4]> {
-    let mut out = Vec::with_capacity(image.bytes.len() / image.format.pixel_bytes());
-    each_colors(image, transfer, |colors| out.extend_from_slice(colors));
-    out
+/// The colours of [`from_colors`] themselves.
+pub(crate) fn colors(workers: &Workers, image: &ClientImage, transfer: &Transfer<'_>) -> Vec<[f32; 4]> {
+    from_colors(workers, image, transfer, |colors, out| out.copy_from_slice(colors))
 }
 
 /// Depths after transfer. Clamped to 0..=1 if `clamp`.
@@ -217,7 +239,7 @@ mod tests {
     }
 
     fn decoded(format: u32, kind: u32, bytes: &[u8]) -> Vec<[f32; 4]> {
-        colors(&image(format, kind, bytes), &Transfer::new(&PixelTransfer::default()))
+        colors(&Workers::single(), &image(format, kind, bytes), &Transfer::new(&PixelTransfer::default()))
     }
 
     #[test]
@@ -271,7 +293,7 @@ mod tests {
             };
             let image = image(format, kind, &bytes);
             let state = PixelTransfer::default();
-            let general: Vec<u32> = colors(&image, &Transfer::new(&state))
+            let general: Vec<u32> = colors(&Workers::single(), &image, &Transfer::new(&state))
                 .into_iter()
                 .map(|c| u32::from_le_bytes(c.map(|v| (v * 255.0 + 0.5) as u8)))
                 .collect();

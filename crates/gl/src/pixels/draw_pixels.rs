@@ -130,7 +130,7 @@ impl Context {
         let transfer = Transfer::new(&self.state.pixel);
         let mut pixels = Pixels::default();
         match content {
-            Content::Color | Content::Index => pixels.colors = Some(decode::colors(image, &transfer)),
+            Content::Color | Content::Index => pixels.colors = Some(decode::colors(&self.workers(), image, &transfer)),
             Content::Depth => pixels.depths = Some(decode::depths(image, &transfer, true)),
             Content::Stencil => pixels.stencils = Some(decode::stencils(image, &transfer)),
             Content::DepthStencil => {
@@ -184,7 +184,7 @@ impl Context {
         if let (Content::Color, Some(s)) = (content, &from.color)
             && let Some(plane) = &s.color
         {
-            let mut colors = read_colors(&lock(plane), &s.format, &r);
+            let mut colors = read_colors(&self.workers(), &lock(plane), &s.format, &r);
             transfer.colors(&mut colors);
             pixels.colors = Some(colors);
         }

@@ -42,12 +42,17 @@ pub(crate) fn inside(surfaces: &Surfaces, x: i32, y: i32, width: i32, height: i3
 }
 
 /// Colours of a rectangle, as the buffer's format returns them.
-pub(crate) fn read_colors(plane: &ColorPlane, format: &InternalFormat, r: &Rectangle) -> Vec<[f32; 4]> {
+pub(crate) fn read_colors(
+    workers: &Workers,
+    plane: &ColorPlane,
+    format: &InternalFormat,
+    r: &Rectangle,
+) -> Vec<[f32; 4]> {
     let mut out = vec![[0.0; 4]; r.size[0] * r.size[1]];
-    for (y, row) in (r.y..).zip(out.chunks_exact_mut(r.size[0].max(1))) {
+    each_row(workers, r, &mut out, |y, row| {
         let pieces = (r.x..).step_by(TILE).zip(row.chunks_mut(TILE));
         pieces.for_each(|(x, piece)| read_color_row(plane, format, [x, y], piece));
-    }
+    });
     out
 }
 

@@ -186,7 +186,7 @@ impl Context {
             Err((error, why)) => self.record_error(error, arguments.call, why),
             Ok(checked) => {
                 let transfer = Transfer::new(&self.state.pixel);
-                let data = image.map(|image| texels::from_client(image, &checked.format, &transfer));
+                let data = image.map(|image| texels::from_client(&self.workers(), image, &checked.format, &transfer));
                 self.store_image(&checked, data);
             }
         }

@@ -132,7 +132,8 @@ impl Context {
             (Err((error, why)), _) => self.record_error(error, arguments.call, why),
             (Ok(_), None) => {}
             (Ok(checked), Some(image)) => {
-                let data = texels::from_client(image, &checked.format, &Transfer::new(&self.state.pixel));
+                let data =
+                    texels::from_client(&self.workers(), image, &checked.format, &Transfer::new(&self.state.pixel));
                 self.write_box(&checked, &data);
             }
         }

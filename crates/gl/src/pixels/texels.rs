@@ -7,6 +7,7 @@ use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
 use crate::enums::RGBA;
 use std::borrow::Cow;
+use vitral_exec::Workers;
 use vitral_raster::forward::Texels;
 
 /// Texels of a box, in the form in which an image of that format stores them.
@@ -39,7 +40,12 @@ pub(crate) fn stored_depth(depth: f32, scale: f32) -> f32 {
 }
 
 /// The client's pixels as texels of `format`.
-pub(crate) fn from_client(image: Cow<'_, ClientImage>, format: &InternalFormat, transfer: &Transfer<'_>) -> TexelData {
+pub(crate) fn from_client(
+    workers: &Workers,
+    image: Cow<'_, ClientImage>,
+    format: &InternalFormat,
+    transfer: &Transfer<'_>,
+) -> TexelData {
     if format.has_depth() {
         let mut depths = decode::depths(&image, transfer, format.depth_scale() != 1.0);
         round_depths(&mut depths, format);
@@ -49,18 +55,17 @@ pub(crate) fn from_client(image: Cow<'_, ClientImage>, format: &InternalFormat, 
         return TexelData::Depths(depths, stencils);
     }
     if !matches!(format.storage, Storage::Unorm8 | Storage::Srgb8) {
-        return from_colors(decode::colors(&image, transfer), format);
+        return from_colors(decode::colors(workers, &image, transfer), format);
     }
     let image = if transfer.keeps_colors() { decode::words(image) } else { Err(image) };
     let image = match image {
         Ok(words) => return from_words(words, format),
         Err(image) => image,
     };
-    let mut words = Vec::with_capacity(image.size.iter().product());
-    decode::each_colors(&image, transfer, |colors| {
-        words.extend(colors.iter().map(|&c| format.expand_word(word_from_color(c))));
-    });
-    TexelData::Words(words)
+    let word = |(word, &color): (&mut u32, &[f32; 4])| *word = format.expand_word(word_from_color(color));
+    TexelData::Words(decode::from_colors(workers, &image, transfer, |colors, words| {
+        words.iter_mut().zip(colors).for_each(word);
+    }))
 }
 
 /// Colours (after transfer) as texels of a colour format.

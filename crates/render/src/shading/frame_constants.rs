@@ -56,6 +56,8 @@ pub(crate) struct MaterialConstants<'a> {
     pub normal: Option<TextureConstants<'a>>,
     /// Below this alpha nothing is there (cut-outs), else `None`.
     pub cutoff: Option<f32>,
+    /// Its cut-outs have soft borders, a pixel wide: pixels have several samples, which do not decide by themselves.
+    pub soft_cut: bool,
     /// Alpha matters.
     pub blend: bool,
     /// Rays that meet it are followed on.
@@ -298,6 +300,7 @@ fn material_constants<'a>(
         occlusion: texture(material.occlusion_texture),
         normal: texture(material.normal_texture),
         cutoff,
+        soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global != Global::RayTrace,
         blend,
         follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
         scatters: (blend && material.transmission == Transmission::Translucent)

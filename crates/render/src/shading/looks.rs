@@ -59,7 +59,7 @@ impl<S: Simd> Looks<S> {
         let lookup = lanes::inlined(
             #[inline(always)]
             |texture: &Option<TextureConstants<'_>>| match texture {
-                Some(t) => sample(simd, mesh, slots, surface, t),
+                Some(t) => sample(simd, mesh, slots, (surface, &surface.weights), t),
                 None => None,
             },
         );
@@ -105,7 +105,11 @@ impl<S: Simd> Looks<S> {
             let passing = linear::opacity(kept * material.material.opacity);
             kt = passing * linear::dielectric_part(&material.material, metallic_factor);
         }
-        let alpha = opaque_part(material, alpha);
+        let alpha = if material.soft_cut {
+            soft_cut(simd, mesh, slots, surface, material, alpha)
+        } else {
+            opaque_part(material, alpha)
+        };
         let mut emission = V3::splat(one, material.material.emission);
         if let Some([r, g, b, _]) = lookup(&material.emission) {
             emission = emission.times(V3::new(r, g, b));
@@ -234,7 +238,7 @@ impl<S: Simd> Looks<S> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let texel = sample(simd, mesh, slots, surface, texture)?;
+                let texel = sample(simd, mesh, slots, (surface, &surface.weights), texture)?;
                 let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
                 let uv = gather_attribute(simd, attribute, mesh, slots);
                 let n = phong::interpolated_normal(surface);
@@ -349,6 +353,58 @@ fn opaque_part<T: Lanes>(material: &MaterialConstants<'_>, alpha: T) -> T {
     }
 }
 
+/// How much of a pixel a cut-out surface fills where its opacity is `alpha` in the middle: as if that went on as it does to the
+/// next pixels, to the right and down, a border of the surface runs through the pixel where it reaches the cutoff.
+#[inline(never)]
+fn soft_cut<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<F<S>>,
+    material: &MaterialConstants<'_>,
+    alpha: F<S>,
+) -> F<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let [right, down] = surface.neighbours();
+            let change = lanes::inlined(
+                #[inline(always)]
+                |weights: &[F<S>; 3]| Lanes::abs(alpha_at(simd, mesh, slots, (surface, weights), material) - alpha),
+            );
+            let opacity = material.material.opacity;
+            let width = Lanes::max((change(&right) + change(&down)) * opacity, constant(simd, 1e-6));
+            let beyond = alpha * opacity - material.cutoff.unwrap_or(0.0);
+            Lanes::saturate(beyond / width + 0.5)
+        },
+    )
+}
+
+/// Opacity by textures and vertex colours, at the place with these weights of the corners.
+#[inline(always)]
+fn alpha_at<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    (surface, weights): (&Surface<F<S>>, &[F<S>; 3]),
+    material: &MaterialConstants<'_>,
+) -> F<S> {
+    let mut alpha = constant(simd, 1.0);
+    if let Some(attribute) = &mesh.colors {
+        let corners = gather_attribute(simd, attribute, mesh, slots);
+        alpha = blend(weights, [corners[0][3], corners[1][3], corners[2][3]]);
+    }
+    if let Some(texel) = material.base.as_ref().and_then(|t| sample(simd, mesh, slots, (surface, weights), t)) {
+        alpha *= texel[3];
+    }
+    // That of glass says how much light it keeps.
+    let opacity = material.opacity.as_ref().filter(|_| !material.material.glass);
+    if let Some(texel) = opacity.and_then(|t| sample(simd, mesh, slots, (surface, weights), t)) {
+        alpha *= texel[0];
+    }
+    alpha
+}
+
 /// The values of an attribute at the corners of each lane's facet.
 #[inline(always)]
 fn gather_attribute<S: Simd, const N: usize>(
@@ -365,12 +421,12 @@ fn gather_attribute<S: Simd, const N: usize>(
     )
 }
 
-/// Looks a texture up at eight points; `None` if the mesh has no such texture coordinates.
+/// Looks a texture up at eight points, where the corners have these weights; `None` if the mesh has no such texture coordinates.
 fn sample<S: Simd>(
     simd: S,
     mesh: &Mesh,
     slots: &Slots,
-    surface: &Surface<F<S>>,
+    (surface, weights): (&Surface<F<S>>, &[F<S>; 3]),
     t: &TextureConstants<'_>,
 ) -> Option<[F<S>; 4]> {
     simd.vectorize(
@@ -385,16 +441,17 @@ fn sample<S: Simd>(
             );
             let u = [coordinate(0, 0), coordinate(0, 1), coordinate(0, 2)];
             let v = [coordinate(1, 0), coordinate(1, 1), coordinate(1, 2)];
-            let here = (blend(&surface.weights, u), blend(&surface.weights, v));
+            let here = (blend(weights, u), blend(weights, v));
 
             // Level of detail: the longer side of the pixel's footprint, in texels.
             let base = t.texture.levels.first()?;
             let (w, h) = (base.width() as f32, base.height() as f32);
             let [right, down] = surface.neighbours();
+            let middle = (blend(&surface.weights, u), blend(&surface.weights, v));
             let length2 = lanes::inlined(
                 #[inline(always)]
                 |weights: &[F<S>; 3]| {
-                    let (du, dv) = ((blend(weights, u) - here.0) * w, (blend(weights, v) - here.1) * h);
+                    let (du, dv) = ((blend(weights, u) - middle.0) * w, (blend(weights, v) - middle.1) * h);
                     du * du + dv * dv
                 },
             );

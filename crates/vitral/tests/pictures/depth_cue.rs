@@ -90,7 +90,7 @@ fn p41_open_planes_lie_where_the_scene_begins_and_ends() {
 
 #[test]
 fn p41_every_algorithm_fades_alike_and_whole_scales_change_nothing() {
-    let mut picture = |name: &str, cue: Option<DepthCue>| {
+    let picture = |name: &str, cue: Option<DepthCue>| {
         let mut r = cued(squares(), CUE);
         (r.settings.depth_cue, r.settings.visibility) = (cue, name.to_owned());
         colors(&mut r)

@@ -205,6 +205,53 @@ fn t8_t9_f5_the_profile_of_a_glass_ball_tells_kays_model_from_the_linear_one() {
     }
 }
 
+/// A square with a disc cut out of it by a texture of 32 x 32 texels, green before black, seen aslant. How much of each pixel is green.
+fn cut_out_disc((width, height): (u32, u32), samples: u32, rays: bool) -> Vec<f32> {
+    let texel = |i: usize| {
+        let [x, y] = [i % 32, i / 32].map(|k| (k as f32 + 0.5) / 16.0 - 1.0);
+        let alpha = ((x * x + y * y).sqrt() - 0.6) * 16.0 + 0.5;
+        [0, 255, 0, (alpha.clamp(0.0, 1.0) * 255.0) as u8]
+    };
+    let pixels = Plane::from_rows(32, 32, (0..32 * 32).map(texel).collect()).unwrap();
+    let mut scene = Scene::default();
+    scene.textures.push(Arc::new(Texture::new("disc".into(), pixels, Encoding::Linear)));
+    let white = glass([1.0; 3], 0.0);
+    let base_texture = Some(TextureRef::new(0));
+    let material = scene.add_material(Material { base_texture, alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..white });
+    let mut mesh = square(0.0, 0.3);
+    mesh.uvs = vec![Attribute::per_vertex(vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])];
+    mesh.parts[0].material = Some(material);
+    scene.add_mesh(mesh, DMat4::IDENTITY);
+    let mut r = exact(scene, width, height);
+    r.settings.samples = samples;
+    r.settings.global = if rays { Global::RayTrace } else { Global::None };
+    r.camera = Some(Camera { position: DVec3::new(1.0, 0.7, 4.0), ..on_z(1.0, 0.55) });
+    colors(&mut r).iter().map(|c| f32::from(c[1]) / 255.0).collect()
+}
+
+#[test]
+fn f17_cut_outs_have_soft_borders_with_several_samples() {
+    let fine = cut_out_disc((640, 480), 1, false);
+    let expected = |x: usize, y: usize| {
+        let row = |j: usize| (0..10).map(move |i| (10 * y + j) * 640 + 10 * x + i);
+        (0..10).flat_map(row).map(|i| fine[i]).sum::<f32>() / 100.0
+    };
+    let errors = |picture: &[f32]| {
+        let each: Vec<f32> = picture.iter().enumerate().map(|(i, v)| (v - expected(i % 64, i / 64)).abs()).collect();
+        (
+            each.iter().map(|e| e * e).sum::<f32>(),
+            each.iter().fold(0.0f32, |a, b| a.max(*b)),
+            picture.iter().sum::<f32>(),
+        )
+    };
+    let (hard, soft) = (errors(&cut_out_disc((64, 48), 1, false)), errors(&cut_out_disc((64, 48), 4, false)));
+    let rays = errors(&cut_out_disc((64, 48), 4, true));
+    assert!(soft.0 < 0.1 * hard.0 && soft.0 < rays.0, "squares of errors: {soft:?}, rays {rays:?}, hard {hard:?}");
+    assert!(soft.1 < 0.3, "{soft:?}");
+    let area: f32 = fine.iter().sum::<f32>() / 100.0;
+    assert!((soft.2 - area).abs() < 0.01 * area, "{} pixels of {area}", soft.2);
+}
+
 #[test]
 fn filtered_glass_tints_what_is_behind() {
     let green = Material { filter: [0.0, 1.0, 0.5], ..glass([0.0; 3], 0.8) };

@@ -171,6 +171,9 @@ impl Budget {
     }
 
     /// Fails when the deadline has passed or the user cancelled. Call it once for each batch of work.
+    ///
+    /// # Errors
+    /// [`Limit::Time`] and [`Limit::Cancelled`].
     pub fn check(&self, stage: &'static str) -> Result<(), Limit> {
         if self.cancelled.load(Ordering::Relaxed) {
             return Err(Limit::Cancelled { stage });
@@ -199,6 +202,9 @@ impl Budget {
     }
 
     /// Charges `bytes` before they are allocated; give them back with [`Self::release`].
+    ///
+    /// # Errors
+    /// [`Limit::Memory`] where more would be charged than is allowed; nothing is charged then.
     pub fn charge(&self, bytes: u64, stage: &'static str) -> Result<(), Limit> {
         let needed = self.memory.fetch_add(bytes, Ordering::Relaxed) + bytes;
         match self.memory_limit {

@@ -32,6 +32,7 @@ const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
 
 /// Decodes a picture. `file` is its name, for messages.
 ///
+/// # Errors
 /// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     whole(bytes, file)?;

@@ -20,6 +20,9 @@ pub trait Resolver: Sync {
     /// The bytes of the file that the model calls `path`: `/`-separated, relative to the model's folder, already
     /// freed of URI escapes and in Unicode, whatever the model's encoding. Implementations refuse absolute paths and those that
     /// leave the folder by `..`, unless the user allowed them.
+    ///
+    /// # Errors
+    /// [`ResolveError`]: there is no such file, or it may not be read.
     fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError>;
 }
 

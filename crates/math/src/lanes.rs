@@ -516,7 +516,10 @@ pub fn orders_bytes(level: Level) -> bool {
 }
 
 /// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names
-/// (`scalar`, `sse2`, `avx2`, `avx512`, `best`). An unknown or unavailable name is an error that lists the available ones.
+/// (`scalar`, `sse2`, `avx2`, `avx512`, `best`).
+///
+/// # Errors
+/// A name that is unknown or not available; the text lists those that are.
 pub fn level_from_environment() -> Result<Level, String> {
     match std::env::var("VITRAL_SIMD") {
         Err(_) => Ok(Level::new()),

@@ -162,11 +162,17 @@ impl MeshKnowledge {
 
 impl Session {
     /// Flattens the scene and checks that its parts fit together.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for parts that do not fit.
     pub fn new(scene: Arc<Scene>) -> Result<Self, Error> {
         Self::with_workers(scene, &Workers::single())
     }
 
     /// [`Self::new`] with all of `workers`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
     pub fn with_workers(scene: Arc<Scene>, workers: &Workers) -> Result<Self, Error> {
         for mesh in &scene.meshes {
             mesh.check_with(workers).map_err(Error::Scene)?;
@@ -290,11 +296,17 @@ impl Session {
 
     /// The list of all triangles, made when it is first asked for, as are the structures over it: the views of a
     /// turntable share them.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn triangles(&self, execution: &Execution) -> Result<Arc<Triangles>, Limit> {
         keep(&self.triangles, || Ok(Triangles::of_world(&self.world, &execution.workers)))
     }
 
     /// The tree of boxes over all triangles.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn bvh(&self, execution: &Execution) -> Result<Arc<Bvh>, Limit> {
         keep(&self.bvh, || {
             // The tree has its own list, in its own order: the common one need not stay for it.
@@ -304,12 +316,18 @@ impl Session {
     }
 
     /// The octree over all triangles.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn octree(&self, execution: &Execution) -> Result<Arc<Octree>, Limit> {
         let triangles = self.triangles(execution)?;
         keep(&self.octree, || Octree::build(&triangles, &execution.workers, &execution.budget))
     }
 
     /// The uniform grid over all triangles.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn uniform_grid(&self, execution: &Execution) -> Result<Arc<Grid>, Limit> {
         let triangles = self.triangles(execution)?;
         keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))

@@ -524,6 +524,9 @@ pub enum SettingsError {
 
 impl Settings {
     /// Checks what a type cannot.
+    ///
+    /// # Errors
+    /// What cannot be carried out: the first that is found.
     pub fn check(&self) -> Result<Viewport, SettingsError> {
         if !(1..=16).contains(&self.samples) {
             return Err(SettingsError::Samples(self.samples));

@@ -273,11 +273,17 @@ impl Mesh {
     }
 
     /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
+    ///
+    /// # Errors
+    /// The first unsound thing, in words.
     pub fn check(&self) -> Result<(), String> {
         self.check_with(&Workers::single())
     }
 
     /// [`Self::check`] with all of `workers`.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
     pub fn check_with(&self, workers: &Workers) -> Result<(), String> {
         const PIECE: usize = 1 << 17;
         let vertices = self.positions.len();

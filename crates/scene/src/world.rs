@@ -85,11 +85,17 @@ pub enum WorldError {
 
 impl World {
     /// Walks the graph from its roots. Bounds of each mesh are computed once, however many instances it has.
+    ///
+    /// # Errors
+    /// A scene whose graph or numbers cannot be, see [`WorldError`].
     pub fn new(scene: &Scene) -> Result<Self, WorldError> {
         Self::with_workers(scene, &Workers::single())
     }
 
     /// [`Self::new`] with all of `workers`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
     pub fn with_workers(scene: &Scene, workers: &Workers) -> Result<Self, WorldError> {
         let run_bounds: Vec<Vec<Aabb>> = scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
         let bounds: Vec<Aabb> = scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();

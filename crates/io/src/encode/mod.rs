@@ -25,6 +25,9 @@ use vitral_frame::Plane;
 use vitral_math::color;
 
 /// Reads a picture: PPM (also PGM), or a format that textures come in, known by content.
+///
+/// # Errors
+/// [`Error::Unsupported`] for content of no known format, [`Error::Malformed`] for damaged one.
 pub fn decode_picture(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     match bytes {
         [b'P', b'5' | b'6', ..] => ppm::decode(bytes, file),

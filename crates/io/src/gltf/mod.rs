@@ -41,7 +41,8 @@ const BYTES_PER_BYTE: u64 = 64;
 
 /// Reads a glTF or GLB file. `file` is its name, for messages.
 ///
-/// Errors: what breaks the format is [`Error::Malformed`] at a JSON path, a buffer that cannot be had
+/// # Errors
+/// What breaks the format is [`Error::Malformed`] at a JSON path, a buffer that cannot be had
 /// [`Error::Missing`], a required extension that is not read [`Error::Unsupported`]. Everything else that is odd (a
 /// missing image, bad normals, an empty scene) is a warning in the scene.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {

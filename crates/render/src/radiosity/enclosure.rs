@@ -121,6 +121,9 @@ pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
 
 impl Enclosure {
     /// Looks at the leaves of `trees`, which are of this session's facets.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn new(
         trees: Trees,
         session: &Session,

@@ -19,6 +19,9 @@ pub type Row = Vec<(u32, f64)>;
 const MOST_PASSES: usize = 1000;
 
 /// The rows of all sides: what each sees.
+///
+/// # Errors
+/// A limit of the budget.
 pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -> Result<Vec<Row>, Limit> {
     let row = |side: usize| {
         let element = &enclosure.elements[side / 2];

@@ -86,6 +86,9 @@ impl Hemicube {
 
     /// What a point with unit normal sees: leaves of `trees`, by number, and form factors, in the order of leaves. The
     /// hemicube is turned as that of this `number`.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn look(
         &self,
         (targets, trees): (&Targets, &Trees),

@@ -67,6 +67,9 @@ const FEW: usize = 8192;
 
 /// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
+///
+/// # Errors
+/// A limit of the budget.
 pub fn solve(
     enclosure: &Enclosure,
     hemicubes: &[Hemicube],

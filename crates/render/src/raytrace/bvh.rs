@@ -124,6 +124,9 @@ impl Bvh {
     }
 
     /// Builds the tree. The result does not depend on the number of workers.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn build(triangles: &Triangles, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
         budget.check("building the tree of boxes")?;
         if triangles.count() == 0 {

@@ -52,6 +52,9 @@ impl Grid {
     }
 
     /// Builds the grid.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn build(triangles: &Arc<Triangles>, budget: &Budget) -> Result<Self, Limit> {
         budget.check("building the grid")?;
         let mut grid = Self::layout(triangles);

@@ -121,6 +121,9 @@ impl Octree {
     }
 
     /// Builds the tree. The result does not depend on the number of workers.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn build(triangles: &Arc<Triangles>, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
         budget.check("building the octree")?;
         let count = triangles.count();

@@ -76,6 +76,9 @@ pub struct Drawn<'a> {
 pub trait ShadowAlgorithm: Sync {
     /// Makes ready for questions about these lights (world space). `viewer` is where projectors meet, homogeneous (world
     /// space; `w` is 0 in a parallel view), for algorithms that begin there; the answers do not depend on it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     fn prepare<'a>(
         &self,
         session: &'a Session,
@@ -86,6 +89,9 @@ pub trait ShadowAlgorithm: Sync {
     ) -> Result<Box<dyn Shadows + 'a>, Limit>;
 
     /// Makes ready for a picture of this view: [`Self::prepare`], but for algorithms whose precision follows the viewer.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     fn prepare_for<'a>(
         &self,
         view: &PreparedView<'a>,
@@ -121,6 +127,9 @@ const CHARGED_AHEAD: u64 = 1 << 20;
 
 /// Hands on the polygons that the chosen algorithm works with, until a limit is reached. `take` says how many bytes it
 /// keeps of all that it got; the budget allows them or ends it.
+///
+/// # Errors
+/// The limit; what was handed on until then stays handed on.
 pub fn draw(
     session: &Session,
     lights: &[Light],

@@ -313,6 +313,22 @@ fn quantised_and_normalised_attributes() {
 }
 
 #[test]
+fn tangents_come_along_where_all_surfaces_have_them_and_stay_as_they_are() {
+    let normals = (floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 3, "");
+    let tangents = (floats(&[1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC4", 3, "");
+    let read = |primitives: &str| {
+        let rest = format!(r#"{ONE_NODE},"meshes":[{{"primitives":[{primitives}]}}]"#);
+        load_text(&document(&[triangle(), normals.clone(), tangents.clone()], &rest)).unwrap().meshes[0]
+            .tangents
+            .clone()
+    };
+    let with = r#"{"attributes":{"POSITION":0,"NORMAL":1,"TANGENT":2}}"#;
+    assert_eq!(read(with).unwrap().values[1], [0.0, 1.0, 0.0, -1.0]);
+    assert_eq!(read(&format!(r#"{with},{{"attributes":{{"POSITION":0,"NORMAL":1}}}}"#)), None);
+    assert_eq!(read(r#"{"attributes":{"POSITION":0,"TANGENT":2}}"#), None, "they belong to normals");
+}
+
+#[test]
 fn attribute_counts_must_agree() {
     let two = (floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 2, "");
     let fails = |primitive: &str, part: &str| {

@@ -57,6 +57,8 @@ fn full_mesh() -> Mesh {
             Part { name: String::new(), triangles: 2..3, material: None },
         ],
         normals: Some(Attribute { values: vec![[0.0, 0.0, 1.0]; 2], corners: Some(vec![[0, 0, 1]; 3]) }),
+        normals_stay: true,
+        tangents: Some(Attribute { values: vec![[1.0, 0.0, 0.0, -1.0]], corners: Some(vec![[0; 3]; 3]) }),
         uvs: vec![
             Attribute::per_vertex(vec![[0.1, 0.7]; 5]),
             Attribute { values: vec![[0.3; 2]], corners: Some(vec![[0; 3]; 3]) },
@@ -87,6 +89,7 @@ fn full_materials() -> Vec<Material> {
         reflectance: Reflectance::MetallicRoughness { base_color: [0.1, 0.2, 0.3], metallic: 0.4, roughness: 0.7 },
         emission: [1.5, 0.0, 0.1],
         opacity: 0.3,
+        kt_min: 0.2,
         alpha_mode: AlphaMode::Mask { cutoff: 0.1 },
         transmission: Transmission::Translucent,
         glass: true,

@@ -131,7 +131,7 @@ struct MeshKnowledge {
     sides: OnceLock<Vec<Side>>,
     centred: OnceLock<Vec<[f32; 3]>>,
     /// For each set of texture coordinates.
-    tangents: [OnceLock<Option<Attribute<[f32; 3]>>>; 2],
+    tangents: [OnceLock<Option<Attribute<[f32; 4]>>>; 2],
 }
 
 /// Half sides of its box that a mesh lies away from the origin before its positions are moved there.
@@ -374,8 +374,11 @@ impl Session {
         known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
     }
 
-    /// The tangents of a mesh along a set of texture coordinates, if it has these and normals.
-    pub(crate) fn tangents(&self, mesh: u32, set: u32) -> Option<&Attribute<[f32; 3]>> {
+    /// The tangents of a mesh: its own, or along a set of texture coordinates, if it has these and normals.
+    pub(crate) fn tangents(&self, mesh: u32, set: u32) -> Option<&Attribute<[f32; 4]>> {
+        if let Some(own) = &self.scene.meshes[mesh as usize].tangents {
+            return Some(own);
+        }
         let known = self.meshes[mesh as usize].tangents.get(set as usize)?;
         known.get_or_init(|| tangents(&self.scene.meshes[mesh as usize], set as usize)).as_ref()
     }

@@ -125,7 +125,7 @@ pub fn exercise_5_2(scene: &mut Scene) {
         let mesh = Arc::make_mut(mesh);
         let corners = vec![[0; 3]; mesh.triangles.len()];
         mesh.normals = Some(Attribute { values: vec![[0.0, 0.0, 1.0]], corners: Some(corners) });
-        mesh.normals_stay = true;
+        (mesh.normals_stay, mesh.tangents) = (true, None);
     }
 }
 

@@ -37,6 +37,10 @@ pub struct Mesh {
     pub normals: Option<Attribute<[f32; 3]>>,
     /// Normals are not the surface's: they stay as they are where its back is seen (exercise 5.2).
     pub normals_stay: bool,
+    /// Directions in which the normal texture's u grows, model space, zero where none is known; `w` is 1 where its falling v, the
+    /// upwards of the picture, is normal × tangent, and -1 where it is the opposite. `None`: made from normals and texture
+    /// coordinates, see [`tangents`](crate::tangents::tangents).
+    pub tangents: Option<Attribute<[f32; 4]>>,
     /// Up to two sets of texture coordinates, `(0, 0)` at the image's top left.
     pub uvs: Vec<Attribute<[f32; 2]>>,
     /// Linear RGBA that multiplies the material's diffuse or base colour.
@@ -346,6 +350,9 @@ impl Mesh {
         };
         if let Some(n) = &self.normals {
             attribute("normal", n.values.len(), n.corners.as_deref())?;
+        }
+        if let Some(t) = &self.tangents {
+            attribute("tangent", t.values.len(), t.corners.as_deref())?;
         }
         for uv in &self.uvs {
             attribute("texture coordinate", uv.values.len(), uv.corners.as_deref())?;

@@ -5,7 +5,8 @@
 //! share a tangent: the mean of the triangles' own directions, each laid into the plane of the normal, by the angles at the corner.
 //! Pictures of normals are made for such tangents.
 //!
-//! In:   a mesh with normals and texture coordinates, model space. Out: unit tangents, zero where no texture runs.
+//! In:   a mesh with normals and texture coordinates, model space. Out: unit tangents, zero where no texture runs, and in `w`
+//! which way round the texture is, see [`Mesh::tangents`].
 //! Cost: linear in corners (hashing).
 //! Source: [Mikkelsen 2008]. Departs from it: corners share whether or not edges connect their triangles.
 
@@ -21,10 +22,10 @@ type Place = ([u32; 3], [u32; 3], [u32; 2], bool);
 ///
 /// # Panics
 /// Possibly, if the mesh is not sound ([`Mesh::check`]).
-pub fn tangents(mesh: &Mesh, set: usize) -> Option<Attribute<[f32; 3]>> {
+pub fn tangents(mesh: &Mesh, set: usize) -> Option<Attribute<[f32; 4]>> {
     let (uvs, normals) = (mesh.uvs.get(set)?, mesh.normals.as_ref()?);
     let mut numbers: HashMap<Place, u32> = HashMap::new();
-    let mut sums: Vec<DVec3> = Vec::new();
+    let mut sums: Vec<(DVec3, f32)> = Vec::new();
     let mut corners: Vec<Corners> = Vec::with_capacity(mesh.triangles.len());
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let positions = triangle.map(|i| mesh.positions[i as usize]);
@@ -35,18 +36,19 @@ pub fn tangents(mesh: &Mesh, set: usize) -> Option<Attribute<[f32; 3]>> {
             let bits = |v: [f32; 3]| v.map(|x| (x + 0.0).to_bits());
             let place = (bits(positions[c]), bits(normal[c]), uv[c].map(|x| (x + 0.0).to_bits()), flipped);
             let number = *numbers.entry(place).or_insert_with(|| {
-                sums.push(DVec3::ZERO);
+                // Where corners run counter-clockwise and v grows downwards, the area of the texture is negative.
+                sums.push((DVec3::ZERO, if flipped { 1.0 } else { -1.0 }));
                 sums.len() as u32 - 1
             });
             let n = wide(normal[c]).normalize_or_zero();
             let laid = (along - n * n.dot(along)).normalize_or_zero();
             if laid.is_finite() {
-                sums[number as usize] += laid * angle(positions.map(wide), c);
+                sums[number as usize].0 += laid * angle(positions.map(wide), c);
             }
             number
         }));
     }
-    let values = sums.iter().map(|sum| sum.normalize_or_zero().as_vec3().to_array()).collect();
+    let values = sums.iter().map(|(sum, w)| sum.normalize_or_zero().as_vec3().extend(*w).to_array()).collect();
     Some(Attribute { values, corners: Some(corners) })
 }
 
@@ -100,6 +102,10 @@ mod tests {
         mesh
     }
 
+    fn without_w([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+        [x, y, z]
+    }
+
     fn close(a: [f32; 3], b: [f64; 3]) {
         assert!((0..3).all(|k| (f64::from(a[k]) - b[k]).abs() < 1e-6), "{a:?}, not {b:?}");
     }
@@ -109,7 +115,9 @@ mod tests {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let mesh = bent(false);
         let smooth = tangents(&mesh, 0).expect("it has coordinates");
-        let [left, right] = [0, 2].map(|t| smooth.at(t, &mesh.triangles));
+        let of = |tangents: &Attribute<[f32; 4]>, mesh: &Mesh, t| tangents.at(t, &mesh.triangles).map(without_w);
+        let [left, right] = [0, 2].map(|t| of(&smooth, &mesh, t));
+        assert!(smooth.values.iter().all(|v| v[3] == 1.0));
         close(left[0], [half, 0.0, half]);
         close(left[1], [1.0, 0.0, 0.0]);
         close(right[0], [1.0, 0.0, 0.0]);
@@ -117,7 +125,8 @@ mod tests {
 
         let mesh = bent(true);
         let mirrored = tangents(&mesh, 0).expect("it has coordinates");
-        let [left, right] = [0, 2].map(|t| mirrored.at(t, &mesh.triangles));
+        let [left, right] = [0, 2].map(|t| of(&mirrored, &mesh, t));
+        assert_eq!([0, 2].map(|t| mirrored.at(t, &mesh.triangles)[0][3]), [1.0, -1.0]);
         close(left[1], [1.0, 0.0, 0.0]);
         close(right[0], [-1.0, 0.0, 0.0]);
         assert_eq!(tangents(&mesh, 1), None);
@@ -130,15 +139,17 @@ mod tests {
         let of_ball = tangents(&ball, 0).expect("a ball has coordinates");
         for t in 0..ball.triangles.len() {
             let normals = ball.normals.as_ref().expect("a ball has normals").at(t, &ball.triangles);
-            for (tangent, normal) in of_ball.at(t, &ball.triangles).map(wide).into_iter().zip(normals.map(wide)) {
+            for (tangent, normal) in
+                of_ball.at(t, &ball.triangles).map(without_w).map(wide).into_iter().zip(normals.map(wide))
+            {
                 assert!((tangent.length() - 1.0).abs() < 1e-6 && tangent.dot(normal).abs() < 1e-6, "{tangent}");
                 // u runs round the axis.
                 assert!(tangent.y.abs() < 0.3, "{tangent}");
             }
         }
         ball.uvs[0].values.fill([0.5; 2]);
-        assert!(tangents(&ball, 0).is_some_and(|a| a.values.iter().all(|v| *v == [0.0; 3])));
+        assert!(tangents(&ball, 0).is_some_and(|a| a.values.iter().all(|v| without_w(*v) == [0.0; 3])));
         ball.uvs[0].values.fill([f32::NAN; 2]);
-        assert!(tangents(&ball, 0).is_some_and(|a| a.values.iter().all(|v| *v == [0.0; 3])));
+        assert!(tangents(&ball, 0).is_some_and(|a| a.values.iter().all(|v| without_w(*v) == [0.0; 3])));
     }
 }

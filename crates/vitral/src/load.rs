@@ -128,7 +128,7 @@ fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
         Normals::Made => {
             for mesh in scene.meshes.iter_mut().filter(|m| !m.triangles.is_empty()) {
                 let mesh = Arc::make_mut(mesh);
-                (mesh.normals, mesh.normals_stay, mesh.smoothing_groups) = (None, false, None);
+                (mesh.normals, mesh.normals_stay, mesh.tangents, mesh.smoothing_groups) = (None, false, None, None);
             }
             make_normals(scene, options.crease_angle, workers);
         }

@@ -53,6 +53,7 @@ fn arrays(mesh: &Mesh) -> usize {
         + bytes_of(&mesh.triangles)
         + faces
         + mesh.normals.as_ref().map_or(0, attribute)
+        + mesh.tangents.as_ref().map_or(0, attribute)
         + mesh.uvs.iter().map(attribute).sum::<usize>()
         + mesh.colors.as_ref().map_or(0, attribute)
         + mesh.smoothing_groups.as_deref().map_or(0, bytes_of)

@@ -18,6 +18,8 @@ const JOINT_SETS: u32 = 2;
 pub(crate) struct Attributes {
     pub(crate) positions: usize,
     pub(crate) normals: Option<usize>,
+    /// Only where there are normals, to which they belong.
+    pub(crate) tangents: Option<usize>,
     pub(crate) uvs: [Option<usize>; 2],
     pub(crate) colors: Option<usize>,
     /// Joints and weights, set by set.
@@ -74,6 +76,7 @@ impl Attributes {
         let found = Self {
             positions,
             normals: get(Semantic::Normals),
+            tangents: get(Semantic::Normals).and(get(Semantic::Tangents)),
             uvs,
             colors: get(Semantic::Colors(0)),
             influences,
@@ -95,6 +98,7 @@ impl Attributes {
         });
         [
             attribute("NORMAL", self.normals),
+            attribute("TANGENT", self.tangents),
             attribute("TEXCOORD_0", self.uvs[0]),
             attribute("TEXCOORD_1", self.uvs[1]),
             attribute("COLOR_0", self.colors),
@@ -120,7 +124,10 @@ impl Attributes {
     /// Bytes that one vertex takes in a mesh.
     pub(crate) fn vertex_bytes(&self) -> u64 {
         let uvs = self.uvs.iter().flatten().count() as u64 * 8;
-        12 + u64::from(self.normals.is_some()) * 12 + uvs + u64::from(self.colors.is_some()) * 16
+        12 + u64::from(self.normals.is_some()) * 12
+            + u64::from(self.tangents.is_some()) * 16
+            + uvs
+            + u64::from(self.colors.is_some()) * 16
     }
 }
 
@@ -242,6 +249,7 @@ mod tests {
         let attributes = Attributes {
             positions: 0,
             normals: None,
+            tangents: None,
             uvs: [None; 2],
             colors: None,
             influences: vec![],

@@ -3,8 +3,7 @@
 //! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
 //! `specular_glossiness.rs`.
 //! Departs from it: a transmissive surface becomes glass, a blended one whose opacity is what transmission leaves, with the
-//! base colour as the colour of what passes; a base texture does not colour what passes. Tangents are not read: they are made
-//! from texture coordinates.
+//! base colour as the colour of what passes; a base texture does not colour what passes.
 
 use super::accessor::Source;
 use super::specular_glossiness::SpecularGlossiness;

@@ -116,6 +116,9 @@ impl Plan {
             block_normals.push(normals);
         }
         self.add_colors_and_uvs(source, &mut mesh, &mut warnings)?;
+        if pose.weights.is_empty() && joints.is_none() {
+            mesh.tangents = self.tangents(source)?;
+        }
         let label = format!("{}: meshes[{}]", source.file, pose.mesh);
         let infinite = mesh.positions.iter().filter(|p| !p.iter().all(|c| c.is_finite())).count();
         if infinite > 0 {
@@ -140,6 +143,28 @@ impl Plan {
             FreePart::extend(&mut mesh.line_parts, lines..mesh.lines.len(), *material);
             FreePart::extend(&mut mesh.point_parts, points..mesh.points.len(), *material);
         }
+    }
+
+    /// The file's tangents, if all surfaces have some. Who changes the pose gets made ones, as where there are none.
+    fn tangents(&self, source: &Source<'_>) -> Result<Option<Attribute<[f32; 4]>>, Error> {
+        let mut surfaces = self.blocks.iter().filter(|b| b.has_surface).peekable();
+        if surfaces.peek().is_none() || surfaces.any(|b| b.attributes.tangents.is_none()) {
+            return Ok(None);
+        }
+        let mut values = Vec::new();
+        for block in &self.blocks {
+            let first = values.len();
+            match block.attributes.tangents {
+                Some(accessor) => {
+                    let path = format!("{}.attributes.TANGENT", block.path);
+                    values.extend(source.floats::<4>(accessor, block.range.clone(), Integers::AsDeclared, &path)?);
+                }
+                None => values.resize(first + block.range.len(), [0.0; 4]),
+            }
+            // What is no direction is made from the texture coordinates of the triangle.
+            values[first..].iter_mut().filter(|t| !t.iter().all(|c| c.is_finite())).for_each(|t| *t = [0.0; 4]);
+        }
+        Ok(Some(Attribute::per_vertex(values)))
     }
 
     /// Adds vertex colours and texture coordinates; blocks without them get white and the origin.

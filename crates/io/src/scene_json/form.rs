@@ -93,6 +93,8 @@ pub(super) struct MeshForm {
     pub(super) normals: Option<AttributeForm<[f32; 3]>>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(super) normals_stay: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tangents: Option<AttributeForm<[f32; 4]>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) uvs: Vec<AttributeForm<[f32; 2]>>,
     #[serde(skip_serializing_if = "Option::is_none")]

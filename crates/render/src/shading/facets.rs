@@ -47,7 +47,7 @@ impl Viewing {
 pub(crate) struct Subject<'a> {
     pub mesh: &'a Mesh,
     /// Tangents for the normal texture, model space, if there is one and the mesh has normals.
-    pub tangents: Option<&'a Attribute<[f32; 3]>>,
+    pub tangents: Option<&'a Attribute<[f32; 4]>>,
     pub instance: &'a InstanceConstants,
     /// Facet id of the mesh's first triangle.
     pub first_facet: u32,

@@ -251,20 +251,23 @@ impl<S: Simd> Looks<S> {
                 let flipped = Lanes::lt(du1 * dv2 - du2 * dv1, zero);
                 let tangent = e1.scale(dv2) - e2.scale(dv1);
                 let tangent = V3::select(flipped, -tangent, tangent);
-                let tangent = match subject.tangents {
+                // Whether falling v is normal × tangent where corners run counter-clockwise.
+                let (tangent, upwards) = match subject.tangents {
                     Some(attribute) => {
-                        let smooth = interpolated_tangent(simd, attribute, subject, slots, surface);
-                        V3::select(Lanes::lt(zero, smooth.dot(smooth)), smooth, tangent)
+                        let (smooth, w) = interpolated_tangent(simd, attribute, subject, slots, surface);
+                        let known = Lanes::lt(zero, smooth.dot(smooth));
+                        let upwards = (known & Lanes::lt(zero, w)) | (!known & flipped);
+                        (V3::select(known, smooth, tangent), upwards)
                     }
-                    None => tangent,
+                    None => (tangent, flipped),
                 };
                 let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
 
                 // The normal, u and falling v make a right-handed frame where corners run counter-clockwise on the
-                // surface and clockwise in the picture, whose v grows downwards, or both the other way.
+                // surface and clockwise in the texture, whose v grows downwards, or both the other way.
                 let clockwise = Lanes::lt(e1.cross(e2).dot(surface.facet_normal), zero);
                 let bitangent = n.cross(tangent);
-                let bitangent = V3::select(clockwise ^ flipped, bitangent, -bitangent);
+                let bitangent = V3::select(clockwise ^ upwards, bitangent, -bitangent);
                 let scale = material.material.normal_scale;
                 let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
                 let leaning = tangent.scale(x) + bitangent.scale(y);
@@ -276,22 +279,25 @@ impl<S: Simd> Looks<S> {
     }
 }
 
-/// Between the tangents at the corners of each lane's facet, view space.
+/// Between the tangents at the corners of each lane's facet, view space, and their common `w`.
 #[inline(always)]
 fn interpolated_tangent<S: Simd>(
     simd: S,
-    attribute: &Attribute<[f32; 3]>,
+    attribute: &Attribute<[f32; 4]>,
     subject: &Subject<'_>,
     slots: &Slots,
     surface: &Surface<F<S>>,
-) -> V3<F<S>> {
+) -> (V3<F<S>>, F<S>) {
     let to_view = subject.instance.view_from_model.map(|[x, y, z, _]| [x, y, z]);
     let corners = gather_attribute(simd, attribute, subject.mesh, slots);
     let corner = lanes::inlined(
         #[inline(always)]
-        |c: usize| linear_map(&to_view, &corners[c]).normalize(),
+        |c: usize| {
+            let [x, y, z, _] = corners[c];
+            linear_map(&to_view, &[x, y, z]).normalize()
+        },
     );
-    blend3(&surface.weights, &[corner(0), corner(1), corner(2)])
+    (blend3(&surface.weights, &[corner(0), corner(1), corner(2)]), corners[0][3])
 }
 
 /// What textures make of a material's coefficients, besides its colour.

@@ -73,6 +73,36 @@ fn bumps_stay_bumps_on_mirrored_textures_and_nodes_and_are_dents_from_behind() {
     }
 }
 
+#[test]
+fn a_files_own_tangents_say_where_the_texture_lies() {
+    let [x, y, z] = [0, 1, 2].map(|k| f64::from(TEXEL[k]) / 255.0 * 2.0 - 1.0);
+    let along = DVec3::new(0.6, 0.8, 0.0);
+    for (scale, side, w) in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)]
+        .into_iter()
+        .flat_map(|scale| [1.0, -1.0].into_iter().flat_map(move |side| [1.0, -1.0].map(|w| (scale, side, w))))
+    {
+        // Texture coordinates say something else, and do not count.
+        let mut scene = square(DVec2::X, -DVec2::Y, true, DMat4::from_scale(scale));
+        let given = along.as_vec3().extend(w as f32).to_array();
+        Arc::make_mut(&mut scene.meshes[0]).tangents = Some(Attribute::per_vertex(vec![given; 4]));
+        let leaning = (along * x + DVec3::Z.cross(along) * w * y) * scale;
+        let front = scale.z * DVec3::Z;
+        let normal = (leaning + front * z).normalize();
+        let seen_from = DVec3::Z * side;
+        let normal = if front.dot(seen_from) > 0.0 { normal } else { -normal };
+        for from in [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side)] {
+            let mut renderer = exact(scene.clone(), 9, 9);
+            renderer.camera = Some(Camera { position: seen_from * 5.0, ..on_z(1.0, 0.3) });
+            renderer.lights = Some(vec![sun(from, 1.0)]);
+            renderer.ambient = [0.0; 3];
+            renderer.settings.illumination = Illumination::Lambert;
+            let shown = f64::from(colors(&mut renderer)[4 * 9 + 4][0]) / 255.0;
+            let expected = normal.dot(from.normalize()).max(0.0);
+            assert!((shown - expected).abs() < 0.02, "node {scale}, side {side}, w {w}: {shown}, not {expected}");
+        }
+    }
+}
+
 type Case = ((DVec2, DVec2), DVec3, f64, bool);
 
 /// Every combination.

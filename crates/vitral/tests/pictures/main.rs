@@ -3,12 +3,14 @@
 mod agreement;
 mod common;
 mod culling;
+mod defects;
 mod determinism;
 mod interpolation;
 mod lighting;
 mod marks;
 mod normal_maps;
 mod ray_trace;
+mod realism;
 mod robust;
 mod translucent;
 mod transparency;

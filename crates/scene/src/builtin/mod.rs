@@ -55,8 +55,7 @@ const SCENES: [Recipe; 16] = [
     figure("cornell", "the Cornell box, with a lamp that shines by itself (--global radiosity)", optics::cornell),
     figure(
         "realism",
-        "everything at once: sun, lamp, spot and candle, shadows, mirrors, glass, frosted glass, a lattice, marble and wood \
-         (--global ray-trace --transparency filtered)",
+        "everything at once: lights of four kinds, shadows, mirrors, glass, marble (--global ray-trace --transparency filtered)",
         realism::realism,
     ),
     figure(

@@ -27,6 +27,16 @@ pub(crate) struct Cli {
 pub(crate) const EXIT_CODES: &str = "Exit codes: 0 done, 1 other failure, 2 usage, 3 input missing or malformed, \
     4 format or feature not supported, 5 cannot write, 6 images differ, 7 a limit was reached, 130 interrupted";
 
+/// The help of MODEL.
+pub(crate) fn model_help() -> String {
+    let names: Vec<_> = vitral::scene::builtin::names().iter().map(|(name, _)| *name).collect();
+    format!(
+        "Model files, `-` for standard input, which may name files in the current folder, or `builtin:NAME`, a scene that needs \
+         no file; `vitral formats` tells what each shows: {}",
+        names.join(", ")
+    )
+}
+
 /// What `vitral` can do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -40,7 +50,7 @@ pub(crate) enum Verb {
     Bench(Box<BenchArgs>),
     /// List the algorithms
     Algorithms(ListArgs),
-    /// List the formats that are read and written
+    /// List the formats that are read and written, and the built-in scenes
     Formats(ListArgs),
     /// Print the line that makes programs use vitral's OpenGL (libOSMesa), for the shell's `eval`
     OsmesaEnv(OsmesaEnvArgs),
@@ -56,8 +66,7 @@ pub(crate) enum Verb {
 /// Options of `vitral info`.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
-    #[arg(required = true, value_name = "MODEL")]
+    #[arg(required = true, value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
     /// One JSON object on standard output
     #[arg(long)]
@@ -100,8 +109,7 @@ pub(crate) struct CompareArgs {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct BenchArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
-    #[arg(required_unless_present = "report", value_name = "MODEL")]
+    #[arg(required_unless_present = "report", value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
     /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
     /// with its plots into this folder

@@ -14,8 +14,7 @@ use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, Vi
 #[derive(Args, Debug, Default)]
 #[command(after_help = crate::args::EXIT_CODES)]
 pub(crate) struct RenderArgs {
-    /// Model files, `builtin:NAME`, or `-` for standard input, which may name files in the current folder
-    #[arg(required_unless_present = "load_state", value_name = "MODEL")]
+    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = crate::args::model_help())]
     pub(crate) models: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) output: OutputArgs,

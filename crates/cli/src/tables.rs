@@ -107,7 +107,7 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     report::print(text.as_bytes()).map(|()| 0)
 }
 
-/// `vitral formats`.
+/// `vitral formats`: file formats and built-in scenes.
 pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
     let rows = vitral::io::formats();
     let kind = |row: &vitral::io::FormatRow| format!("{:?}", row.kind).to_lowercase();
@@ -119,7 +119,11 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
                     "read": r.read, "write": r.write})
             })
             .collect();
-        return report::print_json(&json!({"formats": list})).map(|()| 0);
+        let builtin: Vec<_> = vitral::scene::builtin::names()
+            .iter()
+            .map(|(name, about)| json!({"name": format!("builtin:{name}"), "description": about}))
+            .collect();
+        return report::print_json(&json!({"formats": list, "builtin": builtin})).map(|()| 0);
     }
     let mut text = String::new();
     for r in &rows {
@@ -130,6 +134,10 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
         };
         let extensions = r.extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" ");
         let _ = writeln!(text, "{:<12} {:<14} {:<8} {:<14} {}", r.name, extensions, kind(r), ways, r.description);
+    }
+    text.push_str("\nScenes that need no file\n");
+    for (name, about) in vitral::scene::builtin::names() {
+        let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));
     }
     report::print(text.as_bytes()).map(|()| 0)
 }

@@ -460,6 +460,17 @@ fn lists_and_pages() {
     assert_eq!(json["visibility"][0]["name"], "z-buffer");
     let json: serde_json::Value = serde_json::from_str(&text(&["formats", "--json"])).unwrap();
     assert!(json["formats"].as_array().unwrap().len() >= 7);
+    // Built-in scenes are told wherever somebody may look for them.
+    let (formats, page) = (text(&["formats"]), text(&["man"]).replace("\\-", "-"));
+    let helps = ["render", "info", "bench"]
+        .map(|verb| text(&[verb, "--help"]).split_whitespace().collect::<Vec<_>>().join(" "));
+    for (i, (name, about)) in vitral::scene::builtin::names().iter().enumerate() {
+        let line = formats.lines().find(|line| line.trim_start().starts_with(&format!("builtin:{name} ")));
+        assert!(line.is_some_and(|line| line.ends_with(about)), "{name}");
+        assert_eq!(json["builtin"][i]["name"], format!("builtin:{name}"));
+        assert_eq!(json["builtin"][i]["description"], *about);
+        assert!(helps.iter().all(|help| help.contains(name)) && page.contains(name), "{name}");
+    }
     assert!(text(&["completions", "bash"]).contains("_vitral"));
     assert!(text(&["man"]).contains(".TH vitral"));
     let info: serde_json::Value = serde_json::from_str(&text(&["info", "builtin:cubs", "--json"])).unwrap();

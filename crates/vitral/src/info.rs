@@ -1,11 +1,15 @@
 //! What is in a scene: sizes, materials, lights, cameras, and whether its surfaces are closed.
 
+mod lights;
+
 use serde::Serialize;
 use std::fmt;
 use vitral_exec::Workers;
-use vitral_light::{AlphaMode, LightKind, Material, Reflectance};
+use vitral_light::{AlphaMode, Material, Reflectance};
 use vitral_math::{Aabb, DVec3};
-use vitral_scene::{Instance, Mesh, Node, Projection, Scene, Topology, World};
+use vitral_scene::{Instance, Mesh, Node, Scene, Topology, World};
+
+pub use lights::{CameraInfo, LightInfo};
 
 /// A scene in numbers. Meshes are counted once, however many instances they have, except where it says otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -37,6 +41,8 @@ pub struct Info {
     pub textures: Vec<TextureInfo>,
     /// The lights, world space.
     pub lights: Vec<LightInfo>,
+    /// The scene has no light at all: a picture is lit by default ones.
+    pub default_lights: bool,
     /// The cameras.
     pub cameras: Vec<CameraInfo>,
     /// Global ambient light.
@@ -195,32 +201,6 @@ pub struct TextureInfo {
     pub height: u32,
 }
 
-/// A light in a line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct LightInfo {
-    /// Its name; may be empty.
-    pub name: String,
-    /// `ambient`, `directional`, `point`, `spot` or `area`.
-    pub kind: &'static str,
-    /// Diffuse intensity.
-    pub diffuse: [f32; 3],
-    /// Switched on.
-    pub enabled: bool,
-}
-
-/// A camera in a line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct CameraInfo {
-    /// `perspective` or `parallel`.
-    pub projection: &'static str,
-    /// Where it is, world space.
-    pub position: [f64; 3],
-    /// Where it looks, world space.
-    pub focal_point: [f64; 3],
-}
-
 /// Counts what is in a scene.
 ///
 /// # Errors
@@ -246,8 +226,9 @@ pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         closed: meshes.iter().any(|m| m.triangles > 0) && meshes.iter().filter(solid).all(|m| m.closed),
         materials: scene.materials.iter().map(MaterialInfo::of).collect(),
         textures: scene.textures.iter().map(|t| texture_info(t)).collect(),
-        lights: world.lights.iter().map(light_info).collect(),
-        cameras: world.cameras.iter().map(camera_info).collect(),
+        lights: world.lights.iter().map(LightInfo::of).collect(),
+        default_lights: world.lights.is_empty() && scene.ambient == [0.0; 3],
+        cameras: world.cameras.iter().map(CameraInfo::of).collect(),
         ambient: scene.ambient,
         warnings: warnings(scene, &meshes),
         meshes,
@@ -276,26 +257,6 @@ fn bounds(world: &World) -> Aabb {
 fn texture_info(texture: &vitral_frame::Texture) -> TextureInfo {
     let (width, height) = texture.levels.first().map_or((0, 0), |l| (l.width(), l.height()));
     TextureInfo { name: texture.name.clone(), width, height }
-}
-
-fn light_info(light: &vitral_light::Light) -> LightInfo {
-    let kind = match light.kind {
-        LightKind::Ambient => "ambient",
-        LightKind::Directional { .. } => "directional",
-        LightKind::Point { .. } => "point",
-        LightKind::Spot { .. } => "spot",
-        LightKind::Area { .. } => "area",
-    };
-    LightInfo { name: light.name.clone(), kind, diffuse: light.diffuse, enabled: light.enabled }
-}
-
-fn camera_info(camera: &vitral_scene::Camera) -> CameraInfo {
-    let projection = match camera.projection {
-        Projection::Perspective { .. } => "perspective",
-        Projection::Parallel { .. } => "parallel",
-    };
-    let (position, focal_point) = (camera.position.to_array(), camera.focal_point.to_array());
-    CameraInfo { projection, position, focal_point }
 }
 
 /// The loader's warnings, and what the numbers say.
@@ -373,13 +334,14 @@ impl fmt::Display for Info {
         for t in &self.textures {
             writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
         }
-        for l in &self.lights {
-            let off = if l.enabled { "" } else { ", off" };
-            writeln!(f, "light {}: {}, {}{off}", quoted(&l.name), l.kind, triple(l.diffuse.map(f64::from)))?;
+        self.lights.iter().try_for_each(|light| writeln!(f, "{light}"))?;
+        if self.default_lights {
+            writeln!(f, "no lights: default ones are used, which follow the camera")?;
         }
-        for c in &self.cameras {
-            writeln!(f, "camera: {}, at {} looking at {}", c.projection, triple(c.position), triple(c.focal_point))?;
+        if self.ambient != [0.0; 3] {
+            writeln!(f, "ambient light {}", triple(self.ambient.map(f64::from)))?;
         }
+        self.cameras.iter().try_for_each(|camera| writeln!(f, "camera: {camera}"))?;
         self.warnings.iter().try_for_each(|w| writeln!(f, "warning: {w}"))
     }
 }
@@ -412,15 +374,18 @@ fn quoted(name: &str) -> String {
     if name.is_empty() { "without name".to_owned() } else { format!("`{name}`") }
 }
 
-/// Three numbers with four significant digits or so.
+/// A number with four digits behind the point or so.
+fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
+        // Adding 0 makes -0 to 0.
+        format!("{}", (x * 1e4).round() / 1e4 + 0.0)
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+/// Three of them.
 fn triple(v: [f64; 3]) -> String {
-    let short = |x: f64| {
-        if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
-            format!("{}", (x * 1e4).round() / 1e4)
-        } else {
-            format!("{x:.3e}")
-        }
-    };
     format!("({}, {}, {})", short(v[0]), short(v[1]), short(v[2]))
 }
 

@@ -1,19 +1,39 @@
 //! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and thread count.
 
-use vitral::render::{Background, Lines};
-use vitral::{Execution, Illumination, LoadOptions, Renderer, Scene, Shading, Workers};
+use vitral::render::{Background, Global, Lines, Transparency};
+use vitral::{Execution, Illumination, LoadOptions, Renderer, Scene, Shading, Workers, panels};
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
+use vitral_testkit::matrix::Setting;
 
 /// Renders `scene` as `change` wants it and compares.
 fn golden(name: &str, scene: Scene, change: impl Fn(&mut Renderer)) {
     check_everywhere(name, Tolerance::EXACT, |setting| {
-        let execution = Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
-        let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap();
-        (renderer.settings.width, renderer.settings.height) = (200, 150);
+        let mut renderer = renderer(&scene, setting, [200, 150]);
         change(&mut renderer);
         renderer.render().unwrap().frame.color.unwrap()
     });
+}
+
+fn renderer(scene: &Scene, setting: &Setting, [width, height]: [u32; 2]) -> Renderer {
+    let execution = Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
+    let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap();
+    (renderer.settings.width, renderer.settings.height) = (width, height);
+    renderer
+}
+
+/// A built-in figure, small, seen by its own camera.
+fn figure(file: &str, name: &str, change: impl Fn(&mut Renderer)) {
+    golden(file, builtin(name), |r| {
+        (r.settings.width, r.settings.height) = (160, 120);
+        r.camera = r.world().cameras.first().copied();
+        change(r);
+    });
+}
+
+fn traced(renderer: &mut Renderer) {
+    renderer.settings.global = Global::RayTrace;
+    renderer.settings.shadows = "ray".to_owned();
 }
 
 fn builtin(name: &str) -> Scene {
@@ -67,4 +87,58 @@ fn edges() {
 fn textures_and_glass() {
     golden("stone-lantern", example("stoneLantern/stoneLantern.obj"), |_| {});
     golden("glass-door-cabinet", example("glassDoorCabinet/glassDoorCabinet.obj"), |_| {});
+}
+
+/// The notes' figure: straight on, P shows 3 and Q shows 4; bent, the other way round.
+#[test]
+fn t4_refraction_off_and_on() {
+    figure("refraction-off", "refraction", |_| {});
+    figure("refraction-on", "refraction", traced);
+}
+
+#[test]
+fn ray_traced_figures() {
+    for name in ["rod", "lens", "mirrors"] {
+        figure(name, name, traced);
+    }
+}
+
+#[test]
+fn p42_everything_at_once() {
+    figure("realism", "realism", |r| {
+        traced(r);
+        r.settings.transparency = Transparency::Filtered;
+        (r.settings.samples, r.settings.light_samples, r.settings.scatter_samples) = (2, 4, 8);
+    });
+}
+
+#[test]
+fn shadows() {
+    for (shadows, scene) in [("map", "scene1"), ("volume", "scene0")] {
+        golden(&format!("{scene}-shadows-{shadows}"), builtin(scene), |r| {
+            (r.settings.width, r.settings.height) = (160, 120);
+            r.settings.shadows = shadows.to_owned();
+            r.settings.shadow_map_size = 512;
+        });
+    }
+}
+
+#[test]
+fn f25_panels_of_shadow_maps() {
+    let scene = builtin("scene0");
+    check_everywhere("scene0-panels-map", Tolerance::EXACT, |setting| {
+        let mut renderer = renderer(&scene, setting, [88, 66]);
+        renderer.settings.shadows = "map".to_owned();
+        renderer.settings.shadow_map_size = 256;
+        let camera = renderer.frame_camera();
+        panels(&mut renderer, &camera).unwrap().frame.color.unwrap()
+    });
+}
+
+#[test]
+fn radiosity() {
+    figure("cornell", "cornell", |r| {
+        r.settings.global = Global::Radiosity;
+        (r.settings.patch_size, r.settings.iterations) = (Some(0.3), Some(16));
+    });
 }

@@ -8,7 +8,7 @@ use vitral_light::{AlphaMode, AreaShape, Attenuation, Light, LightKind, Material
 use vitral_math::{DMat4, DVec3, dvec3};
 
 /// A body through which light passes, and bends.
-fn clear(name: &str, kt: f32, ior: f32) -> Material {
+pub(super) fn clear(name: &str, kt: f32, ior: f32) -> Material {
     let reflectance = Reflectance::Phong { ka: [0.02; 3], kd: [0.02; 3], ks: [0.5; 3], shininess: 200.0 };
     let mut material =
         Material { name: name.to_owned(), reflectance, ior, alpha_mode: AlphaMode::Blend, ..Material::default() };
@@ -21,13 +21,13 @@ fn poster(name: &str, color: Rgb) -> Material {
     Material { unlit: true, ..chalk(name, color) }
 }
 
-fn look(scene: &mut Scene, camera: Camera) {
+pub(super) fn look(scene: &mut Scene, camera: Camera) {
     scene.cameras.push(camera);
     scene.add_root(Node { name: "eye".to_owned(), camera: Some(0), ..Node::default() });
 }
 
 /// A quad with its corners counter-clockwise seen from the side to which it faces.
-fn quad(name: &str, corners: [DVec3; 4]) -> Mesh {
+pub(super) fn quad(name: &str, corners: [DVec3; 4]) -> Mesh {
     let mut b = Builder::new(name);
     let normal = b.normal((corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize());
     let uvs = [b.uv(0.0, 1.0), b.uv(1.0, 1.0), b.uv(1.0, 0.0), b.uv(0.0, 0.0)];
@@ -125,7 +125,7 @@ pub(super) fn lens() -> Scene {
     scene
 }
 
-/// All at once: textured floor, mirror, glass, coloured glass, matt and shiny surfaces, two lights and their shadows.
+/// Mirrors and glass on a chequered floor: a mirror, a ball of chrome, one of glass, a coloured pane, a plastic cone, two lamps.
 pub(super) fn mirrors() -> Scene {
     let mut scene = Scene { ambient: [0.2; 3], ..Scene::default() };
     let lamp = |at: DVec3, color: Rgb| {

@@ -10,6 +10,7 @@ mod marks;
 mod normal_maps;
 mod ray_trace;
 mod robust;
+mod steps;
 mod translucent;
 mod transparency;
 mod traps;

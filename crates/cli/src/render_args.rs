@@ -68,7 +68,7 @@ pub(crate) struct OutputArgs {
     /// Write what each stage of the pipeline hands on into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
-    /// Write the polygons that the shadow algorithm works with (volumes, or lit polygons) into this OBJ file
+    /// Write the polygons that the shadow algorithm works with (volumes, shadows on polygons, or lit polygons) into this OBJ file
     #[arg(long, value_name = "FILE", value_parser = values::obj_file)]
     pub(crate) export_shadow_polygons: Option<PathBuf>,
 }
@@ -297,8 +297,8 @@ pub(crate) struct ReportArgs {
     /// The same into a file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats_file: Option<PathBuf>,
-    /// Explain a pixel on standard output: the surfaces over its centre, and what each algorithm decided; an algorithm
-    /// may take 20 s, or what --time-limit says
+    /// Explain a pixel on standard output: the surfaces over its centre, with --shading gouraud the increments of the intensity,
+    /// and what each algorithm decided; an algorithm may take 20 s, or what --time-limit says
     #[arg(long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true)]
     pub(crate) pixel: Option<[u32; 2]>,
     /// Write the steps of the visibility algorithm into this file, a JSON object a line

@@ -16,7 +16,7 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
             .iter()
             .map(|a| {
                 json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision,
-                    "coherence": a.coherence.iter().map(|kind| kind.name()).collect::<Vec<_>>()})
+                    "coherence": a.coherence.iter().map(|kind| kind.name()).collect::<Vec<_>>(), "steps": a.steps.tell()})
             })
             .collect();
         let acceleration: Vec<_> = registry::ACCELERATION
@@ -64,6 +64,10 @@ pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     for a in registry::VISIBILITY {
         let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
         let _ = writeln!(text, "  {:<14} {}", a.name, kinds.join(", "));
+    }
+    text.push_str("\nWhat the steps of each look like (--channel steps; docs/steps.md)\n");
+    for a in registry::VISIBILITY {
+        let _ = writeln!(text, "  {:<14} {}", a.name, a.steps.tell());
     }
     text.push_str("\nKinds of coherence\n");
     for (kind, name) in Coherence::ALL {

@@ -214,7 +214,11 @@ fn exit_codes() {
         (&["a.obj", "--dump", "d", "--global", "radiosity", "--save-radiosity", "r"], 2, "no colour picture is made"),
         (&["a.obj", "-o", "x.png", "--global", "ray-trace", "--max-depth", "3"], 0, ""),
         (&["a.obj", "-o", "x.png", "--shadows", "umbra"], 2, "invalid value 'umbra'"),
-        (&["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"], 2, "choose volume, object-precision"),
+        (
+            &["a.obj", "--shadows", "ray", "--export-shadow-polygons", "s.obj"],
+            2,
+            "choose volume, scan-line, object-precision",
+        ),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
@@ -494,14 +498,14 @@ fn info_tells_warnings_once_or_not_at_all() {
 fn the_stages_can_be_dumped() {
     let folder = Folder::new("dump");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "--dump", "stages"])), 0);
-    for file in ["1-scene.json", "2-world.json", "3-cull.json", "4-lights.json", "5-view.json", "8-framebuffer.png"] {
+    for file in ["1-scene.json", "2-world.json", "3-cull.json", "4-lights.json", "5-view.json", "9-framebuffer.png"] {
         assert!(folder.has(&format!("stages/{file}")), "{file}");
     }
     // Those of the turntable's first frame that is made.
     let frame = ["builtin:scene0", "--turntable", "6", "--frames", "2-2", "--camera-azimuth-angle", "20"];
     let output = render(&folder, &[&frame[..], &["-o", "f-{frame}.png", "--dump", "turn"]].concat());
     assert_eq!(code(&output), 0, "{}", errors(&output));
-    assert_eq!(folder.read("turn/8-framebuffer.png"), folder.read("f-2.png"));
+    assert_eq!(folder.read("turn/9-framebuffer.png"), folder.read("f-2.png"));
 }
 
 #[test]
@@ -545,8 +549,8 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         .run(&[&["render", "builtin:lens", "--dump", "d", "--transparency-order", "multi-pass"], &SMALL[..]].concat());
     assert_eq!(code(&output), 0, "{}", errors(&output));
     // A ball has two layers.
-    assert!(folder.has("d/8-pass-00.png") && folder.has("d/8-pass-02.png"));
-    assert_eq!(folder.read("d/8-pass-02.png"), folder.read("d/8-framebuffer.png"));
+    assert!(folder.has("d/9-pass-00.png") && folder.has("d/9-pass-02.png"));
+    assert_eq!(folder.read("d/9-pass-02.png"), folder.read("d/9-framebuffer.png"));
 }
 
 #[test]

@@ -6,6 +6,6 @@ mod frame;
 mod plane;
 pub mod texture;
 
-pub use frame::Frame;
+pub use frame::{Frame, TwoBuffers};
 pub use plane::Plane;
 pub use texture::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap, decode_table};

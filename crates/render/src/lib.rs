@@ -24,7 +24,7 @@ pub mod transparency;
 pub mod visible;
 
 pub use coherence::{Coherence, CoherenceSet};
-pub use pipeline::{Rendered, Shot, render};
+pub use pipeline::{Rendered, Shot, illuminate_corners, render};
 pub use prepare::PreparedView;
 pub use session::{Execution, Session};
 pub use settings::{

@@ -4,8 +4,11 @@ use crate::global::Whitted;
 use crate::marks;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::{lamps, solution};
-use crate::shading::{ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants, TileRows};
-use crate::stats::{CullCounters, Stats, TracingCounters};
+use crate::shading::{
+    BYTES_A_PIXEL, BufferPlanes, ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants,
+    LitCorner, Shown, TileRows, lit_corners,
+};
+use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::transparency::registry::{ORDERS, order};
 use crate::visible::{Nowhere, charged};
@@ -14,9 +17,9 @@ use crate::{
 };
 use std::sync::{Arc, Mutex};
 use vitral_exec::Workers;
-use vitral_frame::{Frame, Plane};
+use vitral_frame::{Frame, Plane, TwoBuffers};
 use vitral_light::{Light, Rgb};
-use vitral_raster::{SamplePattern, TILE, TileGrid, Viewport};
+use vitral_raster::{Draw, SamplePattern, TILE, TileGrid, Viewport};
 use vitral_scene::{Camera, Scene};
 
 /// A picture and how it came about.
@@ -88,6 +91,46 @@ pub fn render(
     let mut warnings = warnings(&stats, session, settings, &execution.workers);
     warnings.extend(left_out);
     Ok(Rendered { frame, stats, warnings })
+}
+
+/// Illuminates the corners of `only` one facet, or of all that culling leaves, in the order of the facets: what Gouraud's shading
+/// interpolates. No picture is made.
+///
+/// # Errors
+/// As [`render`].
+pub fn illuminate_corners(
+    session: &Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    execution: &Execution,
+    only: Option<u32>,
+) -> Result<Vec<LitCorner>, Error> {
+    let viewport = settings.check()?;
+    let direct = (settings.global == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let solved = direct.as_deref().map(|lights| Shot { lights, ambient: [0.0; 3], ..shot.clone() });
+    let shot = solved.as_ref().unwrap_or(shot);
+    let (pattern, culled) = (SamplePattern::new(1), &mut CullCounters::default());
+    let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, culled);
+    let draws = || view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
+    let facets_of = |d: &Draw<'_>| d.ranges.iter().cloned().flatten().map(|t| d.first_facet + t).collect::<Vec<_>>();
+    let mut facets = only.map_or_else(|| draws().flat_map(facets_of).collect(), |facet| vec![facet]);
+    facets.sort_unstable();
+    let bytes = facets.len() as u64 * 3 * size_of::<LitCorner>() as u64;
+    let tables = DecodeTables::new(settings.color_space);
+    let radiosity = match settings.global {
+        Global::Radiosity => {
+            Some(solution(session, shot.lights, settings, execution, &mut RadiosityCounters::default())?)
+        }
+        Global::None | Global::RayTrace => None,
+    };
+    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+    let (shadows, radiosity) = (shadows.as_deref(), radiosity.as_deref());
+    let constants =
+        FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows, radiosity, &tables, execution);
+    let corners = charged(&execution.budget, bytes, "illuminated corners", || {
+        lit_corners(&facets, &constants, &execution.budget)
+    })?;
+    Ok(corners)
 }
 
 /// Indices of refraction must be ones.
@@ -199,11 +242,17 @@ fn render_color(
     if settings.channels.passes {
         sink.show_passes();
     }
+    let bytes_of_buffers = if settings.channels.buffers { pixels as u64 * BYTES_A_PIXEL } else { 0 };
+    execution.budget.charge(bytes_of_buffers, "the two buffers")?;
+    execution.budget.release(bytes_of_buffers);
+    if settings.channels.buffers {
+        sink.show_buffers();
+    }
     let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
     let marks = (!mark_colors.is_empty()).then_some(&drawn_marks);
     let resolved = algorithm.resolve(&view, marks, &mut grid, execution, &sink);
     stats.picture = sink.counters();
-    let passes = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Vec::new()) };
+    let shown = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Shown::default()) };
     let t3 = clock();
     let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
     drop(constants);
@@ -215,7 +264,7 @@ fn render_color(
     (stats.geometry, stats.visibility) = (resolved.geometry, resolved.counters);
 
     // Put the tiles together.
-    let passes = passes?;
+    let Shown { passes, buffers } = shown?;
     frame.color = Plane::from_rows(viewport.width, viewport.height, picture);
     let count = passes.iter().map(|p| p.lock().expect("finished tile").len()).max().unwrap_or(0);
     let bytes = count as u64 * u64::from(viewport.width) * u64::from(viewport.height) * 4;
@@ -231,6 +280,9 @@ fn render_color(
         );
         frame.passes.extend(Plane::from_rows(viewport.width, viewport.height, data));
     }
+    if settings.channels.buffers {
+        frame.buffers = two_buffers(viewport, &buffers, &execution.workers);
+    }
     let t4 = clock();
     stats.seconds.prepare = t1 - t0;
     stats.seconds.marks = t2 - t1;
@@ -239,6 +291,18 @@ fn render_color(
     stats.tracing.rays_per_second = stats.tracing.rate(stats.seconds.tiles);
     stats.seconds.assemble = t4 - t3;
     Ok(())
+}
+
+/// The two buffers from those of the tiles.
+fn two_buffers(viewport: Viewport, tiles: &[Mutex<BufferPlanes>], workers: &Workers) -> Option<TwoBuffers> {
+    let (w, h) = (viewport.width, viewport.height);
+    Some(TwoBuffers {
+        opaque: Plane::from_rows(w, h, assemble(viewport, tiles, |t: &BufferPlanes| &t.opaque, workers))?,
+        depth: Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.depth, workers))?,
+        layers: Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.layers, workers))?,
+        intensity: Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.intensity, workers))?,
+        coefficient: Plane::from_rows(w, h, assemble(viewport, tiles, |t| &t.coefficient, workers))?,
+    })
 }
 
 /// Depth, ids, normals and shadows at pixel centres.

@@ -11,8 +11,10 @@ use crate::visible::TileSink;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_light::{AlphaMode, Material};
-use vitral_math::{DMat4, DVec3, DVec4};
-use vitral_raster::geometry::Screen;
+use vitral_math::lanes::Level;
+use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
+use vitral_raster::clip::{Polygon, clip};
+use vitral_raster::geometry::{Screen, flag, transform_point};
 use vitral_raster::{BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
 use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
 
@@ -146,14 +148,9 @@ impl<'a> PreparedView<'a> {
     /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports
     /// and algorithms that take facets one by one.
     pub fn setups(&self, facet: u32, back_faces: BackFaces<'_>) -> Vec<Setup> {
-        let instance = &self.session.world.instances[self.session.world.instance_of_facet(facet)];
-        let mesh = &instance.mesh;
+        let level = Level::new();
+        let (instance, corners, clip_from_model, vertices) = self.placed(level, facet);
         let triangle = (facet - instance.first_facet) as usize;
-        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.view.clip_from_world());
-        let corners = mesh.triangles[triangle].map(|i| positions[i as usize]);
-        let mut vertices = [ScreenVertex::default(); 3];
-        let level = vitral_math::lanes::Level::new();
-        vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
         let draw = Draw {
             positions: &corners,
             triangles: &[[0, 1, 2]],
@@ -166,6 +163,35 @@ impl<'a> PreparedView<'a> {
         let mut batch = Batch::default();
         batch.add(level, &draw, &vertices, 0..1, &self.screen);
         batch.setups().to_vec()
+    }
+
+    /// The polygon in clip space that clipping leaves of a facet, before the division by `w`, and whether it was cut; `None` if
+    /// nothing is left. Only near and far plane and a guard band round the picture cut, and facets that lie beyond one plane of
+    /// the view are dropped whole. Which way it faces is asked later.
+    pub fn clipped(&self, facet: u32) -> Option<(Vec<Vec4>, bool)> {
+        let (_, corners, clip_from_model, vertices) = self.placed(Level::new(), facet);
+        let [a, b, c] = vertices.map(|v| v.flags);
+        if (a | b | c) & flag::NOT_FINITE != 0 || a & b & c & flag::FRUSTUM != 0 {
+            return None;
+        }
+        let corners = corners.map(|p| transform_point(&clip_from_model, p));
+        if (a | b | c) & flag::CLIP == 0 {
+            return Some((corners.to_vec(), false));
+        }
+        let polygon = clip(Polygon::triangle(corners), self.screen.transform().guard());
+        (polygon.corners().len() >= 3).then(|| (polygon.corners().to_vec(), true))
+    }
+
+    /// A facet's instance, its corners, the matrix from their space to clip space, and where that brings them.
+    fn placed(&self, level: Level, facet: u32) -> (&'a Instance, [[f32; 3]; 3], Mat4, [ScreenVertex; 3]) {
+        let world = &self.session.world;
+        let instance = &world.instances[world.instance_of_facet(facet)];
+        let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
+        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.view.clip_from_world());
+        let corners = triangle.map(|i| positions[i as usize]);
+        let mut vertices = [ScreenVertex::default(); 3];
+        vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
+        (instance, corners, clip_from_model, vertices)
     }
 }
 

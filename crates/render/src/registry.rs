@@ -4,6 +4,7 @@ use crate::shadow::{
     ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
     scan_line::ScanLineShadows, volume::VolumeShadows,
 };
+use crate::trace::legend::Legend;
 use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
@@ -24,6 +25,8 @@ pub struct VisibilityAlgorithm {
     pub casts_rays: bool,
     /// Kinds of coherence that it exploits and that can be switched off.
     pub coherence: &'static [Coherence],
+    /// What its picture of steps shows.
+    pub steps: Legend,
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
 }
@@ -44,6 +47,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "image",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Frame],
+        steps: Legend::Cost("opaque facets that cover the pixel"),
         algorithm: &ZBuffer,
     },
     VisibilityAlgorithm {
@@ -62,6 +66,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
             Coherence::Depth,
             Coherence::Frame,
         ],
+        steps: Legend::Cost("polygons that are in, over the spans of the pixel"),
         algorithm: &ScanLine,
     },
     VisibilityAlgorithm {
@@ -71,6 +76,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "image",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Area, Coherence::Depth, Coherence::Frame],
+        steps: Legend::Windows,
         algorithm: &Warnock,
     },
     VisibilityAlgorithm {
@@ -80,6 +86,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "image",
         casts_rays: true,
         coherence: &[Coherence::Object, Coherence::Area, Coherence::Frame],
+        steps: Legend::Cost("boxes or cells and facets that the rays of its block of pixels were tested against"),
         algorithm: &RayCast,
     },
     VisibilityAlgorithm {
@@ -89,6 +96,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "image",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Frame],
+        steps: Legend::Cost("facets that the rays of its block of pixels were tested against"),
         algorithm: &BruteForce,
     },
     VisibilityAlgorithm {
@@ -98,6 +106,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "list-priority",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Frame],
+        steps: Legend::List,
         algorithm: &Painter,
     },
     VisibilityAlgorithm {
@@ -107,6 +116,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "list-priority",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Frame],
+        steps: Legend::List,
         algorithm: &Bsp,
     },
     VisibilityAlgorithm {
@@ -116,6 +126,7 @@ pub static VISIBILITY: &[VisibilityAlgorithm] = &[
         precision: "object",
         casts_rays: false,
         coherence: &[Coherence::Object, Coherence::Frame],
+        steps: Legend::Outlines,
         algorithm: &WeilerAtherton,
     },
 ];
@@ -229,7 +240,7 @@ pub static SHADOWS: &[Shadowing] = &[
         name: "scan-line",
         description: "each line of pixels on a facet is cut where it crosses the shadows on the facet",
         source: "Bouknight & Kelley 1970",
-        polygons: None,
+        polygons: Some("shadow polygons, on the polygons that they fall on"),
         panels: None,
         algorithm: Some(&ScanLineShadows),
     },

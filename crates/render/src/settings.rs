@@ -352,6 +352,8 @@ pub struct Channels {
     pub steps: bool,
     /// The picture after each pass; only where the order of transparency draws in passes.
     pub passes: bool,
+    /// The buffers of the two-buffer z-buffer; only with that order of transparency.
+    pub buffers: bool,
     /// Attached shadows.
     pub attached_shadow: bool,
     /// Cast shadows.
@@ -368,6 +370,7 @@ impl Default for Channels {
             material: false,
             normal: false,
             passes: false,
+            buffers: false,
             attached_shadow: false,
             cast_shadow: false,
             steps: false,
@@ -509,6 +512,9 @@ pub enum SettingsError {
         "there are no passes with the order of transparency `{0}` and these algorithms: choose multi-pass, and neither rays nor brute-force"
     )]
     Passes(&'static str),
+    /// The buffers of the two-buffer z-buffer are wanted, but there are none.
+    #[error("there are no two buffers with the order of transparency `{0}`: choose two-buffer")]
+    Buffers(&'static str),
     /// Number of scattered rays.
     #[error("{0} scattered rays: 1 to 4096 are possible")]
     ScatterSamples(u32),
@@ -580,6 +586,9 @@ impl Settings {
             || registry::visibility(&self.visibility).is_some_and(|a| a.casts_rays || a.name == "brute-force");
         if self.channels.passes && (self.transparency_order != TransparencyOrder::MultiPass || rays) {
             return Err(SettingsError::Passes(order.name));
+        }
+        if self.channels.buffers && self.transparency_order != TransparencyOrder::TwoBuffer {
+            return Err(SettingsError::Buffers(order.name));
         }
         if order.needs_list && registry::visibility(&self.visibility).is_some_and(|a| !a.makes_list()) {
             let listing = registry::VISIBILITY.iter().filter(|a| a.makes_list());

@@ -6,9 +6,12 @@
 //!
 //! [`picture`] draws the steps over the image.
 
+pub mod legend;
 pub mod picture;
+pub mod tables;
 
 use serde::Serialize;
+use tables::{Bucket, Crossing, TablePolygon};
 
 /// Is told the steps of an algorithm.
 pub trait Observer: std::fmt::Debug + Send + Sync {
@@ -51,8 +54,8 @@ pub enum SpanVerdict {
 pub struct Span {
     /// First pixel, and the one behind the last.
     pub pixels: [u32; 2],
-    /// Polygons that are in.
-    pub inside: u32,
+    /// Facets of the polygons whose in-out flag is in, the lowest first.
+    pub inside: Vec<u32>,
     /// How it was decided.
     pub verdict: SpanVerdict,
     /// The facet that fills it, where one does.
@@ -132,14 +135,24 @@ pub enum Step {
         /// The facet that is drawn, where it is one.
         facet: Option<u32>,
     },
+    /// Scan-line: the tables of a band of rows, before it is swept.
+    EdgeTable {
+        /// The band's first row of pixels, and the one behind its last.
+        rows: [u32; 2],
+        /// The polygon table.
+        polygons: Vec<TablePolygon>,
+        /// The edge table, from top to bottom; lines on which no edge begins have no bucket. Edges that begin above the band
+        /// are in the bucket of its first line.
+        buckets: Vec<Bucket>,
+    },
     /// Scan-line: a line of samples was swept.
     Line {
         /// Row of pixels.
         row: u32,
         /// Which sample of the pixels.
         sample: u32,
-        /// Edges in the active edge table.
-        active_edges: u32,
+        /// The active edge table, from left to right.
+        active_edges: Vec<Crossing>,
         /// The spans with something in, from left to right.
         spans: Vec<Span>,
     },
@@ -240,7 +253,7 @@ impl Step {
             }
             Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
             Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::Clip { .. } | Self::Space { .. } => false,
+            Self::Clip { .. } | Self::Space { .. } | Self::EdgeTable { .. } => false,
         }
     }
 
@@ -262,7 +275,7 @@ impl Step {
                 format!("window {left},{top} of {width} x {height}, {polygons} polygon(s) left: {what}")
             }
             Self::Line { active_edges, spans, .. } => {
-                let line = format!("{active_edges} active edge(s)");
+                let line = format!("{} active edge(s)", active_edges.len());
                 match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
                     Some(span) => {
                         let how = match span.verdict {
@@ -271,8 +284,13 @@ impl Step {
                             SpanVerdict::ImpliedEdge => "one hides the others on its side of an implied edge",
                             SpanVerdict::Samples => "decided sample by sample",
                         };
-                        let [from, to] = span.pixels;
-                        format!("{line}; span {from} to {} with {} polygon(s) in: {how}", to - 1, span.inside)
+                        let ([from, to], inside) = (span.pixels, span.inside.len());
+                        let won = span.facet.map_or(String::new(), |facet| format!(", facet {facet}"));
+                        let facets = few(&span.inside);
+                        format!(
+                            "{line}; span {from} to {} with {inside} polygon(s) in, of facet(s) {facets}: {how}{won}",
+                            to - 1
+                        )
                     }
                     None => format!("{line}; no polygon is in here"),
                 }
@@ -288,6 +306,13 @@ impl Step {
             other => format!("{other:?}"),
         }
     }
+}
+
+/// The first few of some facets.
+fn few(facets: &[u32]) -> String {
+    const MOST: usize = 8;
+    let names: Vec<_> = facets.iter().take(MOST).map(u32::to_string).collect();
+    names.join(" ") + if facets.len() > MOST { " ..." } else { "" }
 }
 
 /// Whether a pixel's centre is inside an outline, by the parity of crossings.

@@ -42,7 +42,7 @@ impl Entrant {
             visibility: self.algorithm.name.to_owned(),
             acceleration: self.acceleration.map(|(_, value)| value),
             transparency_order: TransparencyOrder::default(),
-            channels: Channels { passes: false, ..settings.channels },
+            channels: Channels { passes: false, buffers: false, ..settings.channels },
             ..settings.clone()
         }
     }

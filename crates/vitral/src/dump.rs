@@ -5,24 +5,42 @@
 //! | `1-scene.json` | the scene graph |
 //! | `2-world.json` | model transform: every instance with its matrix and box |
 //! | `3-cull.json` | culling: which triangles of which instances are left, and the counters |
-//! | `4-lights.json` | illumination: the lights in view space |
-//! | `5-view.json` | view transform and projection |
-//! | `6-facets.csv` | clipping and projection: the pieces of facets on the screen |
-//! | `7-surface.npy`, `7-surface.png`, `7-depth.npy` | rasterising: the visible surface of each pixel |
-//! | `8-framebuffer.png` | the picture |
-//! | `8-pass-00.png`, … | with `--transparency-order multi-pass` the picture after each pass, first what is opaque |
+//! | `4-lights.json`, `4-illuminated.csv` | illumination: the lights in view space; the corners of facets, world space, with their colours |
+//! | `5-view.json`, `5-view.csv` | view transform: the camera and its matrices; the corners in view space |
+//! | `6-clip.csv` | clipping: polygons in clip space, before the division by `w` |
+//! | `7-project.csv` | projection: the pieces of facets on the screen |
+//! | `8-surface.npy`, `8-surface.png`, `8-depth.npy` | rasterising: the visible surface of each pixel |
+//! | `8-edge-table.txt` | with `--visibility scan-line` its polygon table, edge table, active edges and spans |
+//! | `9-framebuffer.png` | the picture |
+//! | `9-pass-00.png`, … | with `--transparency-order multi-pass` the picture after each pass, first what is opaque |
+//! | `9-opaque.png`, … | with `--transparency-order two-buffer` both buffers, and the list of transparent surfaces |
 //! | `index.md` | this list |
+//!
+//! Stages 4 to 8 and both buffers have one sample a pixel, at its centre. Pictures illuminate what is seen, after stage 8; stage 4
+//! shows what the same formulas make of corners.
+
+mod edge_table;
+mod facets;
+mod scene;
+mod two_buffer;
 
 use crate::picture::{self, EncodeOptions};
-use crate::{Channel, Error, Frame, PictureFormat, Renderer, Scene};
-use serde_json::{Value, json};
-use std::fmt::Write;
+use crate::{Channel, Error, Frame, PictureFormat, Renderer};
+use serde_json::Value;
 use std::path::Path;
-use vitral_math::{Aabb, DMat4};
-use vitral_raster::{BackFaces, SUBPIXEL, SamplePattern, Viewport};
+use vitral_raster::{SamplePattern, Viewport};
 use vitral_render::stats::CullCounters;
-use vitral_render::{ColorSpace, PreparedView, Settings};
+use vitral_render::{ColorSpace, PreparedView, Settings, Shot, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
+
+/// A file that the index lists.
+struct Listed {
+    name: String,
+    what: String,
+}
+
+/// Takes a file: its name and bytes.
+type Write<'a> = dyn FnMut(&str, &[u8]) -> Result<(), Error> + 'a;
 
 /// Renders what `camera` sees and hands each stage's result to `write`, by file name.
 ///
@@ -35,18 +53,35 @@ pub fn dump(
 ) -> Result<(), Error> {
     let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
     let mut put = |name: &str, value: &Value| write(name, format!("{value:#}\n").as_bytes());
-    put("1-scene.json", &scene_graph(renderer.scene()))?;
-    put("2-world.json", &world(renderer))?;
+    put("1-scene.json", &scene::scene_graph(renderer.scene()))?;
+    put("2-world.json", &scene::world(renderer))?;
+    let lights = renderer.frame_lights(camera);
+    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
+    let of_buffers = renderer.settings.transparency_order == TransparencyOrder::TwoBuffer;
+    let (mut of_samples, mut of_picture) = (Vec::new(), Vec::new());
     let cull_counters = {
         let mut counters = CullCounters::default();
         let view = prepare(renderer, camera, viewport, &mut counters);
-        put("3-cull.json", &culled(&view, &counters))?;
-        put("4-lights.json", &lights_in_view(renderer, camera, &view))?;
-        put("5-view.json", &view_matrices(&view))?;
-        let facets = facets(&view);
-        write("6-facets.csv", facets.as_bytes())?;
+        put("3-cull.json", &scene::culled(&view, &counters))?;
+        put("4-lights.json", &scene::lights_in_view(renderer, camera, &view))?;
+        put("5-view.json", &scene::view_matrices(&view))?;
+        write("4-illuminated.csv", facets::illuminated(&corners).as_bytes())?;
+        write("5-view.csv", facets::in_view(&corners).as_bytes())?;
+        write("6-clip.csv", facets::clipped(&view).as_bytes())?;
+        write("7-project.csv", facets::projected(&view).as_bytes())?;
+        if of_buffers {
+            let (name, what) = ("9-transparent.csv".to_owned(), "the list of transparent surfaces".to_owned());
+            write(&name, two_buffer::list(&view).as_bytes())?;
+            of_picture.push(Listed { name, what });
+        }
         counters
     };
+    if renderer.settings.visibility == "scan-line" {
+        let (name, what) = ("8-edge-table.txt".to_owned(), "polygon table, edge table, active edges, spans".to_owned());
+        write(&name, edge_table::edge_tables(renderer, camera, viewport)?.as_bytes())?;
+        of_samples.push(Listed { name, what });
+    }
 
     // The same picture again, with the planes of the visible surface.
     let in_passes = has_passes(&renderer.settings);
@@ -60,19 +95,24 @@ pub fn dump(
     debug_assert_eq!(rendered.stats.cull.triangles, cull_counters.triangles);
     let options = EncodeOptions { srgb: renderer.settings.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
     for (name, channel) in [
-        ("7-surface.npy", Channel::Id),
-        ("7-surface.png", Channel::Id),
-        ("7-depth.npy", Channel::Depth),
-        ("8-framebuffer.png", Channel::Color),
+        ("8-surface.npy", Channel::Id),
+        ("8-surface.png", Channel::Id),
+        ("8-depth.npy", Channel::Depth),
+        ("9-framebuffer.png", Channel::Color),
     ] {
         write(name, &picture::encode_with(&rendered.frame, channel, PictureFormat::from_path(name)?, &options)?)?;
     }
     for (number, pass) in rendered.frame.passes.iter().enumerate() {
         let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
         let png = picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &options)?;
-        write(&format!("8-pass-{number:02}.png"), &png)?;
+        let (name, what) = (format!("9-pass-{number:02}.png"), format!("after pass {number}"));
+        write(&name, &png)?;
+        of_picture.push(Listed { name, what });
     }
-    write("index.md", index(&renderer.settings, rendered.frame.passes.len()).as_bytes())
+    if of_buffers {
+        of_picture.extend(two_buffer::write(renderer, camera, &mut write)?);
+    }
+    write("index.md", index(&renderer.settings, &of_samples, &of_picture).as_bytes())
 }
 
 /// Whether the picture is made in passes.
@@ -102,189 +142,193 @@ fn prepare<'a>(
     PreparedView::new(renderer.session(), camera, &renderer.settings, viewport, pattern, renderer.execution(), counters)
 }
 
-/// Rows of a matrix, as they are written on paper.
-fn matrix(m: &DMat4) -> Value {
-    json!([0, 1, 2, 3].map(|r| m.row(r).to_array()))
-}
-
-fn bounds(b: &Aabb) -> Value {
-    if b.is_empty() { Value::Null } else { json!({"min": b.min.to_array(), "max": b.max.to_array()}) }
-}
-
-fn scene_graph(scene: &Scene) -> Value {
-    let nodes: Vec<Value> = scene
-        .nodes
-        .iter()
-        .map(|node| {
-            json!({
-                "name": node.name,
-                "parent-from-node": matrix(&node.transform.matrix()),
-                "children": node.children,
-                "mesh": node.mesh,
-                "camera": node.camera,
-                "light": node.light,
-            })
-        })
-        .collect();
-    let mesh = |m: &std::sync::Arc<vitral_scene::Mesh>| {
-        json!({
-            "name": m.name,
-            "vertices": m.positions.len(),
-            "faces": m.face_count(),
-            "triangles": m.triangles.len(),
-            "bounds": bounds(&m.bounds()),
-            "parts": m.parts.iter().map(|p| json!({
-                "name": p.name, "triangles": [p.triangles.start, p.triangles.end], "material": p.material,
-            })).collect::<Vec<_>>(),
-        })
+fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> String {
+    let list = |files: &[Listed]| {
+        files.iter().map(|Listed { name, what }| format!("   - [{what}]({name})\n")).collect::<String>()
     };
-    json!({
-        "roots": scene.roots,
-        "nodes": nodes,
-        "meshes": scene.meshes.iter().map(mesh).collect::<Vec<_>>(),
-        "materials": scene.materials,
-        "lights": scene.lights,
-        "cameras": scene.cameras,
-        "ambient": scene.ambient,
-    })
-}
-
-fn world(renderer: &Renderer) -> Value {
-    let world = renderer.world();
-    let instance = |(number, i): (usize, &vitral_scene::Instance)| {
-        json!({
-            "instance": number,
-            "node": i.node,
-            "mesh": i.mesh_index,
-            "world-from-model": matrix(&i.world_from_model),
-            "bounds": bounds(&i.bounds),
-            "first-surface": i.first_surface,
-            "first-facet": i.first_facet,
-        })
-    };
-    json!({
-        "instances": world.instances.iter().enumerate().map(instance).collect::<Vec<_>>(),
-        "bounds": bounds(&world.bounds),
-        "surfaces": world.surface_count,
-        "facets": world.facet_count,
-    })
-}
-
-fn culled(view: &PreparedView<'_>, counters: &CullCounters) -> Value {
-    let draws = |draws: &[vitral_raster::Draw<'_>]| {
-        let draw = |d: &vitral_raster::Draw<'_>| {
-            json!({
-                "triangles": d.ranges.iter().map(|r| [r.start, r.end]).collect::<Vec<_>>(),
-                "back-faces": match d.back_faces {
-                    BackFaces::Kept => "kept",
-                    BackFaces::Dropped => "dropped",
-                    BackFaces::DroppedOf(_) => "dropped of solid bodies",
-                },
-            })
-        };
-        draws.iter().map(draw).collect::<Vec<_>>()
-    };
-    let instance = |i: &vitral_render::prepare::PreparedInstance<'_>| json!({"instance": i.instance, "opaque": draws(&i.opaque), "transparent": draws(&i.layered)});
-    json!({"kept": view.instances.iter().map(instance).collect::<Vec<_>>(), "counters": counters})
-}
-
-fn lights_in_view(renderer: &Renderer, camera: &Camera, view: &PreparedView<'_>) -> Value {
-    let lights = renderer.frame_lights(camera);
-    let in_view = lights.iter().map(|l| l.transformed(&view.view.view_from_world));
-    json!({
-        "view-space": in_view.collect::<Vec<_>>(),
-        "global-ambient": renderer.frame_ambient(),
-        "illumination": renderer.settings.illumination,
-        "lighting": renderer.settings.lighting,
-    })
-}
-
-fn view_matrices(view: &PreparedView<'_>) -> Value {
-    json!({
-        "camera": view.camera,
-        "view-from-world": matrix(&view.view.view_from_world),
-        "clip-from-view": matrix(&view.view.clip_from_view),
-        "near": view.view.near,
-        "far": view.view.far,
-        "width": view.viewport.width,
-        "height": view.viewport.height,
-    })
-}
-
-/// One line for each piece on the screen: facet, surface, corners in pixels, range of depth.
-fn facets(view: &PreparedView<'_>) -> String {
-    let world = view.session.world();
-    let mut text = "facet,surface,x0,y0,x1,y1,x2,y2,z_min,z_max\n".to_owned();
-    let pixels = |v: i32| f64::from(v) / f64::from(SUBPIXEL);
-    for instance in &view.instances {
-        for draw in instance.opaque.iter().chain(&instance.layered) {
-            for triangle in draw.ranges.iter().cloned().flatten() {
-                let facet = draw.first_facet + triangle;
-                for s in view.setups(facet, draw.back_faces) {
-                    let [a, b, c] = [0, 1, 2].map(|i| format!("{},{}", pixels(s.x[i]), pixels(s.y[i])));
-                    let surface = world.surface_of_facet(facet);
-                    // Writing to a String cannot fail.
-                    let _ = writeln!(text, "{facet},{surface},{a},{b},{c},{},{}", s.z_min, s.z_max);
-                }
-            }
-        }
-    }
-    text
-}
-
-fn index(settings: &Settings, passes: usize) -> String {
-    let of_passes = (0..passes).map(|n| format!("   - [after pass {n}](8-pass-{n:02}.png)\n")).collect::<String>();
     format!(
         "# The pipeline, stage by stage\n\n\
          1. [Scene graph](1-scene.json)\n\
          2. [Model transform](2-world.json): instances in world space\n\
          3. [Culling](3-cull.json): what is left of them\n\
-         4. [Illumination](4-lights.json): the lights in view space\n\
-         5. [View transform and projection](5-view.json)\n\
-         6. [Clipping and projection](6-facets.csv): facets on the screen, in pixels from the top left; depth is 1 near, \
-         0 far\n\
-         7. Rasterising ({}): surface ids ([numbers](7-surface.npy), [colours](7-surface.png)) and [depth](7-depth.npy) \
-         at pixel centres\n\
-         8. [Frame buffer](8-framebuffer.png): {} x {} pixels, {} samples each\n{of_passes}",
-        settings.visibility, settings.width, settings.height, settings.samples
+         4. Illumination: [the lights in view space](4-lights.json), and what they make of [the facets' \
+         corners](4-illuminated.csv), world space and premultiplied colours; pictures illuminate what is seen, after stage 8\n\
+         5. [View transform](5-view.json): the camera and its matrices, [the corners](5-view.csv) in view space\n\
+         6. [Clipping](6-clip.csv): polygons in clip space, before the division by w\n\
+         7. [Projection](7-project.csv): facets on the screen, in pixels from the top left; depth is 1 near, 0 far\n\
+         8. Rasterising ({}): surface ids ([numbers](8-surface.npy), [colours](8-surface.png)) and [depth](8-depth.npy) \
+         at pixel centres\n{}\
+         9. [Frame buffer](9-framebuffer.png): {} x {} pixels, {} samples each\n{}",
+        settings.visibility,
+        list(of_samples),
+        settings.width,
+        settings.height,
+        settings.samples,
+        list(of_picture)
     )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load_builtin;
-    use std::collections::BTreeMap;
+    use crate::{Scene, load_builtin};
+    use serde_json::json;
+    use std::collections::{BTreeMap, BTreeSet};
+    use vitral_math::DVec3;
 
-    fn stages(name: &str) -> BTreeMap<String, Vec<u8>> {
-        let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height) = (64, 48);
+    fn dumped(renderer: &mut Renderer) -> BTreeMap<String, Vec<u8>> {
         let mut files = BTreeMap::new();
-        let camera = renderer.frame_camera();
-        dump(&mut renderer, &camera, |name, bytes| {
+        let (camera, before) = (renderer.frame_camera(), renderer.settings.clone());
+        dump(renderer, &camera, |name, bytes| {
             files.insert(name.to_owned(), bytes.to_vec());
             Ok(())
         })
         .unwrap();
-        assert!(!renderer.settings.channels.depth, "the settings are as before");
+        assert!(renderer.settings == before, "the settings are as before");
+        let index = std::str::from_utf8(&files["index.md"]).unwrap();
+        for name in files.keys().filter(|n| *n != "index.md") {
+            assert!(index.contains(&format!("({name})")), "{name} is in the index");
+        }
         files
+    }
+
+    fn small(name: &str) -> Renderer {
+        let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
+        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (64, 48, 1);
+        renderer
+    }
+
+    /// The fields of a table's rows.
+    fn table(files: &BTreeMap<String, Vec<u8>>, name: &str) -> Vec<Vec<String>> {
+        let text = std::str::from_utf8(&files[name]).unwrap();
+        text.lines().skip(1).map(|l| l.split(',').map(str::to_owned).collect()).collect()
+    }
+
+    fn facets_of(table: &[Vec<String>]) -> BTreeSet<&str> {
+        table.iter().map(|row| row[0].as_str()).collect()
     }
 
     #[test]
     fn p1_every_stage_is_exported() {
-        let files = stages("cubs");
-        let index = std::str::from_utf8(&files["index.md"]).unwrap();
-        assert_eq!(files.len(), 11);
-        for name in files.keys().filter(|n| *n != "index.md") {
-            assert!(index.contains(&format!("({name})")), "{name} is in the index");
-        }
+        let files = dumped(&mut small("cubs"));
+        let names = "1-scene.json 2-world.json 3-cull.json 4-illuminated.csv 4-lights.json 5-view.csv 5-view.json \
+                     6-clip.csv 7-project.csv 8-depth.npy 8-surface.npy 8-surface.png 9-framebuffer.png index.md";
+        assert_eq!(files.keys().map(String::as_str).collect::<Vec<_>>().join(" "), names);
         let json = |name: &str| serde_json::from_slice::<Value>(&files[name]).unwrap();
         assert_eq!(json("1-scene.json")["meshes"].as_array().unwrap().len(), 8);
         assert_eq!(json("2-world.json")["facets"], 96);
         assert_eq!(json("3-cull.json")["kept"].as_array().unwrap().len(), 8);
         assert_eq!(json("4-lights.json")["view-space"].as_array().unwrap().len(), 2);
         assert_eq!(json("5-view.json")["clip-from-view"][3], json!([0.0, 0.0, -1.0, 0.0]));
-        let facets = std::str::from_utf8(&files["6-facets.csv"]).unwrap().lines().count() - 1;
+        let facets = table(&files, "7-project.csv").len();
         assert!((16..=48).contains(&facets), "back faces are gone, three faces of a cube are seen at most: {facets}");
+    }
+
+    #[test]
+    fn p1_counts_of_the_stages_are_those_of_the_statistics() {
+        // One from afar, one from amidst it, so that the near plane cuts.
+        for near in [false, true] {
+            let mut renderer = small("cornell");
+            let framed = renderer.frame_camera();
+            let position = if near { framed.focal_point + DVec3::new(0.01, 0.02, 0.0) } else { framed.position };
+            let focal_point = if near { framed.focal_point - DVec3::Z } else { framed.focal_point };
+            renderer.camera = Some(Camera { position, focal_point, ..framed });
+            let files = dumped(&mut renderer);
+            let stats = renderer.render().unwrap().stats;
+            let (cull, geometry) = (stats.cull, stats.geometry);
+            let kept = cull.triangles - cull.triangles_culled;
+            assert_eq!(kept, geometry.triangles);
+            for name in ["4-illuminated.csv", "5-view.csv"] {
+                assert_eq!(table(&files, name).len() as u64, 3 * kept, "{name}");
+            }
+            let (clip, project) = (table(&files, "6-clip.csv"), table(&files, "7-project.csv"));
+            let left = facets_of(&clip);
+            assert_eq!(left.len() as u64, kept - geometry.outside - geometry.not_finite);
+            let cut: Vec<_> = clip.iter().filter(|row| row[2] == "1").cloned().collect();
+            assert!(facets_of(&cut).len() as u64 <= geometry.clipped && (geometry.clipped > 0) == near);
+            assert_eq!(cut.is_empty(), !near);
+            // What was cut begins before the division: every corner is before the eye and between near and far.
+            let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
+            assert!(cut.iter().all(|row| {
+                let [z, w] = [number(row, 6), number(row, 7)];
+                w > 0.0 && z >= -1e-5 * w && z <= w * 1.00001
+            }));
+            assert_eq!(project.len() as u64, geometry.set_up);
+            assert!(facets_of(&project).is_subset(&left));
+            let gone = geometry.back_facing + geometry.degenerate + geometry.no_sample;
+            assert!(facets_of(&project).len() as u64 >= left.len() as u64 - gone);
+        }
+    }
+
+    #[test]
+    fn p1_the_stages_follow_from_each_other() {
+        let mut renderer = small("cubs");
+        let files = dumped(&mut renderer);
+        let viewport = renderer.settings.check().unwrap();
+        let view = prepare(&renderer, &renderer.frame_camera(), viewport, &mut CullCounters::default());
+        let (world, seen) = (table(&files, "4-illuminated.csv"), table(&files, "5-view.csv"));
+        let clip = table(&files, "6-clip.csv");
+        let numbers = |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
+        for (row, in_view) in world.iter().zip(&seen) {
+            assert_eq!(row[..2], in_view[..2]);
+            let (at, expected) = (DVec3::from(numbers(row, 2)), DVec3::from(numbers(in_view, 2)));
+            let placed = view.view.view_from_world.transform_point3(at);
+            assert!(placed.distance(expected) < 1e-9);
+            // Nothing of the cubes is cut: clip space has the same corners.
+            let projected = view.view.clip_from_view * placed.extend(1.0);
+            if let Some(clipped) = clip.iter().find(|c| c[0] == row[0] && c[3] == row[1]) {
+                let clipped = DVec3::from(numbers(clipped, 4));
+                assert!(clipped.distance(projected.truncate()) < 1e-4 * projected.length());
+            }
+        }
+    }
+
+    #[test]
+    fn p1_l8_corners_are_illuminated_by_the_formula() {
+        let mut renderer = small("cubs");
+        renderer.settings.color_space = ColorSpace::Raw;
+        renderer.settings.illumination = vitral_light::Illumination::Lambert;
+        let material = vitral_light::Material::default();
+        let vitral_light::Reflectance::Phong { kd, .. } = material.reflectance else { panic!("{material:?}") };
+        let mut scene = Scene::clone(renderer.scene());
+        scene.materials.iter_mut().for_each(|m| *m = material.clone());
+        renderer.set_scene(scene).unwrap();
+        let direction = DVec3::new(-1.0, -2.0, -3.0).normalize();
+        let kind = vitral_light::LightKind::Directional { direction };
+        renderer.lights = Some(vec![vitral_light::Light { kind, ..vitral_light::Light::default() }]);
+        let files = dumped(&mut renderer);
+        let rows = table(&files, "4-illuminated.csv");
+        let numbers = |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
+        let mut lit = 0;
+        for triangle in rows.chunks(3) {
+            let [a, b, c] = [0, 1, 2].map(|i| DVec3::from(numbers(&triangle[i], 2)));
+            let cos = (b - a).cross(c - a).normalize().dot(-direction).max(0.0);
+            lit += usize::from(cos > 0.0);
+            for row in triangle {
+                let color = numbers(row, 5);
+                assert!((0..3).all(|k| (color[k] - f64::from(kd[k]) * cos).abs() < 1e-5), "{row:?}, cosine {cos}");
+            }
+        }
+        assert!(lit > 0);
+    }
+
+    #[test]
+    fn f7_both_buffers_are_exported() {
+        let mut renderer = small("lens");
+        renderer.settings.transparency_order = TransparencyOrder::TwoBuffer;
+        let files = dumped(&mut renderer);
+        let picture = renderer.render().unwrap().frame;
+        let encoded = picture::encode_with(
+            &picture,
+            Channel::Color,
+            PictureFormat::Png,
+            &EncodeOptions { srgb: true, ..EncodeOptions::default() },
+        );
+        assert!(files["9-combined.png"] == encoded.unwrap() && files["9-combined.png"] == files["9-framebuffer.png"]);
+        let list = table(&files, "9-transparent.csv");
+        assert!(!list.is_empty() && list.iter().all(|row| row[2] == "\"glass\""));
+        for name in ["opaque.png", "opaque.npy", "opaque-depth.npy", "transparent-layers.npy", "transparent-k.png"] {
+            assert!(files.contains_key(&format!("9-{name}")), "{name}");
+        }
     }
 }

@@ -9,10 +9,11 @@ use std::fmt;
 use std::sync::{Arc, Mutex};
 use vitral_exec::Budget;
 use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
+use vitral_render::shading::gouraud::{EdgeStep, ScreenIntensity, scan_convert};
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, Step};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Execution, PreparedView, Session, Settings};
+use vitral_render::{Execution, PreparedView, Session, Settings, Shading, Shot, illuminate_corners};
 use vitral_scene::Camera;
 
 /// Steps that are kept of one algorithm.
@@ -26,8 +27,47 @@ pub struct Explanation {
     pub pixel: [u32; 2],
     /// The surfaces that cover its centre, the nearest first.
     pub surfaces: Vec<Surface>,
+    /// How Gouraud's shading gets the nearest surface's intensity, with that shading.
+    pub gouraud: Option<Gouraud>,
     /// What each algorithm decided.
     pub decisions: Vec<Decision>,
+}
+
+/// How scan conversion interpolates intensities by increments, on the screen (L9). The picture weighs the corners directly, in
+/// perspective unless interpolation is linear, and multiplies with textures at the pixel rather than at the corners.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Gouraud {
+    /// The facet.
+    pub facet: u32,
+    /// Its corners in pixels.
+    pub corners: [[f64; 2]; 3],
+    /// Their intensities: premultiplied RGB, linear, or the course's numbers in the raw colour space.
+    pub intensities: [[f64; 3]; 3],
+    /// The edges left and right of the pixel.
+    pub edges: [GouraudEdge; 2],
+    /// Change of intensity from pixel to pixel along the span.
+    pub px: [f64; 3],
+    /// Additions of `px` from the span's first pixel to this one.
+    pub additions: u32,
+    /// The intensity that they give.
+    pub intensity: [f64; 3],
+    /// The intensity by the corners' weights on the screen.
+    pub direct: [f64; 3],
+}
+
+/// An edge of a [`Gouraud`]-shaded facet on a scan line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct GouraudEdge {
+    /// The corner above, and the one below.
+    pub corners: [usize; 2],
+    /// Change of intensity from line to line.
+    pub py: [f64; 3],
+    /// Where it crosses the line through the pixel's middle, in pixels.
+    pub x: f64,
+    /// The intensity there.
+    pub intensity: [f64; 3],
 }
 
 /// A facet over the pixel's centre.
@@ -100,12 +140,14 @@ pub fn explain(
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
     let surfaces = surfaces(renderer, camera, pixel, &budget)?;
+    let nearest = surfaces.first().filter(|_| settings.shading == Shading::Gouraud);
+    let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
     let mut decisions = Vec::new();
     for entrant in Entrant::all() {
         decisions.push(decide(renderer, camera, pixel, &entrant, time_limit)?);
         budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
     }
-    Ok(Explanation { pixel, surfaces, decisions })
+    Ok(Explanation { pixel, surfaces, gouraud, decisions })
 }
 
 /// Looks at every facet of the view.
@@ -140,6 +182,58 @@ fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budg
     }
     found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.facet.cmp(&b.facet)));
     Ok(found)
+}
+
+/// Scan converts a facet; `None` if a clipping plane cuts it, so that its corners are not all on the screen.
+fn gouraud(
+    renderer: &Renderer,
+    camera: &Camera,
+    [column, row]: [u32; 2],
+    facet: u32,
+) -> Result<Option<Gouraud>, Error> {
+    let settings = &renderer.settings;
+    let viewport = settings.check().map_err(vitral_render::Error::from)?;
+    let (session, execution, pattern) = (renderer.session(), renderer.execution(), SamplePattern::new(1));
+    let culled = &mut CullCounters::default();
+    let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, culled);
+    let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
+    let lights = renderer.frame_lights(camera);
+    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let lit = illuminate_corners(session, &shot, settings, execution, Some(facet))?;
+    let corner = |i: usize| {
+        let snapped = view.screen.transform().project(clip[i]);
+        let [r, g, b, _] = lit[i].color.map(f64::from);
+        let at = [snapped.x, snapped.y].map(|v| f64::from(v) / f64::from(SUBPIXEL));
+        ScreenIntensity { at, intensity: [r, g, b] }
+    };
+    let corners = [corner(0), corner(1), corner(2)];
+    let mut found = None;
+    scan_convert(&corners, |span, x, intensity| {
+        if (x, span.row) == (i64::from(column), i64::from(row)) {
+            found = Some((*span, intensity));
+        }
+    });
+    // Edges and samples are decided in integers elsewhere: a pixel on an edge may belong to a neighbour here.
+    let Some((span, intensity)) = found else { return Ok(None) };
+    let edge = |e: EdgeStep| GouraudEdge { corners: e.ends, py: e.py, x: e.x, intensity: e.intensity };
+    Ok(Some(Gouraud {
+        facet,
+        corners: corners.map(|c| c.at),
+        intensities: corners.map(|c| c.intensity),
+        edges: [span.left, span.right].map(edge),
+        px: span.px,
+        additions: (i64::from(column) - span.pixels[0]) as u32,
+        intensity,
+        direct: weighted(&corners, [f64::from(column) + 0.5, f64::from(row) + 0.5]),
+    }))
+}
+
+/// The intensity at a place by the weights of the corners.
+fn weighted(corners: &[ScreenIntensity; 3], place: [f64; 2]) -> [f64; 3] {
+    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    let [a, b, c] = corners.map(|c| c.at);
+    let (whole, parts) = (area(a, b, c), [area(place, b, c), area(a, place, c), area(a, b, place)]);
+    [0, 1, 2].map(|k| (0..3).map(|i| parts[i] / whole * corners[i].intensity[k]).sum())
 }
 
 /// The place of a pixel's sample, 1/256 pixel.
@@ -189,6 +283,9 @@ impl fmt::Display for Explanation {
             let (facet, surface) = (s.facet, s.surface);
             writeln!(f, "  depth {:.7}  facet {facet} (surface {surface}, {}{material}{layer})", s.depth, s.mesh)?;
         }
+        if let Some(gouraud) = &self.gouraud {
+            write!(f, "{gouraud}")?;
+        }
         for d in &self.decisions {
             match (&d.limit, d.facet, d.depth) {
                 (Some(limit), ..) => writeln!(f, "{}: {limit}", d.algorithm)?,
@@ -200,6 +297,23 @@ impl fmt::Display for Explanation {
             }
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Gouraud {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rgb = |[r, g, b]: [f64; 3]| format!("{r:.6} {g:.6} {b:.6}");
+        writeln!(f, "Gouraud shading of facet {}, on the screen:", self.facet)?;
+        for (number, ([x, y], intensity)) in self.corners.iter().zip(self.intensities).enumerate() {
+            writeln!(f, "  corner {number} at {x:.3},{y:.3}: I = {}", rgb(intensity))?;
+        }
+        for (side, edge) in ["left", "right"].iter().zip(&self.edges) {
+            let [u, v] = edge.corners;
+            let (py, at) = (rgb(edge.py), rgb(edge.intensity));
+            writeln!(f, "  {side} edge from corner {u} to {v}: py = {py}; I = {at} at x = {:.3}", edge.x)?;
+        }
+        let (px, intensity, direct) = (rgb(self.px), rgb(self.intensity), rgb(self.direct));
+        writeln!(f, "  span: px = {px}, added {} time(s): I = {intensity}; by weights {direct}", self.additions)
     }
 }
 
@@ -224,5 +338,38 @@ mod tests {
         let nothing = explain(&renderer, &camera, [0, 0], None).unwrap();
         assert!(nothing.surfaces.is_empty() && nothing.decisions.iter().all(|d| d.facet.is_none()));
         assert!(explain(&renderer, &camera, [64, 0], None).is_err());
+    }
+
+    #[test]
+    fn l9_increments_of_a_pixel_lead_to_its_intensity() {
+        let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
+        let settings = &mut renderer.settings;
+        (settings.width, settings.height, settings.samples) = (64, 48, 1);
+        settings.shading = Shading::Gouraud;
+        settings.interpolation = vitral_render::Interpolation::Linear;
+        settings.color_space = vitral_render::ColorSpace::Raw;
+        let camera = renderer.frame_camera();
+        let picture = renderer.render().unwrap().frame.color.unwrap();
+        let mut explained = 0;
+        for pixel in [[20, 24], [26, 30], [32, 26], [38, 28], [44, 22]] {
+            let told = explain(&renderer, &camera, pixel, None).unwrap();
+            let Some(g) = &told.gouraud else { continue };
+            explained += 1;
+            let [left, right] = &g.edges;
+            let from_left = f64::from(pixel[0]) + 0.5 - left.x;
+            for k in 0..3 {
+                assert!((g.intensity[k] - g.direct[k]).abs() < 1e-6, "{told}");
+                let px = (right.intensity[k] - left.intensity[k]) / (right.x - left.x);
+                assert!(
+                    (g.px[k] - px).abs() < 1e-9 && (left.intensity[k] + px * from_left - g.intensity[k]).abs() < 1e-9
+                );
+                let shown = f64::from(picture.at(pixel[0], pixel[1])[k]);
+                assert!((shown - 255.0 * g.intensity[k].clamp(0.0, 1.0)).abs() < 0.6, "{shown} of {told}");
+            }
+            assert!(told.to_string().contains(&format!("Gouraud shading of facet {}", g.facet)));
+        }
+        assert!(explained >= 3);
+        renderer.settings.shading = Shading::Phong;
+        assert!(explain(&renderer, &camera, [32, 26], None).unwrap().gouraud.is_none());
     }
 }

@@ -41,7 +41,11 @@ impl Channel {
         (Self::Object, "object", "instances, likewise"),
         (Self::Material, "material", "materials, likewise"),
         (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),
-        (Self::Steps, "steps", "the steps of the visibility algorithm over the picture: windows, list order or cost"),
+        (
+            Self::Steps,
+            "steps",
+            "the steps of the visibility algorithm over the picture: windows, list order or cost (docs/steps.md)",
+        ),
         (
             Self::AttachedShadow,
             "attached-shadow",

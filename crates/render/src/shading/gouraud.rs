@@ -6,7 +6,8 @@
 //!
 //! Scan conversion adds one number a pixel: with `py = (iV - iU) / (yV - yU)` along an edge from U to V,
 //! `I(k+1) = I(k) + py`, and with `px = (Ik2 - Ik1) / (xk2 - xk1)` along a span, `I(x+1) = I(x) + px`
-//! ([`edge_increment`], [`span_increment`]). The tile renderer weighs the vertices directly, which gives the same.
+//! ([`edge_increment`], [`span_increment`]): [`scan_convert`] does it, for whoever wants to see it. The tile renderer weighs the
+//! vertices directly, since a sum would depend on where it began; up to rounding that is the same.
 //!
 //! Input: corners and weights of a point, view space. Output: reflected light at the point.
 //! Source: [Gouraud 1971].
@@ -47,6 +48,126 @@ pub fn span_increment(left: (f64, f64), right: (f64, f64)) -> f64 {
     (right.1 - left.1) / (right.0 - left.0)
 }
 
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenIntensity {
+    /// Place in pixels, y downwards.
+    pub at: [f64; 2],
+    /// Intensity of each colour.
+    pub intensity: [f64; 3],
+}
+
+/// Where an edge crosses a scan line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeStep {
+    /// The edge's upper and lower vertex.
+    pub ends: [usize; 2],
+    /// Change of intensity for a line.
+    pub py: [f64; 3],
+    /// Place of the crossing in pixels.
+    pub x: f64,
+    /// Intensity there.
+    pub intensity: [f64; 3],
+}
+
+/// A scan line with pixels of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpanSteps {
+    /// Row of pixels, seen at its middle.
+    pub row: i64,
+    /// The edge on the left.
+    pub left: EdgeStep,
+    /// The edge on the right.
+    pub right: EdgeStep,
+    /// Change of intensity for a pixel.
+    pub px: [f64; 3],
+    /// The first pixel whose middle is in the span, and the one behind the last.
+    pub pixels: [i64; 2],
+    /// Intensity at the middle of the first.
+    pub first: [f64; 3],
+}
+
+/// How many additions of an increment scan conversion took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Additions {
+    /// Along edges.
+    pub edges: u64,
+    /// Along spans.
+    pub spans: u64,
+}
+
+/// Scan converts a triangle with Gouraud's increments: calls `put` for each pixel whose middle is in it, row by row, with its
+/// span, its column and its intensity. Nothing is added up where nothing is: a triangle without height has no lines.
+pub fn scan_convert(vertices: &[ScreenIntensity; 3], mut put: impl FnMut(&SpanSteps, i64, [f64; 3])) -> Additions {
+    let mut additions = Additions::default();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| vertices[a].at[1].total_cmp(&vertices[b].at[1]));
+    let [top, middle, bottom] = order;
+    let mut long = Walk::new(vertices, [top, bottom]);
+    for ends in [[top, middle], [middle, bottom]] {
+        let mut short = Walk::new(vertices, ends);
+        for row in short.rows.clone() {
+            let on_long = long.at(row, &mut additions);
+            let on_short = short.at(row, &mut additions);
+            let (left, right) = if on_long.x <= on_short.x { (on_long, on_short) } else { (on_short, on_long) };
+            let px = [0, 1, 2].map(|k| span_increment((left.x, left.intensity[k]), (right.x, right.intensity[k])));
+            let pixels = [left.x, right.x].map(|x| (x - 0.5).ceil() as i64);
+            if pixels[0] >= pixels[1] {
+                continue;
+            }
+            let offset = pixels[0] as f64 + 0.5 - left.x;
+            let first = [0, 1, 2].map(|k| left.intensity[k] + px[k] * offset);
+            let span = SpanSteps { row, left, right, px, pixels, first };
+            let mut intensity = first;
+            put(&span, pixels[0], intensity);
+            for x in pixels[0] + 1..pixels[1] {
+                for k in 0..3 {
+                    intensity[k] += px[k];
+                }
+                additions.spans += 1;
+                put(&span, x, intensity);
+            }
+        }
+    }
+    additions
+}
+
+/// The way down an edge.
+struct Walk {
+    step: EdgeStep,
+    dx: f64,
+    /// Lines that it crosses.
+    rows: std::ops::Range<i64>,
+    started: bool,
+}
+
+impl Walk {
+    fn new(vertices: &[ScreenIntensity; 3], ends: [usize; 2]) -> Self {
+        let [u, v] = ends.map(|i| vertices[i]);
+        let rows = (u.at[1] - 0.5).ceil() as i64..(v.at[1] - 0.5).ceil() as i64;
+        let py = [0, 1, 2].map(|k| edge_increment((u.at[1], u.intensity[k]), (v.at[1], v.intensity[k])));
+        let dx = edge_increment((u.at[1], u.at[0]), (v.at[1], v.at[0]));
+        let down = rows.start as f64 + 0.5 - u.at[1];
+        let intensity = [0, 1, 2].map(|k| u.intensity[k] + py[k] * down);
+        let step = EdgeStep { ends, py, x: u.at[0] + dx * down, intensity };
+        Self { step, dx, rows, started: false }
+    }
+
+    /// Goes on to the next row, which is this one.
+    fn at(&mut self, row: i64, additions: &mut Additions) -> EdgeStep {
+        if self.started {
+            self.step.x += self.dx;
+            for k in 0..3 {
+                self.step.intensity[k] += self.step.py[k];
+            }
+            additions.edges += 1;
+        }
+        debug_assert!(self.started || row == self.rows.start);
+        self.started = true;
+        self.step
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,5 +204,47 @@ mod tests {
             i_left += dl;
             i_right += dr;
         }
+    }
+
+    #[test]
+    fn l9_scan_conversion_adds_once_a_pixel_and_gives_what_weights_give() {
+        let mut state = 11u32;
+        let mut next = |size: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from((state >> 8) % (size * 16)) / 16.0
+        };
+        let (mut pixels, mut spans) = (0u64, 0u64);
+        for _ in 0..400 {
+            let mut vertex =
+                || ScreenIntensity { at: [next(200) - 40.0, next(120)], intensity: [0; 3].map(|_| next(16) / 16.0) };
+            let v = [vertex(), vertex(), vertex()];
+            let at = |k: usize| v.map(|p| (p.at[0], p.at[1], p.intensity[k]));
+            let inside = |x: f64, y: f64| {
+                let side = |i: usize| {
+                    let (a, b) = (v[i].at, v[(i + 1) % 3].at);
+                    (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
+                };
+                (0..3).all(|i| side(i) > 1e-9) || (0..3).all(|i| side(i) < -1e-9)
+            };
+            let (mut put, mut rows) = (std::collections::BTreeSet::new(), std::collections::BTreeSet::new());
+            let additions = scan_convert(&v, |span, x, intensity| {
+                let place = (x as f64 + 0.5, span.row as f64 + 0.5);
+                for k in 0..3 {
+                    let direct = barycentric(at(k), place.0, place.1);
+                    // What is left of a needle's width is rounding.
+                    let steep = span.px[k].abs().max(1.0);
+                    assert!((intensity[k] - direct).abs() <= 1e-6 * steep, "{v:?} {place:?}: {intensity:?}, {direct}");
+                }
+                assert!(put.insert((x, span.row)), "each pixel once");
+                rows.insert(span.row);
+            });
+            assert_eq!(additions.spans, (put.len() - rows.len()) as u64, "one addition for each pixel but the first");
+            assert!(additions.edges <= 2 * 120);
+            for (x, y) in (-42..162).flat_map(|x| (0..121).map(move |y| (x, y))) {
+                assert!(!inside(x as f64 + 0.5, y as f64 + 0.5) || put.contains(&(x, y)), "{v:?}: {x} {y}");
+            }
+            (pixels, spans) = (pixels + put.len() as u64, spans + rows.len() as u64);
+        }
+        assert!(pixels > 100_000 && spans > 5000, "{pixels} {spans}");
     }
 }

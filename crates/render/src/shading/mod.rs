@@ -12,8 +12,10 @@ pub mod gouraud;
 pub mod phong;
 
 mod behind;
+mod buffers;
 mod channels;
 mod composite;
+mod corners;
 mod depth_cue;
 mod facets;
 mod frame_constants;
@@ -29,7 +31,10 @@ mod points;
 mod shadowed;
 mod together;
 
+pub(crate) use buffers::{BYTES_A_PIXEL, BufferPlanes};
 pub(crate) use channels::{ChannelSink, DataPlanes};
+pub use corners::LitCorner;
+pub(crate) use corners::lit_corners;
 pub use flat::FaceTable;
 pub(crate) use frame_constants::{BackgroundKey, BackgroundRows, DecodeTables, FrameConstants};
 
@@ -62,6 +67,8 @@ pub(crate) struct ColorSink<'a> {
     tiles: TileRows<'a>,
     /// What each pass made of each tile, the opaque tile first; empty where nobody asked.
     passes: Passes,
+    /// The buffers of each tile in the two-buffer order; empty where nobody asked.
+    buffers: Vec<Mutex<BufferPlanes>>,
     /// The session's.
     spare: &'a Mutex<Vec<Scratch>>,
     counters: Mutex<PictureCounters>,
@@ -69,6 +76,13 @@ pub(crate) struct ColorSink<'a> {
 
 /// The pictures of each tile after each pass.
 pub(crate) type Passes = Vec<Mutex<Vec<Vec<[u8; 4]>>>>;
+
+/// What is shown besides the picture, a tile each.
+#[derive(Default)]
+pub(crate) struct Shown {
+    pub passes: Passes,
+    pub buffers: Vec<Mutex<BufferPlanes>>,
+}
 
 /// A picture cut into its tiles, so that each can be written by whoever finishes it.
 pub(crate) struct TileRows<'a> {
@@ -153,6 +167,7 @@ impl<'a> ColorSink<'a> {
             deep,
             tiles,
             passes: Vec::new(),
+            buffers: Vec::new(),
             spare: &constants.view.session.spare_scratch,
             counters: Mutex::default(),
         }
@@ -163,15 +178,21 @@ impl<'a> ColorSink<'a> {
         self.passes = (0..self.tiles.len()).map(|_| Mutex::default()).collect();
     }
 
+    /// Keeps the two buffers of each tile.
+    pub(crate) fn show_buffers(&mut self) {
+        self.buffers = (0..self.tiles.len()).map(|_| Mutex::default()).collect();
+    }
+
     pub(crate) fn counters(&self) -> PictureCounters {
         *self.counters.lock().expect("counters")
     }
 
-    /// When all tiles were handed over: composes what was kept until the whole picture is there. Gives what each pass made.
-    pub(crate) fn finish(self, workers: &Workers) -> Result<Passes, Limit> {
+    /// When all tiles were handed over: composes what was kept until the whole picture is there. Gives what else is shown.
+    pub(crate) fn finish(self, workers: &Workers) -> Result<Shown, Limit> {
+        let shown = Shown { passes: self.passes, buffers: self.buffers };
         let Some(deep) = self.deep else {
             self.tiles.check();
-            return Ok(self.passes);
+            return Ok(shown);
         };
         let deep = deep.finish()?;
         let tiles = self.tiles;
@@ -186,7 +207,7 @@ impl<'a> ColorSink<'a> {
         });
         composed.into_iter().collect::<Result<(), Limit>>()?;
         tiles.check();
-        Ok(self.passes)
+        Ok(shown)
     }
 }
 
@@ -226,7 +247,8 @@ impl TileSink for ColorSink<'_> {
     }
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
-        if !tile.touched && layers.sample_count() == 0 && layers.lost() == 0 && self.deep.is_none() {
+        let empty = !tile.touched && layers.sample_count() == 0 && layers.lost() == 0;
+        if empty && self.deep.is_none() && self.buffers.is_empty() {
             self.tracer.into_iter().for_each(Whitted::tile_done);
             return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
         }
@@ -265,6 +287,9 @@ impl TileSink for ColorSink<'_> {
             picture.resize(TILE_PIXELS, [0; 4]);
             composer.compose(tile, points, lit, constants, self.marks, None, picture);
             self.tiles.write(index, picture);
+            if let Some(buffers) = self.buffers.get(index) {
+                *buffers.lock().expect("buffers of a tile") = self.buffers(tile, points, lit);
+            }
         }
         self.spare.lock().expect("spare scratch").push(scratch);
     }

@@ -35,7 +35,7 @@ impl ColorSink<'_> {
         shown: bool,
     ) -> (Vec<Vec<[u8; 4]>>, u64, u64) {
         let samples = self.constants.view.pattern.len();
-        let mut canvas = self.canvas(tile, &scratch.points, &scratch.lit, samples);
+        let mut canvas = self.canvas(tile, &scratch.points, &scratch.lit);
         let (mut pictures, mut layers, mut shaded) = (Vec::new(), 0, 0);
         let mut peel = Peel::default();
         peel.reset(samples);
@@ -62,31 +62,39 @@ impl ColorSink<'_> {
     }
 
     /// What is opaque, and the background.
-    fn canvas(&self, tile: &Tile, points: &Points, lit: &Lit, samples: usize) -> Canvas {
-        let background = |pixel: usize| {
-            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.colors.len() - 1);
-            self.constants.background.colors[row]
-        };
+    fn canvas(&self, tile: &Tile, points: &Points, lit: &Lit) -> Canvas {
         let mut canvas = Canvas {
-            samples: (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect(),
+            samples: self.opaque_samples(tile, points, lit),
             filled: vec![false; TILE_PIXELS],
             layered: vec![false; TILE_PIXELS],
         };
         for pixel in &points.pixels {
-            let at = pixel.index as usize;
-            canvas.filled[at] = true;
+            canvas.filled[pixel.index as usize] = true;
+            canvas.layered[pixel.index as usize] = matches!(pixel.source, Source::Mixed(_));
+        }
+        canvas
+    }
+
+    /// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and the background.
+    pub(super) fn opaque_samples(&self, tile: &Tile, points: &Points, lit: &Lit) -> Vec<[f32; 4]> {
+        let background = |pixel: usize| {
+            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.colors.len() - 1);
+            self.constants.background.colors[row]
+        };
+        let samples = self.constants.view.pattern.len();
+        let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
+        for pixel in &points.pixels {
             for sample in 0..samples {
                 let point = match pixel.source {
                     Source::Point(point) => point,
                     Source::Mixed(start) => points.mixed[start as usize + sample],
                 };
                 if point != NO_POINT {
-                    canvas.samples[sample * TILE_PIXELS + at] = lit.colors[point as usize];
+                    colors[sample * TILE_PIXELS + pixel.index as usize] = lit.colors[point as usize];
                 }
             }
-            canvas.layered[at] = matches!(pixel.source, Source::Mixed(_));
         }
-        canvas
+        colors
     }
 
     /// The canvas as display bytes.

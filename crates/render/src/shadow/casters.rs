@@ -217,6 +217,11 @@ impl Casters {
         wide(&self.filters.triangles().corners[triangle as usize])
     }
 
+    /// The facet of a transparent triangle.
+    pub(super) fn filter_facet(&self, triangle: u32) -> u32 {
+        self.filters.triangles().facets[triangle as usize]
+    }
+
     /// The part of each colour that transparent triangles let through to a place (lifted) on the facet `own`. `list` has all
     /// that may matter, and more.
     pub(super) fn filtered(

@@ -66,7 +66,8 @@ pub trait Shadows: Sync {
 pub struct Drawn<'a> {
     /// The light's number.
     pub light: usize,
-    /// What it is: `lit`, or a `side`, `near-cap` or `far-cap` of a volume.
+    /// What it is: `lit`; a `shadow` on the polygon that it falls on, or a `tinted-shadow` of something transparent; or a `side`,
+    /// `near-cap` or `far-cap` of a volume.
     pub kind: &'static str,
     /// World space.
     pub corners: &'a [DVec3],
@@ -152,7 +153,8 @@ pub fn draw(
         }
     });
     budget.release(charged);
-    within
+    // An algorithm that saw the limit first may have ended without a word.
+    within.and_then(|()| budget.check("shadow polygons"))
 }
 
 /// The chosen algorithm, ready; `None` without shadows.

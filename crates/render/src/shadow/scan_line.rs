@@ -9,17 +9,22 @@
 //! light amidst the scene no projection on a sphere round it: the line is cut by the four planes of the solid. Two triangles
 //! that share an edge cut the line in one place.
 //!
+//! The shadow polygons themselves do not depend on the viewer, and can be written to a file (`scan_line/on_receivers.rs`).
+//!
 //! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a light that arrives.
 //! Cost: for each visible facet in a tile the triangles before it, and for each of its lines those that it crosses.
 //! Source: [Appel 1968], [Bouknight & Kelley 1970]. Departs from it: pairs of polygons are found by a tree of boxes
 //! instead of all with all; places between the pixels of a line (the middles of its samples) are lines of their own.
 
+mod on_receivers;
+
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
-use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
+use super::{Drawn, Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
-use crate::{Execution, Session, Settings};
+use crate::{Execution, Session, Settings, Transparency};
+use on_receivers::Receivers;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
@@ -30,6 +35,9 @@ use vitral_math::{DVec3, DVec4};
 pub struct ScanLineShadows;
 
 struct Prepared<'a> {
+    session: &'a Session,
+    transparency: Transparency,
+    execution: Execution,
     casters: Arc<Casters>,
     occluders: Occluders<'a>,
     /// For each light its places.
@@ -49,7 +57,8 @@ impl ShadowAlgorithm for ScanLineShadows {
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
         let lights = lights.iter().map(|l| Source::new(l, settings.light_samples, center).places()).collect();
-        Ok(Box::new(Prepared { casters, occluders, lights }))
+        let (transparency, execution) = (settings.transparency, execution.clone());
+        Ok(Box::new(Prepared { session, transparency, execution, casters, occluders, lights }))
     }
 }
 
@@ -110,6 +119,21 @@ impl Shadows for Prepared<'_> {
             }
         }
         Shares::normalize(lights.iter().copied(), places, parts);
+    }
+
+    fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
+        for (light, emitters) in self.lights.iter().enumerate() {
+            for emitter in emitters {
+                let receivers = Receivers {
+                    session: self.session,
+                    transparency: self.transparency,
+                    execution: &self.execution,
+                    casters: &self.casters,
+                    light: emitter.at,
+                };
+                receivers.each(&mut |kind, corners| take(Drawn { light, kind, corners }));
+            }
+        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! A picture of an algorithm's steps, over the image in grey.
 //!
 //! - Windows and visible polygons: outlines; the window's verdict is its colour (green one polygon, yellow surrounded, red
-//!   single pixels).
+//!   single pixels, blue empty).
 //! - Lists: the order as a ramp from blue (the first, far) over green to red (the last, near), with the outlines of
 //!   polygons that were cut.
 //! - Everything else: what each pixel cost, from blue to red: facets over it, polygons in its spans, boxes and facets
 //!   its rays were tested against.
 //!
-//! Steps are added as they come and not kept, so a large model takes no more than the picture. Sums and maxima do not
+//! [`super::legend`] tells that to users. Steps are added as they come and not kept, so a large model takes no more than the picture. Sums and maxima do not
 //! depend on the order of threads.
 
 use super::{Observer, Step, WindowVerdict};
@@ -34,7 +34,11 @@ struct Planes {
     mark: Vec<u8>,
 }
 
-const MARKS: [[u8; 3]; 4] = [[70, 110, 220], [60, 190, 90], [250, 210, 60], [225, 60, 50]];
+/// Outlines: empty windows and visible polygons, one polygon, surrounded, single pixels.
+pub(super) const MARKS: [[u8; 3]; 4] = [[70, 110, 220], [60, 190, 90], [250, 210, 60], [225, 60, 50]];
+
+/// Outlines of polygons in a list that were cut.
+pub(super) const OUTLINE: [u8; 3] = [20; 3];
 
 /// What is added to a mark that lets the image through.
 const FAINT: u8 = 8;
@@ -73,7 +77,7 @@ impl Recorder {
             } else if lists {
                 match planes.order[i] {
                     0 => [light * 255.0; 3],
-                    order if planes.outline[i] >= order => [20.0; 3],
+                    order if planes.outline[i] >= order => OUTLINE.map(f32::from),
                     order => shade(ramp(order as f32 / last)),
                 }
             } else if planes.cost[i] > 0 {
@@ -172,7 +176,7 @@ impl Observer for Recorder {
             Step::Line { row, spans, .. } => {
                 for span in spans {
                     let [from, to] = span.pixels;
-                    self.spend(planes, [from, *row, to - from, 1], u64::from(span.inside));
+                    self.spend(planes, [from, *row, to - from, 1], span.inside.len() as u64);
                 }
             }
             Step::Rays { pixels, boxes, facets, .. } => {
@@ -192,15 +196,17 @@ impl Observer for Recorder {
                 }
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
-            Step::Clip { .. } | Step::Space { .. } => {}
+            Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
         }
     }
 }
 
+/// The colours of the ramp.
+pub(super) const STOPS: [[f32; 3]; 5] =
+    [[50.0, 60.0, 200.0], [50.0, 170.0, 220.0], [90.0, 210.0, 90.0], [250.0, 220.0, 60.0], [230.0, 50.0, 40.0]];
+
 /// From blue over green and yellow to red, for 0 to 1.
 fn ramp(t: f32) -> [u8; 3] {
-    const STOPS: [[f32; 3]; 5] =
-        [[50.0, 60.0, 200.0], [50.0, 170.0, 220.0], [90.0, 210.0, 90.0], [250.0, 220.0, 60.0], [230.0, 50.0, 40.0]];
     let place = t.clamp(0.0, 1.0) * 4.0;
     let i = (place as usize).min(3);
     let part = place - i as f32;
@@ -210,6 +216,7 @@ fn ramp(t: f32) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::super::Passed;
+    use super::super::legend::Legend;
     use super::*;
 
     #[test]
@@ -237,5 +244,46 @@ mod tests {
         let planes = recorder.planes.lock().unwrap();
         assert_eq!(planes.cost, [0, 1, 8, 10, 0, 0, 7, 7]);
         assert_eq!(planes.mark, [2, 2, 2, 2, 2, 0, 0, 0]);
+    }
+
+    #[test]
+    fn every_algorithm_draws_what_its_legend_says() {
+        let scene = vitral_scene::builtin::scene("cubs").unwrap();
+        let session = crate::Session::new(std::sync::Arc::new(scene)).unwrap();
+        let viewport = vitral_raster::Viewport { width: 96, height: 72 };
+        let camera = vitral_scene::framing::frame(
+            &session.world().bounds,
+            vitral_scene::View::Iso,
+            vitral_scene::Axis::default(),
+            vitral_scene::Lens::default(),
+            96.0 / 72.0,
+        );
+        for algorithm in crate::registry::VISIBILITY {
+            let settings = crate::Settings { visibility: algorithm.name.to_owned(), ..crate::Settings::default() };
+            let recorder = std::sync::Arc::new(Recorder::new(96, 72));
+            let observer = Some(std::sync::Arc::clone(&recorder) as std::sync::Arc<dyn Observer>);
+            let execution = crate::Execution { observer, ..crate::Execution::default() };
+            let (pattern, culled) = (vitral_raster::SamplePattern::new(1), &mut crate::stats::CullCounters::default());
+            let view = crate::PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, culled);
+            let mut grid = vitral_raster::TileGrid::new(viewport, 1);
+            let resolved = algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &crate::visible::Nowhere);
+            resolved.unwrap();
+            let planes = recorder.planes.lock().unwrap();
+            let drawn = [
+                planes.mark.iter().any(|m| *m > 1),
+                planes.order.iter().any(|o| *o > 0),
+                planes.mark.contains(&1),
+                planes.cost.iter().any(|c| *c > 0),
+            ];
+            // What is drawn first hides the rest: marks, then the list, then costs.
+            let first = drawn.iter().position(|d| *d);
+            let expected = match algorithm.steps {
+                Legend::Windows => 0,
+                Legend::List => 1,
+                Legend::Outlines => 2,
+                Legend::Cost(_) => 3,
+            };
+            assert_eq!(first, Some(expected), "{}: {drawn:?}", algorithm.name);
+        }
     }
 }

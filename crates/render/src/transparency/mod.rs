@@ -113,20 +113,16 @@ impl Fragment<'_> {
 }
 
 /// The fragments that cover `sample`, in the order of the scene, without the ones that an opaque one hides (cut-outs,
-/// lines); the opaque one becomes the colour behind. For the orders that know nothing but one transparent buffer.
+/// lines), and the nearest opaque one, which is behind them. For the orders that know nothing but one transparent buffer.
 fn in_front_of_opaque<'f, 'a>(
     fragments: &'f [Fragment<'a>],
     sample: usize,
-    below: &mut [f32; 4],
-) -> impl Iterator<Item = &'f Fragment<'a>> + use<'f, 'a> {
+) -> (impl Iterator<Item = &'f Fragment<'a>> + use<'f, 'a>, Option<&'f Fragment<'a>>) {
     let here = move |f: &&Fragment<'_>| f.covers(sample);
     let opaque = fragments.iter().filter(here).filter(|f| f.is_opaque());
     let nearest = opaque.max_by(|a, b| a.far_to_near(b, sample));
-    if let Some(nearest) = nearest {
-        *below = nearest.color;
-    }
     let hidden = move |f: &Fragment<'_>| nearest.is_some_and(|n| f.far_to_near(n, sample) != Ordering::Greater);
-    fragments.iter().filter(here).filter(move |f| !hidden(f))
+    (fragments.iter().filter(here).filter(move |f| !hidden(f)), nearest)
 }
 
 #[cfg(test)]
@@ -161,8 +157,8 @@ pub(crate) mod tests {
     #[test]
     fn opaque_fragments_hide_what_is_behind() {
         let fragments = [pane(0, &[0.2], 1.0, 0.5), pane(1, &[0.5], 0.3, 0.0), pane(2, &[0.7], 1.0, 0.5)];
-        let mut below = [0.0; 4];
-        let seen: Vec<_> = in_front_of_opaque(&fragments, 0, &mut below).map(|f| f.facet).collect();
-        assert_eq!((seen, below), (vec![2], [0.3, 0.3, 0.3, 1.0]));
+        let (seen, nearest) = in_front_of_opaque(&fragments, 0);
+        let seen: Vec<_> = seen.map(|f| f.facet).collect();
+        assert_eq!((seen, nearest.map(|f| f.color)), (vec![2], Some([0.3, 0.3, 0.3, 1.0])));
     }
 }

@@ -14,8 +14,9 @@ use super::{Fragment, in_front_of_opaque};
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
     for (s, below) in samples.iter_mut().enumerate() {
         let mut nearest: Option<&Fragment<'_>> = None;
-        let mut color = *below;
-        for fragment in in_front_of_opaque(fragments, s, &mut color) {
+        let (seen, opaque) = in_front_of_opaque(fragments, s);
+        let mut color = opaque.map_or(*below, |opaque| opaque.color);
+        for fragment in seen {
             // A hole cut out by a texture is no surface: it leaves no depth.
             let is_hole = fragment.color == [0.0; 4] && fragment.passes == [1.0; 3];
             if !is_hole && nearest.is_none_or(|n| fragment.far_to_near(n, s).is_gt()) {

@@ -13,23 +13,57 @@
 
 use super::{Fragment, in_front_of_opaque};
 
+/// What is behind the transparent surfaces of a sample: the first buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Behind {
+    /// Its colour, premultiplied.
+    pub color: [f32; 4],
+    /// Its depth, if one of the fragments is opaque and took the place of what was there.
+    pub depth: Option<f32>,
+}
+
+/// The buffers of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filled {
+    /// The first buffer.
+    pub behind: Behind,
+    /// The second buffer's intensity.
+    pub light: [f32; 3],
+    /// What passes through the second buffer, `1 - k`: three channels, for the sake of filters.
+    pub passes: [f32; 3],
+    /// Its opacity.
+    pub alpha: f32,
+    /// How many surfaces of the list went into it; holes cut out by a texture are none.
+    pub layers: u32,
+}
+
+/// Fills both buffers of a sample.
+pub fn fill(fragments: &[Fragment<'_>], sample: usize, mut behind: Behind) -> Filled {
+    let (seen, nearest) = in_front_of_opaque(fragments, sample);
+    if let Some(nearest) = nearest {
+        behind = Behind { color: nearest.color, depth: Some(nearest.depth(sample)) };
+    }
+    let mut filled = Filled { behind, light: [0.0; 3], passes: [1.0; 3], alpha: 0.0, layers: 0 };
+    for fragment in seen {
+        for k in 0..3 {
+            filled.light[k] = (1.0 - filled.passes[k]) * filled.light[k] + fragment.color[k];
+            filled.passes[k] *= fragment.passes[k];
+        }
+        filled.alpha = 1.0 - (1.0 - filled.alpha) * (1.0 - fragment.color[3]);
+        // A hole cut out by a texture is no surface.
+        filled.layers += u32::from(fragment.color != [0.0; 4] || fragment.passes != [1.0; 3]);
+    }
+    filled
+}
+
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
-    for (s, opaque) in samples.iter_mut().enumerate() {
-        // What passes has three channels, for the sake of filters; k = 1 - passes.
-        let (mut light, mut passes, mut alpha) = ([0.0; 3], [1.0; 3], 0.0);
-        let mut below = *opaque;
-        for fragment in in_front_of_opaque(fragments, s, &mut below) {
-            for k in 0..3 {
-                light[k] = (1.0 - passes[k]) * light[k] + fragment.color[k];
-                passes[k] *= fragment.passes[k];
-            }
-            alpha = 1.0 - (1.0 - alpha) * (1.0 - fragment.color[3]);
-        }
+    for (s, color) in samples.iter_mut().enumerate() {
+        let Filled { behind, light, passes, alpha, .. } = fill(fragments, s, Behind { color: *color, depth: None });
         for k in 0..3 {
-            opaque[k] = light[k] + passes[k] * below[k];
+            color[k] = light[k] + passes[k] * behind.color[k];
         }
-        opaque[3] = alpha + (1.0 - alpha) * below[3];
+        color[3] = alpha + (1.0 - alpha) * behind.color[3];
     }
 }
 

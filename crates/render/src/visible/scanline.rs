@@ -24,6 +24,7 @@
 
 mod face;
 mod implied_edge;
+mod told;
 
 use super::facets::{Facets, fill_tiles, nearer};
 use super::{Resolved, TileSink, VisibleSurface};
@@ -146,6 +147,7 @@ fn sweep(
     let spacing = if coherence.has(Coherence::Edge) { spacing(&lines) } else { 0 };
     let mut polygons: Vec<_> = facets.in_row(row).map(Polygon::new).collect();
     let edges = edge_table(&polygons, &lines);
+    told::tables(execution, view, [row * TILE, row * TILE + height], (&polygons, &edges), &lines)?;
     let mut starting = edges.as_slice();
     let mut active: Vec<ActiveEdge> = Vec::new();
     let mut spans = Spans {
@@ -193,7 +195,8 @@ fn sweep(
         spans.walk(&active, line);
         if let Some(told) = spans.told.take() {
             let (row, sample) = ((row * TILE + line.row) as u32, line.sample as u32);
-            execution.tell(|| Step::Line { row, sample, active_edges: active.len() as u32, spans: told });
+            let active_edges = told::crossings(&active, spans.polygons);
+            execution.tell(|| Step::Line { row, sample, active_edges, spans: told });
         }
     }
     spans.counters.implied_edges += spans.implied.found;
@@ -348,7 +351,9 @@ impl<'f> Spans<'_, 'f> {
         if let Some(told) = &mut self.told {
             let facet = winner.map(|p| self.polygons[p as usize].setup.facet);
             let pixels = [pixels.start, pixels.end].map(|x| x as u32);
-            told.push(Span { pixels, inside: self.inside.len() as u32, verdict, facet });
+            let mut inside: Vec<u32> = self.inside.iter().map(|&p| self.polygons[p as usize].setup.facet).collect();
+            inside.sort_unstable();
+            told.push(Span { pixels, inside, verdict, facet });
         }
     }
 

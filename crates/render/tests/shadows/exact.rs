@@ -175,10 +175,78 @@ fn f22_the_lit_area_of_a_square_under_a_square() {
 }
 
 #[test]
-fn f19_two_viewers_share_the_lit_polygons() {
+fn f21_the_shadow_polygons_of_a_square_on_a_plane_have_the_analytic_area() {
+    let plate = || solids::plane(1.0, 1.0, 1, 1);
+    let scene = above_floor(plate(), Material::default(), dvec3(0.25, 1.0, -0.5));
+    let of = |light: &Light| -> Vec<(&str, Vec<DVec3>)> { drawn(&scene, light, &settings("scan-line")) };
+    let on_floor = |polygons: &[(&str, Vec<DVec3>)]| -> f64 {
+        assert!(polygons.iter().all(|(kind, corners)| *kind == "shadow" && corners.iter().all(|c| c.y.abs() < 1e-12)));
+        polygons.iter().map(|(_, corners)| area(corners).length()).sum()
+    };
+    // The lamp at height 2, the plate at 1: its shadow is twice as wide.
+    let by_lamp = on_floor(&of(&lamp(dvec3(0.25, 2.0, -0.5))));
+    assert!((by_lamp - 4.0).abs() < 4e-9, "{by_lamp}");
+    // Beside the lamp's foot it is as large; slanted rays of the sun leave the size as it is.
+    let beside = on_floor(&of(&lamp(dvec3(0.75, 2.0, 0.25))));
+    assert!((beside - 4.0).abs() < 4e-9, "{beside}");
+    let by_sun = on_floor(&of(&sun(dvec3(0.5, -1.0, 0.25))));
+    assert!((by_sun - 1.0).abs() < 1e-9, "{by_sun}");
+    // What lit polygons leave of the floor.
+    let light = lamp(dvec3(0.25, 2.0, -0.5));
+    let lit = drawn(&scene, &light, &settings("object-precision"));
+    let lit: f64 = lit.iter().filter(|(_, c)| c[0].y.abs() < 1e-9).map(|(_, c)| area(c).length()).sum();
+    assert!((lit + by_lamp - 64.0).abs() < 1e-8, "{lit} and {by_lamp}");
+    // Five times as wide and moved aside, it goes beyond the floor's edge: from x = -0.25 to 4, from z = -3 to 2.
+    let clipped = on_floor(&of(&lamp(dvec3(-0.25, 1.25, -0.5))));
+    assert!((clipped - 21.25).abs() < 21.25e-9, "{clipped}");
+    // Glass casts a tinted one.
+    let glass = Material { alpha_mode: AlphaMode::Blend, opacity: 0.5, ..Material::default() };
+    let tinted = drawn(&above_floor(plate(), glass, dvec3(0.25, 1.0, -0.5)), &light, &settings("scan-line"));
+    let tinted: f64 = tinted.iter().filter(|(kind, _)| *kind == "tinted-shadow").map(|(_, c)| area(c).length()).sum();
+    assert!((tinted - 4.0).abs() < 4e-9, "{tinted}");
+}
+
+#[test]
+fn f21_shadow_polygons_hold_the_places_that_the_scan_line_finds_dark() {
     let scene = builtin::scene("scene1").unwrap();
     let light = lamp(dvec3(3.0, 6.0, 2.0));
-    let settings = settings("object-precision");
+    let polygons = drawn(&scene, &light, &settings("scan-line"));
+    // Places are lifted off their facet, shadow polygons are not: on an edge they may differ.
+    let inside = |p: DVec3, slack: f64| {
+        polygons.iter().any(|(_, corners)| {
+            let normal = area(corners).normalize();
+            let inwards = |i: usize| normal.cross(corners[(i + 1) % corners.len()] - corners[i]).normalize();
+            let in_plane = normal.dot(p - corners[0]).abs() < 1e-5;
+            in_plane && (0..corners.len()).all(|i| inwards(i).dot(p - corners[i]) >= -slack)
+        })
+    };
+    let (mut dark, mut lit) = (0, 0);
+    with_shadows(&scene, std::slice::from_ref(&light), &settings("scan-line"), |arriving| {
+        let LightKind::Point { position } = light.kind else { panic!("{light:?}") };
+        for place in places_on(&scene) {
+            // Faces in their own shadow have no polygons.
+            if place.normal.dot(position - place.position) <= 0.0 {
+                continue;
+            }
+            let shadowed = arriving(place) == 0.0;
+            assert!(if shadowed { inside(place.position, 1e-4) } else { !inside(place.position, -1e-4) }, "{place:?}");
+            (dark, lit) = (dark + u32::from(shadowed), lit + u32::from(!shadowed));
+        }
+    });
+    assert!(dark > 20 && lit > 20, "{dark} dark, {lit} lit");
+}
+
+#[test]
+fn f19_two_viewers_share_the_polygons() {
+    for shadows in ["object-precision", "scan-line", "volume"] {
+        two_viewers_share(shadows);
+    }
+}
+
+fn two_viewers_share(shadows: &str) {
+    let scene = builtin::scene("scene1").unwrap();
+    let light = lamp(dvec3(3.0, 6.0, 2.0));
+    let settings = settings(shadows);
     let alone = drawn(&scene, &light, &settings);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let lights = std::slice::from_ref(&light);

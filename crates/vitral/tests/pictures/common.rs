@@ -42,6 +42,7 @@ pub(crate) fn all_channels() -> Channels {
         material: true,
         normal: true,
         passes: false,
+        buffers: false,
         attached_shadow: true,
         cast_shadow: false,
         steps: true,

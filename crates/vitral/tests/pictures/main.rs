@@ -3,8 +3,8 @@
 mod agreement;
 mod common;
 mod culling;
-mod depth_cue;
 mod defects;
+mod depth_cue;
 mod determinism;
 mod interpolation;
 mod lighting;
@@ -13,6 +13,7 @@ mod normal_maps;
 mod ray_trace;
 mod realism;
 mod robust;
+mod steps;
 mod translucent;
 mod transparency;
 mod traps;

@@ -2,7 +2,7 @@
 
 use crate::common::{colors, exact, largest_difference, on_z, one, sun};
 use std::sync::Arc;
-use vitral::frame::{Encoding, Plane, Texture};
+use vitral::frame::{Encoding, Plane, Texture, TwoBuffers};
 use vitral::light::{AlphaMode, Reflectance, TextureRef};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;
@@ -167,6 +167,49 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
         let difference = largest_difference(&single(order.value), &single(TransparencyOrder::Sorted));
         assert!(difference <= 1, "{}: one layer is exact", order.name);
     }
+}
+
+/// The two buffers of a scene, and its picture.
+fn two_buffers(parts: Vec<(Mesh, Material)>) -> (TwoBuffers, Vec<[u8; 4]>) {
+    let mut renderer = renderer(parts, TransparencyOrder::TwoBuffer, 1);
+    renderer.settings.channels.buffers = true;
+    let frame = renderer.render().unwrap().frame;
+    (frame.buffers.unwrap(), frame.color.unwrap().into_data())
+}
+
+#[test]
+fn f7_the_opaque_buffer_does_not_depend_on_the_transparent_list() {
+    let (whole, picture) = two_buffers(glasses());
+    assert!(whole.layers.data().iter().any(|&n| n >= 3) && whole.opaque.data().iter().any(|c| c[0] > 0.5));
+    let mut turned = glasses();
+    turned.reverse();
+    let (other, other_picture) = two_buffers(turned);
+    assert!(whole.opaque == other.opaque && whole.depth == other.depth && whole.layers == other.layers);
+    assert_ne!(picture, other_picture, "the second buffer does depend on its order");
+    // Nothing is on the list: the second buffer is empty and the picture is the first one.
+    let (alone, picture) = two_buffers(vec![glasses().remove(4)]);
+    assert!(whole.opaque == alone.opaque && whole.depth == alone.depth);
+    assert!(alone.layers.data().iter().all(|&n| n == 0) && alone.coefficient.data().iter().all(|k| *k == [0.0; 3]));
+    let bytes = alone.opaque.map(|c| c.map(|v| (v * 255.0 + 0.5) as u8));
+    assert_eq!(bytes.data(), picture);
+}
+
+#[test]
+fn f8_one_layer_in_the_second_buffer_is_exact() {
+    let (kt, color) = (0.25, [0.2, 0.6, 0.9]);
+    let (buffers, picture) = two_buffers(vec![(square(0.5, 0.0), glass(color, kt)), glasses().remove(4)]);
+    let mut seen = 0;
+    for (i, pixel) in picture.iter().enumerate() {
+        let (layers, k, light) = (buffers.layers.data()[i], buffers.coefficient.data()[i], buffers.intensity.data()[i]);
+        let expected = if layers == 0 { 0.0 } else { 1.0 - kt };
+        seen += layers;
+        for c in 0..3 {
+            assert!(layers <= 1 && (k[c] - expected).abs() < 1e-6 && (light[c] - expected * color[c]).abs() < 1e-6);
+            let combined = light[c] + (1.0 - k[c]) * buffers.opaque.data()[i][c];
+            assert!((f32::from(pixel[c]) - 255.0 * combined).abs() <= 0.51, "{pixel:?}, {combined}");
+        }
+    }
+    assert!(seen > 500, "{seen}");
 }
 
 #[test]

@@ -1,0 +1,86 @@
+//! What illumination makes of the corners of facets, for whoever wants to see that stage.
+//!
+//! Pictures illuminate what is seen, after visibility. Here the corners of facets go through the same formulas, textures and
+//! shadows, seen or not, each as part of its facet: that is where Gouraud's shading takes its intensities.
+//!
+//! In:   a prepared view. Out: a colour for each corner of the facets that culling left.
+//! Cost: three points a facet.
+
+use super::group::{Lit, shade_hits};
+use super::hits::Hit;
+use super::{FrameConstants, Points};
+use crate::raytrace::triangles::Triangles;
+use crate::shadow::{self, Place};
+use vitral_exec::{Budget, Limit};
+use vitral_math::lanes::dispatch;
+use vitral_math::{DVec3, DVec4};
+
+/// A corner of a facet, illuminated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LitCorner {
+    /// The facet.
+    pub facet: u32,
+    /// Which of its corners.
+    pub corner: u8,
+    /// Where it is, world space.
+    pub world: DVec3,
+    /// Where it is, view space.
+    pub view: DVec3,
+    /// Its colour, premultiplied RGBA; linear, or the course's numbers in the raw colour space.
+    pub color: [f32; 4],
+}
+
+/// Facets that are illuminated together.
+const FACETS_AT_ONCE: usize = 4096;
+
+/// Shadow asks about a place this much inside the facet, by weight: on an edge it would be decided by rounding.
+const INSIDE: f32 = 1.0 / 4096.0;
+
+/// Illuminates the corners of `facets`.
+pub(crate) fn lit_corners(
+    facets: &[u32],
+    constants: &FrameConstants<'_>,
+    budget: &Budget,
+) -> Result<Vec<LitCorner>, Limit> {
+    let mut corners = Vec::with_capacity(3 * facets.len());
+    let (mut points, mut lit, mut hits) = (Points::default(), Lit::default(), Vec::new());
+    for facets in facets.chunks(FACETS_AT_ONCE) {
+        budget.check("illuminating corners")?;
+        hits.clear();
+        let first = corners.len();
+        for &facet in facets {
+            of_facet(facet, constants, &mut hits, &mut corners);
+        }
+        points.collect_facets(hits.iter().map(|hit: &Hit| hit.place.facet), constants);
+        lit.reset(hits.len(), constants);
+        dispatch!(constants.level, simd => shade_hits(simd, &points, &hits, constants, &mut lit));
+        corners[first..].iter_mut().zip(&lit.colors).for_each(|(corner, color)| corner.color = *color);
+    }
+    Ok(corners)
+}
+
+/// Adds the corners of a facet, seen from where the eye is.
+fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, corners: &mut Vec<LitCorner>) {
+    let view = constants.view;
+    let world = &view.session.world;
+    let center = Triangles::center_of(world);
+    let instance = &world.instances[world.instance_of_facet(facet)];
+    let (places, normal) = shadow::facet(instance, facet - instance.first_facet, center);
+    let viewer = view.viewer();
+    let to_viewer = |p: DVec3| viewer.truncate() - p * viewer.w;
+    for corner in 0..3 {
+        let at = places[corner] + center;
+        let normal = if normal.dot(to_viewer(at)) < 0.0 { -normal } else { normal };
+        let share = |k: usize| if k == corner { 1.0 - 2.0 * INSIDE } else { INSIDE };
+        let position = shadow::weighted(&places, [0, 1, 2].map(share));
+        let weights = [0, 1, 2].map(|k| [if k == corner { 1.0 } else { 0.0 }, 0.0, 0.0]);
+        let in_view = view.view.view_from_world.transform_point3(at);
+        // In a parallel view the ray comes from in front.
+        let origin = if view.view.perspective { DVec3::ZERO } else { in_view + DVec3::Z };
+        let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
+        let place = Place { position, normal, facet, seed, pixel: None };
+        hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, straight: true });
+        corners.push(LitCorner { facet, corner: corner as u8, world: at, view: in_view, color: [0.0; 4] });
+    }
+    debug_assert!(viewer != DVec4::ZERO);
+}

@@ -1,0 +1,164 @@
+//! Shadow polygons: every polygon projected, from the light, on every polygon behind it.
+//!
+//! What a caster hides from the light is a solid. Where it meets the plane of a receiver it is the caster's projection, and
+//! clipped by the receiver's edges it is the shadow polygon that lies on it. A scan line finds the same polygon by its crossings
+//! with the solid's planes; here it is found whole. Shadow polygons of several casters overlap. A face of a solid body that turns
+//! away from the light lies in its own shadow and gets none; nor does what the light sees edge-on.
+//!
+//! In:   a light and triangles, world space less the scene's middle. Out: convex polygons, world space, each in the plane of its
+//!       receiver and in its winding.
+//! Cost: for each receiver the triangles between it and the light.
+//! Source: [Bouknight & Kelley 1970], [Sutherland & Hodgman 1974].
+
+use super::super::casters::{Casters, Solid, away, near, wide, winding_normal};
+use super::super::ray::clearance;
+use crate::raytrace::shaft::Shaft;
+use crate::{Execution, Session, Transparency};
+use vitral_exec::Limit;
+use vitral_math::{DVec3, DVec4};
+use vitral_raster::BackFaces;
+
+/// Receivers in one piece of work.
+const RECEIVERS_A_JOB: usize = 256;
+/// Pieces of work whose polygons wait to be handed on.
+const JOBS_AT_ONCE: usize = 64;
+/// A polygon smaller than this part of its receiver is rounding.
+const SLIVER: f64 = 1e-12;
+
+/// All triangles as receivers of one place of a light.
+pub(super) struct Receivers<'a> {
+    pub(super) session: &'a Session,
+    pub(super) transparency: Transparency,
+    pub(super) execution: &'a Execution,
+    pub(super) casters: &'a Casters,
+    pub(super) light: DVec4,
+}
+
+/// Polygons of several receivers.
+#[derive(Debug, Default)]
+struct Found {
+    /// What each is, and where it ends among the corners.
+    polygons: Vec<(&'static str, usize)>,
+    corners: Vec<DVec3>,
+}
+
+impl Receivers<'_> {
+    /// Calls `take` with what each polygon is and its corners, receiver by receiver in the order of the tree; ends early at a
+    /// limit.
+    pub(super) fn each(&self, take: &mut dyn FnMut(&'static str, &[DVec3])) {
+        let world = &self.session.world;
+        let workers = &self.execution.workers;
+        let back_faces: Vec<_> =
+            world.instances.iter().map(|i| self.session.back_faces(i.mesh_index, self.transparency, workers)).collect();
+        let jobs = self.casters.triangles().count().div_ceil(RECEIVERS_A_JOB);
+        for first in (0..jobs).step_by(JOBS_AT_ONCE) {
+            let count = JOBS_AT_ONCE.min(jobs - first);
+            for found in workers.map(count, |job| self.piece(first + job, &back_faces)) {
+                let Ok(found) = found else { return };
+                let mut start = 0;
+                for (kind, end) in found.polygons {
+                    take(kind, &found.corners[start..end]);
+                    start = end;
+                }
+            }
+        }
+    }
+
+    fn piece(&self, job: usize, back_faces: &[BackFaces<'_>]) -> Result<Found, Limit> {
+        let (mut found, mut lists) = (Found::default(), [Vec::new(), Vec::new()]);
+        let first = job * RECEIVERS_A_JOB;
+        for t in first..self.casters.triangles().count().min(first + RECEIVERS_A_JOB) {
+            self.execution.budget.check("shadow polygons")?;
+            self.on(t, back_faces, &mut lists, &mut found);
+        }
+        Ok(found)
+    }
+
+    /// Finds the shadow polygons on a triangle.
+    fn on(&self, receiver: usize, back_faces: &[BackFaces<'_>], lists: &mut [Vec<u32>; 2], found: &mut Found) {
+        let (casters, light) = (self.casters, self.light);
+        let triangles = casters.triangles();
+        let (corners, own) = (wide(&triangles.corners[receiver]), triangles.facets[receiver]);
+        let winding = winding_normal(&corners);
+        let height = -winding.dot(away(light, corners[0]));
+        if !(height.abs() > 0.0) {
+            return;
+        }
+        let world = &self.session.world;
+        let number = world.instance_of_facet(own);
+        let instance = &world.instances[number];
+        let outside = if crate::prepare::mirrors(&instance.world_from_model) { -height } else { height };
+        if outside < 0.0 && back_faces[number].drops(own - instance.first_facet) {
+            return;
+        }
+
+        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let shaft = Shaft::between(min, max, light, triangles.extent);
+        let [opaque, filters] = lists;
+        opaque.clear();
+        filters.clear();
+        casters.opaque_near(&shaft, opaque);
+        casters.filters_near(&shaft, filters);
+        let others = opaque.iter().filter(|&&t| triangles.facets[t as usize] != own);
+        let opaque = others.map(|&t| ("shadow", wide(&triangles.corners[t as usize])));
+        let filters = filters.iter().filter(|&&t| casters.filter_facet(t) != own);
+        let filters = filters.map(|&t| ("tinted-shadow", casters.filter(t)));
+
+        // What touches the receiver, as its neighbours do, casts nothing on it: solids begin a little behind their triangle.
+        let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
+        let behind = clearance(position, f64::from(triangles.extent));
+        let near = near(light, triangles.extent);
+        for (kind, caster) in opaque.chain(filters) {
+            let Some(mut solid) = Solid::new(&caster, light, near) else { continue };
+            let (normal, at) = &mut solid.planes[0];
+            *at += normal.normalize_or_zero() * behind;
+            let shadow = clipped(&corners, &solid);
+            let area = (2..shadow.len()).map(|i| winding_normal(&[shadow[0], shadow[i - 1], shadow[i]])).sum::<DVec3>();
+            if area.length() > SLIVER * winding.length() {
+                found.corners.extend(shadow.iter().map(|&c| c + triangles.center));
+                found.polygons.push((kind, found.corners.len()));
+            }
+        }
+    }
+}
+
+/// The part of a triangle that lies in a solid.
+fn clipped(corners: &[DVec3; 3], solid: &Solid) -> Vec<DVec3> {
+    let (mut polygon, mut kept) = (corners.to_vec(), Vec::new());
+    for (normal, at) in solid.planes {
+        kept.clear();
+        for (i, &from) in polygon.iter().enumerate() {
+            let to = polygon[(i + 1) % polygon.len()];
+            let [start, end] = [from, to].map(|p| normal.dot(p - at));
+            if start >= 0.0 {
+                kept.push(from);
+            }
+            if (start >= 0.0) != (end >= 0.0) {
+                kept.push(from + (to - from) * (start / (start - end)));
+            }
+        }
+        std::mem::swap(&mut polygon, &mut kept);
+    }
+    polygon
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_math::dvec3;
+
+    #[test]
+    fn f21_the_shadow_of_a_triangle_is_its_projection() {
+        let corners = [dvec3(-1.0, 1.0, -1.0), dvec3(1.0, 1.0, -1.0), dvec3(0.0, 1.0, 1.0)];
+        let floor = [dvec3(-100.0, 0.0, -100.0), dvec3(0.0, 0.0, 100.0), dvec3(100.0, 0.0, -100.0)];
+        let lamp = Solid::new(&corners, DVec4::new(0.0, 2.0, 0.0, 1.0), 1e-9).unwrap();
+        let mut shadow = clipped(&floor, &lamp);
+        shadow.sort_by(|a, b| a.z.total_cmp(&b.z).then(a.x.total_cmp(&b.x)));
+        let expected = [dvec3(-2.0, 0.0, -2.0), dvec3(2.0, 0.0, -2.0), dvec3(0.0, 0.0, 2.0)];
+        assert_eq!(shadow.len(), 3);
+        assert!(shadow.iter().zip(expected).all(|(a, b)| a.distance(b) < 1e-12), "{shadow:?}");
+        // What lies before the triangle is not in its shadow.
+        let above = floor.map(|p| p + dvec3(0.0, 1.5, 0.0));
+        assert!(clipped(&above, &lamp).len() < 3);
+    }
+}

@@ -47,7 +47,7 @@ impl ColorSink<'_> {
             let (mine, rest) = layers.split_at(layers.iter().take_while(|l| l.pixel as usize == pixel).count());
             layers = rest;
             fragments.clear();
-            fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, self.marks)));
+            fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, self.constants, self.marks)));
             for sample in 0..samples {
                 let behind = Behind { color: opaque[sample * TILE_PIXELS + pixel], depth: None };
                 let filled = two_buffer::fill(&fragments, sample, behind);

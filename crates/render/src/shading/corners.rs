@@ -9,6 +9,7 @@
 use super::group::{Lit, shade_hits};
 use super::hits::Hit;
 use super::{FrameConstants, Points};
+use crate::PreparedView;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{self, Place};
 use vitral_exec::{Budget, Limit};
@@ -59,6 +60,13 @@ pub(crate) fn lit_corners(
     Ok(corners)
 }
 
+/// The row of the picture, or the first or last one, in which a point of the world appears.
+fn row_of(view: &PreparedView<'_>, point: DVec3) -> u32 {
+    let clip = view.view.clip_from_world() * point.extend(1.0);
+    let rows = f64::from(view.viewport.height);
+    ((1.0 - clip.y / clip.w) * 0.5 * rows).clamp(0.0, rows - 1.0) as u32
+}
+
 /// Adds the corners of a facet, seen from where the eye is.
 fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, corners: &mut Vec<LitCorner>) {
     let view = constants.view;
@@ -79,7 +87,7 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
         let origin = if view.view.perspective { DVec3::ZERO } else { in_view + DVec3::Z };
         let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
         let place = Place { position, normal, facet, seed, pixel: None };
-        hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, straight: true });
+        hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, row: Some(row_of(view, at)) });
         corners.push(LitCorner { facet, corner: corner as u8, world: at, view: in_view, color: [0.0; 4] });
     }
     debug_assert!(viewer != DVec4::ZERO);

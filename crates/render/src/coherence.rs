@@ -54,7 +54,7 @@ impl Coherence {
             Self::Face => "the depth of a face in one place follows from its depth in a place beside",
             Self::Edge => "where an edge crosses a line follows from where it crossed the line before",
             Self::ImpliedEdge => {
-                "two points fix the line where two faces penetrate each other; it cuts the spans of area"
+                "two points fix the line where two faces penetrate each other; it cuts the spans that area coherence makes"
             }
             Self::ScanLine => "the edges that cross a line are nearly those that cross the line before",
             Self::Area => "neighbouring pixels show the same surface: spans, windows, packets of rays",

@@ -79,6 +79,14 @@ fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
                 let without = shown(&mut session, &settings, 0.5);
                 assert!(without.frame == all.frame, "{name} without {label} makes the same picture");
                 assert_eq!(saved(&without, kind), 0, "{name} without {label} saves nothing by it");
+                // Implied edges cut spans, which area coherence makes.
+                let spans = (kind == Coherence::ImpliedEdge).then_some(Coherence::Area);
+                settings.coherence = Some(std::iter::once(kind).chain(spans).collect());
+                // Twice: what is kept from picture to picture is there the second time.
+                shown(&mut session, &settings, 0.0);
+                let alone = shown(&mut session, &settings, 0.5);
+                assert!(alone.frame == all.frame, "{name} with {label} alone makes the same picture");
+                assert!(saved(&alone, kind) > 0, "{name}: {label} saves work without the others, too");
             }
             settings.coherence = Some(Vec::new());
             assert!(shown(&mut session, &settings, 0.5).frame == all.frame, "{} without any", algorithm.name);

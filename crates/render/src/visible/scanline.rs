@@ -150,6 +150,11 @@ fn sweep(
     told::tables(execution, view, [row * TILE, row * TILE + height], (&polygons, &edges), &lines)?;
     let mut starting = edges.as_slice();
     let mut active: Vec<ActiveEdge> = Vec::new();
+    // Where edges crossed the line before, for a table that is not kept from line to line.
+    let mut crossings: Vec<Option<ActiveEdge>> = Vec::new();
+    if spacing != 0 && !coherence.has(Coherence::ScanLine) {
+        crossings.resize(edges.len(), None);
+    }
     let mut spans = Spans {
         polygons: &mut polygons,
         inside: Vec::new(),
@@ -178,13 +183,26 @@ fn sweep(
             edge.advance(spacing, spans.polygons[edge.polygon as usize].setup, line.y);
         }
         let kept = active.len() as u64;
+        let mut advanced = if spacing == 0 { 0 } else { kept };
         let joining = starting.partition_point(|e| usize::from(e.lines.start) <= number);
-        for edge in starting[..joining].iter().filter(|e| usize::from(e.lines.end) > number) {
-            active.push(ActiveEdge::new(edge, spans.polygons[edge.polygon as usize].setup, line.y, spacing));
+        for (i, edge) in starting[..joining].iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number) {
+            let setup = spans.polygons[edge.polygon as usize].setup;
+            active.push(match crossings.get_mut(i) {
+                Some(Some(before)) => {
+                    before.advance(spacing, setup, line.y);
+                    advanced += 1;
+                    *before
+                }
+                none => {
+                    let new = ActiveEdge::new(edge, setup, line.y, spacing);
+                    none.into_iter().for_each(|place| *place = Some(new));
+                    new
+                }
+            });
         }
         starting = &starting[joining..];
         spans.counters.saved_by_scan_line += kept;
-        spans.counters.saved_by_edge += if spacing == 0 { 0 } else { kept };
+        spans.counters.saved_by_edge += advanced;
 
         // Sort from left to right.
         for edge in &mut active {

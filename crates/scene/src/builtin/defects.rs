@@ -107,11 +107,8 @@ pub(super) fn shared_vertices() -> Scene {
     for (x, shared) in [(-1.3, false), (1.3, true)] {
         let mut b = Builder::new("strip");
         let uv = b.uv(0.0, 0.0);
-        // The surface bulges in the middle: its normal looks up below, at the viewer in the middle, down above.
-        let mut vertex = |x: f64, y: f64, lean: f64| {
-            let corner = [b.position(dvec3(x, y, 0.0)), b.normal(leaning(0.0, lean)), uv];
-            corner
-        };
+        // Normals lean towards the light in the middle and away from it at both ends.
+        let mut vertex = |x: f64, y: f64, lean: f64| [b.position(dvec3(x, y, 0.0)), b.normal(leaning(0.0, lean)), uv];
         let (a, m, c) = (vertex(x, -1.0, -0.8), vertex(x, 0.0, 0.9), vertex(x, 1.0, -0.8));
         let left = [vertex(x - 1.0, 1.0, -0.8), vertex(x - 1.0, -1.0, -0.8)];
         let right = [vertex(x + 1.0, -1.0, -0.8), vertex(x + 1.0, 0.0, 0.9), vertex(x + 1.0, 1.0, -0.8)];
@@ -135,7 +132,7 @@ fn corrugated(x: f64, averaged: bool) -> Mesh {
     let mut b = Builder::new("sheet");
     let uv = b.uv(0.0, 0.0);
     let width = 2.0 / f64::from(STRIPS);
-    let at = |i: u32| dvec3(x - 1.0 + f64::from(i) * width, 0.0, if i % 2 == 0 { 0.0 } else { 0.6 * width });
+    let at = |i: u32| dvec3(x - 1.0 + f64::from(i) * width, 0.0, if i.is_multiple_of(2) { 0.0 } else { 0.6 * width });
     let rim = |b: &mut Builder, y: f64| (0..=STRIPS).map(|i| b.position(at(i) + DVec3::Y * y)).collect::<Vec<_>>();
     let (low, high) = (rim(&mut b, -1.0), rim(&mut b, 1.0));
     for i in 0..STRIPS {

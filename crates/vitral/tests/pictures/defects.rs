@@ -2,7 +2,7 @@
 //! the right. That of perspective has more in `interpolation.rs`.
 
 use crate::common::{all_channels, colors, exact_builtin, project};
-use vitral::math::DVec3;
+use vitral::math::{DVec3, func};
 use vitral::render::Interpolation;
 use vitral::{Renderer, Shading};
 
@@ -33,7 +33,7 @@ fn p27_a_silhouette_of_few_polygons_has_corners_whatever_the_shading() {
             let radius = rim.x - center.x;
             let object = *objects.at(center.x as u32, center.y as u32);
             let reach = |degree: u32| {
-                let (sin, cos) = f64::from(degree).to_radians().sin_cos();
+                let (sin, cos) = func::sin_cos(f64::from(degree).to_radians());
                 let is_ball = |r: &f64| *objects.at((center.x + r * cos) as u32, (center.y + r * sin) as u32) == object;
                 (0..800).map(|step| f64::from(step) * 0.1).take_while(is_ball).last().unwrap()
             };

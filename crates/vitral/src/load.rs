@@ -219,10 +219,11 @@ mod tests {
 
     #[test]
     fn figures_have_a_camera() {
-        let figures = ["refraction", "rod", "lens", "mirrors", "cornell"];
+        let figures = ["refraction", "rod", "lens", "mirrors", "cornell", "realism"];
         for (name, _) in builtin::names() {
             let camera = default_camera(format!("builtin:{name}"));
-            assert_eq!(camera, figures.contains(name).then_some(0), "{name}");
+            let is_figure = figures.contains(name) || name.starts_with("defect-");
+            assert_eq!(camera, is_figure.then_some(0), "{name}");
             assert!(camera.is_none() || !load_builtin(name).unwrap().cameras.is_empty());
         }
         assert_eq!(default_camera("cornell"), None);

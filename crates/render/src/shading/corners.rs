@@ -76,15 +76,25 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
     let (places, normal) = shadow::facet(instance, facet - instance.first_facet, center);
     let viewer = view.viewer();
     let to_viewer = |p: DVec3| viewer.truncate() - p * viewer.w;
+    let away = normal.dot(to_viewer(places[0] + center)) < 0.0;
+    // The back of a body is lit on its outer side, which nobody sees.
+    let triangle = (facet - instance.first_facet) as usize;
+    let material = constants.material(instance.mesh.material_of_triangle(triangle));
+    let constants = &constants.instances[world.instance_of_facet(facet)];
+    let turns = constants.two_sided || material.material.double_sided || material.cutoff.is_some() || material.blend;
+    let normal = if away && turns { -normal } else { normal };
     for corner in 0..3 {
         let at = places[corner] + center;
-        let normal = if normal.dot(to_viewer(at)) < 0.0 { -normal } else { normal };
         let share = |k: usize| if k == corner { 1.0 - 2.0 * INSIDE } else { INSIDE };
         let position = shadow::weighted(&places, [0, 1, 2].map(share));
         let weights = [0, 1, 2].map(|k| [if k == corner { 1.0 } else { 0.0 }, 0.0, 0.0]);
         let in_view = view.view.view_from_world.transform_point3(at);
         // In a parallel view the ray comes from in front.
-        let origin = if view.view.perspective { DVec3::ZERO } else { in_view + DVec3::Z };
+        let origin = match (away && !turns, view.view.perspective) {
+            (true, _) => in_view + view.view.view_from_world.transform_vector3(normal),
+            (false, true) => DVec3::ZERO,
+            (false, false) => in_view + DVec3::Z,
+        };
         let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
         let place = Place { position, normal, facet, seed, pixel: None };
         hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, row: Some(row_of(view, at)) });

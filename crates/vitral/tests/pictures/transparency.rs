@@ -173,6 +173,8 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
 fn two_buffers(parts: Vec<(Mesh, Material)>) -> (TwoBuffers, Vec<[u8; 4]>) {
     let mut renderer = renderer(parts, TransparencyOrder::TwoBuffer, 1);
     renderer.settings.channels.buffers = true;
+    // Depths of scenes of other extents are compared.
+    renderer.camera = renderer.camera.map(|camera| Camera { clip: Some((1.0, 6.0)), ..camera });
     let frame = renderer.render().unwrap().frame;
     (frame.buffers.unwrap(), frame.color.unwrap().into_data())
 }

@@ -498,11 +498,13 @@ fn lights_for(name: &str) -> [Light; 3] {
 /// Three sides from which a scene is looked at.
 const SIDES: [DVec3; 3] = [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)];
 
-/// Built-in scenes of opaque things; glass keeps only a part of the light, and the Cornell box is lit from within.
+/// Built-in scenes of opaque things that stand before each other: glass keeps only a part of the light, the Cornell box is lit from
+/// within, and figures of defects are flat.
 fn opaque_scenes() -> Vec<&'static str> {
     let opaque = |name: &&str| {
         let scene = builtin::scene(name).unwrap();
-        scene.materials.iter().all(|m| !m.is_layered() && m.emission == [0.0; 3])
+        let opaque = scene.materials.iter().all(|m| !m.is_layered() && m.emission == [0.0; 3]);
+        opaque && !name.starts_with("defect-")
     };
     builtin::names().iter().map(|(name, _)| *name).filter(opaque).collect()
 }

@@ -91,11 +91,6 @@ impl Aabb {
     pub fn contains(&self, p: DVec3) -> bool {
         self.min.cmple(p).all() && p.cmple(self.max).all()
     }
-
-    /// The sphere round the box.
-    pub fn bounding_sphere(&self) -> Sphere {
-        Sphere { center: self.center(), radius: self.diagonal() * 0.5 }
-    }
 }
 
 /// A sphere.

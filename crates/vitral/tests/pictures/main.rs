@@ -4,6 +4,7 @@ mod agreement;
 mod common;
 mod culling;
 mod determinism;
+mod hidden_line;
 mod interpolation;
 mod lighting;
 mod marks;

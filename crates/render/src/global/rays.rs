@@ -49,6 +49,11 @@ impl Rays {
         self.free.is_empty() && self.piled.is_empty()
     }
 
+    /// How many there are: free ones, and those within piles.
+    pub(super) fn len(&self) -> [usize; 2] {
+        [self.free.len(), self.piled.len()]
+    }
+
     pub(super) fn clear(&mut self) {
         self.free.clear();
         self.piled.clear();

@@ -192,7 +192,7 @@ impl Observer for Recorder {
                 }
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
-            Step::Clip { .. } | Step::Space { .. } => {}
+            Step::Clip { .. } | Step::Space { .. } | Step::RayMeets { .. } | Step::RayGoesOn { .. } => {}
         }
     }
 }

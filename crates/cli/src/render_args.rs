@@ -101,7 +101,7 @@ pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
     #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
     pub(crate) visibility: Option<String>,
-    /// What finds the triangles near a ray, where --visibility casts rays [default: bvh]
+    /// What finds the triangles near a ray: of --visibility ray-cast, --shadows ray, --global ray-trace [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
     /// Kinds of coherence to use: a list, all, or none; `vitral algorithms` explains them and says which an algorithm exploits
@@ -297,8 +297,9 @@ pub(crate) struct ReportArgs {
     /// The same into a file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats_file: Option<PathBuf>,
-    /// Explain a pixel on standard output: the surfaces over its centre, with --shading gouraud the increments of the intensity,
-    /// and what each algorithm decided; an algorithm may take 20 s, or what --time-limit says
+    /// Explain a pixel on standard output: the surfaces over its centre, and what each algorithm decided; with --shading gouraud the
+    /// increments of the intensity, too, and with --global ray-trace its rays: what each meets, and how it goes on. An algorithm may
+    /// take 20 s, or what --time-limit says
     #[arg(long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true)]
     pub(crate) pixel: Option<[u32; 2]>,
     /// Write the steps of the visibility algorithm into this file, a JSON object a line

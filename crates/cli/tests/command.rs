@@ -226,7 +226,11 @@ fn exit_codes() {
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "9000"], 2, "16 to 8192"),
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "64", "--shadow-cascades", "4"], 0, ""),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
-        (&["a.obj", "-o", "x.png", "--acceleration", "grid"], 2, "`z-buffer` casts no rays: choose ray-cast"),
+        (
+            &["a.obj", "-o", "x.png", "--acceleration", "grid"],
+            2,
+            "`z-buffer` casts no rays, nor does anything else: choose the visibility ray-cast",
+        ),
         (&["a.obj", "-o", "x.png", "--light", "point:position=0,0,1,shadow=maybe"], 2, "shadow"),
         (&["missing.obj", "-o", "x.png"], 3, "missing.obj: "),
         (&["bad.obj", "-o", "x.png"], 3, "bad.obj: line 2: "),

@@ -295,6 +295,8 @@ fn f17_filters_antialiasing_and_cut_out_textures() {
     }
 
     // A cut-out texture: where its alpha is 0 the alpha test fails.
+    c.line_width(1.0);
+    c.disable(gl::LINE_SMOOTH);
     c.load_identity();
     c.disable(gl::BLEND);
     c.clear(gl::COLOR_BUFFER_BIT);
@@ -304,6 +306,79 @@ fn f17_filters_antialiasing_and_cut_out_textures() {
     c.fill([1.0; 4], 0.0);
     let found = [[1, 1], [6, 1], [1, 6], [6, 6]].map(|[x, y]| c.pixel(x, y));
     assert_eq!(found, [[255, 0, 0, 255], [0; 4], [0; 4], [255, 255, 0, 255]]);
+}
+
+/// For each pixel of a picture, how many of 4x4 places in it are inside, from 0 to 1.
+fn supersampled(side: usize, inside: impl Fn(f32, f32) -> bool) -> Vec<f32> {
+    let place = |pixel: usize, i: usize| pixel as f32 + (i as f32 + 0.5) / 4.0;
+    let count = |at: usize| (0..16).filter(|i| inside(place(at % side, i % 4), place(at / side, i / 4))).count();
+    (0..side * side).map(|at| count(at) as f32 / 16.0).collect()
+}
+
+#[test]
+fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
+    const SIDE: usize = 32;
+    const MOST: f32 = 0.9;
+    const MEAN: f32 = 1.0 / 16.0;
+    let mut c = Stage::new(SIDE as i32, SIDE as i32);
+    c.enable(gl::BLEND);
+    c.color_4f(1.0, 1.0, 1.0, 1.0);
+    c.pixels();
+    let (mut total, mut border, mut worst) = (0.0, 0, 0.0f32);
+    let mut compare = |c: &mut Stage, expected: &[f32], what: &str| {
+        for (at, expected) in expected.iter().enumerate() {
+            let found = f32::from(c.pixel(at as i32 % SIDE as i32, at as i32 / SIDE as i32)[0]) / 255.0;
+            let error = (found - expected).abs();
+            if error > 0.2 {
+                println!("{what}, pixel {at}: {found} instead of {expected}");
+            }
+            assert!(error <= MOST, "{what}, pixel {at}: {found} instead of {expected}");
+            if *expected > 0.0 && *expected < 1.0 {
+                (total, border, worst) = (total + error, border + 1, worst.max(error));
+            }
+        }
+    };
+    for step in 0..12 {
+        let angle = 0.13 + 0.5 * step as f32;
+        let (sin, cos) = vitral_math::func::sin_cos(f64::from(angle));
+        let (sin, cos) = (sin as f32, cos as f32);
+        let middle = [16.0 + 0.1 * step as f32, 15.7];
+        // Along and across, from the middle.
+        let turned = |x: f32, y: f32| {
+            let (x, y) = (x - middle[0], y - middle[1]);
+            [cos * x + sin * y, cos * y - sin * x]
+        };
+
+        // A line of width 3: a rectangle, all within 1.5 of it.
+        c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
+        c.enable(gl::LINE_SMOOTH);
+        c.line_width(3.0);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.begin(gl::LINES);
+        c.vertex_2f(middle[0] - 11.0 * cos, middle[1] - 11.0 * sin);
+        c.vertex_2f(middle[0] + 11.0 * cos, middle[1] + 11.0 * sin);
+        c.end();
+        let inside = |x: f32, y: f32| turned(x, y)[0].abs() <= 11.0 && turned(x, y)[1].abs() <= 1.5;
+        compare(&mut c, &supersampled(SIDE, inside), &format!("line at {angle}"));
+
+        // A square with smooth borders, whose triangles share a diagonal: coverages add up.
+        c.blend_func(gl::SRC_ALPHA_SATURATE, gl::ONE);
+        c.enable(gl::POLYGON_SMOOTH);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.begin(gl::QUADS);
+        for (along, across) in [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)] {
+            c.vertex_2f(middle[0] + cos * along - sin * across, middle[1] + sin * along + cos * across);
+        }
+        c.end();
+        c.disable(gl::POLYGON_SMOOTH);
+        let inside = |x: f32, y: f32| turned(x, y).iter().all(|v| v.abs() <= 9.0);
+        compare(&mut c, &supersampled(SIDE, inside), &format!("square at {angle}"));
+    }
+    assert!(
+        border > 1000 && total / border as f32 <= MEAN,
+        "{} on the mean, {worst} at the worst",
+        total / border as f32
+    );
 }
 
 /// A lit stage: no global ambient light, a material of diffuse white alone.
@@ -416,6 +491,44 @@ fn l14_e10_the_shade_model_decides_not_the_normals() {
     };
     assert_eq!(colors(gl::FLAT), [[0, 0, 255, 255]]);
     assert!(colors(gl::SMOOTH).len() > 100);
+}
+
+#[test]
+fn l14_e10_one_normal_is_smooth_and_four_normals_are_flat_if_the_model_says_so() {
+    // A square under a lamp nearby, over one of its corners, with one normal for all corners or with one for each.
+    let colors = |model: u32, normals: &[[f32; 3]]| {
+        let mut c = lit();
+        c.enable(gl::LIGHT0);
+        light(&mut c, 0, gl::POSITION, [-0.8, -0.8, 0.6, 1.0]);
+        c.shade_model(model);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.begin(gl::QUADS);
+        for (i, (x, y)) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate() {
+            if let Some([nx, ny, nz]) = normals.get(i).copied() {
+                c.normal_3f(nx, ny, nz);
+            }
+            c.vertex_2f(x, y);
+        }
+        c.end();
+        let shown = [[0, 0], [7, 0], [7, 7], [0, 7]].map(|[x, y]| c.pixel(x, y)[0]);
+        let mut all = c.bytes();
+        all.sort_unstable();
+        all.dedup();
+        (all.len(), shown)
+    };
+    let (up, aslant) = ([0.0f32, 0.0, 1.0], [0.6f32, 0.0, 0.8]);
+    // One normal: a local light still falls differently on the corners, and that is interpolated.
+    let (count, [near, beside, far, other]) = colors(gl::SMOOTH, &[up]);
+    assert!(count > 8 && near > beside + 50 && beside > far, "{count}: {near} {beside} {far}");
+    assert!(other.abs_diff(beside) <= 1, "the same on both sides: {beside} {other}");
+    // None given: the current normal counts, (0, 0, 1) here, for all.
+    assert_eq!(colors(gl::SMOOTH, &[]), colors(gl::SMOOTH, &[up]));
+    // Four normals: with flat shading the last vertex gives one colour. N·L there: L = (-0.8, -0.8, 0.6) - (-1, 1, 0).
+    let (count, [flat, ..]) = colors(gl::FLAT, &[aslant, aslant, aslant, up]);
+    let cosine = 0.6 / (0.2f32 * 0.2 + 1.8 * 1.8 + 0.6 * 0.6).sqrt();
+    assert_eq!(count, 1);
+    assert!((f32::from(flat) - cosine * 255.0).abs() <= 1.0, "{flat}, not {}", cosine * 255.0);
+    assert_eq!(colors(gl::FLAT, &[up]).0, 1);
 }
 
 #[test]

@@ -387,14 +387,29 @@ mod tests {
         assert_eq!((spot(30.0, 30.0, 0.0, 29.9), spot(30.0, 30.0, 0.0, 30.1)), (1.0, 0.0));
         assert_eq!(spot(90.0, 90.0, 0.0, 170.0), 0.0);
         assert_eq!((spot(30.0, 10.0, 0.0, 9.9), spot(30.0, 10.0, 0.0, 30.1)), (1.0, 0.0));
-        let fading = spot(30.0, 10.0, 0.0, 20.0);
-        assert!(0.1 < fading && fading < 0.6, "{fading}");
+        assert_eq!((spot(60.0, 60.0, 5.0, 60.1), spot(60.0, 0.0, 5.0, 75.0)), (0.0, 0.0), "with an exponent, too");
+        assert_eq!(spot(30.0, 10.0, 0.0, 150.0), 0.0, "behind");
+        // Between the cones: the square of the ramp between their cosines, whose middle is a quarter; no linear ramp.
+        let cos = |degrees: f64| func::cos(degrees.to_radians());
+        for degrees in [11.0, 15.0, 20.0, 22.5, 25.0, 29.0] {
+            let ramp = (cos(degrees) - cos(30.0)) / (cos(10.0) - cos(30.0));
+            let found = f64::from(spot(30.0, 10.0, 0.0, degrees));
+            assert!((found - ramp * ramp).abs() < 1e-5, "{degrees}: {found}, not {}", ramp * ramp);
+        }
+        let middle = func::acos((cos(10.0) + cos(30.0)) / 2.0).to_degrees();
+        assert!((spot(30.0, 10.0, 0.0, middle) - 0.25).abs() < 1e-5);
     }
 
     #[test]
     fn e9_the_spot_exponent_is_a_power_of_the_cosine() {
         assert!((spot(90.0, 90.0, 2.0, 60.0) - 0.25).abs() < 1e-6);
         assert!((spot(90.0, 90.0, 10.0, 30.0) - 0.237_304_7).abs() < 1e-6);
+        // With an inner cone it multiplies the ramp, also within that cone.
+        let ramp = spot(60.0, 20.0, 0.0, 40.0);
+        assert!(
+            (spot(60.0, 20.0, 3.0, 40.0) - ramp * func::pow(func::cos(40f64.to_radians()), 3.0) as f32).abs() < 1e-6
+        );
+        assert!((spot(60.0, 20.0, 3.0, 15.0) - func::pow(func::cos(15f64.to_radians()), 3.0) as f32).abs() < 1e-6);
     }
 
     #[test]

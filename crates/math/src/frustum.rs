@@ -1,9 +1,9 @@
-//! The view volume as six planes in any space, to reject boxes and spheres before anything else is done with them.
+//! The view volume as six planes in any space, to reject boxes before anything else is done with them.
 //!
 //! Source: the rows of the clip matrix are the planes [Gribb & Hartmann 2001]. The volume is
 //! `-w <= x, y <= w`, `0 <= z <= w`.
 
-use crate::bounds::{Aabb, Sphere};
+use crate::bounds::Aabb;
 use glam::{DMat4, DVec4};
 
 /// Where a volume lies with respect to the frustum.
@@ -41,19 +41,10 @@ impl Frustum {
             return Containment::Outside;
         }
         let (center, half) = ((b.min + b.max) * 0.5, (b.max - b.min) * 0.5);
-        self.test(|p| (p.truncate().dot(center) + p.w, p.truncate().abs().dot(half)))
-    }
-
-    /// Tests a sphere.
-    pub fn test_sphere(&self, s: &Sphere) -> Containment {
-        self.test(|p| (p.truncate().dot(s.center) + p.w, s.radius))
-    }
-
-    /// `distance_and_reach` gives, for a plane, the centre's signed distance and how far the volume extends along the normal.
-    fn test(&self, distance_and_reach: impl Fn(&DVec4) -> (f64, f64)) -> Containment {
         let mut result = Containment::Inside;
         for plane in &self.planes {
-            let (distance, reach) = distance_and_reach(plane);
+            let normal = plane.truncate();
+            let (distance, reach) = (normal.dot(center) + plane.w, normal.abs().dot(half));
             // A hair of slack: rounding must never cull what a clipper would keep.
             let slack = 1e-9 * (distance.abs() + reach);
             if distance + reach < -slack {
@@ -79,7 +70,5 @@ mod tests {
         assert_eq!(f.test_box(&cube(DVec3::new(0.0, 0.0, 0.5), 0.1)), Containment::Inside);
         assert_eq!(f.test_box(&cube(DVec3::new(1.0, 0.0, 0.5), 0.1)), Containment::Crossing);
         assert_eq!(f.test_box(&cube(DVec3::new(2.0, 0.0, 0.5), 0.1)), Containment::Outside);
-        assert_eq!(f.test_sphere(&Sphere { center: DVec3::new(0.0, 0.0, -1.0), radius: 0.5 }), Containment::Outside);
-        assert_eq!(f.test_sphere(&Sphere { center: DVec3::new(0.0, 0.0, -0.2), radius: 0.5 }), Containment::Crossing);
     }
 }

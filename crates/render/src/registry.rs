@@ -147,6 +147,8 @@ pub struct AccelerationStructure {
     pub source: &'static str,
     /// As a setting.
     pub value: Acceleration,
+    /// Whether a ray asks few of many triangles, however they are distributed over objects.
+    pub grows_slowly: bool,
 }
 
 /// All structures for rays, the default first.
@@ -156,24 +158,56 @@ pub static ACCELERATION: &[AccelerationStructure] = &[
         description: "a tree of boxes round triangles, cut by the surface area heuristic",
         source: "MacDonald & Booth 1990",
         value: Acceleration::Bvh,
+        grows_slowly: true,
     },
     AccelerationStructure {
         name: "octree",
         description: "a cube cut in eight where there is much, and its parts again",
         source: "Glassner 1984",
         value: Acceleration::Octree,
+        grows_slowly: true,
+    },
+    AccelerationStructure {
+        name: "bsp",
+        description: "a box cut in two across an axis where rays have least to do, and its parts again",
+        source: "Kaplan 1985",
+        value: Acceleration::Bsp,
+        grows_slowly: true,
     },
     AccelerationStructure {
         name: "grid",
         description: "equal cells, which a ray passes one by one",
         source: "Amanatides & Woo 1987",
         value: Acceleration::Grid,
+        grows_slowly: true,
+    },
+    AccelerationStructure {
+        name: "box",
+        description: "a box along the axes round each object, before its triangles",
+        source: "Rubin & Whitted 1980",
+        value: Acceleration::Box,
+        grows_slowly: false,
+    },
+    AccelerationStructure {
+        name: "oriented-box",
+        description: "a box that is turned to fit, round each object",
+        source: "Gottschalk, Lin & Manocha 1996",
+        value: Acceleration::OrientedBox,
+        grows_slowly: false,
+    },
+    AccelerationStructure {
+        name: "sphere",
+        description: "a sphere round each object",
+        source: "Ritter 1990",
+        value: Acceleration::Sphere,
+        grows_slowly: false,
     },
     AccelerationStructure {
         name: "none",
         description: "every ray asks every triangle",
         source: "Appel 1968",
         value: Acceleration::None,
+        grows_slowly: false,
     },
 ];
 

@@ -5,10 +5,12 @@
 use crate::cull::{backface, bounds_tree::BoundsTree};
 use crate::prepare::is_layered;
 use crate::radiosity;
+use crate::raytrace::bsp::Bsp;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
+use crate::raytrace::volumes::{Shape, Volumes};
 use crate::shading::{BackgroundKey, BackgroundRows, FaceTable, Scratch};
 use crate::shadow;
 use crate::trace::{Observer, Step};
@@ -73,7 +75,9 @@ pub struct Session {
     triangles: Kept<Triangles>,
     bvh: Kept<Bvh>,
     octree: Kept<Octree>,
+    partition: Kept<Bsp>,
     uniform_grid: Kept<Grid>,
+    volumes: KeptFor<Shape, Volumes>,
     pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
     pub(crate) loaded_radiosity: Kept<radiosity::Solution>,
     pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
@@ -207,7 +211,9 @@ impl Session {
             triangles: Mutex::default(),
             bvh: Mutex::default(),
             octree: Mutex::default(),
+            partition: Mutex::default(),
             uniform_grid: Mutex::default(),
+            volumes: Mutex::default(),
             radiosity: Mutex::default(),
             loaded_radiosity: Mutex::default(),
             shadow_maps: Mutex::default(),
@@ -324,6 +330,12 @@ impl Session {
         keep(&self.octree, || Octree::build(&triangles, &execution.workers, &execution.budget))
     }
 
+    /// The binary partition of space over all triangles.
+    pub fn partition(&self, execution: &Execution) -> Result<Arc<Bsp>, Limit> {
+        let triangles = self.triangles(execution)?;
+        keep(&self.partition, || Bsp::build(&triangles, &execution.workers, &execution.budget))
+    }
+
     /// The uniform grid over all triangles.
     ///
     /// # Errors
@@ -331,6 +343,15 @@ impl Session {
     pub fn uniform_grid(&self, execution: &Execution) -> Result<Arc<Grid>, Limit> {
         let triangles = self.triangles(execution)?;
         keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))
+    }
+
+    /// Volumes round all objects.
+    pub fn volumes(&self, shape: Shape, execution: &Execution) -> Result<Arc<Volumes>, Limit> {
+        let triangles = self.triangles(execution)?;
+        let first_facets = self.world.instances.iter().map(|instance| instance.first_facet);
+        keep_for(&self.volumes, shape, || {
+            Volumes::build(&triangles, first_facets, shape, &execution.workers, &execution.budget)
+        })
     }
 
     /// Forgets what the steps of a picture have found out for earlier ones: each picture of the steps is the first. Light from
@@ -341,7 +362,9 @@ impl Session {
         self.triangles = Mutex::default();
         self.bvh = Mutex::default();
         self.octree = Mutex::default();
+        self.partition = Mutex::default();
         self.uniform_grid = Mutex::default();
+        self.volumes = Mutex::default();
         self.shadow_maps = Mutex::default();
         self.shadow_cascades = Mutex::default();
         self.shadow_casters = Mutex::default();
@@ -356,7 +379,8 @@ impl Session {
             usize::from(known.lock().is_ok_and(|known| known.is_some()))
         }
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
-        let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.uniform_grid) + kept(&self.triangles);
+        let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.partition);
+        let of_rays = of_rays + kept(&self.uniform_grid) + kept(&self.volumes) + kept(&self.triangles);
         let of_shadows = kept(&self.shadow_maps) + kept(&self.shadow_volumes) + kept(&self.lit_polygons);
         let of_shadows = of_shadows + kept(&self.shadow_casters) + kept(&self.shadow_surface);
         (of_meshes + of_rays + of_shadows + kept(&self.bsp)) as u64

@@ -17,7 +17,8 @@ pub struct Settings {
     pub samples: u32,
     /// Name of a visible-surface algorithm in the [`registry`].
     pub visibility: String,
-    /// What finds the triangles near a ray; only for algorithms that cast rays. `None`: [`Acceleration::Bvh`] for them.
+    /// What finds the triangles near a ray; only where there are rays: of algorithms that cast them, of shadows by rays, of
+    /// ray tracing. `None`: [`Acceleration::Bvh`] for them.
     pub acceleration: Option<Acceleration>,
     /// Kinds of coherence that the algorithm uses; `None`: all that it exploits. They do not change the picture.
     pub coherence: Option<Vec<Coherence>>,
@@ -135,8 +136,16 @@ pub enum Acceleration {
     Bvh,
     /// A cube cut in eight, again and again.
     Octree,
+    /// A box cut in two across an axis, again and again.
+    Bsp,
     /// Equal cells, which a ray passes one by one.
     Grid,
+    /// A box along the axes round each object, before its triangles.
+    Box,
+    /// A box that is turned to fit, round each object.
+    OrientedBox,
+    /// A sphere round each object.
+    Sphere,
     /// Every triangle is asked.
     None,
 }
@@ -340,7 +349,7 @@ pub struct Channels {
     pub color: bool,
     /// Depth.
     pub depth: bool,
-    /// Surface ids.
+    /// Surface ids: of what lies straight on, also with ray tracing.
     pub surface: bool,
     /// Instances.
     pub object: bool,
@@ -519,7 +528,10 @@ pub enum SettingsError {
     #[error("{0} scattered rays: 1 to 4096 are possible")]
     ScatterSamples(u32),
     /// A structure for rays, but no rays.
-    #[error("an acceleration structure was chosen, but `{visibility}` casts no rays: choose {choices}")]
+    #[error(
+        "an acceleration structure was chosen, but `{visibility}` casts no rays, nor does anything else: choose the visibility \
+         {choices}, the shadows ray, or the global illumination ray-trace"
+    )]
     Acceleration {
         /// The visibility algorithm.
         visibility: String,
@@ -546,7 +558,8 @@ impl Settings {
             let choices: Vec<_> = registry::VISIBILITY.iter().map(|a| a.name).collect();
             return Err(SettingsError::Visibility { name: visibility, choices: choices.join(", ") });
         };
-        if self.acceleration.is_some() && !algorithm.casts_rays {
+        let rays = algorithm.casts_rays || self.shadows == "ray" || self.global == Global::RayTrace;
+        if self.acceleration.is_some() && !rays {
             let casting = registry::VISIBILITY.iter().filter(|a| a.casts_rays);
             let choices: Vec<_> = casting.map(|a| a.name).collect();
             return Err(SettingsError::Acceleration { visibility, choices: choices.join(", ") });

@@ -68,13 +68,15 @@ pub struct Span {
 pub enum Passed {
     /// There is no structure.
     Nowhere,
-    /// Nodes of a tree of boxes that were opened, numbered from the root, 0, each before those below it.
+    /// Nodes of a tree of boxes, or of a partition of space, that were opened, numbered from the root, 0, each before those below it.
     Nodes(Vec<u32>),
     /// Cells of an octree that were opened, by the way down from the root, which has no name: a digit a level, the sum
     /// of 1 for the larger x, 2 for the larger y, 4 for the larger z.
     Octants(Vec<String>),
     /// Cells of a grid along x, y and z.
     Cells(Vec<[u32; 3]>),
+    /// Objects whose volumes were met, by their place among those with triangles.
+    Objects(Vec<u32>),
 }
 
 impl Passed {
@@ -84,6 +86,7 @@ impl Passed {
         let (what, mut names): (_, Vec<String>) = match self {
             Self::Nowhere => return String::new(),
             Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MOST).map(u32::to_string).collect()),
+            Self::Objects(objects) => ("object(s)", objects.iter().take(MOST).map(u32::to_string).collect()),
             Self::Octants(cells) => ("octant(s)", cells.iter().take(MOST).map(|c| format!("\"{c}\"")).collect()),
             Self::Cells(cells) => {
                 let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
@@ -102,6 +105,7 @@ impl Passed {
         match self {
             Self::Nowhere => 0,
             Self::Nodes(nodes) => nodes.len(),
+            Self::Objects(objects) => objects.len(),
             Self::Octants(cells) => cells.len(),
             Self::Cells(cells) => cells.len(),
         }
@@ -110,6 +114,35 @@ impl Passed {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+}
+
+/// How a ray goes on from a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// A mirror sends it back.
+    Mirrored,
+    /// No light passes at this angle, and all is sent back.
+    TotallyReflected,
+    /// It passes and is bent.
+    Refracted,
+    /// It passes straight on.
+    Straight,
+    /// A translucent surface scatters it.
+    Scattered,
+}
+
+impl Way {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mirrored => "mirrored",
+            Self::TotallyReflected => "totally reflected",
+            Self::Refracted => "refracted",
+            Self::Straight => "straight on",
+            Self::Scattered => "scattered",
+        }
     }
 }
 
@@ -177,6 +210,42 @@ pub enum Step {
         facets: u64,
         /// What they went through, each part once.
         through: Passed,
+    },
+    /// Ray tracing: a ray met a surface, or nothing. How it goes on from there follows.
+    RayMeets {
+        /// The pixel that it is for.
+        pixel: [u32; 2],
+        /// Turns that it took before.
+        turns: u32,
+        /// The facet; none for the background.
+        facet: Option<u32>,
+        /// Where it starts, world space.
+        origin: [f64; 3],
+        /// Where it goes, unit.
+        direction: [f64; 3],
+        /// How far away the facet is.
+        distance: Option<f64>,
+        /// How red, green and blue of what it meets count in the pixel.
+        weight: [f32; 3],
+        /// What the surface's own light, or the background, adds to the pixel, before that is encoded.
+        light: [f32; 3],
+    },
+    /// Ray tracing: a ray goes on from the surface that it met.
+    RayGoesOn {
+        /// The pixel that it is for.
+        pixel: [u32; 2],
+        /// The facet that it leaves.
+        facet: u32,
+        /// How it goes on.
+        way: Way,
+        /// Between the normal and the ray before and after, degrees.
+        angles: [f64; 2],
+        /// Indices of refraction of what it comes from and what it goes on in.
+        indices: [f32; 2],
+        /// Where it goes, unit, world space.
+        direction: [f64; 3],
+        /// How red, green and blue of what it will meet count in the pixel.
+        weight: [f32; 3],
     },
     /// BSP, while the tree is built: a facet, or a part of one, crosses a plane and is split.
     TreeSplit {
@@ -247,6 +316,7 @@ impl Step {
                 (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
             }
             Self::Line { row, sample, .. } => *row == y && *sample == 0,
+            Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => *pixel == [x, y],
             Self::Piece { outline, .. } => {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 holds(edges.map(|(a, b)| [*a, *b]), [x, y])

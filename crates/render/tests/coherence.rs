@@ -59,7 +59,7 @@ fn saved(rendered: &Rendered, kind: Coherence) -> u64 {
 fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
     let scene = scene();
     for algorithm in VISIBILITY {
-        let structures = [Acceleration::Bvh, Acceleration::Octree, Acceleration::Grid].map(Some);
+        let structures = [Acceleration::Bvh, Acceleration::Octree, Acceleration::Bsp, Acceleration::Grid].map(Some);
         for acceleration in if algorithm.casts_rays { structures.to_vec() } else { vec![None] } {
             let mut settings = Settings {
                 width: 64,

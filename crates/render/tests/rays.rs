@@ -46,10 +46,14 @@ type Choice = (&'static str, Option<Acceleration>);
 
 const Z_BUFFER: Choice = ("z-buffer", None);
 const BRUTE_FORCE: Choice = ("brute-force", None);
-const RAYS: [Choice; 4] = [
+const RAYS: [Choice; 8] = [
     ("ray-cast", Some(Acceleration::Bvh)),
     ("ray-cast", Some(Acceleration::Octree)),
+    ("ray-cast", Some(Acceleration::Bsp)),
     ("ray-cast", Some(Acceleration::Grid)),
+    ("ray-cast", Some(Acceleration::Box)),
+    ("ray-cast", Some(Acceleration::OrientedBox)),
+    ("ray-cast", Some(Acceleration::Sphere)),
     ("ray-cast", Some(Acceleration::None)),
 ];
 
@@ -85,7 +89,9 @@ fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
     let z_buffers = [SIZE, SMALL].map(|size| found(size, Z_BUFFER).0);
     for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
         let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::None);
-        let small = asks_all && session.world().facet_count > 400;
+        let of_objects =
+            [Acceleration::Box, Acceleration::OrientedBox, Acceleration::Sphere].map(Some).contains(&choice.1);
+        let small = (asks_all || of_objects) && session.world().facet_count > 400;
         let (size, expected) = if small { (SMALL, &z_buffers[1]) } else { (SIZE, &z_buffers[0]) };
         let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
         assert!(seen > 0, "{what}: something is seen");
@@ -238,10 +244,11 @@ fn structures_are_built_once_and_save_work() {
     let camera = camera_of(&session);
     assert!(Arc::ptr_eq(&session.bvh(&execution).unwrap(), &session.bvh(&execution).unwrap()));
     assert!(Arc::ptr_eq(&session.octree(&execution).unwrap(), &session.octree(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&session.partition(&execution).unwrap(), &session.partition(&execution).unwrap()));
     assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
     let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
-    let all = count(RAYS[3]);
-    for choice in &RAYS[..3] {
+    let all = count(("ray-cast", Some(Acceleration::None)));
+    for choice in &RAYS[..4] {
         let counters = count(*choice);
         assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
         assert!(counters.tests_saved + counters.triangle_tests >= all.rays * 500, "{choice:?}: {counters:?}");
@@ -300,7 +307,7 @@ fn looked_on(settings: &Settings) -> Told {
 
 #[test]
 fn p15_the_trace_tells_the_cells_of_a_grid_that_each_ray_goes_through() {
-    let settings = settings(SIZE, 1, RAYS[2]);
+    let settings = settings(SIZE, 1, ("ray-cast", Some(Acceleration::Grid)));
     let told = looked_on(&settings);
     let ([min, max], cells) = (told.space, told.cells.unwrap());
     assert_eq!(told.steps.len(), (SIZE[0] * SIZE[1]) as usize, "a step a pixel");
@@ -400,5 +407,10 @@ fn what_is_too_much_is_refused_and_limits_hold() {
 fn a_structure_without_rays_is_refused() {
     let settings = settings(SIZE, 1, ("warnock", Some(Acceleration::Grid)));
     let error = settings.check().unwrap_err().to_string();
-    assert!(error.contains("`warnock` casts no rays: choose ray-cast"), "{error}");
+    assert!(
+        error.contains(
+            "`warnock` casts no rays, nor does anything else: choose the visibility ray-cast, the shadows ray"
+        ),
+        "{error}"
+    );
 }

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_math::{Vec3, vec3};
+use vitral_render::raytrace::bsp::Bsp;
 use vitral_render::raytrace::bvh::Bvh;
 use vitral_render::raytrace::grid::Grid;
 use vitral_render::raytrace::intersect::Ray;
 use vitral_render::raytrace::octree::Octree;
 use vitral_render::raytrace::triangles::Triangles;
+use vitral_render::raytrace::volumes::{Shape, Volumes};
 use vitral_render::raytrace::{Counters, Structure};
 use vitral_scene::{World, builtin};
 
@@ -16,16 +18,33 @@ struct All {
     triangles: Arc<Triangles>,
     bvh: Bvh,
     octree: Octree,
+    bsp: Bsp,
     grid: Grid,
+    /// Boxes, oriented boxes, spheres.
+    volumes: [Volumes; 3],
 }
 
+const SHAPES: [Shape; 3] = [Shape::Aligned, Shape::Oriented, Shape::Sphere];
+
 impl All {
+    /// Every so many triangles are an object.
+    const OBJECT: u32 = 12;
+
     fn over(triangles: Triangles) -> Self {
+        let first_facets: Vec<u32> = (0..triangles.count() as u32).step_by(Self::OBJECT as usize).collect();
+        Self::over_objects(triangles, &first_facets)
+    }
+
+    fn over_objects(triangles: Triangles, first_facets: &[u32]) -> Self {
         let (triangles, workers, budget) = (Arc::new(triangles), Workers::new(2), Budget::default());
         Self {
             bvh: Bvh::build(&triangles, &workers, &budget).unwrap(),
             octree: Octree::build(&triangles, &workers, &budget).unwrap(),
+            bsp: Bsp::build(&triangles, &workers, &budget).unwrap(),
             grid: Grid::build(&triangles, &budget).unwrap(),
+            volumes: SHAPES.map(|shape| {
+                Volumes::build(&triangles, first_facets.iter().copied(), shape, &workers, &budget).unwrap()
+            }),
             triangles,
         }
     }
@@ -48,7 +67,11 @@ impl All {
         let counters = &mut Counters::default();
         assert_eq!(self.bvh.closest_hit(&ray, counters), expected, "{what}, bvh: {ray:?}");
         assert_eq!(self.octree.closest_hit(&ray, counters), expected, "{what}, octree: {ray:?}");
+        assert_eq!(self.bsp.closest_hit(&ray, counters), expected, "{what}, bsp: {ray:?}");
         assert_eq!(self.grid.closest_hit(&ray, counters), expected, "{what}, grid: {ray:?}");
+        for (volumes, shape) in self.volumes.iter().zip(SHAPES) {
+            assert_eq!(volumes.closest_hit(&ray, counters), expected, "{what}, {shape:?}: {ray:?}");
+        }
         expected.is_some()
     }
 }
@@ -173,20 +196,58 @@ fn coinciding_triangles_go_to_the_lowest_and_empty_scenes_have_no_hits() {
 }
 
 #[test]
+fn p13_the_volume_is_tested_first_and_tests_of_triangles_drop() {
+    // Rods that lie askew: boxes along the axes and spheres are large, boxes that are turned fit.
+    let mut state = 5;
+    let mut corners = Vec::new();
+    for _ in 0..40 {
+        let (at, way) = (point(&mut state) * 20.0, point(&mut state).normalize_or(Vec3::X) * 5.0);
+        let thick = way.any_orthonormal_vector() * 0.1;
+        let side = way.cross(thick).normalize_or(Vec3::X) * 0.1;
+        for (a, b) in [(thick, side), (side, -thick), (-thick, -side), (-side, thick)] {
+            corners.push([at - way + a, at + way + a, at + way + b]);
+            corners.push([at - way + a, at + way + b, at - way + b]);
+        }
+    }
+    let (count, first_facets) = (corners.len() as u64, (0..40).map(|i| i * 8).collect::<Vec<_>>());
+    let extent = corners.iter().flatten().fold(0.0f32, |m, p| m.max(p.abs().max_element()));
+    let facets = (0..count as u32).collect();
+    let all = All::over_objects(Triangles { extent, corners, facets, ..Triangles::default() }, &first_facets);
+    let (mut counters, mut hits) = ([Counters::default(); 3], 0);
+    for i in 0..2000 {
+        let a = point(&mut state) * 30.0;
+        let aim = all.triangles.corners[i * 7 % count as usize][i % 3];
+        let b = if i % 2 == 0 { point(&mut state) * 20.0 } else { aim + point(&mut state) };
+        hits += u32::from(all.agree(a, b - a, "rods"));
+        for (volumes, counters) in all.volumes.iter().zip(&mut counters) {
+            volumes.closest_hit(&Ray::new(a, b - a), counters);
+        }
+    }
+    assert!(hits > 100, "{hits} hits");
+    let [aligned, oriented, sphere] = counters;
+    assert!(counters.iter().all(|c| c.boxes == 2000 * 40), "{counters:?}");
+    // Every triangle is asked without volumes.
+    let without = 2000 * count;
+    assert!(aligned.triangles * 4 < without && sphere.triangles * 2 < without, "{counters:?} of {without}");
+    assert!(oriented.triangles * 3 < aligned.triangles && aligned.triangles < sphere.triangles, "{counters:?}");
+}
+
+#[test]
 fn structures_save_tests() {
     let all = All::over_builtin("teapot");
     let mut state = 3;
-    let mut counters = [Counters::default(); 4];
+    let mut counters = [Counters::default(); 5];
     for _ in 0..300 {
         let (a, b) = (point(&mut state) * all.triangles.extent * 1.5, point(&mut state) * all.triangles.extent * 0.5);
         let ray = Ray::new(a, b - a);
         all.triangles.closest_hit(&ray, &mut counters[0]);
         all.bvh.closest_hit(&ray, &mut counters[1]);
         all.octree.closest_hit(&ray, &mut counters[2]);
-        all.grid.closest_hit(&ray, &mut counters[3]);
+        all.bsp.closest_hit(&ray, &mut counters[3]);
+        all.grid.closest_hit(&ray, &mut counters[4]);
     }
     assert_eq!(counters[0].triangles, 300 * all.triangles.count() as u64);
-    for (name, c) in ["bvh", "octree", "grid"].iter().zip(&counters[1..]) {
+    for (name, c) in ["bvh", "octree", "bsp", "grid"].iter().zip(&counters[1..]) {
         assert!(c.boxes > 0 && c.triangles * 20 < counters[0].triangles, "{name}: {c:?}");
     }
 }

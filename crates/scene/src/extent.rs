@@ -32,6 +32,12 @@ impl Extent1 {
     pub fn overlaps(&self, other: &Self) -> bool {
         !(other.max < self.min || self.max < other.min)
     }
+
+    /// Whether they share more than one number, or one is a number within the other: where extents only touch, polygons share no
+    /// area.
+    pub fn crosses(&self, other: &Self) -> bool {
+        self.min < other.max && other.min < self.max
+    }
 }
 
 /// A window: an extent in x and one in y.
@@ -51,11 +57,6 @@ impl Extent2 {
             y: Extent1::of(points.into_iter().map(|p| p.y)),
         }
     }
-
-    /// Windows overlap if their extents overlap along both axes.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.x.overlaps(&other.x) && self.y.overlaps(&other.y)
-    }
 }
 
 #[cfg(test)]
@@ -64,15 +65,20 @@ mod tests {
     use proptest::prelude::*;
     use vitral_math::dvec2;
 
+    /// Windows overlap if their extents overlap along both axes.
+    fn overlap(a: &Extent2, b: &Extent2) -> bool {
+        a.x.overlaps(&b.x) && a.y.overlaps(&b.y)
+    }
+
     #[test]
     fn p11_windows_of_two_triangles_in_figures_a_and_b() {
         let lower = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)];
         // a: far apart, told by the windows alone.
         let far = lower.map(|p| p + dvec2(5.0, 1.0));
-        assert!(!Extent2::of(lower).overlaps(&Extent2::of(far)));
+        assert!(!overlap(&Extent2::of(lower), &Extent2::of(far)));
         // b: the windows overlap, the triangles do not: the line x + y = 5 lies between them.
         let near = [dvec2(4.0, 4.0), dvec2(4.0, 2.0), dvec2(2.0, 4.0)];
-        assert!(Extent2::of(lower).overlaps(&Extent2::of(near)));
+        assert!(overlap(&Extent2::of(lower), &Extent2::of(near)));
         assert!(lower.iter().all(|p| p.x + p.y < 5.0) && near.iter().all(|p| p.x + p.y > 5.0));
     }
 
@@ -82,6 +88,9 @@ mod tests {
         assert!(a.overlaps(&Extent1 { min: 1.0, max: 2.0 }));
         assert!(!a.overlaps(&Extent1::EMPTY) && !Extent1::EMPTY.overlaps(&a));
         assert_eq!(Extent1::of([f64::NAN, 1.0, 0.0]), a);
+        let crosses = |min, max| a.crosses(&Extent1 { min, max });
+        assert!(crosses(0.5, 2.0) && crosses(0.5, 0.5) && !crosses(1.0, 2.0) && !crosses(-1.0, 0.0));
+        assert!(!a.crosses(&Extent1::EMPTY));
     }
 
     proptest! {
@@ -103,7 +112,7 @@ mod tests {
             let (p, q) = (triangle(p), triangle(q));
             let middle = |t: [DVec2; 3]| (t[0] + t[1] + t[2]) / 3.0;
             let shifted = q.map(|v| v + middle(p) - middle(q));
-            prop_assert!(Extent2::of(p).overlaps(&Extent2::of(shifted)));
+            prop_assert!(overlap(&Extent2::of(p), &Extent2::of(shifted)));
         }
     }
 }

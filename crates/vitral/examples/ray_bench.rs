@@ -14,7 +14,7 @@ use vitral::exec::{Budget, Workers};
 use vitral::math::{DVec3, Vec3};
 use vitral::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::render::raytrace::intersect::Ray;
-use vitral::render::raytrace::{Counters, Structure, bvh::Bvh, grid::Grid, octree::Octree};
+use vitral::render::raytrace::{Counters, Structure, bsp::Bsp, bvh::Bvh, grid::Grid, octree::Octree};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
 use vitral::render::{Acceleration, PreparedView, Transparency, registry};
@@ -150,9 +150,11 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         Ok(bvh)
     })?;
     let (octree_ms, _) = timed(1, || Ok(Octree::build(&triangles, workers, &budget)?))?;
+    let (bsp_ms, _) = timed(1, || Ok(Bsp::build(&triangles, workers, &budget)?))?;
     let (grid_ms, _) = timed(1, || Ok(Grid::build(&triangles, &budget)?))?;
     let (picture_ms, counters, seen) = picture(&renderer, Acceleration::Bvh, rounds)?;
     let (octree_picture_ms, _, through_octree) = picture(&renderer, Acceleration::Octree, 1)?;
+    let (bsp_picture_ms, _, through_bsp) = picture(&renderer, Acceleration::Bsp, 1)?;
     let (grid_picture_ms, _, through_grid) = picture(&renderer, Acceleration::Grid, 1)?;
     let rays = rays(&prepared(&renderer, Acceleration::Bvh), triangles.center);
     let (single_ms, (single, single_counters)) = timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
@@ -170,9 +172,11 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         "hits": others.iter().filter(|&&f| f != u32::MAX).count(),
         "build_ms": bvh_ms,
         "octree_build_ms": octree_ms[0],
+        "bsp_build_ms": bsp_ms[0],
         "grid_build_ms": grid_ms[0],
         "picture_ms": picture_ms,
         "octree_picture_ms": octree_picture_ms[0],
+        "bsp_picture_ms": bsp_picture_ms[0],
         "grid_picture_ms": grid_picture_ms[0],
         "single_ms": single_ms,
         "single_boxes": single_counters.boxes,
@@ -180,7 +184,7 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         "counters": counters,
         "picture_differs": differ(&seen, &others),
         "single_differs": differ(&single, &others),
-        "structures_differ": differ(&seen, &through_octree) + differ(&seen, &through_grid),
+        "structures_differ": differ(&seen, &through_octree) + differ(&seen, &through_bsp) + differ(&seen, &through_grid),
     });
     println!("{report}");
     Ok(())
@@ -202,12 +206,13 @@ fn check(model: &str, count: usize) -> Result<(), Failure> {
     let hits = expected.iter().filter(|&&f| f != u32::MAX).count();
     let bvh = follow(&Bvh::build(&triangles, workers, &budget)?, &rays, workers).0;
     let octree = follow(&Octree::build(&triangles, workers, &budget)?, &rays, workers).0;
+    let bsp = follow(&Bsp::build(&triangles, workers, &budget)?, &rays, workers).0;
     let grid = follow(&Grid::build(&triangles, &budget)?, &rays, workers).0;
     let differ = |other: &[u32]| expected.iter().zip(other).filter(|(a, b)| a != b).count();
     println!(
         "{}",
         serde_json::json!({"triangles": triangles.count(), "rays": count, "hits": hits, "bvh_differs": differ(&bvh),
-            "octree_differs": differ(&octree), "grid_differs": differ(&grid)})
+            "octree_differs": differ(&octree), "bsp_differs": differ(&bsp), "grid_differs": differ(&grid)})
     );
     Ok(())
 }

@@ -25,9 +25,9 @@ pub struct Entrant {
 }
 
 impl Entrant {
-    /// All algorithms; those that cast rays once for each structure. The z-buffer comes first.
+    /// All algorithms; those that cast rays once for each structure that is made for many triangles. The z-buffer comes first.
     pub fn all() -> Vec<Self> {
-        let structures = ACCELERATION.iter().filter(|a| a.value != Acceleration::None);
+        let structures = ACCELERATION.iter().filter(|a| a.grows_slowly);
         let structures: Vec<_> = structures.map(|a| Some((a.name, a.value))).collect();
         let of = |algorithm: &'static VisibilityAlgorithm| {
             let choices = if algorithm.casts_rays { structures.clone() } else { vec![None] };

@@ -1,6 +1,7 @@
 //! One pixel explained: which surfaces cover it, how near each is, and what every algorithm decided and why.
 //!
-//! What is explained is the sample at the pixel's centre, as in the channels of data.
+//! What is explained is the sample at the pixel's centre, as in the channels of data. These look straight on, through what is
+//! transparent; with ray tracing, the pixel's rays tell what is seen in mirrors and through what bends light.
 
 use crate::bench::Entrant;
 use crate::{Error, Renderer};
@@ -11,13 +12,17 @@ use vitral_exec::Budget;
 use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
 use vitral_render::shading::gouraud::{EdgeStep, ScreenIntensity, scan_convert};
 use vitral_render::stats::CullCounters;
-use vitral_render::trace::{Observer, Step};
+use vitral_render::trace::{Observer, Step, Way};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Execution, PreparedView, Session, Settings, Shading, Shot, illuminate_corners};
+use vitral_render::{
+    Channels, Execution, Global, PreparedView, Session, Settings, Shading, Shot, illuminate_corners, render,
+};
 use vitral_scene::Camera;
 
 /// Steps that are kept of one algorithm.
 const MOST_STEPS: usize = 200;
+/// Rays, and turns of rays, that are kept.
+const MOST_RAYS: usize = 2000;
 
 /// A pixel, and what is known of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +36,61 @@ pub struct Explanation {
     pub gouraud: Option<Gouraud>,
     /// What each algorithm decided.
     pub decisions: Vec<Decision>,
+    /// With ray tracing, the rays of the pixel, generation by generation, the eye's first; empty where the first surface is
+    /// neither a mirror nor transparent, and all there is to see.
+    pub rays: Vec<TracedRay>,
+}
+
+/// A ray that was followed for the pixel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct TracedRay {
+    /// Turns that it took before: mirrored, bent or scattered.
+    pub turns: u32,
+    /// Where it starts, world space.
+    pub origin: [f64; 3],
+    /// Where it goes, unit.
+    pub direction: [f64; 3],
+    /// What it meets; none: the background.
+    pub meets: Option<MetSurface>,
+    /// How red, green and blue of what it meets count in the pixel.
+    pub weight: [f32; 3],
+    /// What that adds to the pixel by its own light, before it is encoded.
+    pub light: [f32; 3],
+    /// The rays that go on from there.
+    pub goes_on: Vec<Turn>,
+}
+
+/// What a ray meets.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MetSurface {
+    /// The facet.
+    pub facet: u32,
+    /// The face of the file that it is of, as in the channel `id`.
+    pub surface: u32,
+    /// Name of its mesh.
+    pub mesh: String,
+    /// Name of its material, if it has one.
+    pub material: Option<String>,
+    /// How far away it is.
+    pub distance: f64,
+}
+
+/// How a ray goes on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Turn {
+    /// Which way.
+    pub way: Way,
+    /// Between the normal and the ray before and after, degrees.
+    pub angles: [f64; 2],
+    /// Indices of refraction of what it comes from and what it goes on in.
+    pub indices: [f32; 2],
+    /// Where it goes, unit, world space.
+    pub direction: [f64; 3],
+    /// How red, green and blue of what it will meet count in the pixel.
+    pub weight: [f32; 3],
 }
 
 /// How scan conversion interpolates intensities by increments, on the screen (L9). The picture weighs the corners directly, in
@@ -111,6 +171,24 @@ struct Onlooker {
     steps: Mutex<Vec<String>>,
 }
 
+/// Keeps the rays of a pixel.
+#[derive(Debug)]
+struct RayOnlooker {
+    pixel: [u32; 2],
+    rays: Mutex<Vec<Step>>,
+}
+
+impl Observer for RayOnlooker {
+    fn step(&self, step: &Step) {
+        if matches!(step, Step::RayMeets { .. } | Step::RayGoesOn { .. }) && step.concerns(self.pixel) {
+            let mut rays = self.rays.lock().expect("no thread panics while it keeps a ray");
+            if rays.len() < MOST_RAYS {
+                rays.push(step.clone());
+            }
+        }
+    }
+}
+
 impl Observer for Onlooker {
     fn step(&self, step: &Step) {
         if step.concerns(self.pixel) {
@@ -147,7 +225,53 @@ pub fn explain(
         decisions.push(decide(renderer, camera, pixel, &entrant, time_limit)?);
         budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
     }
-    Ok(Explanation { pixel, surfaces, gouraud, decisions })
+    let rays = match settings.global {
+        Global::RayTrace => rays(renderer, camera, pixel, &budget.with_time_limit(time_limit))?,
+        Global::None | Global::Radiosity => Vec::new(),
+    };
+    Ok(Explanation { pixel, surfaces, gouraud, decisions, rays })
+}
+
+/// Traces the picture, a ray through each pixel's centre, and looks on at one of them.
+fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<TracedRay>, Error> {
+    let settings = Settings { samples: 1, channels: Channels::default(), ..renderer.settings.clone() };
+    let onlooker = Arc::new(RayOnlooker { pixel, rays: Mutex::default() });
+    let observer = Some(Arc::clone(&onlooker) as Arc<dyn Observer>);
+    let execution = Execution { budget: budget.clone(), observer, ..renderer.execution().clone() };
+    let mut session = Session::with_workers(Arc::clone(renderer.scene()), &execution.workers)?;
+    let lights = renderer.frame_lights(camera);
+    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    render(&mut session, &shot, &settings, &execution)?;
+
+    let steps = std::mem::take(&mut *onlooker.rays.lock().expect("no thread panics while it keeps a ray"));
+    let mut rays: Vec<TracedRay> = Vec::new();
+    for step in steps {
+        match step {
+            Step::RayMeets { turns, facet, origin, direction, distance, weight, light, .. } => {
+                let meets = facet.zip(distance).map(|(facet, distance)| met(&session, facet, distance));
+                rays.push(TracedRay { turns, origin, direction, meets, weight, light, goes_on: Vec::new() });
+            }
+            Step::RayGoesOn { way, angles, indices, direction, weight, .. } => {
+                let turn = Turn { way, angles, indices, direction, weight };
+                rays.last_mut().into_iter().for_each(|ray| ray.goes_on.push(turn.clone()));
+            }
+            _ => {}
+        }
+    }
+    Ok(rays)
+}
+
+fn met(session: &Session, facet: u32, distance: f64) -> MetSurface {
+    let world = session.world();
+    let instance = &world.instances[world.instance_of_facet(facet)];
+    let material = instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
+    MetSurface {
+        facet,
+        surface: world.surface_of_facet(facet),
+        mesh: instance.mesh.name.clone(),
+        material: material.and_then(|m| session.scene().materials.get(m as usize)).map(|m| m.name.clone()),
+        distance,
+    }
 }
 
 /// Looks at every facet of the view.
@@ -295,6 +419,34 @@ impl fmt::Display for Explanation {
             for step in &d.steps {
                 writeln!(f, "  {step}")?;
             }
+        }
+        if !self.rays.is_empty() {
+            writeln!(f, "ray tracing: {} ray(s)", self.rays.len())?;
+        }
+        self.rays.iter().try_for_each(|ray| write!(f, "{ray}"))
+    }
+}
+
+impl fmt::Display for TracedRay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let three = |[x, y, z]: [f64; 3]| format!("({x:.4}, {y:.4}, {z:.4})");
+        let rgb = |color: [f32; 3]| three(color.map(f64::from));
+        let (from, towards) = (three(self.origin), three(self.direction));
+        write!(f, "  after {} turn(s), from {from} towards {towards}: ", self.turns)?;
+        match &self.meets {
+            Some(met) => {
+                let material = met.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
+                let (facet, surface, distance) = (met.facet, met.surface, met.distance);
+                write!(f, "facet {facet} (surface {surface}, {}{material}) at {distance:.4}", met.mesh)?;
+            }
+            None => write!(f, "background")?,
+        }
+        writeln!(f, "; counts {}, adds {}", rgb(self.weight), rgb(self.light))?;
+        for turn in &self.goes_on {
+            let ([before, after], [n1, n2]) = (turn.angles, turn.indices);
+            let bent = format!("at {before:.4} degrees in {n1}, goes on at {after:.4} in {n2}");
+            let (direction, weight) = (three(turn.direction), rgb(turn.weight));
+            writeln!(f, "    {} {bent}, towards {direction}; counts {weight}", turn.way.name())?;
         }
         Ok(())
     }

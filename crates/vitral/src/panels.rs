@@ -254,6 +254,8 @@ fn lit_scene(renderer: &Renderer, number: usize) -> Result<Renderer, Error> {
 mod tests {
     use super::*;
     use crate::load_builtin;
+    use vitral_light::Illumination;
+    use vitral_render::ColorSpace;
 
     fn panel(frame: &Frame, number: usize, size: [u32; 2]) -> Vec<[u8; 4]> {
         let gap = GAP as u32;
@@ -294,6 +296,74 @@ mod tests {
             }
         }
         assert!(dark > plain.len() / 50, "{dark} pixels in shadow");
+    }
+
+    #[test]
+    fn f25_each_of_the_six_panels_shows_what_it_is_to_show() {
+        let lamp = Light {
+            kind: LightKind::Point { position: DVec3::new(2.5, 4.0, 2.0) },
+            ambient: [0.2; 3],
+            ..Light::default()
+        };
+        let size = [96, 72];
+        let fresh = |lights: &[Light], shadows: &str| {
+            let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
+            (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (size[0], size[1], 1);
+            (renderer.settings.shadows, renderer.settings.color_space) = (shadows.to_owned(), ColorSpace::Raw);
+            renderer.settings.illumination = Illumination::Phong;
+            (renderer.lights, renderer.light_intensity) = (Some(lights.to_vec()), Some(1.0));
+            renderer
+        };
+        let lights = [lamp.clone()];
+        let camera = fresh(&lights, "map").frame_camera();
+        let sheet = panels(&mut fresh(&lights, "map"), &camera).unwrap().frame;
+        let [a, b, c, d, e, f] = std::array::from_fn(|i| panel(&sheet, i, size));
+        let picture =
+            |lights: &[Light], shadows: &str| color(fresh(lights, shadows).render_from(&camera).unwrap()).into_data();
+        let depths = |from: &Camera| {
+            let mut renderer = fresh(&lights, "none");
+            renderer.settings.channels = Channels { depth: true, color: false, ..Channels::default() };
+            renderer.render_from(from).unwrap().frame.depth.unwrap().into_data()
+        };
+
+        // a: both marks are in it, yellow for the light and blue for the viewer, and nowhere else.
+        let yellow = |p: &&[u8; 4]| p[0] > 200 && p[1] > 150 && p[2] < 90;
+        let blue = |p: &&[u8; 4]| p[2] > 150 && p[0] < 90;
+        for marked in [a.iter().filter(yellow).count(), a.iter().filter(blue).count()] {
+            assert!((10..a.len() / 5).contains(&marked), "{marked}");
+        }
+        // b and c: the nearer the lighter, black where nothing is; from the light and from the viewer.
+        let from_light = light_camera(&fresh(&lights, "none"), &lamp);
+        for (greys, from) in [(&b, &from_light), (&c, &camera)] {
+            let depths = depths(from);
+            let mut pairs: Vec<_> = depths.iter().zip(greys).map(|(depth, grey)| (*depth, grey[0])).collect();
+            pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            assert!(pairs.windows(2).all(|w| w[0].1 <= w[1].1), "grey goes with depth");
+            assert!(pairs.iter().all(|(depth, grey)| (*depth == 0.0) == (*grey == 0)));
+            assert!(pairs.last().unwrap().1 == 255 && pairs.iter().any(|p| (1..80).contains(&p.1)));
+            assert!(greys.iter().all(|p| p[0] == p[1] && p[1] == p[2]));
+        }
+        // d and f: the picture without and with shadows.
+        assert!(d == picture(&lights, "none") && f == picture(&lights, "map"));
+        // e: d, a share of it where shadow falls. f: there nothing but ambient light is left, no highlight; e keeps a part of it.
+        let ambient = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..lamp };
+        let ambient = picture(&[ambient], "none");
+        let mut mask = fresh(&lights, "map");
+        mask.settings.channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+        let mask = mask.render_from(&camera).unwrap().frame.cast_shadow.unwrap().into_data();
+        let (mut shadow, mut brighter) = (0, 0);
+        for i in 0..d.len() {
+            if mask[i] == 0.0 {
+                assert_eq!((e[i], f[i]), (d[i], d[i]), "pixel {i} is lit");
+            } else if mask[i] == 1.0 {
+                shadow += 1;
+                let share = [0, 1, 2].map(|k| (f32::from(d[i][k]) * DARKENED + 0.5) as u8);
+                assert_eq!([e[i][0], e[i][1], e[i][2]], share, "pixel {i} is darkened");
+                assert!((0..3).all(|k| f[i][k].abs_diff(ambient[i][k]) <= 1), "{:?} {:?}", f[i], ambient[i]);
+                brighter += usize::from((0..3).any(|k| e[i][k] != f[i][k]));
+            }
+        }
+        assert!(shadow > d.len() / 60 && brighter * 2 > shadow, "{shadow} in shadow, {brighter} differ");
     }
 
     #[test]

@@ -37,7 +37,11 @@ impl Channel {
     pub const ALL: [(Self, &'static str, &'static str); 9] = [
         (Self::Color, "color", "the picture"),
         (Self::Depth, "depth", "1 near, 0 far: 16-bit grey in PNG, float32 in NPY"),
-        (Self::Id, "id", "surface ids: uint32 in NPY (4294967295 is background), colours in pictures"),
+        (
+            Self::Id,
+            "id",
+            "surface ids, straight on through what is transparent: uint32 in NPY (4294967295 is background), colours in pictures",
+        ),
         (Self::Object, "object", "instances, likewise"),
         (Self::Material, "material", "materials, likewise"),
         (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),

@@ -11,10 +11,11 @@
 //! In:   places on facets, world space less the scene's middle. Out: the triangles that touch there, in the order of facets.
 //! Cost: a short ray for each such place.
 
+use crate::raytrace::Visitor;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::bvh::Bvh;
+use crate::raytrace::chosen::Chosen;
 use crate::raytrace::intersect::Ray;
-use crate::raytrace::{Structure, Visitor};
+use crate::raytrace::triangles::Triangles;
 use crate::shadow::clearance;
 use std::ops::Range;
 use vitral_math::DVec3;
@@ -37,7 +38,7 @@ pub(super) struct Pile {
 #[derive(Default)]
 pub(super) struct Piles {
     piles: Vec<Pile>,
-    /// Places of triangles in the tree.
+    /// Places of triangles in the structure.
     places: Vec<u32>,
 }
 
@@ -51,12 +52,12 @@ impl Piles {
     /// it `is_first`, else where its number says. Returns the pile's number if more than one triangle is in it.
     pub(super) fn add(
         &mut self,
-        tree: &Bvh,
+        structure: &Chosen,
         (facet, corners): (u32, [DVec3; 3]),
         (position, normal): (DVec3, DVec3),
         is_first: bool,
     ) -> Option<u32> {
-        let triangles = tree.triangles();
+        let triangles = structure.triangles();
         let extent = f64::from(triangles.extent);
         let height = clearance(position, extent);
 
@@ -68,7 +69,7 @@ impl Piles {
         let ray = Ray::new(above.as_vec3(), (-normal).as_vec3());
         let first = self.places.len();
         let mut touching = Touching {
-            tree,
+            triangles,
             ray: &ray,
             normal,
             // What is higher was met before; what is lower is met later.
@@ -76,18 +77,18 @@ impl Piles {
             slack: ray.rounding(triangles.extent),
             places: &mut self.places,
         };
-        tree.traverse(&Beam::around(&ray, triangles.extent), &mut touching);
+        structure.traverse(&Beam::around(&ray, triangles.extent), &mut touching);
 
-        let found = &mut self.places[first..];
+        // A structure may show a triangle several times.
+        let mut found = self.places.split_off(first);
         found.sort_unstable_by_key(|&place| triangles.facets[place as usize]);
+        found.dedup();
         let own = found.iter().position(|&place| triangles.facets[place as usize] == facet);
-        let (Some(own), true) = (own, found.len() > 1) else {
-            self.places.truncate(first);
-            return None;
-        };
+        let own = own.filter(|_| found.len() > 1)?;
         if is_first {
             found[..=own].rotate_right(1);
         }
+        self.places.extend(found);
         self.piles.push(Pile { position, range: first as u32..self.places.len() as u32 });
         Some(self.piles.len() as u32 - 1)
     }
@@ -106,7 +107,7 @@ pub(super) fn unit_normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
 
 /// Collects the triangles about at right angles to a ray that it meets within a window.
 struct Touching<'a> {
-    tree: &'a Bvh,
+    triangles: &'a Triangles,
     ray: &'a Ray,
     normal: DVec3,
     window: Range<f32>,
@@ -127,7 +128,7 @@ impl Visitor for Touching<'_> {
 
     #[inline(always)]
     fn triangle(&mut self, place: usize) {
-        let corners = &self.tree.triangles().corners[place];
+        let corners = &self.triangles.corners[place];
         if self.ray.hit(corners).is_some_and(|t| self.window.contains(&t)) {
             let normal = unit_normal(&corners.map(|c| c.as_dvec3()));
             if normal.is_some_and(|n| n.dot(self.normal).abs() > PARALLEL) {

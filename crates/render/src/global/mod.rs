@@ -9,6 +9,7 @@ pub mod media;
 mod rays;
 mod sky;
 mod surface;
+mod tell;
 pub(crate) mod whitted;
 
 pub(crate) use whitted::Whitted;

@@ -1,6 +1,7 @@
 //! The rays of a generation, and where their light goes.
 
 use super::media::Media;
+use crate::shading::FrameConstants;
 use vitral_math::DVec3;
 
 /// A ray, and what it is for.
@@ -40,6 +41,17 @@ pub(super) struct Haze {
     pub(super) color: [f32; 3],
 }
 
+impl Haze {
+    /// At a point of the world, for a ray that sees the background of this row; after a turn there is none.
+    pub(super) fn new(constants: &FrameConstants<'_>, row: Option<u32>, point: DVec3) -> Self {
+        let (Some(fade), Some(row)) = (&constants.fade, row) else { return Self { kept: 1.0, color: [0.0; 3] } };
+        let depth = -constants.view.view.view_from_world.transform_point3(point).z;
+        let backgrounds = &constants.background.colors;
+        let color = fade.into(backgrounds[(row as usize).min(backgrounds.len() - 1)]);
+        Self { kept: fade.kept(depth as f32), color }
+    }
+}
+
 /// Rays of one generation.
 #[derive(Default)]
 pub(super) struct Rays {
@@ -54,6 +66,11 @@ pub(super) struct Rays {
 impl Rays {
     pub(super) fn is_empty(&self) -> bool {
         self.free.is_empty() && self.piled.is_empty()
+    }
+
+    /// How many there are: free ones, and those within piles.
+    pub(super) fn len(&self) -> [usize; 2] {
+        [self.free.len(), self.piled.len()]
     }
 
     pub(super) fn clear(&mut self) {

@@ -22,7 +22,7 @@
 //! as without ray tracing, byte for byte.
 //!
 //! In:   points of a tile, with normals and weights. Out: their colours, premultiplied.
-//! Cost: a search in the tree of boxes for each ray, and one for each light at each hit.
+//! Cost: a search in the structure (`--acceleration`) for each ray, and one for each light at each hit.
 //! Source: \[Whitted 1980\]; refraction after \[Heckbert 1989\], scattering after
 //! \[Cook, Porter & Carpenter 1984\]. Departs from them: opacity says what is transmitted, the
 //! material's flag `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
@@ -32,22 +32,23 @@ use super::media::{Border, Media};
 use super::rays::{Branch, Haze, Rays, add, counts};
 use super::sky::Sky;
 use super::surface::Surface;
+use super::tell::Teller;
 use crate::marks::MarkColors;
 use crate::prepare::mirrors;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::bvh::Bvh;
+use crate::raytrace::chosen::Chosen;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
-use crate::raytrace::{Counters, Structure, Visitor};
+use crate::raytrace::{Counters, Visitor};
 use crate::shading::hits::Hit;
 use crate::shading::{Bounce, FrameConstants, Lit, Points, shade_hits};
 use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
 use crate::stats::TracingCounters;
 use crate::transparency::scattering::Strata;
-use crate::visible::nearer;
-use crate::{Execution, Settings};
+use crate::visible::{few_enough, nearer};
+use crate::{Acceleration, Execution, Settings};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
 use vitral_exec::Limit;
 use vitral_light::transmitted;
 use vitral_math::lanes::{LANES, Simd, dispatch};
@@ -71,7 +72,7 @@ const TOGETHER: usize = 2048;
 pub(crate) struct Whitted<'a> {
     constants: &'a FrameConstants<'a>,
     execution: &'a Execution,
-    tree: Arc<Bvh>,
+    structure: Chosen,
     /// What the eye is in.
     surroundings: Media,
     max_depth: u32,
@@ -130,16 +131,22 @@ impl<'a> Whitted<'a> {
     ) -> Result<Self, Limit> {
         let view = constants.view;
         let facets = u64::from(view.session.world.facet_count);
+        if view.acceleration == Acceleration::None {
+            // About as many rays as samples.
+            let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
+            few_enough(samples.saturating_mul(facets), "ray tracing without a structure")?;
+        }
         let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
-        let charged = Triangles::bytes(facets) + Bvh::bytes(facets) + forests;
+        let charged = Triangles::bytes(facets) + Chosen::bytes(view.acceleration, facets) + forests;
         execution.budget.charge(charged, "ray tracing")?;
-        let tree = view.session.bvh(execution).inspect_err(|_| execution.budget.release(charged))?;
+        let structure = Chosen::new(view.acceleration, view.session, execution)
+            .inspect_err(|_| execution.budget.release(charged))?;
         let view_from_world = DMat3::from_mat4(view.view.view_from_world);
         let stretch = view.view.clip_from_view.col(1).y;
         let mut whitted = Self {
             constants,
             execution,
-            tree,
+            structure,
             surroundings: Media::default(),
             max_depth: settings.max_depth,
             least: least_weight(constants),
@@ -159,15 +166,16 @@ impl<'a> Whitted<'a> {
     /// What the eye is in: what a ray to it from afar enters and does not leave. In a parallel view it is far away.
     fn surroundings(&self) -> Media {
         let (eye, perspective) = self.constants.view.eye();
-        let eye = (eye - self.tree.triangles().center).as_vec3();
-        if !perspective || eye.abs().max_element() > self.tree.triangles().extent {
+        let eye = (eye - self.structure.triangles().center).as_vec3();
+        if !perspective || eye.abs().max_element() > self.structure.triangles().extent {
             return Media::default();
         }
         // Backwards, in a direction that no model has edges in.
         let ray = Ray::new(eye, ASKEW);
-        let mut hits = Hits { tree: &self.tree, ray: &ray, hits: Vec::new() };
-        self.tree.traverse(&Beam::around(&ray, self.tree.triangles().extent), &mut hits);
+        let mut hits = Hits { triangles: self.structure.triangles(), ray: &ray, hits: Vec::new() };
+        self.structure.traverse(&Beam::around(&ray, self.structure.triangles().extent), &mut hits);
         hits.hits.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        hits.hits.dedup();
         let towards = -ASKEW.as_dvec3();
         let crossing = |&(_, facet): &(f32, u32)| self.crossing(facet, self.seen(towards, facet).1);
         Media::around(hits.hits.iter().filter_map(crossing))
@@ -205,6 +213,12 @@ impl<'a> Whitted<'a> {
     /// Adds to the points of a tile what mirrors and glass show there.
     pub(crate) fn follow(&self, front: &Front, points: &Points, lit: &mut Lit, forest: &mut Forest) {
         let mut counters = TracingCounters { shadow_rays: lit.shadow_rays, ..TracingCounters::default() };
+        let teller = self.execution.observer.as_deref().map(|observer| Teller {
+            observer,
+            pixels: &points.place,
+            center: self.structure.triangles().center,
+            constants: self.constants,
+        });
         for together in points.followed.chunks(TOGETHER) {
             forest.rays.clear();
             forest.piles.clear();
@@ -232,14 +246,22 @@ impl<'a> Whitted<'a> {
                     seed: bounce.place.seed,
                 };
                 let met = Met { lit, at: target as usize, from_behind };
+                if let Some(teller) = &teller {
+                    teller.meets(&eye_ray, Some((number, travelled)), lit.colors[target as usize]);
+                }
+                let before = (forest.rays.len(), counters.total_reflections);
                 self.branch(&eye_ray, travelled, &met, &forest.piles, &mut forest.rays, &mut counters);
+                if let Some(teller) = &teller {
+                    let surface = self.surface(&eye_ray, bounce.normal, &bounce.place);
+                    teller.goes_on(&eye_ray, &surface, number, &forest.rays, before, &counters);
+                }
             }
             forest.rays.settle(&mut lit.colors);
             while !forest.rays.is_empty() {
                 if !self.may_go_on() {
                     return;
                 }
-                dispatch!(self.execution.level, simd => self.generation(simd, forest, lit, &mut counters));
+                dispatch!(self.execution.level, simd => self.generation(simd, forest, lit, teller.as_ref(), &mut counters));
             }
         }
         if let Ok(sum) = &mut *self.outcome.lock().expect("no thread panics while it counts") {
@@ -264,7 +286,14 @@ impl<'a> Whitted<'a> {
 
     /// Follows all rays to what they meet, adds its light, and leaves the rays that go on from there.
     #[inline(always)]
-    fn generation<S: Simd>(&self, simd: S, forest: &mut Forest, lit: &mut Lit, counters: &mut TracingCounters) {
+    fn generation<S: Simd>(
+        &self,
+        simd: S,
+        forest: &mut Forest,
+        lit: &mut Lit,
+        teller: Option<&Teller<'_>>,
+        counters: &mut TracingCounters,
+    ) {
         let Forest { rays, next, piles, hitting, hits, points, lit: met } = forest;
         hitting.clear();
         hits.clear();
@@ -283,14 +312,18 @@ impl<'a> Whitted<'a> {
                 straight[lane] = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
                 own[lane] = branch.own;
             }
-            let (met, crowded) = self.tree.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
+            let (met, crowded) = self.structure.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
             for ((ray, met), crowded) in eight.iter().zip(met).zip(crowded) {
                 let Some((place, t)) = met else {
-                    add(&mut lit.colors[ray.target as usize], ray.weight, self.background(ray));
+                    let seen = self.background(ray);
+                    add(&mut lit.colors[ray.target as usize], ray.weight, seen);
+                    if let Some(teller) = teller {
+                        teller.meets(ray, None, seen);
+                    }
                     continue;
                 };
                 let position = ray.origin + ray.direction * f64::from(t);
-                let (triangles, mut place) = (self.tree.triangles(), place);
+                let (triangles, mut place) = (self.structure.triangles(), place);
                 let facet = triangles.facets[place];
                 let corners = || triangles.corners[place].map(|c| c.as_dvec3());
                 let pile = || self.pile_at(piles, (facet, corners()), position, ray.direction, false);
@@ -317,10 +350,19 @@ impl<'a> Whitted<'a> {
         next.clear();
         for (i, ((ray, from_behind), hit)) in hitting.iter().zip(hits.iter()).enumerate() {
             add(&mut lit.colors[ray.target as usize], ray.weight, met.colors[i]);
+            if let Some(teller) = teller {
+                let distance = ray.origin.distance(hit.place.position);
+                teller.meets(ray, Some((hit.place.facet, distance)), met.colors[i]);
+            }
             if self.constants.follows(hit.place.facet) {
                 let travelled = ray.travelled + ray.origin.distance(hit.place.position);
                 let met = Met { lit: met, at: i, from_behind: *from_behind };
+                let before = (next.len(), counters.total_reflections);
                 self.branch(ray, travelled, &met, piles, next, counters);
+                if let Some(teller) = teller {
+                    let surface = self.surface(ray, met.lit.bounces[i].normal, &hit.place);
+                    teller.goes_on(ray, &surface, hit.place.facet, next, before, counters);
+                }
             }
         }
         next.settle(&mut lit.colors);
@@ -333,7 +375,7 @@ impl<'a> Whitted<'a> {
         if !perspective {
             return (-self.view_from_world.row(2), 1.0);
         }
-        let way = position - (eye - self.tree.triangles().center);
+        let way = position - (eye - self.structure.triangles().center);
         let distance = way.length();
         (way / distance, distance)
     }
@@ -344,7 +386,7 @@ impl<'a> Whitted<'a> {
     fn seen(&self, direction: DVec3, number: u32) -> ([DVec3; 3], bool) {
         let world = &self.constants.view.session.world;
         let instance = &world.instances[world.instance_of_facet(number)];
-        let (corners, outward) = facet(instance, number - instance.first_facet, self.tree.triangles().center);
+        let (corners, outward) = facet(instance, number - instance.first_facet, self.structure.triangles().center);
         let from_behind = (outward.dot(direction) > 0.0) != mirrors(&instance.world_from_model);
         (corners, from_behind)
     }
@@ -361,13 +403,13 @@ impl<'a> Whitted<'a> {
     ) -> Option<u32> {
         let normal = unit_normal(&corners).unwrap_or_default();
         let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
-        piles.add(&self.tree, (number, corners), (position, normal), is_first)
+        piles.add(&self.structure, (number, corners), (position, normal), is_first)
     }
 
-    /// A ray that meets the triangle at this place of the tree's triangles, at `position`, and whether it comes from behind.
+    /// A ray that meets the triangle at this place of the structure's triangles, at `position`, and whether it comes from behind.
     #[inline]
     fn meet(&self, branch: &Branch, place: usize, position: DVec3) -> (Hit, bool) {
-        let triangles = self.tree.triangles();
+        let triangles = self.structure.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
 
         // The weights of the corners where the ray meets the facet; then the place anew, which lies in its plane.
@@ -417,7 +459,7 @@ impl<'a> Whitted<'a> {
         let passes = lit.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
-        let haze = self.haze(ray, &place);
+        let haze = Haze::new(self.constants, ray.row, place.position + self.structure.triangles().center);
         // The colour that it fades into was added with the surface's own light.
         let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0].map(|m| m * haze.kept));
         let surface = self.surface(ray, normal, &place);
@@ -554,21 +596,8 @@ impl<'a> Whitted<'a> {
         instance.mesh.material_of_triangle((number - instance.first_facet) as usize)
     }
 
-    /// Depth cueing where a ray meets a surface; after a turn there is none.
-    #[inline]
-    fn haze(&self, ray: &Branch, place: &Place) -> Haze {
-        let (Some(fade), Some(row)) = (&self.constants.fade, ray.row) else {
-            return Haze { kept: 1.0, color: [0.0; 3] };
-        };
-        let world = place.position + self.tree.triangles().center;
-        let depth = -self.constants.view.view.view_from_world.transform_point3(world).z;
-        let backgrounds = &self.constants.background.colors;
-        let color = fade.into(backgrounds[(row as usize).min(backgrounds.len() - 1)]);
-        Haze { kept: fade.kept(depth as f32), color }
-    }
-
     fn clearance(&self, position: DVec3) -> f64 {
-        clearance(position, f64::from(self.tree.triangles().extent))
+        clearance(position, f64::from(self.structure.triangles().extent))
     }
 
     /// The surface on the ray's side.
@@ -587,7 +616,7 @@ impl<'a> Whitted<'a> {
         let border = if pile.is_empty() {
             self.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
         } else {
-            let facet = |&place: &u32| self.tree.triangles().facets[place as usize];
+            let facet = |&place: &u32| self.structure.triangles().facets[place as usize];
             let crossings = pile.iter().map(facet).map(|f| self.crossing(f, self.seen(ray.direction, f).1));
             ray.media.cross_all(crossings.flatten())
         };
@@ -630,7 +659,7 @@ impl<'a> Whitted<'a> {
 
 /// Collects all hits of a ray: parameters and facets.
 struct Hits<'a> {
-    tree: &'a Bvh,
+    triangles: &'a Triangles,
     ray: &'a Ray,
     hits: Vec<(f32, u32)>,
 }
@@ -645,9 +674,8 @@ impl Visitor for Hits<'_> {
     }
 
     fn triangle(&mut self, place: usize) {
-        let triangles = self.tree.triangles();
-        let hit = self.ray.hit(&triangles.corners[place]);
-        self.hits.extend(hit.map(|t| (t, triangles.facets[place])));
+        let hit = self.ray.hit(&self.triangles.corners[place]);
+        self.hits.extend(hit.map(|t| (t, self.triangles.facets[place])));
     }
 }
 

@@ -14,7 +14,7 @@
 //!         tested against the ray one by one, since what is followed may be as wide as a block of pixels.
 
 use super::beam::Beam;
-use super::triangles::{Triangles, bounds_of};
+use super::triangles::{Triangles, reaches};
 use super::{Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
 use std::collections::BTreeMap;
@@ -71,6 +71,11 @@ struct Cube {
 }
 
 impl Cube {
+    /// Whether the triangle reaches into the cube, widened by `slack`.
+    fn holds(self, corners: &[Vec3; 3], slack: f32) -> bool {
+        reaches(corners, self.middle, Vec3::splat(self.half + slack))
+    }
+
     fn child(self, i: usize) -> Self {
         let half = self.half * 0.5;
         let side = |bit: usize| if i >> bit & 1 == 1 { half } else { -half };
@@ -83,26 +88,6 @@ impl Cube {
         let (min, max) = ((self.middle - half).to_array(), (self.middle + half).to_array());
         Cell { min, max, children: 0, first: 0, count: 0 }
     }
-}
-
-/// Whether the triangle reaches into the cube, or nearly so.
-fn reaches(corners: &[Vec3; 3], cube: Cube, slack: f32) -> bool {
-    let half = cube.half + slack;
-    let [min, max] = bounds_of(corners);
-    if (min - cube.middle).cmpgt(Vec3::splat(half)).any() || (max - cube.middle).cmplt(Vec3::splat(-half)).any() {
-        return false;
-    }
-    // The plane passes the cube if its distance from the middle is less than that of a corner.
-    let [a, b, c] = *corners;
-    let normal = (b - a).cross(c - a);
-    let reach = normal.abs().element_sum() * half * (1.0 + 1.0 / (1 << 16) as f32);
-    // A normal that is zero or overflows decides nothing; that of a needle is mostly rounding.
-    let to_plane = a - cube.middle;
-    let distance = normal.dot(to_plane).abs();
-    let edges = (b - a).abs().max_element() * (c - a).abs().max_element();
-    let rounding = edges * (to_plane.abs().max_element() + half) * (1.0 / (1 << 19) as f32);
-    let beside = distance > reach + rounding;
-    !beside
 }
 
 /// What the whole tree shares.
@@ -153,8 +138,8 @@ impl Build<'_> {
         // Sort what is inside into the children.
         let child = |i: usize| -> Vec<u32> {
             let cube = cube.child(i);
-            let reaches = |&&t: &&u32| reaches(&self.triangles.corners[t as usize], cube, self.slack);
-            inside.iter().filter(reaches).copied().collect()
+            let holds = |&&t: &&u32| cube.holds(&self.triangles.corners[t as usize], self.slack);
+            inside.iter().filter(holds).copied().collect()
         };
         let children = if large { self.workers.map(8, child) } else { (0..8).map(child).collect() };
         let total: usize = children.iter().map(Vec::len).sum();
@@ -315,11 +300,11 @@ mod tests {
     fn a_triangle_reaches_into_the_cells_that_it_touches() {
         let cube = Cube { middle: Vec3::ZERO, half: 1.0 };
         let inside = [vec3(0.1, 0.1, 0.1), vec3(0.2, 0.1, 0.1), vec3(0.1, 0.2, 0.3)];
-        assert!(reaches(&inside, cube, 0.0));
-        assert!((0..8).filter(|&i| reaches(&inside, cube.child(i), 0.0)).eq([7]));
+        assert!(cube.holds(&inside, 0.0));
+        assert!((0..8).filter(|&i| cube.child(i).holds(&inside, 0.0)).eq([7]));
         let corner_cut = [vec3(4.0, 0.0, 0.0), vec3(0.0, 4.0, 0.0), vec3(0.0, 0.0, 4.0)];
-        assert!(!reaches(&corner_cut, cube, 0.0), "its box reaches in, its plane x + y + z = 4 does not");
-        assert!(reaches(&corner_cut.map(|p| p * 0.7), cube, 0.0));
+        assert!(!cube.holds(&corner_cut, 0.0), "its box reaches in, its plane x + y + z = 4 does not");
+        assert!(cube.holds(&corner_cut.map(|p| p * 0.7), 0.0));
     }
 
     #[test]

@@ -143,7 +143,7 @@ impl<'r, S: Simd> Packet<'r, S> {
 }
 
 /// Keeps the first hit of each ray.
-struct Closest<'a> {
+pub(super) struct Closest<'a> {
     triangles: &'a Triangles,
     /// The facets that the rays leave.
     own: &'a [u32],
@@ -176,6 +176,25 @@ impl Visitor for Closest<'_> {
     }
 }
 
+/// What `follow` shows of one to eight rays, which leave the facets `own`: their first hits, and whether they hit something else
+/// at the same place.
+#[inline(always)]
+pub(super) fn closest_hits<'a>(
+    triangles: &'a Triangles,
+    rays: &[Ray],
+    own: &'a [u32],
+    follow: impl FnOnce(&mut Closest<'a>),
+) -> ([Option<(usize, f32)>; LANES], [bool; LANES]) {
+    let mut slack = [0.0; LANES];
+    for (slack, ray) in slack.iter_mut().zip(rays) {
+        *slack = ray.rounding(triangles.extent);
+    }
+    let (limits, best, crowded) = ([f32::MAX; LANES], [None; LANES], [false; LANES]);
+    let mut closest = Closest { triangles, own, slack, limits, best, crowded };
+    follow(&mut closest);
+    (closest.best, closest.crowded)
+}
+
 impl Bvh {
     /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`; and whether they hit something
     /// else at the same place, as far as rounding tells.
@@ -187,15 +206,13 @@ impl Bvh {
         own: &[u32],
         counters: &mut Counters,
     ) -> ([Option<(usize, f32)>; LANES], [bool; LANES]) {
-        let triangles = self.triangles();
-        let mut slack = [0.0; LANES];
-        for (slack, ray) in slack.iter_mut().zip(rays) {
-            *slack = ray.rounding(triangles.extent);
-        }
-        let (limits, best, crowded) = ([f32::MAX; LANES], [None; LANES], [false; LANES]);
-        let mut closest = Closest { triangles, own, slack, limits, best, crowded };
-        self.follow(simd, rays, &mut closest, counters);
-        (closest.best, closest.crowded)
+        closest_hits(
+            self.triangles(),
+            rays,
+            own,
+            #[inline(always)]
+            |closest| self.follow(simd, rays, closest, counters),
+        )
     }
 }
 

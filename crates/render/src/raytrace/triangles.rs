@@ -36,6 +36,26 @@ pub(super) fn bounds_of(corners: &[Vec3; 3]) -> [Vec3; 2] {
     [a.min(b).min(c), a.max(b).max(c)]
 }
 
+/// Whether a triangle reaches into the box with this middle and half its size, or nearly so: asked of the triangle's box and
+/// plane, so that a needle that lies aslant may be said to reach into boxes that it only passes by.
+pub(super) fn reaches(corners: &[Vec3; 3], middle: Vec3, half: Vec3) -> bool {
+    let [min, max] = bounds_of(corners);
+    if (min - middle).cmpgt(half).any() || (max - middle).cmplt(-half).any() {
+        return false;
+    }
+    // The plane passes the box if its distance from the middle is less than that of a corner.
+    let [a, b, c] = *corners;
+    let normal = (b - a).cross(c - a);
+    let reach = normal.abs().dot(half) * (1.0 + 1.0 / (1 << 16) as f32);
+    // A normal that is zero or overflows decides nothing; that of a needle is mostly rounding.
+    let to_plane = a - middle;
+    let distance = normal.dot(to_plane).abs();
+    let edges = (b - a).abs().max_element() * (c - a).abs().max_element();
+    let rounding = edges * (to_plane.abs().max_element() + half.max_element()) * (1.0 / (1 << 19) as f32);
+    let beside = distance > reach + rounding;
+    !beside
+}
+
 impl Triangles {
     /// Bytes needed while a list of this many is made.
     pub fn bytes(triangles: u64) -> u64 {

@@ -1,6 +1,6 @@
 //! Shadows by rays: a point is lit if nothing stands on the way from it to the light. The reference of the others.
 //!
-//! From each visible point a ray goes towards each light, and a tree of boxes shows it what stands near. Unlike a ray of
+//! From each visible point a ray goes towards each light, and a structure (`--acceleration`) shows it what stands near. Unlike a ray of
 //! sight it need not know what it meets first: the first opaque thing ends it, and transparent things take their part of the
 //! light in any order.
 //!
@@ -21,11 +21,11 @@ use super::occluders::Occluders;
 use super::place::horizon;
 use super::sources::{Shares, Source, hash};
 use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
-use crate::raytrace::bvh::Bvh;
+use crate::raytrace::chosen::Chosen;
 use crate::raytrace::intersect::Ray;
-use crate::raytrace::{Counters, Structure, packet};
-use crate::{Execution, Session, Settings};
-use std::sync::Arc;
+use crate::raytrace::{Counters, packet};
+use crate::visible::few_enough;
+use crate::{Acceleration, Execution, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
@@ -44,7 +44,7 @@ pub(crate) fn clearance(position: DVec3, extent: f64) -> f64 {
 }
 
 struct Prepared<'a> {
-    tree: Arc<Bvh>,
+    structure: Chosen,
     occluders: Occluders<'a>,
     sources: Vec<Source>,
     level: Level,
@@ -59,11 +59,17 @@ impl ShadowAlgorithm for RayShadows {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
-        let tree = session.bvh(execution)?;
-        let center = tree.triangles().center;
+        let acceleration = settings.acceleration.unwrap_or_default();
+        if acceleration == Acceleration::None {
+            let pixels = u64::from(settings.width) * u64::from(settings.height);
+            let tests = pixels.saturating_mul(lights.len() as u64 * u64::from(session.world.facet_count));
+            few_enough(tests, "shadows by rays without a structure")?;
+        }
+        let structure = Chosen::new(acceleration, session, execution)?;
+        let center = structure.triangles().center;
         let sources = lights.iter().map(|l| Source::new(l, settings.light_samples, center)).collect();
         let (occluders, level) = (Occluders::new(session, settings), execution.level);
-        Ok(Box::new(Prepared { tree, occluders, sources, level }))
+        Ok(Box::new(Prepared { structure, occluders, sources, level }))
     }
 }
 
@@ -155,7 +161,7 @@ impl Prepared<'_> {
         if place.normal.dot(way) <= horizon(place.position, light) {
             return Err([0.0; 3]);
         }
-        let above = clearance(place.position, f64::from(self.tree.triangles().extent));
+        let above = clearance(place.position, f64::from(self.structure.triangles().extent));
         let origin = place.position + place.normal * above;
         let way = if ends { way - place.normal * above } else { way };
         let length = way.abs().max_element();
@@ -177,8 +183,8 @@ impl Prepared<'_> {
             limits[lane] = if feeler.far < f32::MAX { feeler.far } else { f32::MAX };
         }
         let mut passing = Passing { prepared: self, feelers, limits, left: [[1.0; 3]; LANES] };
-        self.tree.follow(simd, &rays[..feelers.len()], &mut passing, &mut Counters::default());
-        passing.left
+        self.structure.follow(simd, &rays[..feelers.len()], &mut passing, &mut Counters::default());
+        passing.left.map(|left| left.map(|part| part as f32))
     }
 }
 
@@ -188,11 +194,12 @@ struct Passing<'a> {
     feelers: &'a [Feeler],
     /// Parameters of the light; negative for rays of which nothing is left.
     limits: [f32; LANES],
-    left: [Rgb; LANES],
+    /// In double precision: rounded once, the product is the same in whatever order a structure shows the triangles.
+    left: [[f64; 3]; LANES],
 }
 
 impl packet::Visitor for Passing<'_> {
-    // Parts of light are multiplied with each other, in one order.
+    // Every triangle on the way counts.
     const NEAREST_FIRST: bool = false;
 
     #[inline(always)]
@@ -202,7 +209,7 @@ impl packet::Visitor for Passing<'_> {
 
     #[inline(always)]
     fn hit(&mut self, lane: usize, place: usize, t: f32) {
-        let triangles = self.prepared.tree.triangles();
+        let triangles = self.prepared.structure.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
         let Feeler { ray, far, light, own, .. } = &self.feelers[lane];
         if self.limits[lane] < 0.0 || facet == *own || t >= *far {
@@ -214,8 +221,9 @@ impl packet::Visitor for Passing<'_> {
         }
         let point = || (ray.origin + ray.direction * t).as_dvec3();
         let passing = self.prepared.occluders.passing(facet, corners, point);
-        let [r, g, b] = self.left[lane];
-        self.left[lane] = [r * passing[0], g * passing[1], b * passing[2]];
+        let [r, g, b] = passing.map(f64::from);
+        let left = self.left[lane];
+        self.left[lane] = [left[0] * r, left[1] * g, left[2] * b];
         if self.left[lane] == [0.0; 3] {
             self.limits[lane] = -1.0;
         }

@@ -197,6 +197,7 @@ impl Observer for Recorder {
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
             Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
+            Step::RayMeets { .. } | Step::RayGoesOn { .. } => {}
         }
     }
 }

@@ -25,6 +25,11 @@ use vitral_raster::{Layer, LayerList, LayerSink, SUBPIXEL, TILE, TILE_PIXELS, Ti
 /// Tests of a facet at a sample that are not refused: about an hour on one thread.
 pub const MOST_TESTS: u64 = 1 << 40;
 
+/// Refuses what needs more than [`MOST_TESTS`].
+pub(crate) fn few_enough(needed: u64, stage: &'static str) -> Result<(), Limit> {
+    if needed > MOST_TESTS { Err(Limit::Work { needed, limit: MOST_TESTS, stage }) } else { Ok(()) }
+}
+
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct BruteForce;
@@ -45,9 +50,7 @@ impl VisibleSurface for BruteForce {
             resolved.geometry_seconds = execution.budget.elapsed() - start;
             let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
             let needed = (pixels * view.pattern.len() as u64).saturating_mul(facets.setups.len() as u64);
-            if needed > MOST_TESTS {
-                return Err(Limit::Work { needed, limit: MOST_TESTS, stage: "brute force" });
-            }
+            few_enough(needed, "brute force")?;
             let look = |tile: &mut Tile, layers: &mut LayerList| look(view, &facets, tile, layers, execution);
             resolved.counters = each_tile(view, marks, grid, execution, sink, look)?;
             Ok(resolved)

@@ -15,6 +15,7 @@ pub mod warnock;
 pub mod weiler_atherton;
 pub mod zbuffer;
 
+pub(crate) use brute_force::few_enough;
 pub(crate) use bsp::Tree as BspTree;
 pub(crate) use facets::nearer;
 pub use peel::{PassLayer, Peel};

@@ -1,6 +1,6 @@
 //! Ray casting: a ray through every sample, and what it meets first.
 //!
-//! A structure over the world's triangles (a tree of boxes, an octree, a grid: `--acceleration`) finds those near a ray
+//! A structure over the world's triangles (a tree of boxes, an octree, a partition, a grid: `--acceleration`) finds those near a ray
 //! without looking at the others; what is nearest comes first, and once a facet is found, whatever begins behind it is
 //! passed over. The structure serves every view.
 //!
@@ -19,13 +19,11 @@ mod eye;
 mod packet;
 mod single;
 
-use super::brute_force::{MOST_TESTS, each_tile};
+use super::brute_force::{each_tile, few_enough};
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::marks::Marks;
-use crate::raytrace::bvh::Bvh;
-use crate::raytrace::grid::Grid;
-use crate::raytrace::octree::Octree;
+use crate::raytrace::chosen::Chosen;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Structure, Tree};
 use crate::stats::VisibilityCounters;
@@ -58,25 +56,20 @@ impl VisibleSurface for RayCast {
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
         let facets = u64::from(view.session.world.facet_count);
-        let bytes = match view.acceleration {
-            Acceleration::Bvh => Bvh::bytes(facets),
-            Acceleration::Octree => Octree::bytes(facets),
-            Acceleration::Grid => Grid::bytes(facets),
-            Acceleration::None => 0,
-        };
+        let bytes = Chosen::bytes(view.acceleration, facets);
         let bytes = ScreenSetups::bytes(view) + Triangles::bytes(facets) + bytes + facets * 32;
         charged(&execution.budget, bytes, "ray casting", || {
             let job = Job { view, marks, execution, sink, start: execution.budget.elapsed() };
-            let session = view.session;
-            match view.acceleration {
-                Acceleration::Bvh => {
-                    let tree = session.bvh(execution)?;
+            match Chosen::new(view.acceleration, view.session, execution)? {
+                Chosen::Bvh(tree) => {
                     tree.widen(&execution.workers);
                     job.run_packets(grid, &*tree)
                 }
-                Acceleration::Octree => job.run_packets(grid, &*session.octree(execution)?),
-                Acceleration::Grid => job.run(grid, &*session.uniform_grid(execution)?, single::look),
-                Acceleration::None => job.run(grid, &*session.triangles(execution)?, single::look),
+                Chosen::Octree(tree) => job.run_packets(grid, &*tree),
+                Chosen::Bsp(tree) => job.run_packets(grid, &*tree),
+                Chosen::Grid(cells) => job.run(grid, &*cells, single::look),
+                Chosen::Volumes(volumes) => job.run(grid, &*volumes, single::look),
+                Chosen::List(triangles) => job.run(grid, &*triangles, single::look),
             }
         })
     }
@@ -115,8 +108,8 @@ impl Job<'_> {
         let setups = cast.on_screen.setups.len() as u64;
         let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
         let all = (pixels * view.pattern.len() as u64).saturating_mul(setups);
-        if view.acceleration == Acceleration::None && all > MOST_TESTS {
-            return Err(Limit::Work { needed: all, limit: MOST_TESTS, stage: "ray casting without a structure" });
+        if view.acceleration == Acceleration::None {
+            few_enough(all, "ray casting without a structure")?;
         }
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;
         if let (Some(observer), Some(step)) = (&execution.observer, structure.step()) {

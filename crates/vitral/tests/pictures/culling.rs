@@ -5,7 +5,7 @@ use vitral::light::AlphaMode;
 use vitral::math::{DMat4, DVec3};
 use vitral::scene::Part;
 use vitral::scene::builtin::solids;
-use vitral::{Camera, Material, Projection, Rendered, Renderer, Scene};
+use vitral::{Camera, Material, Mesh, Projection, Rendered, Renderer, Scene};
 
 /// The picture with the given culling.
 fn culled(renderer: &mut Renderer, frustum: bool, back_face: bool) -> Rendered {
@@ -160,4 +160,47 @@ fn p14_a_mirrored_instance_shows_its_outside() {
     let rendered = culled(&mut renderer, true, true);
     assert_eq!(rendered.stats.cull.back_face_culled_instances, 1);
     assert!(rendered.frame == culled(&mut renderer, true, false).frame);
+}
+
+#[test]
+fn p11_windows_that_overlap_only_mean_a_closer_look() {
+    // The figure's two triangles: their windows are apart (a), or overlap while the triangles do not (b). Both are aslant, so that
+    // neither depth nor a plane tells them apart.
+    let pair = |shift: [f32; 2]| {
+        let lower = [[0.0, 0.0, 0.0], [4.0, 0.0, 2.0], [0.0, 4.0, 0.0]];
+        let upper = [[4.0f32, 4.0], [2.0, 4.0], [4.0, 2.0]].map(|[x, y]| [x + shift[0], y + shift[1], 0.6 * y - 0.48]);
+        let mesh = Mesh {
+            positions: lower.into_iter().chain(upper).collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            parts: vec![Part { name: String::new(), triangles: 0..2, material: None }],
+            ..Mesh::default()
+        };
+        let mut renderer = exact(Scene::from_mesh(mesh), 120, 120);
+        let position = DVec3::new(4.0, 4.0, 20.0);
+        let projection = Projection::Parallel { height: 12.0 };
+        renderer.camera =
+            Some(Camera { position, focal_point: DVec3::new(4.0, 4.0, 0.0), projection, ..on_z(1.0, 0.9) });
+        renderer.settings.channels.surface = true;
+        renderer.settings.cull.back_face = false;
+        let ids = |r: &mut Renderer, name: &str| {
+            name.clone_into(&mut r.settings.visibility);
+            let rendered = r.render().unwrap();
+            (rendered.frame.surface.unwrap(), rendered.stats.visibility)
+        };
+        let (expected, _) = ids(&mut renderer, "z-buffer");
+        for name in ["painter", "bsp", "weiler-atherton", "warnock", "scan-line", "ray-cast"] {
+            assert!(ids(&mut renderer, name).0 == expected, "{name}");
+        }
+        let seen = |id: u32| expected.data().iter().filter(|&&found| found == id).count() as f64;
+        // A pixel is a hundredth of a unit of area.
+        assert!((seen(0) - 800.0).abs() < 25.0 && (seen(1) - 200.0).abs() < 15.0, "{} {}", seen(0), seen(1));
+        ids(&mut renderer, "painter").1
+    };
+    let apart_in_x = pair([3.0, 0.0]);
+    assert_eq!((apart_in_x.by_x_extent, apart_in_x.by_y_extent, apart_in_x.by_projection), (1, 0, 0), "{apart_in_x:?}");
+    let apart_in_y = pair([0.0, 3.0]);
+    assert_eq!((apart_in_y.by_x_extent, apart_in_y.by_y_extent, apart_in_y.by_projection), (0, 1, 0), "{apart_in_y:?}");
+    let closer = pair([0.0, 0.0]);
+    assert_eq!((closer.by_x_extent, closer.by_y_extent, closer.by_projection), (0, 0, 1), "{closer:?}");
+    assert_eq!((closer.splits, closer.by_overlap), (0, 0), "{closer:?}");
 }

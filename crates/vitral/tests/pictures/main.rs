@@ -6,6 +6,7 @@ mod culling;
 mod defects;
 mod depth_cue;
 mod determinism;
+mod hidden_line;
 mod interpolation;
 mod lighting;
 mod marks;

@@ -1,10 +1,14 @@
 //! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with the local models.
 
 use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, project, sun};
+use std::sync::{Arc, Mutex};
+use vitral::explain::explain;
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::{SHADOWS, VISIBILITY};
-use vitral::render::{Background, Global, Transparency};
+use vitral::render::registry::{ACCELERATION, SHADOWS, VISIBILITY};
+use vitral::render::stats::TracingCounters;
+use vitral::render::trace::{Observer, Step, Way};
+use vitral::render::{Acceleration, Background, Global, Transparency};
 use vitral::scene::Part;
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
@@ -72,6 +76,104 @@ fn t4_refraction_changes_which_polygon_is_seen_in_p_and_q() {
 }
 
 #[test]
+fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
+    let ids = |r: &Renderer, point: DVec3| {
+        let p = project(r, point);
+        let told = explain(r, &r.frame_camera(), [p.x as u32, p.y as u32], None).unwrap();
+        let behind = told.surfaces.iter().find(|s| !s.layer).expect("something opaque lies straight on");
+        (behind.surface, behind.material.clone(), told)
+    };
+    let (p, q) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0));
+    let straight = exact_builtin("refraction", 60, 44);
+    let [(under_p, of_p, told), (under_q, of_q, _)] = [p, q].map(|point| ids(&straight, point));
+    assert_eq!((of_p.as_deref(), of_q.as_deref()), (Some("3"), Some("4")));
+    assert!(told.rays.is_empty(), "no rays without ray tracing");
+
+    let bent = traced(exact_builtin("refraction", 60, 44));
+    for (point, expected) in [(p, under_q), (q, under_p)] {
+        let (_, _, told) = ids(&bent, point);
+        // The eye's ray, the one within the glass, and the one behind it.
+        let met: Vec<_> = told.rays.iter().map(|ray| ray.meets.as_ref().map(|met| met.surface)).collect();
+        assert_eq!(met.len(), 3, "{told}");
+        assert_eq!(met[2], Some(expected), "{told}");
+        assert!(told.rays[2].goes_on.is_empty() && told.rays[2].turns == 2);
+        for (ray, indices) in told.rays.iter().zip([[1.0, 1.5], [1.5, 1.0]]) {
+            let [turn] = &ray.goes_on[..] else { panic!("{told}") };
+            assert_eq!((turn.way, turn.indices), (Way::Refracted, indices), "{told}");
+            let [before, behind] =
+                [0, 1].map(|k| f64::from(turn.indices[k]) * vitral::math::func::sin(turn.angles[k].to_radians()));
+            assert!((before - behind).abs() < 1e-6, "{before} {behind}: {told}");
+        }
+        // The front stands upright, the back lies aslant.
+        let [front, back] = [0, 1].map(|k| told.rays[k].goes_on[0].angles);
+        assert!(front[0] < 1e-3 && back[0] > 20.0 && back[1] > back[0] + 10.0, "{told}");
+        // What the rays add is the pixel.
+        let mut renderer = traced(exact_builtin("refraction", 60, 44));
+        let sum = [0, 1, 2].map(|k| told.rays.iter().map(|ray| ray.light[k]).sum::<f32>());
+        let picture = colors(&mut renderer);
+        let shown = pixel(&renderer, &picture, point);
+        assert!((0..3).all(|k| (sum[k] * 255.0 - f32::from(shown[k])).abs() <= 1.0), "{sum:?} {shown:?}: {told}");
+        let text = told.to_string();
+        assert!(text.contains("refracted at") && text.contains("in 1.5"), "{text}");
+    }
+}
+
+/// Keeps what rays meet.
+#[derive(Debug, Default)]
+struct Meetings(Mutex<Vec<Step>>);
+
+impl Observer for Meetings {
+    fn step(&self, step: &Step) {
+        if matches!(step, Step::RayMeets { .. }) {
+            self.0.lock().unwrap().push(step.clone());
+        }
+    }
+}
+
+#[test]
+fn p36_the_id_in_a_mirror_is_that_of_the_virtual_image() {
+    let (image, ball) = (DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0)), at(0.5, 0.2, 1.0));
+    let facets = || solids::sphere(0.4, 16, 8);
+    let scene = |with_mirror: bool| {
+        let mut scene = Scene::default();
+        if with_mirror {
+            cuboid(&mut scene, DVec3::new(6.0, 6.0, 0.2), DVec3::new(0.0, 0.0, -0.1), mirror());
+        } else {
+            add(&mut scene, facets(), poster([1.0; 3]), image * ball);
+        }
+        add(&mut scene, facets(), poster([1.0; 3]), ball);
+        let mut r = exact(scene, 120, 90);
+        r.settings.cull.back_face = false;
+        let camera = Camera { position: DVec3::new(-2.0, 0.6, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.8) };
+        r.camera = Some(camera);
+        r
+    };
+    let mut virtual_image = scene(false);
+    virtual_image.settings.channels.surface = true;
+    let ids = virtual_image.render().unwrap().frame.surface.unwrap().into_data();
+    let of_ball = virtual_image.world().surface_of_facet(virtual_image.world().instances[1].first_facet);
+
+    let mut mirrored = traced(scene(true));
+    let meetings = Arc::new(Meetings::default());
+    mirrored.execution_mut().observer = Some(Arc::clone(&meetings) as Arc<dyn Observer>);
+    mirrored.render().unwrap();
+    let first = mirrored.world().instances[1].first_facet;
+    let of_facet = |facet| mirrored.world().surface_of_facet(facet) - mirrored.world().surface_of_facet(first);
+    let (mut seen, mut different) = (0, 0);
+    for step in meetings.0.lock().unwrap().iter() {
+        let Step::RayMeets { pixel: [x, y], turns: 1, facet, .. } = step else { continue };
+        let expected = ids[(y * 120 + x) as usize];
+        // The ball itself may stand before its image.
+        if expected < of_ball {
+            seen += 1;
+            different += u32::from(facet.is_none_or(|facet| facet < first || of_facet(facet) != expected));
+        }
+    }
+    assert!(seen > 150, "{seen}");
+    assert!(different * 100 <= seen * 6, "{different} of {seen}, on edges");
+}
+
+#[test]
 fn f11_a_glass_ball_inverts_what_is_behind_it() {
     let mut r = traced(exact_builtin("lens", 240, 180));
     let picture = colors(&mut r);
@@ -108,6 +210,31 @@ fn t5_a_slab_moves_what_is_behind_by_the_formula() {
     let r_angle = vitral::math::func::asin(sin_r);
     let offset = thick * vitral::math::func::sin(angle - r_angle) / vitral::math::func::cos(r_angle);
     assert!(((bent - straight).abs() - offset * 100.0).abs() < 1.0, "{straight} {bent}, {}", offset * 100.0);
+}
+
+#[test]
+fn t3_red_green_and_blue_are_bent_alike() {
+    // A wedge before posters of one channel each: an edge of a colour appears where that of any other does.
+    let picture = |color: [f32; 3]| {
+        let mut scene = Scene::default();
+        add(&mut scene, solids::cuboid(DVec3::new(0.7, 0.9, 0.1)), poster(color), at(0.3, 0.2, -4.0));
+        let ball = glass(1.0, 1.5);
+        add(&mut scene, solids::sphere(1.0, 48, 24), ball, DMat4::IDENTITY);
+        let mut r = exact(scene, 90, 70);
+        r.camera = Some(on_z(5.0, 0.5));
+        let straight = colors(&mut r);
+        (colors(&mut traced(r)), straight)
+    };
+    let (white, straight) = picture([1.0; 3]);
+    assert!(white.iter().all(|p| p[0] == p[1] && p[1] == p[2]), "white stays white");
+    for k in 0..3 {
+        let mut one = [0.0; 3];
+        one[k] = 1.0;
+        let own = picture(one).0;
+        assert!(own.iter().zip(&white).all(|(own, white)| own[k] == white[k]), "channel {k}");
+        assert!(own.iter().all(|p| (0..3).all(|other| other == k || p[other] == 0)), "channel {k} alone");
+    }
+    assert!(differing(&white, &straight, 100) > 100, "it is bent at all");
 }
 
 #[test]
@@ -473,4 +600,62 @@ fn the_eye_is_in_what_stands_round_it() {
     let found = seen(&picture(1.33, true), &straight);
     assert!(found <= 4, "in water it does not: {found}");
     assert!(seen(&picture(1.001, true), &straight) > 300, "a bubble does");
+}
+
+#[test]
+fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
+    // Boxes of glass that touch, four sheets of coloured glass over them, and a mirror: piles, bodies, products of shadows.
+    let touching = || {
+        let mut scene = Scene::default();
+        cuboid(&mut scene, DVec3::splat(1.0), DVec3::new(-0.5, 0.5, 0.0), tinted([0.8, 0.2, 0.2], 0.7, 1.5));
+        cuboid(&mut scene, DVec3::splat(1.0), DVec3::new(0.5, 0.5, 0.0), tinted([0.2, 0.2, 0.8], 0.6, 1.33));
+        for k in 0..4 {
+            let filter = [0.9 - 0.1 * k as f32, 0.37, 0.5 + 0.1 * k as f32];
+            let sheet = Material { filter, ..tinted([0.1, 0.1, 0.1], 0.83, 1.0) };
+            add(&mut scene, solids::plane(2.3, 2.1, 1, 1), sheet, at(0.2, 1.5 + 0.2 * f64::from(k), 0.3));
+        }
+        add(&mut scene, solids::plane(7.0, 7.0, 3, 2), Material::default(), DMat4::from_rotation_y(0.2));
+        cuboid(&mut scene, DVec3::new(3.0, 2.0, 0.1), DVec3::new(0.0, 1.0, -1.5), mirror());
+        let mut r = exact(scene, 80, 60);
+        r.camera = Some(above());
+        r.settings.transparency = Transparency::Filtered;
+        r.lights = Some(vec![sun(DVec3::new(0.3, 1.0, 0.2), 1.0), sun(DVec3::new(-0.5, 0.8, 0.9), 0.5)]);
+        r
+    };
+    // The eye within glass: what it is in is asked of all that a ray meets.
+    let within = || {
+        let mut r = touching();
+        r.camera =
+            Some(Camera { position: DVec3::new(0.4, 0.4, 0.3), focal_point: DVec3::new(-3.0, 0.6, -1.0), ..above() });
+        r
+    };
+    let scenes: [(&str, &dyn Fn() -> Renderer); 4] = [
+        ("mirrors", &|| exact_builtin("mirrors", 64, 48)),
+        ("lens", &|| exact_builtin("lens", 64, 48)),
+        ("touching", &touching),
+        ("within", &within),
+    ];
+    for (name, scene) in scenes {
+        for global in [Global::None, Global::RayTrace] {
+            let picture = |acceleration| {
+                let mut r = scene();
+                (r.settings.global, r.settings.shadows) = (global, "ray".to_owned());
+                r.settings.acceleration = acceleration;
+                let rendered = r.render().unwrap();
+                let tests =
+                    TracingCounters { box_tests: 0, triangle_tests: 0, rays_per_second: 0.0, ..rendered.stats.tracing };
+                (rendered.frame, tests, rendered.stats.tracing.triangle_tests)
+            };
+            let (expected, counters, _) = picture(None);
+            let asked = picture(Some(Acceleration::None)).2;
+            assert!(global == Global::None || counters.hits > 100, "{name}: {counters:?}");
+            for structure in ACCELERATION {
+                let (frame, counted, tests) = picture(Some(structure.value));
+                assert!(frame == expected, "{name}, {global:?}: {}", structure.name);
+                assert_eq!(counted, counters, "{name}, {global:?}: {}", structure.name);
+                let saves = structure.value == Acceleration::None || tests < asked || asked == 0;
+                assert!(saves, "{name}, {global:?}, {}: {tests} of {asked} tests", structure.name);
+            }
+        }
+    }
 }

@@ -88,6 +88,43 @@ fn t10_t11_t12_f6_exact_orders_agree_in_every_algorithm_and_permutation() {
     }
 }
 
+/// All orders of so many things.
+fn permutations(count: usize) -> Vec<Vec<usize>> {
+    if count == 0 {
+        return vec![Vec::new()];
+    }
+    let longer = |shorter: Vec<usize>| {
+        (0..count).map(move |at| {
+            let mut order = shorter.clone();
+            order.insert(at, count - 1);
+            order
+        })
+    };
+    permutations(count - 1).into_iter().flat_map(longer).collect()
+}
+
+#[test]
+fn t11_all_permutations_are_bit_equal_in_exact_orders_and_not_in_inexact_ones() {
+    let orders = permutations(glasses().len());
+    assert_eq!(orders.len(), 120);
+    for order in ORDERS.iter().filter(|o| !o.needs_list) {
+        let mut pictures: Vec<Vec<[u8; 4]>> = Vec::new();
+        for permutation in &orders {
+            if pictures.len() > 1 {
+                break;
+            }
+            let parts = permutation.iter().map(|&part| glasses().swap_remove(part)).collect();
+            let mut r = renderer(parts, order.value, 1);
+            (r.settings.width, r.settings.height) = (36, 28);
+            let picture = colors(&mut r);
+            if !pictures.contains(&picture) {
+                pictures.push(picture);
+            }
+        }
+        assert_eq!(pictures.len() == 1, order.exact, "{}", order.name);
+    }
+}
+
 #[test]
 fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
     for samples in [1, 4] {
@@ -624,8 +661,9 @@ fn exact_coverage(halves: &[[f64; 3]], x: f64, y: f64) -> f64 {
     0.5 * (0..polygon.len()).map(cross).sum::<f64>().abs()
 }
 
-/// Errors of the A-buffer's masks against exact areas, in the pixels on the border of a white square, turned and moved.
-fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<f64> {
+/// Errors against exact areas, in the pixels on the border of a white square, turned and moved: of the A-buffer's masks, and of
+/// a mask of 4x8 places.
+fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
     let mut errors = Vec::new();
     for (i, turn) in turns.enumerate() {
         let mut mesh = square(0.0, 0.0);
@@ -646,7 +684,12 @@ fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<f64> {
         for (at, color) in colors(&mut r).iter().enumerate() {
             let exact = exact_coverage(&halves, (at % 40) as f64, (at / 40) as f64);
             if exact > 1e-9 && exact < 1.0 - 1e-9 {
-                errors.push(f64::from(color[0]) / 255.0 - exact);
+                let place = |i: usize| {
+                    [(at % 40) as f64 + (i % 4) as f64 / 4.0 + 0.125, (at / 40) as f64 + (i / 4) as f64 / 8.0 + 0.0625]
+                };
+                let inside = |p: [f64; 2]| halves.iter().all(|[a, b, c]| a * p[0] + b * p[1] <= *c);
+                let mask = (0..32).filter(|&i| inside(place(i))).count() as f64 / 32.0;
+                errors.push([f64::from(color[0]) / 255.0 - exact, mask - exact]);
             }
         }
     }
@@ -661,12 +704,18 @@ fn p18_coverage_masks_are_about_as_good_as_exact_areas() {
     // corner of the square has two edges.
     let upright = coverage_errors((0..12).map(|_| 0.0));
     assert!(upright.len() > 800);
-    let far = upright.iter().filter(|e| e.abs() > 1.0 / 32.0 + rounding).count();
+    let far = upright.iter().filter(|[e, _]| e.abs() > 1.0 / 32.0 + rounding).count();
     assert!(far <= 4 * 12, "{far} of {}: more than the corners", upright.len());
     // Edges of all directions: 1/32 on the mean, to neither side.
     let all = coverage_errors((0..40).map(|i| 0.0393 * f64::from(i)));
     let count = all.len() as f64;
-    let (mean, bias) = (all.iter().map(|e| e.abs()).sum::<f64>() / count, all.iter().sum::<f64>() / count);
-    assert!(mean <= 1.0 / 32.0, "{mean} on the mean");
+    let mean = |mask: usize| all.iter().map(|e| e[mask].abs()).sum::<f64>() / count;
+    let worst = |mask: usize| all.iter().map(|e| e[mask].abs()).fold(0.0, f64::max);
+    let bias = all.iter().map(|e| e[0]).sum::<f64>() / count;
+    assert!(mean(0) <= 1.0 / 32.0, "{} on the mean", mean(0));
     assert!(bias.abs() <= 1.0 / 320.0, "{bias} to one side");
+    // In a single pixel the error can be larger, of any mask: 4x8 places say an edge along their rows or columns is up to an eighth
+    // of a pixel from where it is. Twice as many places halve the mean.
+    assert!(worst(0) <= 0.18 && worst(1) > 1.0 / 32.0, "{} and {} at the worst", worst(0), worst(1));
+    assert!(mean(0) <= 2.1 * mean(1), "{} and {} on the mean", mean(0), mean(1));
 }

@@ -8,7 +8,9 @@
 use super::super::cut::{Cut, Depth};
 use crate::stats::VisibilityCounters;
 use std::ops::Range;
+use vitral_math::DVec2;
 use vitral_raster::Setup;
+use vitral_scene::{Extent1, Extent2};
 
 /// Depths this close are equal.
 const EQUAL: f64 = 1.0 / (1 << 22) as f64;
@@ -31,11 +33,12 @@ pub(super) enum Verdict {
 pub(super) struct Polygon {
     /// Index of the triangle.
     pub(super) setup: u32,
-    /// Farthest and nearest depth.
+    /// Farthest depth.
     pub(super) far: f32,
-    near: f32,
-    /// Smallest x and y, largest x and y.
-    extent: [f64; 4],
+    /// From the farthest to the nearest.
+    depth: Extent1,
+    /// The window round it.
+    window: Extent2,
     corners: Range<u32>,
     /// The lines it was cut along.
     pub(super) cuts: Range<u32>,
@@ -52,22 +55,22 @@ impl Polygon {
         cuts: Range<u32>,
         cells: [u16; 4],
     ) -> Self {
-        let mut extent = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        let window = Extent2::of(points.iter().copied().map(DVec2::from_array));
         let (mut far, mut near) = (f64::INFINITY, f64::NEG_INFINITY);
         let plane = Depth::of(setup);
         for &p in points {
-            extent = [extent[0].min(p[0]), extent[1].min(p[1]), extent[2].max(p[0]), extent[3].max(p[1])];
             let depth = plane.at(p);
             (far, near) = (far.min(depth), near.max(depth));
         }
         // The depths of samples are clamped.
-        let clamp = |depth: f64| (depth as f32).max(setup.z_min).min(setup.z_max);
-        Self { setup: index, far: clamp(far), near: clamp(near), extent, corners, cuts, cells }
+        let [far, near] = [far, near].map(|depth| (depth as f32).max(setup.z_min).min(setup.z_max));
+        let depth = Extent1 { min: f64::from(far), max: f64::from(near) };
+        Self { setup: index, far, depth, window, corners, cuts, cells }
     }
 
     /// Whether all of it is farther than the other's farthest point.
     pub(super) fn is_behind(&self, far: f32, counters: &mut VisibilityCounters) -> bool {
-        let behind = self.near < far;
+        let behind = !self.depth.overlaps(&Extent1 { min: f64::from(far), max: f64::INFINITY });
         counters.list_tests += u64::from(behind);
         counters.by_depth_extent += u64::from(behind);
         behind
@@ -148,11 +151,11 @@ pub(super) fn compare(
         return Verdict::Before;
     }
     counters.list_tests += 1;
-    if p.extent[2] <= q.extent[0] || q.extent[2] <= p.extent[0] {
+    if !p.window.x.crosses(&q.window.x) {
         counters.by_x_extent += 1;
         return Verdict::Before;
     }
-    if p.extent[3] <= q.extent[1] || q.extent[3] <= p.extent[1] {
+    if !p.window.y.crosses(&q.window.y) {
         counters.by_y_extent += 1;
         return Verdict::Before;
     }

@@ -3,6 +3,7 @@
 mod agreement;
 mod common;
 mod culling;
+mod cut_outs;
 mod defects;
 mod depth_cue;
 mod determinism;

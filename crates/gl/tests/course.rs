@@ -318,8 +318,9 @@ fn supersampled(side: usize, inside: impl Fn(f32, f32) -> bool) -> Vec<f32> {
 #[test]
 fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
     const SIDE: usize = 32;
-    const MOST: f32 = 0.9;
-    const MEAN: f32 = 1.0 / 16.0;
+    // In one pixel a corner or the way in which 4x4 places lie may do much; on the mean little is left.
+    const MOST: f32 = 0.23;
+    const MEAN: f32 = 0.036;
     let mut c = Stage::new(SIDE as i32, SIDE as i32);
     c.enable(gl::BLEND);
     c.color_4f(1.0, 1.0, 1.0, 1.0);
@@ -329,9 +330,12 @@ fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
         for (at, expected) in expected.iter().enumerate() {
             let found = f32::from(c.pixel(at as i32 % SIDE as i32, at as i32 / SIDE as i32)[0]) / 255.0;
             let error = (found - expected).abs();
+<<<<<<< ours
             if error > 0.2 {
                 println!("{what}, pixel {at}: {found} instead of {expected}");
             }
+=======
+>>>>>>> theirs
             assert!(error <= MOST, "{what}, pixel {at}: {found} instead of {expected}");
             if *expected > 0.0 && *expected < 1.0 {
                 (total, border, worst) = (total + error, border + 1, worst.max(error));

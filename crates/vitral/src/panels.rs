@@ -330,7 +330,7 @@ mod tests {
         let yellow = |p: &&[u8; 4]| p[0] > 200 && p[1] > 150 && p[2] < 90;
         let blue = |p: &&[u8; 4]| p[2] > 150 && p[0] < 90;
         for marked in [a.iter().filter(yellow).count(), a.iter().filter(blue).count()] {
-            assert!((10..a.len() / 5).contains(&marked), "{marked}");
+            assert!((4..a.len() / 5).contains(&marked), "{marked}");
         }
         // b and c: the nearer the lighter, black where nothing is; from the light and from the viewer.
         let from_light = light_camera(&fresh(&lights, "none"), &lamp);
@@ -363,7 +363,7 @@ mod tests {
                 brighter += usize::from((0..3).any(|k| e[i][k] != f[i][k]));
             }
         }
-        assert!(shadow > d.len() / 60 && brighter * 2 > shadow, "{shadow} in shadow, {brighter} differ");
+        assert!(shadow > d.len() / 100 && brighter * 2 > shadow, "{shadow} in shadow, {brighter} differ");
     }
 
     #[test]

@@ -329,6 +329,7 @@ mod tests {
     fn frame() -> Frame {
         Frame {
             passes: Vec::new(),
+            buffers: None,
             width: 2,
             height: 1,
             color: Plane::from_rows(2, 1, vec![[1, 2, 3, 255], [0; 4]]),

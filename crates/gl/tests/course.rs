@@ -330,12 +330,6 @@ fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
         for (at, expected) in expected.iter().enumerate() {
             let found = f32::from(c.pixel(at as i32 % SIDE as i32, at as i32 / SIDE as i32)[0]) / 255.0;
             let error = (found - expected).abs();
-<<<<<<< ours
-            if error > 0.2 {
-                println!("{what}, pixel {at}: {found} instead of {expected}");
-            }
-=======
->>>>>>> theirs
             assert!(error <= MOST, "{what}, pixel {at}: {found} instead of {expected}");
             if *expected > 0.0 && *expected < 1.0 {
                 (total, border, worst) = (total + error, border + 1, worst.max(error));

@@ -152,7 +152,7 @@ fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> S
          2. [Model transform](2-world.json): instances in world space\n\
          3. [Culling](3-cull.json): what is left of them\n\
          4. Illumination: [the lights in view space](4-lights.json), and what they make of [the facets' \
-         corners](4-illuminated.csv), world space and premultiplied colours on the side that the eye is on; pictures illuminate what is seen, after stage 8\n\
+         corners](4-illuminated.csv), world space and premultiplied colours; pictures illuminate what is seen, after stage 8\n\
          5. [View transform](5-view.json): the camera and its matrices, [the corners](5-view.csv) in view space\n\
          6. [Clipping](6-clip.csv): polygons in clip space, before the division by w\n\
          7. [Projection](7-project.csv): facets on the screen, in pixels from the top left; depth is 1 near, 0 far\n\
@@ -302,10 +302,7 @@ mod tests {
         let mut lit = 0;
         for triangle in rows.chunks(3) {
             let [a, b, c] = [0, 1, 2].map(|i| DVec3::from(numbers(&triangle[i], 2)));
-            let normal = (b - a).cross(c - a).normalize();
-            // On the side that the eye is on.
-            let normal = if normal.dot(renderer.frame_camera().position - a) < 0.0 { -normal } else { normal };
-            let cos = normal.dot(-direction).max(0.0);
+            let cos = (b - a).cross(c - a).normalize().dot(-direction).max(0.0);
             lit += usize::from(cos > 0.0);
             for row in triangle {
                 let color = numbers(row, 5);

@@ -629,11 +629,8 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
             Some(Camera { position: DVec3::new(0.4, 0.4, 0.3), focal_point: DVec3::new(-3.0, 0.6, -1.0), ..above() });
         r
     };
-    let scenes: [(&str, &dyn Fn() -> Renderer); 3] = [
-        ("mirrors", &|| exact_builtin("mirrors", 16, 12)),
-        ("touching", &touching),
-        ("within", &within),
-    ];
+    let scenes: [(&str, &dyn Fn() -> Renderer); 3] =
+        [("mirrors", &|| exact_builtin("mirrors", 16, 12)), ("touching", &touching), ("within", &within)];
     for (name, scene) in scenes {
         for global in [Global::None, Global::RayTrace] {
             let picture = |acceleration| {

@@ -209,8 +209,6 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
 /// The two buffers of a scene, and its picture.
 fn two_buffers(parts: Vec<(Mesh, Material)>) -> (TwoBuffers, Vec<[u8; 4]>) {
     let mut renderer = renderer(parts, TransparencyOrder::TwoBuffer, 1);
-    // Depth counts from planes that do not follow what is there.
-    renderer.camera = renderer.camera.map(|camera| Camera { clip: Some((1.0, 9.0)), ..camera });
     renderer.settings.channels.buffers = true;
     // Depths of scenes of other extents are compared.
     renderer.camera = renderer.camera.map(|camera| Camera { clip: Some((1.0, 6.0)), ..camera });

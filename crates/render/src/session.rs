@@ -331,6 +331,9 @@ impl Session {
     }
 
     /// The binary partition of space over all triangles.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn partition(&self, execution: &Execution) -> Result<Arc<Bsp>, Limit> {
         let triangles = self.triangles(execution)?;
         keep(&self.partition, || Bsp::build(&triangles, &execution.workers, &execution.budget))
@@ -346,6 +349,9 @@ impl Session {
     }
 
     /// Volumes round all objects.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn volumes(&self, shape: Shape, execution: &Execution) -> Result<Arc<Volumes>, Limit> {
         let triangles = self.triangles(execution)?;
         let first_facets = self.world.instances.iter().map(|instance| instance.first_facet);

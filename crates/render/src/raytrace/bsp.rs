@@ -95,6 +95,9 @@ impl Bsp {
     }
 
     /// Builds the tree. The result does not depend on the number of workers.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn build(triangles: &Arc<Triangles>, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
         budget.check("building the partition of space")?;
         let count = triangles.count();

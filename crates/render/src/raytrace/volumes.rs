@@ -52,6 +52,9 @@ impl Volumes {
     }
 
     /// Puts volumes round objects. `first_facets` are those with which each begins, in order; `triangles` are in the order of facets.
+    ///
+    /// # Errors
+    /// A limit of the budget.
     pub fn build(
         triangles: &Arc<Triangles>,
         first_facets: impl IntoIterator<Item = u32>,

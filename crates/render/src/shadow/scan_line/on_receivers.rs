@@ -81,7 +81,7 @@ impl Receivers<'_> {
         let (corners, own) = (wide(&triangles.corners[receiver]), triangles.facets[receiver]);
         let winding = winding_normal(&corners);
         let height = -winding.dot(away(light, corners[0]));
-        if !(height.abs() > 0.0) {
+        if height == 0.0 || height.is_nan() {
             return;
         }
         let world = &self.session.world;

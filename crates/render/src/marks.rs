@@ -177,8 +177,13 @@ impl MarkColors {
     }
 }
 
-/// Places all marks of a view on the screen.
-pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution) -> (Marks, MarkColors) {
+/// Places all marks of a view on the screen; `fade` says how distance shows.
+pub(crate) fn build(
+    view: &PreparedView<'_>,
+    settings: &Settings,
+    fade: Option<Fade>,
+    execution: &Execution,
+) -> (Marks, MarkColors) {
     let world = &view.session.world;
     let count = view.pattern.len();
     let samples =
@@ -186,7 +191,6 @@ pub fn build(view: &PreparedView<'_>, settings: &Settings, execution: &Execution
     let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
     let raw = settings.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
-    let fade = settings.depth_cue.map(|cue| Fade::new(view, &cue, encode));
     let mut marks = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
     let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
     let mut pen = Pen { view, drawn, clip_from_model, lift, half };

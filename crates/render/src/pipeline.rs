@@ -218,7 +218,7 @@ fn render_color(
         execution,
     );
     let t1 = clock();
-    let (drawn_marks, mark_colors) = marks::build(&view, settings, execution);
+    let (drawn_marks, mark_colors) = marks::build(&view, settings, constants.fade, execution);
     let t2 = clock();
 
     // Find what is visible, and shade each tile as it is finished.

@@ -1,5 +1,6 @@
 //! From the client's pixels to colours, depths and stencil values, with pixel transfer.
 
+use super::PIXELS_A_JOB;
 use super::format::{Content, PixelFormat, float_from_half};
 use super::store::ClientImage;
 use super::transfer::{Transfer, clamp_unit};
@@ -10,8 +11,6 @@ use vitral_exec::Workers;
 
 /// Pixels that are converted at once.
 const CHUNK: usize = 1024;
-/// Pixels in one piece of work: small images are one.
-const PIXELS_A_JOB: usize = 1 << 14;
 
 /// Appends each number of `bytes` as a float: integers become 0..=1 or -1..=1.
 pub(crate) fn numbers(bytes: &[u8], kind: u32, out: &mut Vec<f32>) {

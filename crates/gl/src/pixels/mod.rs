@@ -41,6 +41,9 @@ mod texels;
 mod texture;
 mod transfer;
 
+/// Pixels in one piece of work between the client and the planes or texels: small images are one.
+const PIXELS_A_JOB: usize = 1 << 14;
+
 #[allow(unused_imports)]
 pub(crate) use answers::{FramebufferBits, SavedTextures};
 pub(crate) use binding::TextureBindings;

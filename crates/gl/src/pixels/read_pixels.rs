@@ -1,5 +1,6 @@
 //! `ReadPixels`: whole rows from the planes to the client.
 
+use super::PIXELS_A_JOB;
 use super::encode;
 use super::format::{Content, PixelFormat};
 use super::image::lock;
@@ -86,9 +87,6 @@ pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectan
     }
     Some(words)
 }
-
-/// Pixels in one piece of work: small pictures are one.
-const PIXELS_A_JOB: usize = 1 << 14;
 
 /// Calls `read` with each row's place in the window and its part of `out`.
 fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl Fn(u32, &mut [T]) + Sync + Send) {

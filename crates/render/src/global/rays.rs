@@ -46,9 +46,7 @@ impl Haze {
     pub(super) fn new(constants: &FrameConstants<'_>, row: Option<u32>, point: DVec3) -> Self {
         let (Some(fade), Some(row)) = (&constants.fade, row) else { return Self { kept: 1.0, color: [0.0; 3] } };
         let depth = -constants.view.view.view_from_world.transform_point3(point).z;
-        let backgrounds = &constants.background.colors;
-        let color = fade.into(backgrounds[(row as usize).min(backgrounds.len() - 1)]);
-        Self { kept: fade.kept(depth as f32), color }
+        Self { kept: fade.kept(depth as f32), color: fade.into(constants.background.color(row)) }
     }
 }
 

@@ -648,12 +648,9 @@ impl<'a> Whitted<'a> {
 
     /// What a ray sees that meets nothing.
     fn background(&self, ray: &Branch) -> [f32; 4] {
-        let rows = &self.constants.background.colors;
-        let row = match ray.row {
-            Some(row) => row as usize,
-            None => self.sky.row(self.view_from_world * ray.direction, rows.len()),
-        };
-        rows[row.min(rows.len() - 1)]
+        let background = &self.constants.background;
+        let beyond = || self.sky.row(self.view_from_world * ray.direction, background.colors.len()) as u32;
+        background.color(ray.row.unwrap_or_else(beyond))
     }
 }
 

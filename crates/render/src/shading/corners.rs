@@ -81,7 +81,7 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
     let triangle = (facet - instance.first_facet) as usize;
     let material = constants.material(instance.mesh.material_of_triangle(triangle));
     let constants = &constants.instances[world.instance_of_facet(facet)];
-    let turns = constants.two_sided || material.material.double_sided || material.cutoff.is_some() || material.blend;
+    let turns = constants.two_sided || material.material.double_sided || material.is_layered();
     let normal = if away && turns { -normal } else { normal };
     for corner in 0..3 {
         let at = places[corner] + center;

@@ -9,6 +9,7 @@
 //! Source: \[Foley et al. 1990\], 16.1.3. Departs from it: depths are distances in view space, not those after the
 //! perspective transformation; `Idc` is the background of the pixel's row unless a colour is given.
 
+use super::frame_constants::BackgroundRows;
 use super::geometry::{F, Slots, Surface, constant};
 use super::hits::Along;
 use crate::{DepthCue, PreparedView};
@@ -74,7 +75,7 @@ impl Fade {
         (color, alpha): (V3<F<S>>, F<S>),
         surface: &Surface<F<S>>,
         (slots, along): (&Slots, Option<&Along>),
-        backgrounds: &[[f32; 4]],
+        background: &BackgroundRows,
     ) -> V3<F<S>> {
         simd.vectorize(
             #[inline(always)]
@@ -84,7 +85,7 @@ impl Fade {
                 let mut straight = [0.0; LANES];
                 for lane in 0..LANES {
                     let Some(row) = rows[lane] else { continue };
-                    let color = self.into(backgrounds[(row as usize).min(backgrounds.len() - 1)]);
+                    let color = self.into(background.color(row));
                     (0..3).for_each(|k| into[k][lane] = color[k]);
                     straight[lane] = 1.0;
                 }

@@ -67,6 +67,11 @@ pub(crate) struct MaterialConstants<'a> {
 }
 
 impl MaterialConstants<'_> {
+    /// Whether something may be seen behind it.
+    pub(super) fn is_layered(&self) -> bool {
+        self.cutoff.is_some() || self.blend
+    }
+
     /// Whether textures vary it.
     pub(super) fn has_textures(&self) -> bool {
         let Self { base, specular, emission, opacity, metallic_roughness, occlusion, normal, .. } = self;
@@ -141,6 +146,14 @@ pub(crate) struct BackgroundRows {
     pub colors: Vec<[f32; 4]>,
     /// As display bytes.
     pub bytes: Vec<[u8; 4]>,
+}
+
+impl BackgroundRows {
+    /// The colour of a row, or of the last one, in the space of composition.
+    #[inline]
+    pub(crate) fn color(&self, row: u32) -> [f32; 4] {
+        self.colors[(row as usize).min(self.colors.len() - 1)]
+    }
 }
 
 impl<'a> FrameConstants<'a> {

@@ -98,7 +98,7 @@ pub(crate) fn shade_all<S: Simd>(
 ) {
     if constants.surfaces_are_background {
         for (color, place) in lit.colors.iter_mut().zip(&points.place) {
-            *color = constants.background.colors[(place[1] as usize).min(constants.background.colors.len() - 1)];
+            *color = constants.background.color(place[1] as u32);
         }
         return;
     }
@@ -280,7 +280,7 @@ pub(crate) fn subject<'a>(
         interpolation: constants.interpolation,
         perspective: constants.view.view.perspective,
         double_sided: material.material.double_sided,
-        layered: material.cutoff.is_some() || material.blend,
+        layered: material.is_layered(),
     };
     let instance = &constants.instances[group.instance as usize];
     let normal_set = material.normal.as_ref().map(|texture| texture.reference.uv_set);
@@ -406,10 +406,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
         _ => color,
     };
     let color = match &constants.fade {
-        Some(fade) => {
-            let backgrounds = &constants.background.colors;
-            fade.faded_eight(simd, (color, looks.alpha), &surface, (slots, along), backgrounds)
-        }
+        Some(fade) => fade.faded_eight(simd, (color, looks.alpha), &surface, (slots, along), &constants.background),
         None => color,
     };
     if material.follows && !lit.bounces.is_empty() {

@@ -77,10 +77,7 @@ impl ColorSink<'_> {
 
     /// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and the background.
     pub(super) fn opaque_samples(&self, tile: &Tile, points: &Points, lit: &Lit) -> Vec<[f32; 4]> {
-        let background = |pixel: usize| {
-            let row = (tile.y as usize + pixel / TILE).min(self.constants.background.colors.len() - 1);
-            self.constants.background.colors[row]
-        };
+        let background = |pixel: usize| self.constants.background.color(tile.y + (pixel / TILE) as u32);
         let samples = self.constants.view.pattern.len();
         let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
         for pixel in &points.pixels {

@@ -130,7 +130,9 @@ struct ActiveEdge {
 }
 
 /// Entries of the tables for one polygon.
-const BYTES_A_POLYGON: u64 = (size_of::<Polygon<'_>>() + 2 * size_of::<Edge>() + size_of::<ActiveEdge>()) as u64;
+const BYTES_A_POLYGON: u64 = (size_of::<Polygon<'_>>()
+    + 2 * (size_of::<Edge>() + size_of::<Option<ActiveEdge>>())
+    + size_of::<ActiveEdge>()) as u64;
 
 /// Sweeps one row of tiles.
 fn sweep(

@@ -1,6 +1,6 @@
 //! What the tests of whole pictures share.
 
-use vitral::light::{Light, LightKind};
+use vitral::light::{Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec2, DVec3};
 use vitral::render::{Background, Channels, ColorSpace};
 use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, Scene, load_builtin};
@@ -91,4 +91,16 @@ pub(crate) fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
 pub(crate) fn largest_difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> u8 {
     assert_eq!(a.len(), b.len());
     a.as_flattened().iter().zip(b.as_flattened()).map(|(x, y)| x.abs_diff(*y)).max().unwrap_or(0)
+}
+
+/// The pixel in which a point of the world appears.
+pub(crate) fn pixel(renderer: &Renderer, picture: &[[u8; 4]], point: DVec3) -> [u8; 4] {
+    let p = project(renderer, point);
+    picture[p.y as usize * renderer.settings.width as usize + p.x as usize]
+}
+
+/// A colour that no light changes.
+pub(crate) fn poster(color: [f32; 3]) -> Material {
+    let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 };
+    Material { reflectance, unlit: true, ..Material::default() }
 }

@@ -1,6 +1,6 @@
 //! P41: depth cueing. Light fades with distance, the same with every algorithm, on surfaces, glass, mirrors and lines.
 
-use crate::common::{colors, exact, largest_difference, on_z, project};
+use crate::common::{colors, exact, largest_difference, on_z, pixel, poster};
 use vitral::light::{AlphaMode, Reflectance};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;
@@ -8,12 +8,6 @@ use vitral::render::{Background, DepthCue, Global, Lines, Shading};
 use vitral::scene::builtin::solids;
 use vitral::scene::{FreePart, Projection};
 use vitral::{Camera, Material, Mesh, Renderer, Scene};
-
-/// A colour that no light changes.
-fn poster(color: [f32; 3]) -> Material {
-    let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 };
-    Material { reflectance, unlit: true, ..Material::default() }
-}
 
 /// A square towards +z.
 fn add(scene: &mut Scene, side: f64, material: Material, place: DVec3) {
@@ -47,11 +41,6 @@ fn cued(scene: Scene, cue: DepthCue) -> Renderer {
     r
 }
 
-fn at(r: &Renderer, picture: &[[u8; 4]], place: DVec3) -> [u8; 4] {
-    let p = project(r, place);
-    picture[p.y as usize * r.settings.width as usize + p.x as usize]
-}
-
 /// White of which the part `s` is left before the background of [`cued`].
 fn faded(s: f32) -> [u8; 4] {
     [s, s, s + (1.0 - s) * 0.4, 1.0].map(|c| (c * 255.0).round() as u8)
@@ -67,7 +56,7 @@ fn p41_what_is_farther_away_fades_by_the_formula() {
             let picture = colors(&mut r);
             // Before the front plane, between the planes, behind the back plane.
             for (place, s) in PLACES.into_iter().zip([1.0, 0.8125, 0.25]) {
-                let seen = at(&r, &picture, place);
+                let seen = pixel(&r, &picture, place);
                 assert!(largest_difference(&[seen], &[faded(s)]) <= 1, "{place}: {seen:?}, not {:?}", faded(s));
             }
         }
@@ -84,7 +73,7 @@ fn p41_open_planes_lie_where_the_scene_begins_and_ends() {
         let t = (-place.z - (-sphere.center.z - sphere.radius).max(0.0))
             / (2.0 * sphere.radius).min(-sphere.center.z + sphere.radius);
         let s = 1.0 + (0.2 - 1.0) * t.clamp(0.0, 1.0) as f32;
-        assert!(largest_difference(&[at(&r, &picture, place)], &[faded(s)]) <= 1, "{place}: {s}");
+        assert!(largest_difference(&[pixel(&r, &picture, place)], &[faded(s)]) <= 1, "{place}: {s}");
     }
 }
 
@@ -174,11 +163,11 @@ fn p41_lines_and_points_fade_along_their_way() {
     let [near, far] = [near, far].map(|p| DVec3::from(p.map(f64::from)));
     for share in [0.1, 0.4, 0.7, 0.95] {
         let place = near.lerp(far, share);
-        let seen = at(&r, &picture, place);
+        let seen = pixel(&r, &picture, place);
         let s = 1.0 - 0.75 * (-place.z as f32 - 3.0) / 4.0;
         assert!(largest_difference(&[seen], &[faded(s)]) <= 2, "{share}: {seen:?}, not {:?}", faded(s));
     }
-    assert!(largest_difference(&[at(&r, &picture, DVec3::new(0.5, -1.0, -5.0))], &[faded(0.625)]) <= 1);
+    assert!(largest_difference(&[pixel(&r, &picture, DVec3::new(0.5, -1.0, -5.0))], &[faded(0.625)]) <= 1);
     // Edges of faces, too.
     let mut edges = cued(squares(), CUE);
     edges.settings.lines = Lines::Wireframe;

@@ -36,6 +36,16 @@ fn square(along_u: DVec2, along_v: DVec2, with_normals: bool, world_from_model: 
     scene
 }
 
+/// How light the middle of a scene is, seen and lit from these directions.
+fn shown(scene: &Scene, seen_from: DVec3, lit_from: DVec3) -> f64 {
+    let mut renderer = exact(scene.clone(), 9, 9);
+    renderer.camera = Some(Camera { position: seen_from * 5.0, ..on_z(1.0, 0.3) });
+    renderer.lights = Some(vec![sun(lit_from, 1.0)]);
+    renderer.ambient = [0.0; 3];
+    renderer.settings.illumination = Illumination::Lambert;
+    f64::from(colors(&mut renderer)[4 * 9 + 4][0]) / 255.0
+}
+
 #[test]
 fn bumps_stay_bumps_on_mirrored_textures_and_nodes_and_are_dents_from_behind() {
     let [x, y, z] = [0, 1, 2].map(|k| f64::from(TEXEL[k]) / 255.0 * 2.0 - 1.0);
@@ -59,12 +69,7 @@ fn bumps_stay_bumps_on_mirrored_textures_and_nodes_and_are_dents_from_behind() {
         let seen_from = DVec3::Z * side;
         let normal = if front.dot(seen_from) > 0.0 { normal } else { -normal };
         for from in [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side), DVec3::new(0.2, -0.7, side)] {
-            let mut renderer = exact(scene.clone(), 9, 9);
-            renderer.camera = Some(Camera { position: seen_from * 5.0, ..on_z(1.0, 0.3) });
-            renderer.lights = Some(vec![sun(from, 1.0)]);
-            renderer.ambient = [0.0; 3];
-            renderer.settings.illumination = Illumination::Lambert;
-            let shown = f64::from(colors(&mut renderer)[4 * 9 + 4][0]) / 255.0;
+            let shown = shown(&scene, seen_from, from);
             let expected = normal.dot(from.normalize()).max(0.0);
             let case =
                 format!("u {along_u}, v {along_v}, node {scale}, side {side}, normals {with_normals}, from {from}");
@@ -91,12 +96,7 @@ fn a_files_own_tangents_say_where_the_texture_lies() {
         let seen_from = DVec3::Z * side;
         let normal = if front.dot(seen_from) > 0.0 { normal } else { -normal };
         for from in [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side)] {
-            let mut renderer = exact(scene.clone(), 9, 9);
-            renderer.camera = Some(Camera { position: seen_from * 5.0, ..on_z(1.0, 0.3) });
-            renderer.lights = Some(vec![sun(from, 1.0)]);
-            renderer.ambient = [0.0; 3];
-            renderer.settings.illumination = Illumination::Lambert;
-            let shown = f64::from(colors(&mut renderer)[4 * 9 + 4][0]) / 255.0;
+            let shown = shown(&scene, seen_from, from);
             let expected = normal.dot(from.normalize()).max(0.0);
             assert!((shown - expected).abs() < 0.02, "node {scale}, side {side}, w {w}: {shown}, not {expected}");
         }

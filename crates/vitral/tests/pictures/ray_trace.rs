@@ -1,6 +1,6 @@
 //! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with the local models.
 
-use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, project, sun};
+use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
 use std::sync::{Arc, Mutex};
 use vitral::explain::explain;
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
@@ -12,12 +12,6 @@ use vitral::render::{Acceleration, Background, Global, Transparency};
 use vitral::scene::Part;
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
-
-/// A colour that no light changes.
-fn poster(color: [f32; 3]) -> Material {
-    let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 };
-    Material { reflectance, unlit: true, ..Material::default() }
-}
 
 /// Glass that shows nothing of its own.
 fn glass(kt: f32, ior: f32) -> Material {
@@ -45,11 +39,6 @@ fn traced(mut renderer: Renderer) -> Renderer {
     renderer.settings.global = Global::RayTrace;
     renderer.settings.shadows = "ray".to_owned();
     renderer
-}
-
-fn pixel(renderer: &Renderer, picture: &[[u8; 4]], point: DVec3) -> [u8; 4] {
-    let p = project(renderer, point);
-    picture[p.y as usize * renderer.settings.width as usize + p.x as usize]
 }
 
 /// Which channel is the brightest.

@@ -1,16 +1,17 @@
 //! The common kinds of fragments, a block of 8x8 pixels at a time: depth test, colours, writing, one after the other.
 //!
-//! Logic operations, masks, coverage by alpha and the seldom blend functions go row by row through [`super::fragment`];
-//! what is left is done here in short loops, each over all samples of a block, with the same operations and the same
-//! results.
+//! Coverage by alpha, soft borders, sRGB and floating-point colours go row by row through [`super::fragment`]; what is left is
+//! done here in short loops, each over all samples of a block, with the same operations and the same results.
 
 use super::depth_ranges::{Verdict, verdict};
-use super::fragment::{ColorTile, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
+use super::fragment::{ColorTile, FragmentOps, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
+use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
+use super::fragment_ops::logic::{logic_op, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
-use super::state::{Compare, StencilFace, StencilOp};
+use super::state::{Compare, FragmentState, StencilFace, StencilOp};
 use super::surface::Surface;
 use super::wide::{bits_of, every, mask_of, max, min, select, splat};
 use crate::kernel::block::Block;
@@ -53,6 +54,13 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     let columns = super::fragment::columns(x, x0, x1) as u64;
     let (first, last) = ((y0 - y).clamp(0, 8), (y1 - y).clamp(0, 8));
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
+}
+
+/// Which pixels of the block at pixel `(left, bottom)`, the left one a multiple of eight, a polygon stipple lets pass.
+pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u64 {
+    // The leftmost pixel is the highest bit.
+    let eight = |row: usize| (pattern[(bottom + row) % 32] >> (24 - left % 32)) as u8;
+    (0..BLOCK).fold(0, |mask, row| mask | u64::from(eight(row).reverse_bits()) << (BLOCK * row))
 }
 
 /// Rows of a block that are computed together.
@@ -442,22 +450,23 @@ fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
     }
 }
 
-/// Writes colours to the samples of `masks`.
+/// Writes colours to the samples of `masks`, as a draw's state has it.
 pub(crate) fn colors<S: Simd>(
     simd: S,
     block: &Block,
     planes: &mut TilePlanes<'_>,
-    mixing: Mixing,
+    (ops, state): (&FragmentOps, &FragmentState),
     words: &Words<'_>,
     masks: &[u64; SAMPLES],
 ) {
     let samples = planes.samples;
-    let Some(ColorTile::Rgba8(tile)) = &mut planes.color else { return };
+    let Some(ColorTile::Rgba8(tile)) = planes.color.as_mut().filter(|_| !ops.all_protected) else { return };
     let together = all_alike(masks, samples);
     simd.vectorize(
         #[inline(always)]
         || {
-            if mixing == Mixing::Replace && together && masks[0] == u64::MAX && block.is_aligned() {
+            let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
+            if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
                 let values = tile.replace(block.touched(), true, samples);
                 let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
                 for row in 0..BLOCK {
@@ -488,8 +497,46 @@ pub(crate) fn colors<S: Simd>(
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
-                write_rows(simd, (words, mixing), mask, plane);
+                if ops.is_simple() {
+                    write_rows(simd, (words, ops.mixing), mask, plane);
+                } else {
+                    write_seldom_rows(simd, words, (ops, state), mask, plane);
+                }
             }
+        },
+    );
+}
+
+/// [`write_rows`] with all that a draw's state may have: seldom factors, logical operations, masks.
+#[inline(never)]
+fn write_seldom_rows<S: Simd>(
+    simd: S,
+    words: &BlockWords,
+    (ops, state): (&FragmentOps, &FragmentState),
+    mask: u64,
+    stored: &mut [u32],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            each_two_rows(
+                simd,
+                words,
+                mask,
+                stored,
+                #[inline(always)]
+                |new, old| {
+                    let mixed = match (ops.mixing, &state.blend) {
+                        (Mixing::Logic(op), _) => logic_op(op, new, old),
+                        (Mixing::Add, _) => add_packed(new, old),
+                        (Mixing::AddScaled, _) => add_scaled_packed(new, old),
+                        (Mixing::Mix, _) => mix_packed(new, old),
+                        (Mixing::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
+                        _ => new,
+                    };
+                    write_unprotected(mixed, old, ops.protected)
+                },
+            );
         },
     );
 }
@@ -497,16 +544,35 @@ pub(crate) fn colors<S: Simd>(
 /// Writes colours to the pixels of `mask`; `stored` begins with the block's first.
 #[inline(always)]
 fn write_rows<S: Simd>(simd: S, (words, mixing): (&BlockWords, Mixing), mask: u64, stored: &mut [u32]) {
-    for row in pairs(mask) {
-        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + TWO)]);
-        let [first, second] = rows_from(stored, row * TILE);
-        let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
-        let new = match mixing {
+    each_two_rows(
+        simd,
+        words,
+        mask,
+        stored,
+        #[inline(always)]
+        |new, old| match mixing {
             Mixing::Add => add_packed(new, old),
             Mixing::AddScaled => add_scaled_packed(new, old),
             Mixing::Mix => mix_packed(new, old),
             _ => new,
-        };
+        },
+    );
+}
+
+/// Brings what `mix` makes of new and stored colours to the pixels of `mask`.
+#[inline(always)]
+fn each_two_rows<S: Simd>(
+    simd: S,
+    words: &BlockWords,
+    mask: u64,
+    stored: &mut [u32],
+    mix: impl Fn(U32x16<S>, U32x16<S>) -> U32x16<S>,
+) {
+    for row in pairs(mask) {
+        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + TWO)]);
+        let [first, second] = rows_from(stored, row * TILE);
+        let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
+        let new = mix(new, old);
         let (low, high) = Mask16::from_bitmask(simd, (mask >> (8 * row)) & 0xffff).select(new, old).split();
         low.store_slice(first);
         high.store_slice(second);

@@ -5,14 +5,16 @@
 //! a fragment that fails the depth test changes at most the stencil.
 
 use super::depth_ranges::DepthRanges;
-use super::fragment_ops::blend::blend;
+use super::fragment_ops::blend::{Components, blend, blend_packed};
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
 use super::fragment_ops::logic::{logic_op, logic_op_of_16_bits, protected_bits, write_unprotected};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
-use super::state::{Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, StencilFace, StencilOp};
+use super::state::{
+    Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, LogicOp, StencilFace, StencilOp,
+};
 use super::wide::{Rgba, bits_of, every, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
 use std::sync::atomic::Ordering;
@@ -100,22 +102,30 @@ pub(crate) enum Mixing {
     AddScaled,
     Mix,
     General,
+    Logic(LogicOp),
 }
 
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
     pub(crate) mixing: Mixing,
-    protected: u32,
+    /// Bits of a packed colour that the mask keeps from being written.
+    pub(crate) protected: u32,
     /// Nothing needs the row-by-row operations, see [`super::block`].
     pub(crate) common: bool,
     /// Common, and nothing but depths and colours is written, see [`super::tiny_eight`].
     pub(crate) direct: bool,
-    all_protected: bool,
+    pub(crate) all_protected: bool,
     coverage: u32,
 }
 
 impl FragmentOps {
+    /// Whether colours are written whole, and mixed in one of the ways that programs use most.
+    #[inline(always)]
+    pub(crate) fn is_simple(&self) -> bool {
+        self.protected == 0 && !matches!(self.mixing, Mixing::General | Mixing::Logic(_))
+    }
+
     pub(crate) fn new(state: &FragmentState, samples: usize) -> Self {
         let all = (1u32 << samples) - 1;
         let coverage = match state.sample_coverage {
@@ -126,16 +136,9 @@ impl FragmentOps {
         let mixing = mixing(state);
         let writes_stencil = !state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back));
         // The alpha test comes before a stencil that changes.
-        let common = !(writes_stencil && state.alpha_test.is_some())
-            && state.logic_op.is_none()
-            && !state.srgb
-            && state.query.is_none()
-            && state.polygon_stipple.is_none()
-            && state.sample_coverage.is_none()
-            && !(state.alpha_to_coverage || state.alpha_to_one)
-            && (protected == 0 || state.masked == [true; 4])
-            && mixing != Mixing::General;
-        let direct = common && !writes_stencil;
+        let by_rows = (writes_stencil && state.alpha_test.is_some()) || state.srgb || state.sample_coverage.is_some();
+        let common = !(by_rows || state.alpha_to_coverage || state.alpha_to_one);
+        let direct = common && !writes_stencil && state.query.is_none() && state.polygon_stipple.is_none();
         Self { mixing, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
     }
 }
@@ -147,10 +150,10 @@ pub(crate) fn keeps(face: &StencilFace) -> bool {
 
 fn mixing(state: &FragmentState) -> Mixing {
     use BlendFactor::{One, OneMinusSrcAlpha, SrcAlpha, Zero};
-    let Some(Blend { source, destination, equation, .. }) = state.blend else { return Mixing::Replace };
-    if state.logic_op.is_some() {
-        return Mixing::Replace;
+    if let Some(op) = state.logic_op {
+        return Mixing::Logic(op);
     }
+    let Some(Blend { source, destination, equation, .. }) = state.blend else { return Mixing::Replace };
     if equation != [BlendEquation::Add; 2] {
         return Mixing::General;
     }
@@ -383,15 +386,13 @@ fn write_packed<S: Simd>(
         Mixing::AddScaled => add_scaled_packed(packed, stored),
         Mixing::Mix => mix_packed(packed, stored),
         Mixing::General => match &state.blend {
-            Some(b) => blend_packed(simd, b, color, stored),
+            Some(b) => general_packed(simd, b, packed, stored),
             None => packed,
         },
+        Mixing::Logic(op) => logic_op(op, packed, stored),
     };
-    if state.srgb {
+    if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);
-    }
-    if let Some(op) = state.logic_op {
-        new = logic_op(op, packed, stored);
     }
     if ops.protected != 0 {
         new = write_unprotected(new, stored, ops.protected);
@@ -405,10 +406,10 @@ fn write_packed<S: Simd>(
 
 /// The seldom factors and equations, kept out of line.
 #[inline(never)]
-fn blend_packed<S: Simd>(simd: S, state: &Blend, color: &Rgba<S>, stored: U32x8<S>) -> U32x8<S> {
+fn general_packed<S: Simd>(simd: S, state: &Blend, color: U32x8<S>, stored: U32x8<S>) -> U32x8<S> {
     simd.vectorize(
         #[inline(always)]
-        || pack(&saturate_rgba(blend(simd, state, *color, unpack(stored), true))),
+        || blend_packed::<S, F32x8<S>>(simd, state, color, stored),
     )
 }
 
@@ -423,7 +424,7 @@ fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored:
                 *component = F32x8::from_slice(simd, &component.to_array().map(linear_from_srgb));
             }
             let mut new = match &state.blend {
-                Some(b) => blend(simd, b, *color, old, true),
+                Some(b) => blend(simd, b, *color, old, Components::Unit),
                 None => *color,
             };
             for component in &mut new[..3] {
@@ -455,7 +456,8 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     F32x8::from_slice(simd, &soa[2]),
                     F32x8::from_slice(simd, &soa[3]),
                 ];
-                new = blend(simd, b, color, stored, state.clamping == Clamping::Results);
+                let results = state.clamping == Clamping::Results;
+                new = blend(simd, b, color, stored, if results { Components::Unit } else { Components::Unclamped });
             }
             let mut new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
             // Floating-point colours have no bits to combine.

@@ -18,6 +18,7 @@ use crate::kernel::plane::RowPlane;
 use crate::kernel::traverse::{Placed, Window, traverse_window};
 use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Level, Simd, columns_of_rows, dispatch};
 
@@ -410,7 +411,11 @@ impl ForwardSink<'_, '_, '_> {
     #[inline(always)]
     fn block_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         let (state, samples) = (self.draw.state, self.run.planes.samples);
-        let allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
+        let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
+        let mut allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
+        if let (Some(pattern), FacetKind::Polygon) = (&state.polygon_stipple, self.shader.facet.kind) {
+            allowed &= block::stippled(pattern, place);
+        }
         let mut bits = [0; SAMPLES];
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
@@ -428,7 +433,6 @@ impl ForwardSink<'_, '_, '_> {
                 return;
             }
         }
-        let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.
         let late = state.alpha_test.is_some();
@@ -441,22 +445,42 @@ impl ForwardSink<'_, '_, '_> {
             block::update_stencil(simd, block, &mut self.run.planes, face, [covered, reached, &bits]);
         }
         let any = bits[0] | bits[1] | bits[2] | bits[3];
-        if any == 0 || !self.draw.shaded {
-            return;
+        if any != 0 && self.draw.shaded {
+            self.block_colors(simd, setup, place, block, rule.filter(|rule| rule.write && changes), any, &mut bits);
         }
+        if let Some(query) = &state.query {
+            let count: u32 = bits[..samples].iter().map(|bits| bits.count_ones()).sum();
+            query.fetch_add(u64::from(count), Ordering::Relaxed);
+        }
+    }
+
+    /// The colours of a block's pixels in `any`, and the alpha test, which leaves in `bits` what passes; then `write` says how its
+    /// depths are written.
+    #[inline(always)]
+    fn block_colors<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: (usize, usize),
+        block: &Block,
+        write: Option<DepthRule>,
+        any: u64,
+        bits: &mut [u64; SAMPLES],
+    ) {
+        let state = self.draw.state;
         let (one, passed) = self.shader.block(simd, setup, place, any, self.words);
-        if late {
-            for b in &mut bits {
+        if state.alpha_test.is_some() {
+            for b in &mut *bits {
                 *b &= passed;
             }
             // Mostly the depths are there already, from a draw before.
-            if let Some(rule) = rule.filter(|rule| rule.write && changes) {
+            if let Some(rule) = write {
                 let write = DepthRule { func: Compare::Always, ..rule };
-                self.depths(simd, setup, place, block, write, &mut bits);
+                self.depths(simd, setup, place, block, write, bits);
             }
         }
         let words = Words::of(one, self.words);
-        block::colors(simd, block, &mut self.run.planes, self.draw.ops.mixing, &words, &bits);
+        block::colors(simd, block, &mut self.run.planes, (&self.draw.ops, state), &words, bits);
     }
 
     #[inline(always)]

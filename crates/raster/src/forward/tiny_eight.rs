@@ -288,7 +288,7 @@ impl TileRun<'_> {
             let corner = (self.x as usize + block.x, self.y as usize + block.y);
             let (one, visible) = shader.block(simd, setup, corner, seen.any[facet], words);
             let masks = seen.limit(facet, visible);
-            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::of(one, words), &masks);
+            block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::of(one, words), &masks);
         }
     }
 
@@ -349,7 +349,7 @@ impl TileRun<'_> {
     ) {
         let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return };
         let adds = draw.ops.mixing == Mixing::Add;
-        if adds || draw.ops.mixing == Mixing::Replace {
+        if draw.ops.protected == 0 && (adds || draw.ops.mixing == Mixing::Replace) {
             let (count, values) = plane.open(seen.touched, seen.alike, self.planes.samples);
             let planes = values.as_chunks_mut::<TILE_PIXELS>().0;
             if let ([a, b, c, d, ..], SAMPLES) = (&mut *planes, count) {
@@ -362,7 +362,7 @@ impl TileRun<'_> {
         for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
             places(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
             let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
-            block::colors(simd, &block, &mut self.planes, draw.ops.mixing, &Words::Each(words), &masks);
+            block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::Each(words), &masks);
         }
     }
 }

@@ -1,48 +1,80 @@
 //! Blending: the equation of source and stored colour, each times its factor.
 
+use super::packed::unpack_bytes;
 use crate::forward::state::{Blend, BlendEquation, BlendFactor};
-use crate::forward::wide::{Rgba, max, min, saturate_rgba, splat, splat_rgba};
-use vitral_math::lanes::{F32x8, Simd};
+use crate::forward::wide::{clamp, every_rgba, max, min};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, Floats, Lanes, Simd};
 
-/// The blended colour. With `clamped` (planes of fixed point) the source and the constant are clamped to `0..=1` before
-/// and the result after; planes of floating point take everything as it is.
-#[inline(always)]
-pub(crate) fn blend<S: Simd>(simd: S, state: &Blend, source: Rgba<S>, stored: Rgba<S>, clamped: bool) -> Rgba<S> {
-    let constant = splat_rgba(simd, state.color);
-    let (source, constant) =
-        if clamped { (saturate_rgba(source), saturate_rgba(constant)) } else { (source, constant) };
-    let inputs = Inputs { simd, source, stored, constant };
-    let s = inputs.color_factor(state.source[0]);
-    let d = inputs.color_factor(state.destination[0]);
-    let equation = state.equation[0];
-    let blended = [
-        combine(equation, source[0], s[0], stored[0], d[0]),
-        combine(equation, source[1], s[1], stored[1], d[1]),
-        combine(equation, source[2], s[2], stored[2], d[2]),
-        combine(
-            state.equation[1],
-            source[3],
-            inputs.alpha_factor(state.source[1]),
-            stored[3],
-            inputs.alpha_factor(state.destination[1]),
-        ),
-    ];
-    if clamped { saturate_rgba(blended) } else { blended }
+/// The numbers that components are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Components {
+    /// As planes of floating point hold them: everything is taken as it is.
+    Unclamped,
+    /// `0..=1`: source and constant are clamped before, the result after.
+    Unit,
+    /// `0..=255`: the same, times 255.
+    Bytes,
 }
 
-/// One component.
+/// The blended colour.
 #[inline(always)]
-fn combine<S: Simd>(
-    equation: BlendEquation,
-    source: F32x8<S>,
-    source_factor: F32x8<S>,
-    stored: F32x8<S>,
-    stored_factor: F32x8<S>,
-) -> F32x8<S> {
+pub(crate) fn blend<S: Simd, V: Floats<S>>(
+    simd: S,
+    state: &Blend,
+    source: [V; 4],
+    stored: [V; 4],
+    components: Components,
+) -> [V; 4] {
+    let one = if components == Components::Bytes { 255.0 } else { 1.0 };
+    let limited = lanes::inlined(
+        #[inline(always)]
+        |[r, g, b, a]: [V; 4]| match components {
+            Components::Unclamped => [r, g, b, a],
+            _ => [clamp(r, 0.0, one), clamp(g, 0.0, one), clamp(b, 0.0, one), clamp(a, 0.0, one)],
+        },
+    );
+    let (source, constant) = (limited(source), limited(every_rgba(simd, state.color.map(|c| c * one))));
+    let inputs = Inputs { one, source, stored, constant };
+    let s = inputs.color_factor(state.source[0]);
+    let d = inputs.color_factor(state.destination[0]);
+    let component = lanes::inlined(
+        #[inline(always)]
+        |k: usize, s: V, d: V| combine(state.equation[usize::from(k == 3)], (source[k], s), (stored[k], d), one),
+    );
+    let alpha_factors = [inputs.alpha_factor(state.source[1]), inputs.alpha_factor(state.destination[1])];
+    limited([
+        component(0, s[0], d[0]),
+        component(1, s[1], d[1]),
+        component(2, s[2], d[2]),
+        component(3, alpha_factors[0], alpha_factors[1]),
+    ])
+}
+
+/// Blends packed pixels. Each byte is the nearest to the exact result: products and sums of bytes are exact, and 255 is odd, so
+/// that no quotient lies half between two.
+#[inline(always)]
+pub(crate) fn blend_packed<S: Simd, V: Floats<S>>(
+    simd: S,
+    state: &Blend,
+    source: V::Words,
+    stored: V::Words,
+) -> V::Words {
+    let color: [V; 4] = blend(simd, state, unpack_bytes(source), unpack_bytes(stored), Components::Bytes);
+    let byte = lanes::inlined(
+        #[inline(always)]
+        |k: usize| -> V::Ints { (color[k] + 0.5).to_int() },
+    );
+    (byte(0) | (byte(1) << 8) | (byte(2) << 16) | (byte(3) << 24)).bitcast()
+}
+
+/// One component, and what it and the stored one are multiplied with; factors count in parts of `one`.
+#[inline(always)]
+fn combine<V: Lanes>(equation: BlendEquation, (source, s): (V, V), (stored, d): (V, V), one: f32) -> V {
     match equation {
-        BlendEquation::Add => source * source_factor + stored * stored_factor,
-        BlendEquation::Subtract => source * source_factor - stored * stored_factor,
-        BlendEquation::ReverseSubtract => stored * stored_factor - source * source_factor,
+        BlendEquation::Add => (source * s + stored * d) * (1.0 / one),
+        BlendEquation::Subtract => (source * s - stored * d) * (1.0 / one),
+        BlendEquation::ReverseSubtract => (stored * d - source * s) * (1.0 / one),
         // These two ignore the factors.
         BlendEquation::Min => min(source, stored),
         BlendEquation::Max => max(source, stored),
@@ -51,18 +83,18 @@ fn combine<S: Simd>(
 
 /// What factors are made of.
 #[derive(Clone, Copy)]
-struct Inputs<S: Simd> {
-    simd: S,
-    source: Rgba<S>,
-    stored: Rgba<S>,
-    constant: Rgba<S>,
+struct Inputs<V> {
+    one: f32,
+    source: [V; 4],
+    stored: [V; 4],
+    constant: [V; 4],
 }
 
-impl<S: Simd> Inputs<S> {
+impl<V: Lanes> Inputs<V> {
     /// Factors of red, green and blue.
     #[inline(always)]
-    fn color_factor(&self, factor: BlendFactor) -> [F32x8<S>; 3] {
-        let one = splat(self.simd, 1.0);
+    fn color_factor(&self, factor: BlendFactor) -> [V; 3] {
+        let one = self.source[0].splat(self.one);
         match factor {
             BlendFactor::SrcColor => rgb(self.source),
             BlendFactor::OneMinusSrcColor => complement(one, rgb(self.source)),
@@ -77,10 +109,10 @@ impl<S: Simd> Inputs<S> {
 
     /// The factor of alpha, where a colour counts with its alpha.
     #[inline(always)]
-    fn alpha_factor(&self, factor: BlendFactor) -> F32x8<S> {
-        let one = splat(self.simd, 1.0);
+    fn alpha_factor(&self, factor: BlendFactor) -> V {
+        let one = self.source[0].splat(self.one);
         match factor {
-            BlendFactor::Zero => splat(self.simd, 0.0),
+            BlendFactor::Zero => one.splat(0.0),
             BlendFactor::One | BlendFactor::SrcAlphaSaturate => one,
             BlendFactor::SrcColor | BlendFactor::SrcAlpha => self.source[3],
             BlendFactor::OneMinusSrcColor | BlendFactor::OneMinusSrcAlpha => one - self.source[3],
@@ -93,21 +125,22 @@ impl<S: Simd> Inputs<S> {
 }
 
 #[inline(always)]
-fn rgb<S: Simd>(c: Rgba<S>) -> [F32x8<S>; 3] {
+fn rgb<V: Lanes>(c: [V; 4]) -> [V; 3] {
     [c[0], c[1], c[2]]
 }
 
 #[inline(always)]
-fn complement<S: Simd>(one: F32x8<S>, c: [F32x8<S>; 3]) -> [F32x8<S>; 3] {
+fn complement<V: Lanes>(one: V, c: [V; 3]) -> [V; 3] {
     [one - c[0], one - c[1], one - c[2]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::forward::fragment_ops::packed::{pack, unpack};
+    use crate::forward::wide::{Rgba, splat_rgba};
     use BlendFactor::*;
-    use vitral_math::lanes::prelude::*;
-    use vitral_math::lanes::{Level, available_levels, dispatch};
+    use vitral_math::lanes::{F32x8, F32x16, Level, U32x8, U32x16, available_levels, dispatch};
 
     const FACTORS: [BlendFactor; 15] = [
         Zero,
@@ -185,7 +218,8 @@ mod tests {
                 let at = |k| F32x8::from_slice(simd, &column(v, k));
                 [at(0), at(1), at(2), at(3)]
             };
-            let [r, g, b, a] = blend(simd, state, load(s), load(d), clamped);
+            let components = if clamped { Components::Unit } else { Components::Unclamped };
+            let [r, g, b, a] = blend(simd, state, load(s), load(d), components);
             [r.to_array(), g.to_array(), b.to_array(), a.to_array()]
         });
         for lane in 0..8 {
@@ -225,6 +259,34 @@ mod tests {
     }
 
     #[test]
+    fn packed_pixels_blend_as_their_components_do() {
+        let word = |i: u32| i.wrapping_mul(0x9e37_79b9) ^ i.wrapping_mul(i) << 7;
+        let (source, stored): ([u32; 16], [u32; 16]) =
+            (std::array::from_fn(|i| word(i as u32 + 3)), std::array::from_fn(|i| word(i as u32 + 77)));
+        for (name, level) in available_levels() {
+            for (source_factor, destination) in FACTORS.iter().flat_map(|s| FACTORS.map(|d| (*s, d))) {
+                for equation in EQUATIONS {
+                    let state = Blend {
+                        source: [source_factor; 2],
+                        destination: [destination; 2],
+                        equation: [equation; 2],
+                        color: [0.2, 1.5, -0.5, 0.75],
+                    };
+                    let (eight, sixteen, expected) = dispatch!(level, simd => {
+                        let [s, d] = [&source, &stored].map(|words| U32x8::from_slice(simd, &words[..8]));
+                        let eight = blend_packed::<_, F32x8<_>>(simd, &state, s, d).to_array();
+                        let apart = pack(&blend(simd, &state, unpack(s), unpack(d), Components::Unit)).to_array();
+                        let [s, d] = [&source, &stored].map(|words| U32x16::from_slice(simd, words));
+                        (eight, blend_packed::<_, F32x16<_>>(simd, &state, s, d).to_array(), apart)
+                    });
+                    assert_eq!(eight, expected, "{name} {state:?}");
+                    assert_eq!(sixteen[..8], expected, "{name} {state:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn colour_and_alpha_blend_separately() {
         let state = Blend {
             source: [SrcAlpha, One],
@@ -237,7 +299,7 @@ mod tests {
             let half = [[1.0, 0.0, 0.5, 0.5]; 8];
             let out = dispatch!(level, simd => {
                 let load = |c: [f32; 4]| splat_rgba(simd, c);
-                let out = blend(simd, &state, load(half[0]), load([0.0, 1.0, 0.5, 0.25]), true);
+                let out = blend(simd, &state, load(half[0]), load([0.0, 1.0, 0.5, 0.25]), Components::Unit);
                 [out[0].to_array()[0], out[1].to_array()[0], out[2].to_array()[0], out[3].to_array()[0]]
             });
             assert_eq!(out, [0.5, 0.5, 0.5, 0.0]);

@@ -2,7 +2,8 @@
 
 use crate::forward::state::LogicOp;
 use std::ops::{BitAnd, BitOr, BitXor, Not};
-use vitral_math::lanes::{Simd, U32x8};
+use vitral_math::lanes::Simd;
+use vitral_math::lanes::prelude::*;
 
 /// What a logical operation stores: bit by bit of incoming `s` and stored `d`.
 #[inline(always)]
@@ -44,14 +45,14 @@ pub(crate) fn protected_bits(masked: [bool; 4]) -> u32 {
 
 /// `new`, but `old` in the protected bits.
 #[inline(always)]
-pub(crate) fn write_unprotected<S: Simd>(new: U32x8<S>, old: U32x8<S>, protected: u32) -> U32x8<S> {
+pub(crate) fn write_unprotected<S: Simd, W: SimdInt<S, Element = u32>>(new: W, old: W, protected: u32) -> W {
     (new & !protected) | (old & protected)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::lanes::prelude::*;
+    use vitral_math::lanes::U32x8;
     use vitral_math::lanes::{available_levels, dispatch};
 
     /// Bit `2 * s + d` of each is the result for source bit `s` and destination bit `d` (table 4.2 of the specification).

@@ -94,7 +94,7 @@ fn divide_by_255<S: Simd, W: SimdInt<S, Element = u32>>(halves: W) -> W {
 
 #[cfg(test)]
 mod tests {
-    use super::super::blend::blend;
+    use super::super::blend::{Components, blend};
     use super::*;
     use crate::forward::state::{Blend, BlendEquation, BlendFactor};
     use vitral_math::color::byte_from_unit;
@@ -132,7 +132,7 @@ mod tests {
         };
         dispatch!(level, simd => {
             let (s, d) = (U32x8::from_slice(simd, s), U32x8::from_slice(simd, d));
-            pack(&blend(simd, &state, unpack(s), unpack(d), true)).to_array()
+            pack(&blend(simd, &state, unpack(s), unpack(d), Components::Unit)).to_array()
         })
     }
 

@@ -7,8 +7,8 @@ pub(crate) mod fog;
 
 use super::state::{EnvironmentMode, Unit};
 use super::texture::{BaseFormat, Texture};
-use super::wide::{Rgba, mix, saturate_rgba, splat, splat_rgba};
-use vitral_math::lanes::{Lanes, Simd};
+use super::wide::{mix, saturate_rgba};
+use vitral_math::lanes::{Floats, Lanes, Simd};
 
 /// How many texture units there are.
 pub(crate) const UNITS: usize = 8;
@@ -16,13 +16,13 @@ pub(crate) const UNITS: usize = 8;
 /// The colour after `unit`, clamped to `0..=1`: `textures` are the texture colours of all units by their index,
 /// `primary` is the colour before the first unit, `previous` the one before this unit.
 #[inline(always)]
-pub(crate) fn environment<S: Simd>(
+pub(crate) fn environment<S: Simd, V: Floats<S>>(
     simd: S,
     unit: &Unit,
-    textures: &[Rgba<S>; UNITS],
-    primary: &Rgba<S>,
-    previous: Rgba<S>,
-) -> Rgba<S> {
+    textures: &[[V; 4]; UNITS],
+    primary: &[V; 4],
+    previous: [V; 4],
+) -> [V; 4] {
     let texture = &textures[unit.index % UNITS];
     match &unit.mode {
         EnvironmentMode::Modulate => modulate(format_of(&unit.texture), texture, previous),
@@ -62,14 +62,14 @@ pub(crate) fn modulate<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [
 
 /// The other modes of OpenGL 1.1 and 1.3: `c` is the environment colour.
 #[inline(never)]
-fn simple<S: Simd>(
+fn simple<S: Simd, V: Floats<S>>(
     simd: S,
     mode: &EnvironmentMode,
     format: BaseFormat,
     c: [f32; 4],
-    t: &Rgba<S>,
-    p: Rgba<S>,
-) -> Rgba<S> {
+    t: &[V; 4],
+    p: [V; 4],
+) -> [V; 4] {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -77,7 +77,7 @@ fn simple<S: Simd>(
             let color = match mode {
                 EnvironmentMode::Replace => *t,
                 EnvironmentMode::Decal => decal(format, t, p),
-                EnvironmentMode::Blend => blend(simd, c, intensity, t, p),
+                EnvironmentMode::Blend => blend(c, intensity, t, p),
                 EnvironmentMode::Add => {
                     let alpha = if intensity { p[3] + t[3] } else { p[3] * t[3] };
                     [p[0] + t[0], p[1] + t[1], p[2] + t[2], alpha]
@@ -91,7 +91,7 @@ fn simple<S: Simd>(
 
 /// `DECAL`: the specification leaves other formats than RGB and RGBA open; here they change nothing.
 #[inline(always)]
-fn decal<S: Simd>(format: BaseFormat, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
+fn decal<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
     match format {
         BaseFormat::Rgb => [t[0], t[1], t[2], p[3]],
         BaseFormat::Rgba => [mix(p[0], t[0], t[3]), mix(p[1], t[1], t[3]), mix(p[2], t[2], t[3]), p[3]],
@@ -101,9 +101,8 @@ fn decal<S: Simd>(format: BaseFormat, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
 
 /// `BLEND`: the texture mixes the colour with the constant.
 #[inline(always)]
-fn blend<S: Simd>(simd: S, c: [f32; 4], intensity: bool, t: &Rgba<S>, p: Rgba<S>) -> Rgba<S> {
-    let c = splat_rgba(simd, c);
-    let one = splat(simd, 1.0);
+fn blend<V: Lanes>(c: [f32; 4], intensity: bool, t: &[V; 4], p: [V; 4]) -> [V; 4] {
+    let (c, one) = (c.map(|c| p[0].splat(c)), p[0].splat(1.0));
     let alpha = if intensity { p[3] * (one - t[3]) + c[3] * t[3] } else { p[3] * t[3] };
     [p[0] * (one - t[0]) + c[0] * t[0], p[1] * (one - t[1]) + c[1] * t[1], p[2] * (one - t[2]) + c[2] * t[2], alpha]
 }

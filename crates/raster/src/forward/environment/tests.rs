@@ -3,6 +3,7 @@
 use super::*;
 use crate::forward::state::{Combine, CombineFunction, CombineOperand, CombineSource};
 use crate::forward::texture::{Filter, Sampler, TextureKind, Wrap};
+use crate::forward::wide::splat_rgba;
 use std::sync::Arc;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Level, available_levels, dispatch};

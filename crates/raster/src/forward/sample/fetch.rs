@@ -127,6 +127,15 @@ impl<'a> Words<'a> {
         self.meaning(simd, self.words(simd, index))
     }
 
+    /// A colour as if it were fetched.
+    #[inline(always)]
+    pub(super) fn raw(&self, [r, g, b, a]: [f32; 4]) -> [f32; 4] {
+        match self.decode {
+            None => [r * 255.0, g * 255.0, b * 255.0, a * 255.0],
+            Some(_) => [r, g, b, a * 255.0],
+        }
+    }
+
     /// From raw colours to colours.
     #[inline(always)]
     pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
@@ -210,10 +219,8 @@ impl<'a> Image<'a> {
     /// A colour as if it were fetched.
     #[inline(always)]
     pub(super) fn raw(&self, color: [f32; 4]) -> [f32; 4] {
-        let [r, g, b, a] = color;
         match self {
-            Self::Words(Words { decode: None, .. }) => [r * 255.0, g * 255.0, b * 255.0, a * 255.0],
-            Self::Words(_) => [r, g, b, a * 255.0],
+            Self::Words(words) => words.raw(color),
             _ => color,
         }
     }

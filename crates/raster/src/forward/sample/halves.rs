@@ -16,7 +16,7 @@ pub(super) struct Halves<S: Simd, V: Floats<S>> {
 
 impl<S: Simd, V: Floats<S>> Halves<S, V> {
     #[inline(always)]
-    fn new(words: V::Words) -> Self {
+    pub(super) fn new(words: V::Words) -> Self {
         Self { rb: (words & 0x00ff_00ff).bitcast(), ga: ((words >> 8) & 0x00ff_00ff).bitcast() }
     }
 

@@ -1,5 +1,8 @@
-//! The common case: two dimensions, 8 bits a component, no border in reach. One dimension is a single row, where it is filtered:
-//! between two texels the nearest may be another one here.
+//! The common case: two dimensions, 8 bits a component, no texels of a border of its own. One dimension is a single row, where it is
+//! filtered: between two texels the nearest may be another one here.
+//!
+//! Where a lookup reaches beyond the image into the one colour of its border, the texels at the edge are filtered, and the border's
+//! share is mixed in: weights of two axes are products, so that this is what the four texels give.
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
@@ -9,7 +12,7 @@ use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
 use crate::forward::fragment_ops::packed::unpack_bytes;
 use crate::forward::texture::{Filter, Level, Sampler, Texture, TextureKind, Wrap};
-use crate::forward::wide::{Rgba, bits_of, every, floor, max, min, select_rgba};
+use crate::forward::wide::{Rgba, bits_of, every, every_rgba, floor, max, min, select, select_rgba};
 use std::sync::Arc;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, MOST_LANES, Simd};
@@ -23,11 +26,10 @@ pub(crate) struct Packed<'a> {
     /// Of level 0, in texels; 0 along what the texture does not have.
     size: [f32; 2],
     sampler: &'a Sampler,
-}
-
-/// Whether no lookup can reach a border along s and t.
-fn stays_inside(wrap: &[Wrap; 3]) -> bool {
-    wrap[..2].iter().all(|wrap| !matches!(wrap, Wrap::Clamp | Wrap::ClampToBorder))
+    /// How texels of the image itself are found.
+    wrap: [Wrap; 2],
+    /// Along which axes lookups may reach the border.
+    reaches: [bool; 2],
 }
 
 impl<'a> Packed<'a> {
@@ -40,7 +42,7 @@ impl<'a> Packed<'a> {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
             kind => kind == TextureKind::Two,
         };
-        if !flat || texture.swizzle.is_some() || !stays_inside(&sampler.wrap) {
+        if !flat || texture.swizzle.is_some() {
             return None;
         }
         let [width, height, _] = interior(first, dimensions(texture.kind));
@@ -50,9 +52,13 @@ impl<'a> Packed<'a> {
                 return None;
             }
         }
-        // A row has no height that texels a pixel could be counted along.
-        let size = [width as f32, if texture.kind == TextureKind::One { 0.0 } else { height as f32 }];
-        Some(Self { levels, first: Words::new(first)?, size, sampler: &texture.sampler })
+        // A row has no height that texels a pixel could be counted along, and no border there.
+        let is_row = texture.kind == TextureKind::One;
+        let size = [width as f32, if is_row { 0.0 } else { height as f32 }];
+        let own = [sampler.wrap[0], if is_row { Wrap::ClampToEdge } else { sampler.wrap[1] }];
+        let reaches = own.map(|wrap| matches!(wrap, Wrap::Clamp | Wrap::ClampToBorder));
+        let wrap = [0, 1].map(|k: usize| if reaches[k] { Wrap::ClampToEdge } else { own[k] });
+        Some(Self { levels, first: Words::new(first)?, size, sampler, wrap, reaches })
     }
 
     /// A level, or the last one.
@@ -131,10 +137,15 @@ impl<'a> Packed<'a> {
         }
         let count = if several { 2 } else { 1 };
         let (mut at, mut weights) = ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
+        let (mut beyond, mut reached) = ([[every(simd, 0.0); 2]; N], false);
         for i in 0..N {
             for k in 0..count {
                 let [width, height, _] = self.get(levels[i][k]).size;
-                let [x, y] = self.linear(simd, places[i].0, [every(simd, width as f32), every(simd, height as f32)]);
+                let size = [every(simd, width as f32), every(simd, height as f32)];
+                let [x, y] = self.linear(simd, places[i].0, size);
+                if let Some(share) = self.beyond(simd, places[i].0, size, true) {
+                    (beyond[i][k], reached) = (share, true);
+                }
                 at[i][k] = y.near * (width as i32 + 1) + x.near;
                 weights[i][k] = [x.weight, y.weight];
             }
@@ -153,9 +164,16 @@ impl<'a> Packed<'a> {
         }
         let mut words = [V::Words::splat(simd, 0); N];
         for i in 0..N {
-            let mut color = Halves::filter(simd, texels[i][0], weights[i][0]);
+            let filtered = lanes::inlined(
+                #[inline(always)]
+                |k: usize| {
+                    let color = Halves::filter(simd, texels[i][k], weights[i][k]);
+                    if reached { self.bordered(simd, color, beyond[i][k]) } else { color }
+                },
+            );
+            let mut color = filtered(0);
             if several {
-                color = color.mix(&Halves::filter(simd, texels[i][1], weights[i][1]), weight(simd, fractions[i]));
+                color = color.mix(&filtered(1), weight(simd, fractions[i]));
             }
             words[i] = color.words();
         }
@@ -197,14 +215,62 @@ impl<'a> Packed<'a> {
         let Some((columns, [width, height, _])) = same.and_then(|level| Some((level.columns()?, level.size))) else {
             return self.mixed_halves(simd, place, level);
         };
-        let [x, y] = self.linear(simd, place, [every(simd, width as f32), every(simd, height as f32)]);
+        let size = [every(simd, width as f32), every(simd, height as f32)];
+        let [x, y] = self.linear(simd, place, size);
         let quads = quads::<S, V>(
             simd,
             #[inline(always)]
             |_| columns,
             y.near * (width as i32 + 1) + x.near,
         );
-        Halves::filter(simd, quads, [x.weight, y.weight])
+        let color = Halves::filter(simd, quads, [x.weight, y.weight]);
+        match self.beyond(simd, place, size, true) {
+            Some(share) => self.bordered(simd, color, share),
+            None => color,
+        }
+    }
+
+    /// Colours of texels at the edge, mixed with the border's by its share.
+    #[inline(always)]
+    fn bordered<S: Simd, V: Floats<S>>(&self, simd: S, color: Halves<S, V>, share: V) -> Halves<S, V> {
+        let border = u32::from_le_bytes(self.sampler.border.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8));
+        color.mix(&Halves::new(V::Words::splat(simd, border)), weight(simd, share))
+    }
+
+    /// What share of the colours at places of a level of this size is the border's; `None` for none at all.
+    #[inline(always)]
+    fn beyond<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], size: [V; 2], filtered: bool) -> Option<V> {
+        if self.reaches == [false; 2] {
+            return None;
+        }
+        let share = self.beyond_apart(simd, place, size, filtered);
+        (bits_of(share.simd_gt(every::<S, V>(simd, 0.0))) != 0).then_some(share)
+    }
+
+    #[inline(never)]
+    fn beyond_apart<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], size: [V; 2], filtered: bool) -> V {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (zero, one) = (every::<S, V>(simd, 0.0), every(simd, 1.0));
+                let mut inside = one;
+                for k in 0..2 {
+                    if !self.reaches[k] {
+                        continue;
+                    }
+                    // With `CLAMP` half of the way to the border's texels is the farthest, and the nearest texel the image's own.
+                    let position = position_in(simd, place[k], size[k], self.sampler.wrap[k]);
+                    if filtered {
+                        let out = max(max(-position + 0.5, position - size[k] + 0.5), zero);
+                        inside *= one - out;
+                    } else if self.sampler.wrap[k] == Wrap::ClampToBorder {
+                        let out = position.simd_lt(zero) | position.simd_ge(size[k]);
+                        inside = select(out, zero, inside);
+                    }
+                }
+                one - inside
+            },
+        )
     }
 
     /// [`Self::halves`] where lanes need different levels.
@@ -214,7 +280,11 @@ impl<'a> Packed<'a> {
             #[inline(always)]
             || {
                 let (quads, weights) = self.mixed_quads(simd, place, level);
-                Halves::filter(simd, quads, weights)
+                let color = Halves::filter(simd, quads, weights);
+                match self.beyond(simd, place, self.size_of(simd, level), true) {
+                    Some(share) => self.bordered(simd, color, share),
+                    None => color,
+                }
             },
         )
     }
@@ -249,7 +319,7 @@ impl<'a> Packed<'a> {
         let along = lanes::inlined(
             #[inline(always)]
             |k: usize| {
-                let wrap = self.sampler.wrap[k];
+                let wrap = self.wrap[k];
                 linear_in(simd, position_in(simd, place[k], size[k], wrap), size[k], wrap)
             },
         );
@@ -271,18 +341,23 @@ impl<'a> Packed<'a> {
             #[inline(always)]
             || {
                 let words = &self.first;
-                if filtered {
+                let [width, height] = self.size_of(simd, level);
+                let color = if filtered {
                     let ([a, b, c, d], [x, y]) = self.mixed_quads(simd, place, level);
                     let lower = mix_rgba(words.meaning(simd, a), words.meaning(simd, b), x);
                     let upper = mix_rgba(words.meaning(simd, c), words.meaning(simd, d), x);
-                    return mix_rgba(lower, upper, y);
+                    mix_rgba(lower, upper, y)
+                } else {
+                    let [wrap_s, wrap_t] = self.wrap;
+                    let x = nearest_in(position_in(simd, place[0], width, wrap_s), width, wrap_s);
+                    let y = nearest_in(position_in(simd, place[1], height, wrap_t), height, wrap_t);
+                    let stride: V::Ints = width.to_int();
+                    words.meaning(simd, self.words::<S, V>(simd, level.to_int(), y * stride + x))
+                };
+                match self.beyond(simd, place, [width, height], filtered) {
+                    Some(share) => mix_rgba(color, every_rgba(simd, words.raw(self.sampler.border)), share),
+                    None => color,
                 }
-                let [width, height] = self.size_of(simd, level);
-                let [wrap_s, wrap_t, _] = self.sampler.wrap;
-                let x = nearest_in(position_in(simd, place[0], width, wrap_s), width, wrap_s);
-                let y = nearest_in(position_in(simd, place[1], height, wrap_t), height, wrap_t);
-                let stride: V::Ints = width.to_int();
-                words.meaning(simd, self.words::<S, V>(simd, level.to_int(), y * stride + x))
             },
         )
     }

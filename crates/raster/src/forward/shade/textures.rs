@@ -12,7 +12,7 @@ use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
 use crate::forward::sample::{Common, sample};
 use crate::forward::state::{EnvironmentMode, Unit};
-use crate::forward::texture::Swizzle;
+use crate::forward::texture::{BaseFormat, Swizzle};
 use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Simd};
@@ -62,54 +62,75 @@ impl<'d> Shader<'d> {
     ) {
         // The mode that nearly all programs use needs no other unit's texture.
         if !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
-            for i in 0..N {
-                colors[i] = groups.by_eights(
-                    simd,
-                    i,
-                    colors[i],
-                    #[inline(always)]
-                    |eight, primary| self.combined(simd, eight, &primary),
-                );
-            }
-            return;
+            return self.combined(simd, groups, colors);
         }
         for unit in &self.draw.state.units {
-            match self.common(unit) {
-                Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
-                Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
-                Some((Common::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
-                None => {
-                    let format = format_of(&unit.texture);
-                    for i in 0..N {
-                        let texture = self.texture_by_eights(simd, groups, i, unit);
-                        colors[i] = modulate(format, &texture, colors[i]);
-                    }
+            if !self.multiply(simd, groups, unit, colors) {
+                let format = format_of(&unit.texture);
+                for i in 0..N {
+                    let texture = self.texture_by_eights(simd, groups, i, unit);
+                    colors[i] = modulate(format, &texture, colors[i]);
                 }
             }
         }
+    }
+
+    /// Modulates colours with a unit's texture, if it is of a common kind; whether it is.
+    #[inline(always)]
+    fn multiply<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+        unit: &Unit,
+        colors: &mut [[V; 4]; N],
+    ) -> bool {
+        match self.common(unit) {
+            Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
+            Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
+            Some((Common::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
+            None => return false,
+        }
+        true
     }
 
     /// All units' textures and environments, where one may use another's texture.
     #[inline(never)]
-    fn combined<S: Simd>(&self, simd: S, eight: &Eight<S>, primary: &Rgba<S>) -> Rgba<S> {
+    fn combined<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+        colors: &mut [[V; 4]; N],
+    ) {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
+                let (zero, one) = (every(simd, 0.0), every(simd, 1.0));
+                let mut textures = [[[zero; 4]; UNITS]; N];
                 for unit in &self.draw.state.units {
-                    textures[unit.index % UNITS] = self.texture(simd, eight, unit);
+                    let (own, format) = (unit.index % UNITS, format_of(&unit.texture));
+                    // White, modulated with a texture, is the texture's colour; but alpha alone comes with black.
+                    let mut found = [[one; 4]; N];
+                    let common = self.multiply(simd, groups, unit, &mut found);
+                    for i in 0..N {
+                        textures[i][own] = match (common, format) {
+                            (false, _) => self.texture_by_eights(simd, groups, i, unit),
+                            (true, BaseFormat::Alpha) => [zero, zero, zero, found[i][3]],
+                            (true, _) => found[i],
+                        };
+                    }
                 }
-                let mut color = *primary;
-                for unit in &self.draw.state.units {
-                    color = environment(simd, unit, &textures, primary, color);
+                for i in 0..N {
+                    let primary = colors[i];
+                    for unit in &self.draw.state.units {
+                        colors[i] = environment(simd, unit, &textures[i], &primary, colors[i]);
+                    }
                 }
-                color
             },
-        )
+        );
     }
 
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
-    /// bits a component, no border in reach, no anisotropy, no sprites, no q of a cube's that could turn directions round.
+    /// bits a component, no texels of a border, no anisotropy, no sprites, no q of a cube's that could turn directions round.
     #[inline(always)]
     fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;

@@ -213,8 +213,9 @@ fn the_packed_path_agrees_with_the_general_one() {
     // Large images have no columns.
     let large = [(Filter::LinearMipmapLinear, [4096, 1030, 1])];
     for (min, size) in FILTERS.map(|filter| (filter, [12, 8, 1])).into_iter().chain(large) {
-        for wrap in [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge] {
-            let sampler = Sampler { min, mag: Filter::Linear, wrap: [wrap; 3], ..NEAREST };
+        for wrap in WRAPS {
+            let border = [0.2, 0.6, 1.0, 0.4];
+            let sampler = Sampler { min, mag: Filter::Linear, wrap: [wrap; 3], border, ..NEAREST };
             let mut texture = noise(&mut n, TextureKind::Two, size, sampler);
             let coords: [[f32; 8]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| n.between(-3.0, 4.0)));
             let lods: [f32; 8] = std::array::from_fn(|_| n.between(-1.0, 4.0));
@@ -230,7 +231,7 @@ fn the_packed_path_agrees_with_the_general_one() {
                         let load = |v: &[f32; 8]| F32x8::from_slice(simd, v);
                         let zero = crate::forward::wide::splat(simd, 0.0);
                         let at = [load(&coords[0]), load(&coords[1]), zero, zero + 1.0];
-                        let packed = Packed::new(&texture).expect("two dimensions, bytes, no border");
+                        let packed = Packed::new(&texture).expect("two dimensions, bytes");
                         assert_eq!(texture.faces[0][0].columns().is_none(), size[0] == 4096);
                         let a = crate::forward::sample::packed::sample(simd, &packed, at, load(&lods), 0xff);
                         let b = crate::forward::sample::flat::sample(simd, &texture, at, load(&lods), 0xff);

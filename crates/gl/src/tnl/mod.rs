@@ -12,6 +12,6 @@ mod snapshot;
 mod vertices;
 
 pub use assembled::AssembledCell;
-pub(crate) use process::ProcessedVertex;
+pub(crate) use process::{ProcessedVertex, Wanted};
 pub(crate) use record::Recorder;
 pub use record::RunnerSource;

@@ -10,9 +10,9 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::WindowTransform;
 
-/// A vertex after transformation and lighting, for feedback and selection.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ProcessedVertex {
+/// A vertex after transformation and lighting, with the coordinates of some texture units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ProcessedVertex<const UNITS: usize> {
     /// Clip coordinates.
     pub clip: [f32; 4],
     /// Signed distances to the user clip planes (0 for disabled ones): inside is >= 0.
@@ -23,25 +23,56 @@ pub(crate) struct ProcessedVertex {
     pub secondary: [f32; 3],
     /// Back colour, clamped (two-sided lighting; else the front's).
     pub back_color: [f32; 4],
-    /// Coordinates of each unit after generation and texture matrix.
-    pub tex: [[f32; 4]; 8],
+    /// Coordinates of the first units after generation and texture matrix.
+    pub tex: [[f32; 4]; UNITS],
     /// Fog coordinate.
     pub fog: f32,
     /// Edge flag.
     pub edge: bool,
 }
 
+impl<const UNITS: usize> Default for ProcessedVertex<UNITS> {
+    fn default() -> Self {
+        Self {
+            clip: [0.0; 4],
+            user: [0.0; 8],
+            color: [0.0; 4],
+            secondary: [0.0; 3],
+            back_color: [0.0; 4],
+            tex: [[0.0; 4]; UNITS],
+            fog: 0.0,
+            edge: false,
+        }
+    }
+}
+
+/// What of processed vertices matters besides their places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Nothing.
+    Places,
+    /// Colours.
+    Colors,
+    /// Colours and coordinates of textures.
+    All,
+}
+
 impl Context {
     /// Transforms and lights all vertices of a batch now.
-    pub(crate) fn process_batch(&mut self, batch: &VertexBatch) -> Vec<ProcessedVertex> {
-        let units: Vec<usize> = (0..MAX_TEXTURE_UNITS).collect();
+    pub(crate) fn process_batch<const UNITS: usize>(
+        &mut self,
+        batch: &VertexBatch,
+        wanted: Wanted,
+    ) -> Vec<ProcessedVertex<UNITS>> {
+        let units: Vec<usize> = (0..if wanted == Wanted::All { UNITS } else { 0 }).collect();
         let snapshot =
             VertexSnapshot::new(&self.state, &Given::current(&self.state), &units, true, &mut LightCache::default());
         let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
         let level = Level::new();
         let mut out = vec![ProcessedVertex::default(); batch.positions.len()];
-        for first in (0..batch.positions.len()).step_by(LANES) {
+        let shaded = if wanted == Wanted::Places { 0 } else { batch.positions.len() };
+        for first in (0..shaded).step_by(LANES) {
             let count = LANES.min(batch.positions.len() - first);
             let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
             let faces = &LaneFaces::new(&snapshot, batch, &vertices);
@@ -51,7 +82,7 @@ impl Context {
                 let color = shaded.color.map(|c| c.to_array());
                 let back = shaded.back.map_or(shaded.color, |(c, _)| c).map(|c| c.to_array());
                 let secondary = shaded.secondary.map(|c| [c.x.to_array(), c.y.to_array(), c.z.to_array()]);
-                let tex = tex.map(|unit| unit.map(|c| c.to_array()));
+                let tex: [_; UNITS] = std::array::from_fn(|unit| tex[unit].map(|c| c.to_array()));
                 let fog = shaded.fog.to_array();
                 for lane in 0..count {
                     let vertex = &mut out[first + lane];
@@ -77,7 +108,8 @@ impl Context {
     /// volume and user planes.
     pub(crate) fn raster_position(&mut self, position: [f32; 4]) -> RasterPosition {
         let batch = VertexBatch { positions: vec![position], ..VertexBatch::default() };
-        let Some(vertex) = self.process_batch(&batch).first().copied() else { return RasterPosition::default() };
+        let vertices = self.process_batch::<MAX_TEXTURE_UNITS>(&batch, Wanted::All);
+        let Some(vertex) = vertices.first().copied() else { return RasterPosition::default() };
         let v = &self.state.viewport;
         let (origin, depth_mode) = self.state.clip_control;
         let zero_to_one = depth_mode == gl::ZERO_TO_ONE;

@@ -15,6 +15,7 @@ mod outlined;
 use self::clipped::Derived;
 use super::boxes::Boxes;
 use super::color_grid::{ColorGrid, GridColors};
+use super::environment::UNITS;
 use super::hard_line::HardLine;
 use super::project::WindowTransform;
 use super::shade::Layout;
@@ -237,13 +238,15 @@ pub struct Assembler<'a> {
     slots: Vec<u32>,
     /// Vertices to shade, in the order of their slots; derived ones are `NONE`.
     used: Vec<u32>,
-    /// Vertices that clipping made.
+    /// Vertices that are made of others.
     derived: Vec<Derived>,
     first_slot: u32,
     /// All vertices have the first slot.
     one_slot: bool,
     /// Points, lines are [`FacetKind::Plain`] if they do not fade.
     plain: [bool; 2],
+    /// Where records hold the coordinates that point sprites replace.
+    sprites: [Option<usize>; UNITS],
 }
 
 /// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a vertex.
@@ -283,8 +286,10 @@ impl<'a> Assembler<'a> {
         used.clear();
         used.extend((layout.uniform && !out.pending && !vertices.clip.is_empty()).then_some(0));
         let stride = layout.stride as u32;
-        let plain = [!layout.smooth[0] && layout.sprites == 0, !layout.smooth[1] && layout.line_stipple.is_none()];
-        Self { state, screen, out, stride, vertices, slots, used, derived: Vec::new(), first_slot, one_slot, plain }
+        let plain = [!layout.smooth[0], !layout.smooth[1] && layout.line_stipple.is_none()];
+        let sprites = std::array::from_fn(|unit| layout.tex[unit].filter(|_| layout.sprites >> unit & 1 == 1));
+        let derived = Vec::new();
+        Self { state, screen, out, stride, vertices, slots, used, derived, first_slot, one_slot, plain, sprites }
     }
 
     /// The slot of a vertex: where its record begins.

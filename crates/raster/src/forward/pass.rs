@@ -231,7 +231,7 @@ pub(crate) struct DrawContext<'a> {
     pub shaded: bool,
     /// A facet has one colour.
     pub constant: bool,
-    /// Units with a common kind of texture and no sprites.
+    /// Units with a common kind of texture.
     pub plain: Vec<(usize, Common<'a>)>,
     /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
     pub again: Option<usize>,
@@ -518,10 +518,7 @@ fn draw_context<'a>(
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
     }
-    let plain = state
-        .units
-        .iter()
-        .filter(|unit| unit.texture.sampler.anisotropy <= 1.0 && geometry.layout().sprites >> unit.index & 1 == 0);
+    let plain = state.units.iter().filter(|unit| unit.texture.sampler.anisotropy <= 1.0);
     let plain: Vec<(usize, Common<'_>)> =
         plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
     let is_flat =

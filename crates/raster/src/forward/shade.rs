@@ -232,11 +232,9 @@ struct Weights<V> {
     w: V,
 }
 
-/// Groups of eight or sixteen pixels: where, and which of a group matter.
+/// Groups of eight or sixteen pixels, and which of a group matter.
 struct Groups<'a, V, const N: usize> {
     weights: [Weights<V>; N],
-    x: &'a [V; N],
-    y: &'a [V; N],
     active: u32,
     /// The colours of the texture that the draw shows again, at all of these pixels.
     seen: Option<&'a BlockWords>,
@@ -398,7 +396,7 @@ impl<'a> Shader<'a> {
     /// stipples let pass.
     #[inline(always)]
     pub(crate) fn row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, active: u32) -> (Rgba<S>, u32) {
-        let groups = Groups { weights: [self.weights(simd, x, y)], x: &[x], y: &[y], active, seen: None };
+        let groups = Groups { weights: [self.weights(simd, x, y)], active, seen: None };
         let [color] = self.colors(simd, &groups);
         self.covered(simd, x, y, color)
     }
@@ -514,18 +512,17 @@ impl<'a> Shader<'a> {
                 for pair in 1..BLOCK / 2 {
                     rows[pair] = y + (2 * pair) as f32;
                 }
-                let x = [x; BLOCK / 2];
                 let block = bottom % TILE / BLOCK * (TILE / BLOCK) + left % TILE / BLOCK;
-                let mut weights = [self.weights(simd, x[0], rows[0]); BLOCK / 2];
+                let mut weights = [self.weights(simd, x, rows[0]); BLOCK / 2];
                 for pair in 1..BLOCK / 2 {
-                    weights[pair] = self.weights(simd, x[pair], rows[pair]);
+                    weights[pair] = self.weights(simd, x, rows[pair]);
                 }
                 let mut seen = None;
                 if self.draw.again.is_some() {
                     self.see(simd, block, &weights);
                     seen = self.scratch.seen.get(block);
                 }
-                self.packed(simd, &Groups { weights, x: &x, y: &rows, active: 0xffff, seen }, words)
+                self.packed(simd, &Groups { weights, active: 0xffff, seen }, words)
             },
         )
     }
@@ -547,7 +544,7 @@ impl<'a> Shader<'a> {
                 let places: I32x8<S> = U32x8::from_slice(simd, places).bitcast();
                 let (column, row): (F32x8<S>, F32x8<S>) = ((places & 7).to_float(), (places >> 3).to_float());
                 let (x, y) = (column + (left as f32 + 0.5), row + (bottom as f32 + 0.5));
-                let groups = Groups { weights: [self.weights(simd, x, y)], x: &[x], y: &[y], active, seen: None };
+                let groups = Groups { weights: [self.weights(simd, x, y)], active, seen: None };
                 self.packed(simd, &groups, words) as u32
             },
         )

@@ -2,10 +2,9 @@
 //!
 //! Polygons are cut plane by plane (Sutherland and Hodgman). An edge that a cut makes counts as a boundary.
 
-use super::FeedbackVertex;
+use super::{FeedbackVertex, Vertex};
 use crate::enums;
 use crate::state::State;
-use crate::tnl::ProcessedVertex;
 
 /// What clipping and the viewport need to know.
 #[derive(Debug)]
@@ -23,7 +22,7 @@ impl<'a> View<'a> {
     }
 
     /// Signed distance to a plane: inside is >= 0. `None` if the plane does not clip.
-    fn distance(&self, plane: usize, vertex: &ProcessedVertex) -> Option<f32> {
+    fn distance(&self, plane: usize, vertex: &Vertex) -> Option<f32> {
         let [x, y, z, w] = vertex.clip;
         let clamped = self.state.depth_clamp;
         Some(match plane {
@@ -45,12 +44,18 @@ impl<'a> View<'a> {
     }
 
     /// Whether a point is inside.
-    pub(super) fn shows(&self, vertex: &ProcessedVertex) -> bool {
-        self.planes().all(|plane| self.distance(plane, vertex).is_none_or(|d| d >= 0.0))
+    pub(super) fn shows(&self, vertex: &Vertex) -> bool {
+        self.outside(vertex) == 0
+    }
+
+    /// A bit for each plane that a vertex lies outside of.
+    pub(super) fn outside(&self, vertex: &Vertex) -> u16 {
+        let is_outside = |&plane: &usize| self.distance(plane, vertex).is_some_and(|d| d.is_nan() || d < 0.0);
+        self.planes().filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
     }
 
     /// The part of a line that is inside.
-    pub(super) fn clip_line(&self, mut a: ProcessedVertex, mut b: ProcessedVertex) -> Option<[ProcessedVertex; 2]> {
+    pub(super) fn clip_line(&self, mut a: Vertex, mut b: Vertex) -> Option<[Vertex; 2]> {
         for plane in self.planes() {
             let (Some(da), Some(db)) = (self.distance(plane, &a), self.distance(plane, &b)) else { continue };
             match (da >= 0.0, db >= 0.0) {
@@ -64,7 +69,7 @@ impl<'a> View<'a> {
     }
 
     /// The part of a polygon that is inside; empty if there is none.
-    pub(super) fn clip_polygon(&self, mut polygon: Vec<ProcessedVertex>) -> Vec<ProcessedVertex> {
+    pub(super) fn clip_polygon(&self, mut polygon: Vec<Vertex>) -> Vec<Vertex> {
         for plane in self.planes() {
             let Some(distances) = polygon.iter().map(|v| self.distance(plane, v)).collect::<Option<Vec<f32>>>() else {
                 continue;
@@ -79,10 +84,10 @@ impl<'a> View<'a> {
                 if da >= 0.0 {
                     kept.push(*a);
                     if db < 0.0 {
-                        kept.push(ProcessedVertex { edge: true, ..between(a, b, da / (da - db)) });
+                        kept.push(Vertex { edge: true, ..between(a, b, da / (da - db)) });
                     }
                 } else if db >= 0.0 {
-                    kept.push(ProcessedVertex { edge: a.edge, ..between(b, a, db / (db - da)) });
+                    kept.push(Vertex { edge: a.edge, ..between(b, a, db / (db - da)) });
                 }
             }
             polygon = kept;
@@ -94,37 +99,47 @@ impl<'a> View<'a> {
     }
 
     /// Twice the signed area on the screen; positive goes counterclockwise.
-    pub(super) fn area(polygon: &[ProcessedVertex]) -> f32 {
-        let points: Vec<[f32; 2]> = polygon.iter().map(|v| [v.clip[0] / v.clip[3], v.clip[1] / v.clip[3]]).collect();
-        let next = points.iter().cycle().skip(1);
-        points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
+    pub(super) fn area(polygon: &[Vertex]) -> f32 {
+        let point = |v: &Vertex| [v.clip[0] / v.clip[3], v.clip[1] / v.clip[3]];
+        let (Some(first), mut area) = (polygon.first().map(point), 0.0) else { return 0.0 };
+        let mut last = first;
+        for next in polygon[1..].iter().map(point).chain([first]) {
+            area += last[0] * next[1] - last[1] * next[0];
+            last = next;
+        }
+        area
+    }
+
+    /// A vertex's depth in the window.
+    pub(super) fn depth(&self, vertex: &Vertex) -> f32 {
+        let [_, _, z, w] = vertex.clip;
+        let over_w = if w == 0.0 { 0.0 } else { 1.0 / w };
+        let depth = if self.zero_to_one { z * over_w } else { 0.5 * z * over_w + 0.5 };
+        let range = &self.state.viewport.depth_range;
+        let (near, far) = (range.near as f32, range.far as f32);
+        let depth = near + depth * (far - near);
+        if self.state.depth_clamp { depth.max(near.min(far)).min(near.max(far)) } else { depth }
     }
 
     /// A vertex in window coordinates.
-    pub(super) fn window(&self, vertex: &ProcessedVertex, back: bool) -> FeedbackVertex {
+    pub(super) fn window(&self, vertex: &Vertex, back: bool) -> FeedbackVertex {
         let viewport = &self.state.viewport;
-        let [x, y, z, w] = vertex.clip;
+        let [x, y, _, w] = vertex.clip;
         let over_w = if w == 0.0 { 0.0 } else { 1.0 / w };
         let [left, bottom, width, height] = viewport.rect.map(|n| n as f32);
-        let (near, far) = (viewport.depth_range.near as f32, viewport.depth_range.far as f32);
         let up = if self.state.clip_control.0 == enums::UPPER_LEFT { -1.0 } else { 1.0 };
-        let depth = if self.zero_to_one { z * over_w } else { 0.5 * z * over_w + 0.5 };
-        let mut depth = near + depth * (far - near);
-        if self.state.depth_clamp {
-            depth = depth.max(near.min(far)).min(near.max(far));
-        }
-        let window =
-            [left + (x * over_w + 1.0) * 0.5 * width, bottom + (up * y * over_w + 1.0) * 0.5 * height, depth, w];
+        let (x, y) = (left + (x * over_w + 1.0) * 0.5 * width, bottom + (up * y * over_w + 1.0) * 0.5 * height);
+        let window = [x, y, self.depth(vertex), w];
         FeedbackVertex { window, color: if back { vertex.back_color } else { vertex.color }, tex: vertex.tex[0] }
     }
 }
 
 /// The vertex at `t` on the way from `a` to `b`.
-fn between(a: &ProcessedVertex, b: &ProcessedVertex, t: f32) -> ProcessedVertex {
+fn between(a: &Vertex, b: &Vertex, t: f32) -> Vertex {
     fn mix<const N: usize>(a: [f32; N], b: [f32; N], t: f32) -> [f32; N] {
         std::array::from_fn(|i| a[i] + t * (b[i] - a[i]))
     }
-    ProcessedVertex {
+    Vertex {
         clip: mix(a.clip, b.clip, t),
         user: mix(a.user, b.user, t),
         color: mix(a.color, b.color, t),
@@ -140,8 +155,8 @@ fn between(a: &ProcessedVertex, b: &ProcessedVertex, t: f32) -> ProcessedVertex 
 mod tests {
     use super::*;
 
-    fn at(x: f32, y: f32, edge: bool) -> ProcessedVertex {
-        ProcessedVertex { clip: [x, y, 0.0, 1.0], color: [x; 4], edge, ..ProcessedVertex::default() }
+    fn at(x: f32, y: f32, edge: bool) -> Vertex {
+        Vertex { clip: [x, y, 0.0, 1.0], color: [x; 4], edge, ..Vertex::default() }
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod names;
 mod primitives;
 
 use crate::state::State;
+use crate::tnl::{ProcessedVertex, Wanted};
 use crate::vertex::VertexBatch;
 use crate::{Context, enums};
 use clip::View;
@@ -47,6 +48,9 @@ impl Default for Feedback {
     }
 }
 
+/// A vertex, with the coordinates that feedback tells: those of unit 0.
+type Vertex = ProcessedVertex<1>;
+
 /// A vertex as feedback tells it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct FeedbackVertex {
@@ -65,9 +69,32 @@ impl Feedback {
         }
     }
 
-    fn push(&mut self, value: f32) {
-        let size = self.buffer.map_or(0, |(_, size, _)| size);
-        if self.values.len() < size { self.values.push(value) } else { self.overflow = true }
+    /// Adds values, as far as there is room.
+    fn push(&mut self, values: &[f32]) {
+        let room = self.buffer.map_or(0, |(_, size, _)| size).saturating_sub(self.values.len());
+        self.values.extend_from_slice(&values[..values.len().min(room)]);
+        self.overflow |= values.len() > room;
+    }
+
+    /// Which parts of vertices are told: how many window coordinates, whether colours, whether coordinates of textures.
+    fn parts(&self) -> (usize, bool, bool) {
+        match self.buffer.map_or(enums::_2D, |(_, _, kind)| kind) {
+            enums::_2D => (2, false, false),
+            enums::_3D => (3, false, false),
+            enums::_3D_COLOR => (3, true, false),
+            enums::_3D_COLOR_TEXTURE => (3, true, true),
+            _ => (4, true, true),
+        }
+    }
+
+    /// What vertices need besides their places.
+    fn wanted(&self) -> Wanted {
+        match self.parts() {
+            _ if self.mode == enums::SELECT => Wanted::Places,
+            (_, false, _) => Wanted::Places,
+            (_, true, false) => Wanted::Colors,
+            (_, true, true) => Wanted::All,
+        }
     }
 
     /// A primitive: its token, the number of vertices if that is told, and the vertices.
@@ -76,22 +103,19 @@ impl Feedback {
             vertices.iter().for_each(|vertex| self.hit(vertex.window[2]));
             return;
         }
-        self.push(token as f32);
+        self.push(&[token as f32]);
         if let Some(count) = count {
-            self.push(count as f32);
+            self.push(&[count as f32]);
         }
-        let kind = self.buffer.map_or(enums::_2D, |(_, _, kind)| kind);
+        let (window, color, tex) = self.parts();
         for vertex in vertices {
-            let window = match kind {
-                enums::_2D => 2,
-                enums::_4D_COLOR_TEXTURE => 4,
-                _ => 3,
-            };
-            let color = !matches!(kind, enums::_2D | enums::_3D);
-            let tex = matches!(kind, enums::_3D_COLOR_TEXTURE | enums::_4D_COLOR_TEXTURE);
-            let color = if color { &vertex.color[..] } else { &[] };
-            let tex = if tex { &vertex.tex[..] } else { &[] };
-            vertex.window[..window].iter().chain(color).chain(tex).for_each(|value| self.push(*value));
+            self.push(&vertex.window[..window]);
+            if color {
+                self.push(&vertex.color);
+            }
+            if tex {
+                self.push(&vertex.tex);
+            }
         }
     }
 
@@ -172,22 +196,21 @@ impl Context {
     /// Hands what was gathered to the client.
     fn leave_mode(&mut self) -> i32 {
         let feedback = &mut self.feedback;
-        let (address, bytes, count) = match feedback.mode {
+        if feedback.mode == enums::SELECT {
+            feedback.record_hit();
+        }
+        let (values, records) = (std::mem::take(&mut feedback.values), std::mem::take(&mut feedback.records));
+        let (address, bytes, count): (_, &[u8], _) = match feedback.mode {
             enums::FEEDBACK => {
-                let values = std::mem::take(&mut feedback.values);
-                let count = values.len() as i32;
-                (feedback.buffer.map_or(0, |buffer| buffer.0), bytemuck::cast_slice(&values).to_vec(), count)
+                (feedback.buffer.map_or(0, |buffer| buffer.0), bytemuck::cast_slice(&values), values.len() as i32)
             }
             enums::SELECT => {
-                feedback.record_hit();
-                let records = std::mem::take(&mut feedback.records);
-                let address = feedback.selection.map_or(0, |buffer| buffer.0);
-                (address, bytemuck::cast_slice(&records).to_vec(), feedback.hits)
+                (feedback.selection.map_or(0, |buffer| buffer.0), bytemuck::cast_slice(&records), feedback.hits)
             }
             _ => return 0,
         };
         let result = if feedback.overflow { -1 } else { count };
-        if !bytes.is_empty() && (address == 0 || !self.memory.write(address, &bytes)) {
+        if !bytes.is_empty() && (address == 0 || !self.memory.write(address, bytes)) {
             self.record_error(enums::INVALID_VALUE, "glRenderMode", "the buffer cannot be written");
         }
         result
@@ -197,8 +220,7 @@ impl Context {
     pub fn pass_through(&mut self, token: f32) {
         self.listable(move |c| {
             if !c.refused_inside_begin("glPassThrough") && c.feedback.mode == enums::FEEDBACK {
-                c.feedback.push(enums::PASS_THROUGH_TOKEN as f32);
-                c.feedback.push(token);
+                c.feedback.push(&[enums::PASS_THROUGH_TOKEN as f32, token]);
             }
         });
     }
@@ -219,7 +241,7 @@ impl Context {
 
     /// Sends a batch to feedback or selection.
     pub(super) fn feed_batch(&mut self, batch: &VertexBatch) {
-        let processed = self.process_batch(batch);
+        let processed = self.process_batch(batch, self.feedback.wanted());
         if processed.len() == batch.positions.len() {
             let view = View::of(&self.state);
             primitives::feed(batch, &processed, &view, &mut self.feedback);

@@ -1,14 +1,14 @@
 //! Primitives of a batch, one by one: assembled, clipped, culled, and told as their polygon mode says.
 
 use super::clip::View;
-use super::{Feedback, is_culled};
+use super::{Feedback, FeedbackVertex, Vertex, is_culled};
 use crate::enums;
-use crate::tnl::ProcessedVertex;
 use crate::vertex::{Primitive, VertexBatch};
 
 /// Tells all primitives of a batch.
-pub(super) fn feed(batch: &VertexBatch, processed: &[ProcessedVertex], view: &View, to: &mut Feedback) {
-    let mut feeder = Feeder { batch, processed, view, to };
+pub(super) fn feed(batch: &VertexBatch, processed: &[Vertex], view: &View, to: &mut Feedback) {
+    let outside = processed.iter().map(|vertex| view.outside(vertex)).collect();
+    let mut feeder = Feeder { batch, processed, outside, view, to, corners: Vec::new(), told: Vec::new() };
     for primitive in &batch.primitives {
         feeder.primitive(*primitive);
     }
@@ -16,9 +16,14 @@ pub(super) fn feed(batch: &VertexBatch, processed: &[ProcessedVertex], view: &Vi
 
 struct Feeder<'a> {
     batch: &'a VertexBatch,
-    processed: &'a [ProcessedVertex],
+    processed: &'a [Vertex],
+    /// Of all vertices, [`View::outside`].
+    outside: Vec<u16>,
     view: &'a View<'a>,
     to: &'a mut Feedback,
+    /// Memory for a polygon's corners, and for what is told of them.
+    corners: Vec<Vertex>,
+    told: Vec<FeedbackVertex>,
 }
 
 impl Feeder<'_> {
@@ -55,18 +60,18 @@ impl Feeder<'_> {
         }
     }
 
-    fn vertex(&self, i: u32) -> ProcessedVertex {
+    fn vertex(&self, i: u32) -> Vertex {
         self.processed[self.batch.vertex(i)]
     }
 
     /// A vertex with the colours of `provoking`, if shading is flat.
-    fn shaded(&self, i: u32, provoking: u32) -> ProcessedVertex {
+    fn shaded(&self, i: u32, provoking: u32) -> Vertex {
         let vertex = self.vertex(i);
         if self.view.state.lighting.shade_model != enums::FLAT {
             return vertex;
         }
-        let ProcessedVertex { color, back_color, secondary, .. } = self.vertex(provoking);
-        ProcessedVertex { color, back_color, secondary, ..vertex }
+        let Vertex { color, back_color, secondary, .. } = self.vertex(provoking);
+        Vertex { color, back_color, secondary, ..vertex }
     }
 
     fn point(&mut self, i: u32) {
@@ -84,23 +89,37 @@ impl Feeder<'_> {
         }
     }
 
-    fn segment(&mut self, ends: &[ProcessedVertex; 2], back: bool, reset: bool) {
+    fn segment(&mut self, ends: &[Vertex; 2], back: bool, reset: bool) {
         let token = if reset { enums::LINE_RESET_TOKEN } else { enums::LINE_TOKEN };
         self.to.primitive(token, None, &ends.map(|end| self.view.window(&end, back)));
     }
 
     /// A polygon; `own_edges` if the vertices' edge flags count (else all edges are boundaries).
     fn polygon(&mut self, corners: &[u32], provoking: u32, own_edges: bool) {
-        let corner = |&i: &u32| {
-            let vertex = self.shaded(i, provoking);
-            ProcessedVertex { edge: vertex.edge || !own_edges, ..vertex }
-        };
-        let polygon = self.view.clip_polygon(corners.iter().map(corner).collect());
-        if polygon.is_empty() {
+        let bits = |i: &u32| self.outside[self.batch.vertex(*i)];
+        let (any, all) = corners.iter().map(bits).fold((0, u16::MAX), |(any, all), bits| (any | bits, all & bits));
+        if all != 0 {
             return;
         }
+        let mut polygon = std::mem::take(&mut self.corners);
+        polygon.clear();
+        polygon.extend(corners.iter().map(|&i| {
+            let vertex = self.shaded(i, provoking);
+            Vertex { edge: vertex.edge || !own_edges, ..vertex }
+        }));
+        if any != 0 {
+            polygon = self.view.clip_polygon(polygon);
+        }
+        if !polygon.is_empty() {
+            self.visible(&polygon);
+        }
+        self.corners = polygon;
+    }
+
+    /// What of a polygon is inside.
+    fn visible(&mut self, polygon: &[Vertex]) {
         let state = self.view.state;
-        let area = View::area(&polygon);
+        let area = View::area(polygon);
         let front = if state.polygons.front_face == enums::CW { area < 0.0 } else { area > 0.0 };
         if is_culled(state, front) {
             return;
@@ -120,8 +139,13 @@ impl Feeder<'_> {
                 }
             }
             _ => {
-                let vertices: Vec<_> = polygon.iter().map(|vertex| self.view.window(vertex, back)).collect();
-                self.to.primitive(enums::POLYGON_TOKEN, Some(vertices.len()), &vertices);
+                if self.to.mode == enums::SELECT {
+                    polygon.iter().for_each(|vertex| self.to.hit(self.view.depth(vertex)));
+                    return;
+                }
+                self.told.clear();
+                self.told.extend(polygon.iter().map(|vertex| self.view.window(vertex, back)));
+                self.to.primitive(enums::POLYGON_TOKEN, Some(polygon.len()), &self.told);
             }
         }
     }
@@ -135,11 +159,11 @@ mod tests {
     fn fed(state: &State, mode: u32, corners: &[[f32; 2]]) -> Vec<f32> {
         let mut batch = VertexBatch { positions: vec![[0.0; 4]; corners.len()], ..VertexBatch::default() };
         batch.add_primitive(mode, 0, corners.len() as u32);
-        let vertex = |(i, [x, y]): (usize, &[f32; 2])| ProcessedVertex {
+        let vertex = |(i, [x, y]): (usize, &[f32; 2])| Vertex {
             clip: [*x, *y, 0.0, 1.0],
             color: [i as f32; 4],
             edge: true,
-            ..ProcessedVertex::default()
+            ..Vertex::default()
         };
         let processed: Vec<_> = corners.iter().enumerate().map(vertex).collect();
         let mut to = Feedback { mode: enums::FEEDBACK, buffer: Some((0, 100, enums::_2D)), ..Feedback::default() };

@@ -5,7 +5,7 @@ use super::{Assembler, FacetKind, NONE};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{SUBPIXEL, Setup};
 
-/// A vertex that clipping made.
+/// A vertex that clipping made, or the corner of a point sprite.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derived {
     /// Its slot.
@@ -16,6 +16,8 @@ pub(super) struct Derived {
     pub weights: [f32; 3],
     /// `1 / w`.
     pub inverse_w: f32,
+    /// Coordinates s and t of the units whose coordinates sprites replace.
+    pub sprite: Option<[f32; 2]>,
 }
 
 /// A corner of a polygon that is being clipped.
@@ -132,11 +134,28 @@ impl Assembler<'_> {
         let slot = self.first_slot + self.used.len() as u32 * self.stride;
         self.used.push(NONE);
         let inverse_w = 1.0 / corner.clip[3];
-        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w });
+        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w, sprite: None });
         slot
     }
 
-    /// Fills the records of the vertices that clipping made from their parents'. The first number is `1 / w`.
+    /// The slot of a sprite's corner, which is as the point's but for these coordinates s and t.
+    pub(super) fn sprite_slot(&mut self, point: u32, inverse_w: f32, place: [f32; 2]) -> u32 {
+        if self.one_slot {
+            return self.first_slot;
+        }
+        let slot = self.first_slot + self.used.len() as u32 * self.stride;
+        self.used.push(NONE);
+        self.derived.push(Derived {
+            slot,
+            parents: [point; 3],
+            weights: [1.0, 0.0, 0.0],
+            inverse_w,
+            sprite: Some(place),
+        });
+        slot
+    }
+
+    /// Fills the records of derived vertices from their parents'. The first number is `1 / w`.
     pub(super) fn derive(&mut self) {
         let stride = self.stride as usize;
         for d in &self.derived {
@@ -148,6 +167,11 @@ impl Assembler<'_> {
                 self.out.records[d.slot as usize + k] = value;
             }
             self.out.records[d.slot as usize] = d.inverse_w;
+            if let Some([s, t]) = d.sprite {
+                for at in self.sprites.iter().flatten() {
+                    self.out.records[d.slot as usize + at..][..4].copy_from_slice(&[s, t, 0.0, 1.0]);
+                }
+            }
         }
     }
 }

@@ -179,7 +179,14 @@ impl Assembler<'_> {
         if self.state.multisample || self.state.point_sprite || self.out.pending {
             let shape = self.out.shapes.len() as u32;
             self.out.shapes.push(Shape::Point { center, size, fade, pixels: None });
-            return self.quad(quad, plane, [slot; 4], stroke, kind, shape);
+            let mut slots = [slot; 4];
+            if self.sprites != [None; UNITS] {
+                // s runs to the right, t downwards; from the corners as the rasteriser has them.
+                let from_center = |v: f32, k: usize| (snapped(v) as f32 / SUBPIXEL as f32 - center[k]) / size;
+                let place = |[x, y]: [f32; 2]| [0.5 + from_center(x, 0), 0.5 - from_center(y, 1)];
+                slots = quad.map(|corner| self.sprite_slot(slot, 1.0 / clip[3], place(corner)));
+            }
+            return self.quad(quad, plane, slots, stroke, kind, shape);
         }
         // One triangle over the square is less to walk than its two halves.
         let [low, high] = [quad[0], quad[2]].map(|corner| corner.map(snapped));

@@ -139,7 +139,7 @@ impl Assembler<'_> {
             let slot = self.first_slot + self.used.len() as u32 * self.stride;
             self.used.push(NONE);
             let (parents, weights) = ([inner.slot, outer.slot, outer.slot], [1.0 - t, t, 0.0]);
-            self.derived.push(Derived { slot, parents, weights, inverse_w: 1.0 / clip[3] });
+            self.derived.push(Derived { slot, parents, weights, inverse_w: 1.0 / clip[3], sprite: None });
             slot
         };
         Corner {

@@ -2,7 +2,6 @@
 //! time.
 
 use super::{Groups, MOST, Scratch, Shader, Weights};
-use crate::forward::assemble::Shape;
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
@@ -20,33 +19,22 @@ use vitral_math::lanes::{self, F32x8, Floats, Simd};
 /// Eight pixels: where, and which of them matter.
 struct Eight<S: Simd> {
     weights: Weights<F32x8<S>>,
-    x: F32x8<S>,
-    y: F32x8<S>,
     active: u32,
 }
 
 impl<V, const N: usize> Groups<'_, V, N> {
-    /// The colours of group `i`, made for eight pixels at a time of what they have in `numbers`.
+    /// The colours of group `i`, made for eight pixels at a time.
     #[inline(always)]
-    fn by_eights<S: Simd>(
-        &self,
-        simd: S,
-        i: usize,
-        [a, b, c, d]: [V; 4],
-        f: impl Fn(&Eight<S>, Rgba<S>) -> Rgba<S>,
-    ) -> [V; 4]
+    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&Eight<S>) -> Rgba<S>) -> [V; 4]
     where
         V: Floats<S>,
     {
         let Weights { b1, b2, w } = self.weights[i];
         V::by_eights(
             simd,
-            [b1, b2, w, self.x[i], self.y[i], a, b, c, d],
+            [b1, b2, w],
             #[inline(always)]
-            |first, [b1, b2, w, x, y, a, b, c, d]| {
-                let eight = Eight { weights: Weights { b1, b2, w }, x, y, active: self.active >> first & 0xff };
-                f(&eight, [a, b, c, d])
-            },
+            |first, [b1, b2, w]| f(&Eight { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff }),
         )
     }
 }
@@ -130,7 +118,7 @@ impl<'d> Shader<'d> {
     }
 
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
-    /// bits a component, no texels of a border, no anisotropy, no sprites, no q of a cube's that could turn directions round.
+    /// bits a component, no texels of a border, no anisotropy, no q of a cube's that could turn directions round.
     #[inline(always)]
     fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
@@ -158,9 +146,8 @@ impl<'d> Shader<'d> {
         groups.by_eights(
             simd,
             i,
-            [every(simd, 0.0); 4],
             #[inline(always)]
-            |eight, _| self.texture(simd, eight, unit),
+            |eight| self.texture(simd, eight, unit),
         )
     }
 
@@ -211,39 +198,23 @@ impl<'d> Shader<'d> {
         )
     }
 
-    /// Any texture: sprites, borders, volumes, cubes, depth, anisotropy.
+    /// Any texture: borders, volumes, cubes, depth, anisotropy.
     #[inline(always)]
     fn any<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
-        let Eight { weights, x, y, active } = *eight;
+        let Eight { weights, active } = *eight;
         let weights = &weights;
         let texture = &*unit.texture;
-        let mut coords = match self.draw.layout.tex[unit.index % UNITS] {
+        let coords = match self.draw.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
             None => splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]),
         };
         let bias = splat(simd, unit.lod_bias);
-        let mut sprite = None;
-        if self.draw.layout.sprites >> unit.index & 1 == 1
-            && let Some(Shape::Point { center, size, .. }) = self.shape()
-        {
-            // s runs to the right, t downwards.
-            coords[0] = (x - center[0]) / size + 0.5;
-            coords[1] = (-(y - center[1])) / size + 0.5;
-            (coords[2], coords[3]) = (splat(simd, 0.0), splat(simd, 1.0));
-            sprite = Some(1.0 / size);
-        }
         let anisotropic = texture.sampler.anisotropy > 1.0;
         let plane = self.draw.planes[unit.index % UNITS];
         if !needs_lod(texture) && !anisotropic {
             return sample(simd, texture, plane, coords, bias, active);
         }
-        let [dx, dy] = match sprite {
-            Some(step) => {
-                let (zero, step) = (splat(simd, 0.0), splat(simd, step));
-                [[step, zero, zero, zero], [zero, -step, zero, zero]]
-            }
-            None => self.steps(simd, weights, self.draw.layout.tex[unit.index % UNITS]),
-        };
+        let [dx, dy] = self.steps(simd, weights, self.draw.layout.tex[unit.index % UNITS]);
         let steps = derivatives(simd, texture, coords, dx, dy);
         if anisotropic {
             return sample_anisotropic(simd, (texture, plane), coords, steps, bias, active);

@@ -3,6 +3,7 @@
 use super::plane::DepthPlane;
 use super::sample::packed_cube::CubeFaces;
 use super::state::Compare;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// Kind of texture.
@@ -60,10 +61,10 @@ pub struct Level {
 /// Texels of the largest images with [`Level::columns`]: 2048x2048.
 const MOST_COLUMNS: u64 = 1 << 22;
 
-/// What linear filtering reads of an image with 8 bits a component, once it was asked for: see [`Level::columns`]. A copy makes
+/// What linear filtering reads of an image with 8 bits a component, once it is worth while: see [`Level::columns`]. A copy makes
 /// its own.
 #[derive(Debug, Default)]
-pub(super) struct Columns(pub(super) OnceLock<Box<[[u32; 2]]>>);
+pub(super) struct Columns(pub(super) OnceLock<Box<[[u32; 2]]>>, AtomicU32);
 
 impl Clone for Columns {
     fn clone(&self) -> Self {
@@ -90,13 +91,23 @@ impl Level {
 
     /// Texels of 8 bits in two dimensions, each with the one above, so that the four round a place lie side by side: texel
     /// `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the right and the upper edge the image begins anew. They
-    /// take twice the memory of the texels: large images do without.
+    /// take twice the memory of the texels: large images do without. They are made once enough places are asked about, of which
+    /// these are `asked`: programs may change a few texels, draw with them, and change others. Without them lookups take longer, and
+    /// give the same.
     #[inline(always)]
-    pub(crate) fn columns(&self) -> Option<&[[u32; 2]]> {
-        self.has_columns().then(
-            #[inline(always)]
-            || &**self.columns.0.get_or_init(|| self.make_columns()),
-        )
+    pub(crate) fn columns(&self, asked: usize) -> Option<&[[u32; 2]]> {
+        match self.columns.0.get() {
+            Some(columns) => Some(columns),
+            None => self.columns_for(asked),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn columns_for(&self, asked: usize) -> Option<&[[u32; 2]]> {
+        let texels = u64::from(self.size[0]) * u64::from(self.size[1]);
+        let all = u64::from(self.columns.1.fetch_add(asked as u32, Ordering::Relaxed)) + asked as u64;
+        (self.has_columns() && all >= texels / 2).then(|| &**self.columns.0.get_or_init(|| self.make_columns()))
     }
 
     /// Whether it is small enough for [`Self::columns`].

@@ -174,7 +174,8 @@ fn lookup<S: Simd>(
         && inside
         && shape.border == 0
         && let Some(words) = Words::new(shape)
-        && let Some(columns) = if filtered { shape.columns() } else { Some(&[][..]) }
+        && let Some(columns) =
+            if filtered { shape.columns(shape.size[0] as usize * shape.size[1] as usize) } else { Some(&[][..]) }
     {
         let color = if filtered {
             bilinear(simd, (columns, size[0]), words, &x, &y)

@@ -153,7 +153,7 @@ impl<'a> Packed<'a> {
         let mut texels = [[[V::Words::splat(simd, 0); 4]; 2]; N];
         for i in 0..N {
             for k in 0..count {
-                let columns = self.get(levels[i][k]).columns()?;
+                let columns = self.get(levels[i][k]).columns(V::LEN)?;
                 texels[i][k] = quads::<S, V>(
                     simd,
                     #[inline(always)]
@@ -212,7 +212,8 @@ impl<'a> Packed<'a> {
         let first = each.as_slice()[0];
         // Nearly always all lanes need the same level.
         let same = each.simd_eq(first).all_true().then(|| self.get(first));
-        let Some((columns, [width, height, _])) = same.and_then(|level| Some((level.columns()?, level.size))) else {
+        let Some((columns, [width, height, _])) = same.and_then(|level| Some((level.columns(V::LEN)?, level.size)))
+        else {
             return self.mixed_halves(simd, place, level);
         };
         let size = [every(simd, width as f32), every(simd, height as f32)];
@@ -295,7 +296,9 @@ impl<'a> Packed<'a> {
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
         let (level, stride): (V::Ints, V::Ints) = (level.to_int(), size[0].to_int());
-        if !self.levels[0].has_columns() {
+        let have_columns =
+            self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some());
+        if !have_columns {
             let words = lanes::inlined(
                 #[inline(always)]
                 |x: V::Ints, y: V::Ints| self.words::<S, V>(simd, level, y * stride + x),
@@ -307,7 +310,7 @@ impl<'a> Packed<'a> {
         let quads = quads::<S, V>(
             simd,
             #[inline(always)]
-            |lane| self.get(level[lane]).columns().unwrap_or_default(),
+            |lane| self.get(level[lane]).columns(0).unwrap_or_default(),
             y.near * (stride + 1) + x.near,
         );
         (quads, [x.weight, y.weight])

@@ -232,7 +232,7 @@ fn the_packed_path_agrees_with_the_general_one() {
                         let zero = crate::forward::wide::splat(simd, 0.0);
                         let at = [load(&coords[0]), load(&coords[1]), zero, zero + 1.0];
                         let packed = Packed::new(&texture).expect("two dimensions, bytes");
-                        assert_eq!(texture.faces[0][0].columns().is_none(), size[0] == 4096);
+                        assert_eq!(texture.faces[0][0].columns(1 << 20).is_none(), size[0] == 4096);
                         let a = crate::forward::sample::packed::sample(simd, &packed, at, load(&lods), 0xff);
                         let b = crate::forward::sample::flat::sample(simd, &texture, at, load(&lods), 0xff);
                         let array = |c: [F32x8<_>; 4]| [0, 1, 2, 3].map(|k: usize| c[k].to_array());

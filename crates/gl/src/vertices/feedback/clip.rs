@@ -11,6 +11,7 @@ use crate::state::State;
 pub(super) struct View<'a> {
     pub(super) state: &'a State,
     zero_to_one: bool,
+    has_user_planes: bool,
 }
 
 /// Planes of the view volume.
@@ -18,7 +19,8 @@ const SIDES: usize = 6;
 
 impl<'a> View<'a> {
     pub(super) fn of(state: &'a State) -> Self {
-        Self { state, zero_to_one: state.clip_control.1 == enums::ZERO_TO_ONE }
+        let has_user_planes = state.clip_plane_enabled.contains(&true);
+        Self { state, zero_to_one: state.clip_control.1 == enums::ZERO_TO_ONE, has_user_planes }
     }
 
     /// Signed distance to a plane: inside is >= 0. `None` if the plane does not clip.
@@ -51,7 +53,8 @@ impl<'a> View<'a> {
     /// A bit for each plane that a vertex lies outside of.
     pub(super) fn outside(&self, vertex: &Vertex) -> u16 {
         let is_outside = |&plane: &usize| self.distance(plane, vertex).is_some_and(|d| d.is_nan() || d < 0.0);
-        self.planes().filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
+        let planes = if self.has_user_planes { self.planes() } else { 0..SIDES };
+        planes.filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
     }
 
     /// The part of a line that is inside.

@@ -7,8 +7,10 @@ use crate::vertex::{Primitive, VertexBatch};
 
 /// Tells all primitives of a batch.
 pub(super) fn feed(batch: &VertexBatch, processed: &[Vertex], view: &View, to: &mut Feedback) {
+    let polygons = &view.state.polygons;
+    let only_depths = to.mode == enums::SELECT && !polygons.cull && polygons.mode == [enums::FILL; 2];
     let outside = processed.iter().map(|vertex| view.outside(vertex)).collect();
-    let mut feeder = Feeder { batch, processed, outside, view, to, corners: Vec::new(), told: Vec::new() };
+    let mut feeder = Feeder { batch, processed, outside, only_depths, view, to, corners: Vec::new(), told: Vec::new() };
     for primitive in &batch.primitives {
         feeder.primitive(*primitive);
     }
@@ -19,6 +21,8 @@ struct Feeder<'a> {
     processed: &'a [Vertex],
     /// Of all vertices, [`View::outside`].
     outside: Vec<u16>,
+    /// Of polygons that lie inside, depths are all that counts.
+    only_depths: bool,
     view: &'a View<'a>,
     to: &'a mut Feedback,
     /// Memory for a polygon's corners, and for what is told of them.
@@ -99,6 +103,13 @@ impl Feeder<'_> {
         let bits = |i: &u32| self.outside[self.batch.vertex(*i)];
         let (any, all) = corners.iter().map(bits).fold((0, u16::MAX), |(any, all), bits| (any | bits, all & bits));
         if all != 0 {
+            return;
+        }
+        if any == 0 && self.only_depths {
+            for corner in corners {
+                let vertex = &self.processed[self.batch.vertex(*corner)];
+                self.to.hit(self.view.depth(vertex));
+            }
             return;
         }
         let mut polygon = std::mem::take(&mut self.corners);

@@ -195,7 +195,16 @@ impl<'a> Image<'a> {
     pub(super) fn colors<S: Simd>(&self, simd: S, index: I32x8<S>) -> Rgba<S> {
         match self {
             Self::Words(words) => words.colors(simd, index),
-            Self::Floats(texels) => columns(simd, &gather(texels, index)),
+            Self::Floats(texels) => {
+                let index = index.to_array();
+                let row = |lane: usize| texels.get(index[lane] as usize).copied().unwrap_or_default();
+                let [r, g, b, a] = lanes::columns_of_rows(
+                    simd,
+                    #[inline(always)]
+                    |lane| bytemuck::cast(row(lane)),
+                );
+                [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()]
+            }
             Self::Depths(texels) => [F32x8::from_slice(simd, &gather(texels, index)); 4],
         }
     }

@@ -34,7 +34,6 @@ pub(crate) struct PackedCube<'a> {
     size: u32,
     /// A face, for what bytes mean.
     first: Words<'a>,
-    wrap: Wrap,
 }
 
 impl<'a> PackedCube<'a> {
@@ -55,12 +54,7 @@ impl<'a> PackedCube<'a> {
         if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {
             return None;
         }
-        let wrap = match (sampler.seamless, &sampler.wrap[..2]) {
-            (true, _) => Wrap::ClampToBorder,
-            (false, [Wrap::ClampToEdge, Wrap::ClampToEdge]) => Wrap::ClampToEdge,
-            _ => return None,
-        };
-        Some(Self { texture, last, size, first: Words::new(first)?, wrap })
+        Some(Self { texture, last, size, first: Words::new(first)? })
     }
 
     /// Whether the level of detail can matter.
@@ -96,7 +90,11 @@ impl<'a> PackedCube<'a> {
         let size = max(floor(Lanes::exp2_whole(-level) * self.size as f32), every(simd, 1.0));
         let along = lanes::inlined(
             #[inline(always)]
-            |k: usize| linear_in(simd, position_in(simd, point[k], size, self.wrap), size, self.wrap),
+            |k: usize| {
+                // Points are on their faces: the rim holds what wrapping finds beside them.
+                let wrap = Wrap::ClampToBorder;
+                linear_in(simd, position_in(simd, point[k], size, wrap), size, wrap)
+            },
         );
         let (x, y) = (along(0), along(1));
         let width: V::Ints = size.to_int();
@@ -183,9 +181,17 @@ fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
     };
     let (own, size) = words(face);
     let texel = |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
+    let sampler = &texture.sampler;
+    let border = u32::from_le_bytes(sampler.border.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8));
+    let along = |axis: usize, at: i32| match sampler.wrap[axis] {
+        Wrap::Repeat => Some(at.rem_euclid(size)),
+        Wrap::MirroredRepeat | Wrap::ClampToEdge => Some(at.clamp(0, size - 1)),
+        Wrap::Clamp | Wrap::ClampToBorder => (0..size).contains(&at).then_some(at),
+    };
     let beyond = |x: i32, y: i32| match neighbour(face as u32, x, y, size) {
-        Some((face, x, y)) if texture.sampler.seamless => texel(words(face as usize).0, x, y),
-        _ => texel(own, x.clamp(0, size - 1), y.clamp(0, size - 1)),
+        Some((face, x, y)) if sampler.seamless => texel(words(face as usize).0, x, y),
+        _ if sampler.seamless => texel(own, x.clamp(0, size - 1), y.clamp(0, size - 1)),
+        _ => along(0, x).zip(along(1, y)).map_or(border, |(x, y)| texel(own, x, y)),
     };
     let mut rimmed = Vec::with_capacity(((size + 2) * (size + 2)) as usize);
     for y in -1..=size {

@@ -365,6 +365,17 @@ fn takes_second(level: Level) -> bool {
     false
 }
 
+/// Whether a machine has no more than every x86-64 of 2003 had: its code is the longest, and hardly anybody runs it.
+#[inline(always)]
+pub fn is_oldest(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if matches!(level, Level::Sse2(_)) {
+        return true;
+    }
+    let _ = level;
+    false
+}
+
 /// Whether registers hold sixteen numbers: where two must hold them, formulas of many numbers are better off with eight.
 #[inline(always)]
 pub fn has_sixteen(level: Level) -> bool {

@@ -474,7 +474,7 @@ impl<'a> Shader<'a> {
         words: &mut BlockWords,
     ) -> u64 {
         self.prepare(simd, setup);
-        if any.count_ones() > MANY {
+        if any.count_ones() > MANY && !lanes::is_oldest(simd.level()) {
             return self.whole(simd, (left, bottom), words) & any;
         }
         let mut passed = 0u64;

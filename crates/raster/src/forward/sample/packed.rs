@@ -296,8 +296,13 @@ impl<'a> Packed<'a> {
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
         let (level, stride): (V::Ints, V::Ints) = (level.to_int(), size[0].to_int());
-        let have_columns =
-            self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some());
+        // Nearly always all lanes need the same level.
+        let first = level.as_slice()[0];
+        let have_columns = if level.simd_eq(first).all_true() {
+            self.get(first).columns(V::LEN).is_some()
+        } else {
+            self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some())
+        };
         if !have_columns {
             let words = lanes::inlined(
                 #[inline(always)]

@@ -9,13 +9,14 @@ use super::store::{ClientImage, drawable};
 use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;
 use crate::enums::*;
+use std::borrow::Cow;
 use std::sync::Arc;
-use vitral_raster::forward::{Clamping, Command, Compare, DepthTest, FragmentState, ImageFragments};
+use vitral_raster::forward::{Clamping, Command, Compare, DepthTest, FragmentState, ImageColors, ImageFragments};
 
 /// What a pixel rectangle brings.
 #[derive(Default)]
 struct Pixels {
-    colors: Option<Vec<[f32; 4]>>,
+    colors: Option<ImageColors>,
     depths: Option<Vec<f32>>,
     stencils: Option<Vec<u8>>,
 }
@@ -43,12 +44,13 @@ impl Context {
 
     /// Records a rectangle at the raster position, `skip` source pixels away from its corner.
     fn record_pixels(&mut self, mut pixels: Pixels, skip: [usize; 2], size: [usize; 2]) {
-        self.image_came(16 * size[0] * size[1]);
+        let bytes = if matches!(pixels.colors, Some(ImageColors::Words(_))) { 4 } else { 16 };
+        self.image_came(bytes * size[0] * size[1]);
         let zoom = self.state.pixel_mode.zoom;
         let raster = self.state.raster_position.window;
         let origin = std::array::from_fn(|i| raster[i] + skip[i] as f32 * zoom[i]);
         let clamped = self.clamping() != Clamping::None;
-        if let Some(colors) = pixels.colors.as_mut().filter(|_| clamped) {
+        if let Some(ImageColors::Floats(colors)) = pixels.colors.as_mut().filter(|_| clamped) {
             clamp_colors(colors);
         }
         let fragments = self.raster_fragments(origin, zoom, size);
@@ -130,7 +132,13 @@ impl Context {
         let transfer = Transfer::new(&self.state.pixel);
         let mut pixels = Pixels::default();
         match content {
-            Content::Color | Content::Index => pixels.colors = Some(decode::colors(&self.workers(), image, &transfer)),
+            Content::Color | Content::Index => {
+                // Five and six bits are more than bytes hold of them.
+                let bytes = transfer.keeps_colors() && image.format.kind != UNSIGNED_SHORT_5_6_5;
+                let words = bytes.then(|| decode::words(Cow::Borrowed(image)).ok()).flatten();
+                let floats = || ImageColors::Floats(decode::colors(&self.workers(), image, &transfer));
+                pixels.colors = Some(words.map_or_else(floats, ImageColors::Words));
+            }
             Content::Depth => pixels.depths = Some(decode::depths(image, &transfer, true)),
             Content::Stencil => pixels.stencils = Some(decode::stencils(image, &transfer)),
             Content::DepthStencil => {
@@ -186,7 +194,7 @@ impl Context {
         {
             let mut colors = read_colors(&self.workers(), &lock(plane), &s.format, &r);
             transfer.colors(&mut colors);
-            pixels.colors = Some(colors);
+            pixels.colors = Some(ImageColors::Floats(colors));
         }
         if let (Content::Depth | Content::DepthStencil, Some(s)) = (content, &from.depth)
             && let Some(plane) = &s.depth

@@ -34,7 +34,7 @@ pub use assemble::{
     Assembler, Facet, FacetKind, NO_GRID, PrimitiveState, Primitives, Shape, Vertices, flag_user_planes,
 };
 pub use color_grid::{ColorGrid, GridColors};
-pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageFragments, Pass, Runner, Target};
+pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageColors, ImageFragments, Pass, Runner, Target};
 pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, Resolve, StencilPlane};
 pub use project::{WindowTransform, project};
 pub use shade::Layout;

@@ -85,6 +85,15 @@ pub struct Clear {
     pub clip: [i32; 4],
 }
 
+/// Colours of a pixel rectangle.
+#[derive(Clone, Debug)]
+pub enum ImageColors {
+    /// RGBA.
+    Floats(Vec<[f32; 4]>),
+    /// Bytes, red in the lowest.
+    Words(Vec<u32>),
+}
+
 /// Fragments of a pixel rectangle or bitmap. The fragment of source pixel `(i, j)` covers the pixels whose centres lie
 /// in `[x + zoom_x * i, x + zoom_x * (i + 1)) x [y + zoom_y * j, ...)`.
 #[derive(Clone, Debug)]
@@ -98,7 +107,7 @@ pub struct ImageFragments {
     /// Window depth of all fragments that bring none, 0..=1.
     pub z: f32,
     /// Colours for each source pixel.
-    pub colors: Option<Vec<[f32; 4]>>,
+    pub colors: Option<ImageColors>,
     /// Depths for each source pixel, 0..=1.
     pub depths: Option<Vec<f32>>,
     /// Stencil values for each source pixel: written through the stencil mask and nothing else.

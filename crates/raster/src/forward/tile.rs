@@ -5,8 +5,9 @@ use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
+use super::fragment_ops::packed::unpack;
 use super::hard_line::HardLine;
-use super::pass::{Clear, DrawContext, ImageFragments, Item, facet_of, intersection};
+use super::pass::{Clear, DrawContext, ImageColors, ImageFragments, Item, facet_of, intersection};
 use super::plane::PlaneTile;
 use super::sample::sample;
 use super::shade::{CENTERS, Seen, Shader};
@@ -20,7 +21,7 @@ use crate::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Viewport};
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, LANES, Level, Simd, columns_of_rows, dispatch};
+use vitral_math::lanes::{F32x8, LANES, Level, Simd, U32x8, columns_of_rows, dispatch};
 
 /// A tile of the target and its planes.
 pub(crate) struct TileRun<'a> {
@@ -312,13 +313,23 @@ fn image_color<S: Simd>(
     at: &[usize; LANES],
 ) -> Rgba<S> {
     let mut primary = splat_rgba(simd, image.color);
-    if let Some(colors) = &image.colors {
-        let [r, g, b, a] = columns_of_rows(
-            simd,
-            #[inline(always)]
-            |lane| bytemuck::cast(colors[at[lane]]),
-        );
-        primary = [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()];
+    match &image.colors {
+        Some(ImageColors::Floats(colors)) => {
+            let [r, g, b, a] = columns_of_rows(
+                simd,
+                #[inline(always)]
+                |lane| bytemuck::cast(colors[at[lane]]),
+            );
+            primary = [r.bitcast(), g.bitcast(), b.bitcast(), a.bitcast()];
+        }
+        Some(ImageColors::Words(words)) => {
+            let mut eight = [0; LANES];
+            for lane in 0..LANES {
+                eight[lane] = words[at[lane]];
+            }
+            primary = unpack(U32x8::from_slice(simd, &eight));
+        }
+        None => {}
     }
     let mut color = primary;
     if !state.units.is_empty() {

@@ -33,7 +33,7 @@ static int by_value(const void *a, const void *b) {
 /* Makes the context, says whose it is, and reads the arguments. */
 static void begin(int count, char **arguments) {
     pixels = malloc(WIDTH * HEIGHT * 4);
-    context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, NULL);
+    context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 16, NULL);
     if (!context || !OSMesaMakeCurrent(context, pixels, GL_UNSIGNED_BYTE, WIDTH, HEIGHT)) exit(1);
     printf("%s\n", (const char *)glGetString(GL_RENDERER));
     if (count > 1 && strcmp(arguments[1], "all")) only = arguments[1];

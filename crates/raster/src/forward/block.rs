@@ -8,7 +8,7 @@ use super::fragment::{ColorTile, FragmentOps, Mixing, SAMPLES, TilePlanes, store
 use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
-use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed};
+use super::fragment_ops::packed::mixed_simply;
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
 use super::state::{Compare, FragmentState, StencilFace, StencilOp};
@@ -497,8 +497,15 @@ pub(crate) fn colors<S: Simd>(
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
-                if ops.is_simple() {
-                    write_rows(simd, (words, ops.mixing), mask, plane);
+                if ops.protected == 0 && ops.mixing.is_simple() {
+                    each_two_rows(
+                        simd,
+                        words,
+                        mask,
+                        plane,
+                        #[inline(always)]
+                        |new, old| mixed_simply(ops.mixing, new, old),
+                    );
                 } else {
                     write_seldom_rows(simd, words, (ops, state), mask, plane);
                 }
@@ -507,7 +514,7 @@ pub(crate) fn colors<S: Simd>(
     );
 }
 
-/// [`write_rows`] with all that a draw's state may have: seldom factors, logical operations, masks.
+/// Writes colours to the pixels of `mask` with all that a draw's state may have: seldom factors, logical operations, masks.
 #[inline(never)]
 fn write_seldom_rows<S: Simd>(
     simd: S,
@@ -528,11 +535,8 @@ fn write_seldom_rows<S: Simd>(
                 |new, old| {
                     let mixed = match (ops.mixing, &state.blend) {
                         (Mixing::Logic(op), _) => logic_op(op, new, old),
-                        (Mixing::Add, _) => add_packed(new, old),
-                        (Mixing::AddScaled, _) => add_scaled_packed(new, old),
-                        (Mixing::Mix, _) => mix_packed(new, old),
                         (Mixing::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
-                        _ => new,
+                        (mixing, _) => mixed_simply(mixing, new, old),
                     };
                     write_unprotected(mixed, old, ops.protected)
                 },
@@ -541,25 +545,7 @@ fn write_seldom_rows<S: Simd>(
     );
 }
 
-/// Writes colours to the pixels of `mask`; `stored` begins with the block's first.
-#[inline(always)]
-fn write_rows<S: Simd>(simd: S, (words, mixing): (&BlockWords, Mixing), mask: u64, stored: &mut [u32]) {
-    each_two_rows(
-        simd,
-        words,
-        mask,
-        stored,
-        #[inline(always)]
-        |new, old| match mixing {
-            Mixing::Add => add_packed(new, old),
-            Mixing::AddScaled => add_scaled_packed(new, old),
-            Mixing::Mix => mix_packed(new, old),
-            _ => new,
-        },
-    );
-}
-
-/// Brings what `mix` makes of new and stored colours to the pixels of `mask`.
+/// Brings what `mix` makes of new and stored colours to the pixels of `mask`; `stored` begins with the block's first.
 #[inline(always)]
 fn each_two_rows<S: Simd>(
     simd: S,

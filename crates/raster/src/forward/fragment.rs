@@ -9,7 +9,7 @@ use super::fragment_ops::blend::{Components, blend, blend_packed};
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
 use super::fragment_ops::logic::{logic_op, logic_op_of_16_bits, protected_bits, write_unprotected};
-use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
+use super::fragment_ops::packed::{mixed_simply, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
 use super::state::{
@@ -105,6 +105,14 @@ pub(crate) enum Mixing {
     Logic(LogicOp),
 }
 
+impl Mixing {
+    /// Whether it is one of the ways that programs use most.
+    #[inline(always)]
+    pub(crate) fn is_simple(self) -> bool {
+        !matches!(self, Self::General | Self::Logic(_))
+    }
+}
+
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
@@ -120,12 +128,6 @@ pub(crate) struct FragmentOps {
 }
 
 impl FragmentOps {
-    /// Whether colours are written whole, and mixed in one of the ways that programs use most.
-    #[inline(always)]
-    pub(crate) fn is_simple(&self) -> bool {
-        self.protected == 0 && !matches!(self.mixing, Mixing::General | Mixing::Logic(_))
-    }
-
     pub(crate) fn new(state: &FragmentState, samples: usize) -> Self {
         let all = (1u32 << samples) - 1;
         let coverage = match state.sample_coverage {
@@ -380,16 +382,10 @@ fn write_packed<S: Simd>(
     values: &mut [u32],
 ) {
     let stored = U32x8::from_slice(simd, values);
-    let mut new = match ops.mixing {
-        Mixing::Replace => packed,
-        Mixing::Add => add_packed(packed, stored),
-        Mixing::AddScaled => add_scaled_packed(packed, stored),
-        Mixing::Mix => mix_packed(packed, stored),
-        Mixing::General => match &state.blend {
-            Some(b) => general_packed(simd, b, packed, stored),
-            None => packed,
-        },
-        Mixing::Logic(op) => logic_op(op, packed, stored),
+    let mut new = match (ops.mixing, &state.blend) {
+        (Mixing::General, Some(b)) => general_packed(simd, b, packed, stored),
+        (Mixing::Logic(op), _) => logic_op(op, packed, stored),
+        (mixing, _) => mixed_simply(mixing, packed, stored),
     };
     if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);

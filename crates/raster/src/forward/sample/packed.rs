@@ -37,6 +37,8 @@ impl<'a> Packed<'a> {
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
+        // What most textures of other kinds lack.
+        let words = Words::new(first)?;
         let sampler = &texture.sampler;
         let flat = match texture.kind {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
@@ -58,7 +60,7 @@ impl<'a> Packed<'a> {
         let own = [sampler.wrap[0], if is_row { Wrap::ClampToEdge } else { sampler.wrap[1] }];
         let reaches = own.map(|wrap| matches!(wrap, Wrap::Clamp | Wrap::ClampToBorder));
         let wrap = [0, 1].map(|k: usize| if reaches[k] { Wrap::ClampToEdge } else { own[k] });
-        Some(Self { levels, first: Words::new(first)?, size, sampler, wrap, reaches })
+        Some(Self { levels, first: words, size, sampler, wrap, reaches })
     }
 
     /// A level, or the last one.

@@ -8,7 +8,6 @@ use super::fragment::{ColorTile, FragmentOps, Mixing, SAMPLES, TilePlanes, store
 use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
-use super::fragment_ops::packed::mixed_simply;
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
 use super::state::{Compare, FragmentState, StencilFace, StencilOp};
@@ -56,11 +55,16 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
 }
 
-/// Which pixels of the block at pixel `(left, bottom)`, the left one a multiple of eight, a polygon stipple lets pass.
-pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u64 {
+/// Which of the eight pixels from `(left, y)` on, `left` a multiple of eight, a polygon stipple lets pass.
+pub(crate) fn stippled_row(pattern: &[u32; 32], (left, y): (usize, usize)) -> u8 {
     // The leftmost pixel is the highest bit.
-    let eight = |row: usize| (pattern[(bottom + row) % 32] >> (24 - left % 32)) as u8;
-    (0..BLOCK).fold(0, |mask, row| mask | u64::from(eight(row).reverse_bits()) << (BLOCK * row))
+    ((pattern[y % 32] >> (24 - left % 32)) as u8).reverse_bits()
+}
+
+/// The same for the block at pixel `(left, bottom)`.
+pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u64 {
+    let row = |row: usize| u64::from(stippled_row(pattern, (left, bottom + row)));
+    (0..BLOCK).fold(0, |mask, k| mask | row(k) << (BLOCK * k))
 }
 
 /// Rows of a block that are computed together.
@@ -504,7 +508,7 @@ pub(crate) fn colors<S: Simd>(
                         mask,
                         plane,
                         #[inline(always)]
-                        |new, old| mixed_simply(ops.mixing, new, old),
+                        |new, old| ops.mixing.simply(new, old),
                     );
                 } else {
                     write_seldom_rows(simd, words, (ops, state), mask, plane);
@@ -536,7 +540,7 @@ fn write_seldom_rows<S: Simd>(
                     let mixed = match (ops.mixing, &state.blend) {
                         (Mixing::Logic(op), _) => logic_op(op, new, old),
                         (Mixing::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
-                        (mixing, _) => mixed_simply(mixing, new, old),
+                        (mixing, _) => mixing.simply(new, old),
                     };
                     write_unprotected(mixed, old, ops.protected)
                 },

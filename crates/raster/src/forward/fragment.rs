@@ -9,7 +9,7 @@ use super::fragment_ops::blend::{Components, blend, blend_packed};
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
 use super::fragment_ops::logic::{logic_op, logic_op_of_16_bits, protected_bits, write_unprotected};
-use super::fragment_ops::packed::{mixed_simply, pack, unpack};
+use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
 use super::state::{
@@ -110,6 +110,17 @@ impl Mixing {
     #[inline(always)]
     pub(crate) fn is_simple(self) -> bool {
         !matches!(self, Self::General | Self::Logic(_))
+    }
+
+    /// What such a way stores where new words meet old ones.
+    #[inline(always)]
+    pub(crate) fn simply<S: Simd, W: SimdInt<S, Element = u32>>(self, new: W, old: W) -> W {
+        match self {
+            Self::Add => add_packed(new, old),
+            Self::AddScaled => add_scaled_packed(new, old),
+            Self::Mix => mix_packed(new, old),
+            Self::Replace | Self::General | Self::Logic(_) => new,
+        }
     }
 }
 
@@ -385,7 +396,7 @@ fn write_packed<S: Simd>(
     let mut new = match (ops.mixing, &state.blend) {
         (Mixing::General, Some(b)) => general_packed(simd, b, packed, stored),
         (Mixing::Logic(op), _) => logic_op(op, packed, stored),
-        (mixing, _) => mixed_simply(mixing, packed, stored),
+        (mixing, _) => mixing.simply(packed, stored),
     };
     if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);

@@ -5,6 +5,7 @@ use super::sample::packed_cube::CubeFaces;
 use super::state::Compare;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
+use vitral_math::color::byte_from_unit;
 
 /// Kind of texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -197,6 +198,13 @@ pub struct Sampler {
     pub compare: Option<Compare>,
     /// Cube maps filter across edges.
     pub seamless: bool,
+}
+
+impl Sampler {
+    /// The border's colour as bytes, red the lowest.
+    pub(crate) fn border_word(&self) -> u32 {
+        u32::from_le_bytes(self.border.map(byte_from_unit))
+    }
 }
 
 /// A complete texture: what a lookup needs, nothing that can change.

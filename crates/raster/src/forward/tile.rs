@@ -524,10 +524,7 @@ impl ForwardSink<'_, '_, '_> {
         if self.shader.facet.kind == FacetKind::Polygon
             && let Some(pattern) = &state.polygon_stipple
         {
-            let word = pattern[top % 32];
-            // The leftmost pixel is the highest bit.
-            let eight = (word >> (24 - left % 32)) as u8;
-            let allowed = u32::from(eight.reverse_bits());
+            let allowed = u32::from(block::stippled_row(pattern, (left, top)));
             for b in &mut bits {
                 *b &= allowed;
             }

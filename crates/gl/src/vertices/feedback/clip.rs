@@ -42,7 +42,7 @@ impl<'a> View<'a> {
     }
 
     fn planes(&self) -> std::ops::Range<usize> {
-        0..SIDES + self.state.clip_plane_enabled.len()
+        0..if self.has_user_planes { SIDES + self.state.clip_plane_enabled.len() } else { SIDES }
     }
 
     /// Whether a point is inside.
@@ -53,8 +53,7 @@ impl<'a> View<'a> {
     /// A bit for each plane that a vertex lies outside of.
     pub(super) fn outside(&self, vertex: &Vertex) -> u16 {
         let is_outside = |&plane: &usize| self.distance(plane, vertex).is_some_and(|d| d.is_nan() || d < 0.0);
-        let planes = if self.has_user_planes { self.planes() } else { 0..SIDES };
-        planes.filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
+        self.planes().filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
     }
 
     /// The part of a line that is inside.

@@ -150,10 +150,6 @@ impl Feeder<'_> {
                 }
             }
             _ => {
-                if self.to.mode == enums::SELECT {
-                    polygon.iter().for_each(|vertex| self.to.hit(self.view.depth(vertex)));
-                    return;
-                }
                 self.told.clear();
                 self.told.extend(polygon.iter().map(|vertex| self.view.window(vertex, back)));
                 self.to.primitive(enums::POLYGON_TOKEN, Some(polygon.len()), &self.told);

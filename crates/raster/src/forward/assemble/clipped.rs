@@ -131,27 +131,28 @@ impl Assembler<'_> {
             }
         }
         let parents = [self.slot(parents[0]), self.slot(parents[1]), self.slot(parents[2])];
-        let slot = self.first_slot + self.used.len() as u32 * self.stride;
-        self.used.push(NONE);
-        let inverse_w = 1.0 / corner.clip[3];
-        self.derived.push(Derived { slot, parents, weights: corner.weights, inverse_w, sprite: None });
-        slot
+        self.new_slot(parents, corner.weights, 1.0 / corner.clip[3], None)
     }
 
     /// The slot of a sprite's corner, which is as the point's but for these coordinates s and t.
     pub(super) fn sprite_slot(&mut self, point: u32, inverse_w: f32, place: [f32; 2]) -> u32 {
+        self.new_slot([point; 3], [1.0, 0.0, 0.0], inverse_w, Some(place))
+    }
+
+    /// A slot for a vertex that is made of those of its parents.
+    pub(super) fn new_slot(
+        &mut self,
+        parents: [u32; 3],
+        weights: [f32; 3],
+        inverse_w: f32,
+        sprite: Option<[f32; 2]>,
+    ) -> u32 {
         if self.one_slot {
             return self.first_slot;
         }
         let slot = self.first_slot + self.used.len() as u32 * self.stride;
         self.used.push(NONE);
-        self.derived.push(Derived {
-            slot,
-            parents: [point; 3],
-            weights: [1.0, 0.0, 0.0],
-            inverse_w,
-            sprite: Some(place),
-        });
+        self.derived.push(Derived { slot, parents, weights, inverse_w, sprite });
         slot
     }
 

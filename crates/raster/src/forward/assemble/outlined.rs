@@ -3,7 +3,6 @@
 //! Edges and corners that planes of the user make are drawn (OpenGL 1.5, section 2.11). Those that the view volume makes are not,
 //! though the section speaks of them, too: nobody else draws them, and half of them would frame the picture.
 
-use super::clipped::Derived;
 use super::lines::Stroke;
 use super::*;
 
@@ -133,15 +132,7 @@ impl Assembler<'_> {
     fn on_edge(&mut self, inner: &Corner, outer: &Corner, t: f32, boundary: bool) -> Corner {
         let mix = |a: f32, b: f32| a + (b - a) * t;
         let clip: [f32; 4] = std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k]));
-        let slot = if self.one_slot {
-            self.first_slot
-        } else {
-            let slot = self.first_slot + self.used.len() as u32 * self.stride;
-            self.used.push(NONE);
-            let (parents, weights) = ([inner.slot, outer.slot, outer.slot], [1.0 - t, t, 0.0]);
-            self.derived.push(Derived { slot, parents, weights, inverse_w: 1.0 / clip[3], sprite: None });
-            slot
-        };
+        let slot = self.new_slot([inner.slot, outer.slot, outer.slot], [1.0 - t, t, 0.0], 1.0 / clip[3], None);
         Corner {
             clip,
             user: std::array::from_fn(|k| mix(inner.user[k], outer.user[k])),

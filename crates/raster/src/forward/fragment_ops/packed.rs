@@ -4,7 +4,6 @@
 //! exactly what [`blend`](super::blend::blend) gives between [`unpack`] and [`pack`]: the nearest byte to the exact result (a
 //! tie cannot happen, 255 being odd). A source that is not whole bytes is rounded before instead of after.
 
-use crate::forward::fragment::Mixing;
 use crate::forward::wide::{Rgba, saturate};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Floats, Simd, U32x8};
@@ -76,18 +75,6 @@ pub(crate) fn mix_packed<S: Simd, W: SimdInt<S, Element = u32>>(source: W, store
     let rb = divide_by_255((source & HALVES) * alpha + (stored & HALVES) * rest);
     let ga = divide_by_255(((source >> 8) & HALVES) * alpha + ((stored >> 8) & HALVES) * rest);
     rb | (ga << 8)
-}
-
-/// What is stored where new words meet old ones in one of the ways that programs use most: see
-/// [`Mixing::is_simple`](crate::forward::fragment::Mixing::is_simple).
-#[inline(always)]
-pub(crate) fn mixed_simply<S: Simd, W: SimdInt<S, Element = u32>>(mixing: Mixing, new: W, old: W) -> W {
-    match mixing {
-        Mixing::Add => add_packed(new, old),
-        Mixing::AddScaled => add_scaled_packed(new, old),
-        Mixing::Mix => mix_packed(new, old),
-        Mixing::Replace | Mixing::General | Mixing::Logic(_) => new,
-    }
 }
 
 /// The sum of bytes in 16-bit halves, at most 255.

@@ -236,7 +236,7 @@ impl<'a> Packed<'a> {
     /// Colours of texels at the edge, mixed with the border's by its share.
     #[inline(always)]
     fn bordered<S: Simd, V: Floats<S>>(&self, simd: S, color: Halves<S, V>, share: V) -> Halves<S, V> {
-        let border = u32::from_le_bytes(self.sampler.border.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8));
+        let border = self.sampler.border_word();
         color.mix(&Halves::new(V::Words::splat(simd, border)), weight(simd, share))
     }
 

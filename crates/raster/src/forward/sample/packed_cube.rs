@@ -182,7 +182,7 @@ fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
     let (own, size) = words(face);
     let texel = |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
     let sampler = &texture.sampler;
-    let border = u32::from_le_bytes(sampler.border.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8));
+    let border = sampler.border_word();
     let along = |axis: usize, at: i32| match sampler.wrap[axis] {
         Wrap::Repeat => Some(at.rem_euclid(size)),
         Wrap::MirroredRepeat | Wrap::ClampToEdge => Some(at.clamp(0, size - 1)),

@@ -5,8 +5,12 @@
 //! and shading model. [`registry`] lists the algorithms.
 #![forbid(unsafe_code)]
 
+mod cache;
+pub mod catalogue;
+pub mod choice;
 pub mod coherence;
 pub mod cull;
+mod execution;
 pub mod global;
 pub mod marks;
 pub mod pipeline;
@@ -23,13 +27,18 @@ pub mod trace;
 pub mod transparency;
 pub mod visible;
 
+pub use cache::{Cache, Cached, PerMesh, Reuse};
+pub use catalogue::{Acceleration, Shadows, Visibility};
+pub use choice::{Choice, UnknownName};
 pub use coherence::{Coherence, CoherenceSet};
 pub use pipeline::{Rendered, Shot, illuminate_corners, render};
 pub use prepare::PreparedView;
-pub use session::{Execution, Session};
+pub use execution::Execution;
+pub use session::Session;
 pub use settings::{
-    Acceleration, Background, Channels, ColorSpace, Culling, DepthCue, Global, Interpolation, Lines, Settings,
-    SettingsError, Shading, Transparency, TransparencyOrder, VolumeCounting,
+    Background, Channels, ColorSpace, Culling, DepthCue, Global, GlobalSettings, Interpolation, Lines, PictureSettings,
+    Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Transparency, TransparencyOrder,
+    TransparencySettings, VolumeCounting,
 };
 pub use stats::Stats;
 

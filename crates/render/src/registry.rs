@@ -1,5 +1,10 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
+//!
+//! It stands on top of all algorithms, and nothing below looks into it: an algorithm that is asked for by name is a
+//! [`Choice`](crate::choice::Choice), and the pipeline hands its code in. A new algorithm is a row here.
 
+use crate::catalogue::{LIST_PRIORITY, Panels, ShadowInfo, Shadows, Visibility, VisibilityInfo};
+use crate::choice::table;
 use crate::shadow::{
     ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
     scan_line::ScanLineShadows, volume::VolumeShadows,
@@ -9,284 +14,241 @@ use crate::visible::{
     VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
     warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
-use crate::{Acceleration, Coherence, Global};
+use crate::{Coherence, Global};
 
-/// An algorithm that finds the visible surface at each sample.
+pub use crate::raytrace::structures::ACCELERATION;
+
+/// An algorithm that finds the visible surface at each sample: what is known of it, and its code.
 pub struct VisibilityAlgorithm {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// What it does, in a line.
-    pub description: &'static str,
-    /// Key into the bibliography.
-    pub source: &'static str,
-    /// `image`, `list-priority` or `object` precision.
-    pub precision: &'static str,
-    /// Whether it follows rays, so that [`ACCELERATION`] is a choice.
-    pub casts_rays: bool,
-    /// Kinds of coherence that it exploits and that can be switched off.
-    pub coherence: &'static [Coherence],
-    /// What its picture of steps shows.
-    pub steps: Legend,
+    /// What faces list.
+    pub info: VisibilityInfo,
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
 }
 
-impl VisibilityAlgorithm {
-    /// Whether it makes a list of polygons from back to front, which transparent ones can be drawn by.
-    pub fn makes_list(&self) -> bool {
-        self.precision == "list-priority"
-    }
-}
+table! {
+    /// All visible-surface algorithms, the default first.
+    VISIBILITY: VisibilityAlgorithm of VisibilityInfo, "visibility algorithm";
 
-/// All visible-surface algorithms, the default first.
-pub static VISIBILITY: &[VisibilityAlgorithm] = &[
-    VisibilityAlgorithm {
-        name: "z-buffer",
-        description: "every sample keeps its nearest facet",
-        source: "Catmull 1974",
-        precision: "image",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Frame],
-        steps: Legend::Cost("opaque facets that cover the pixel"),
+    /// Catmull's z-buffer.
+    Z_BUFFER = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "z-buffer",
+            description: "every sample keeps its nearest facet",
+            source: "Catmull 1974",
+            precision: "image",
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Frame],
+            steps: Legend::Cost("opaque facets that cover the pixel"),
+        },
         algorithm: &ZBuffer,
-    },
-    VisibilityAlgorithm {
-        name: "scan-line",
-        description: "line by line, from edge to edge",
-        source: "Watkins 1970",
-        precision: "image",
-        casts_rays: false,
-        coherence: &[
-            Coherence::Object,
-            Coherence::Face,
-            Coherence::Edge,
-            Coherence::ImpliedEdge,
-            Coherence::ScanLine,
-            Coherence::Area,
-            Coherence::Depth,
-            Coherence::Frame,
-        ],
-        steps: Legend::Cost("polygons that are in, over the spans of the pixel"),
+    };
+    /// Watkins' scan-line algorithm.
+    SCAN_LINE = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "scan-line",
+            description: "line by line, from edge to edge",
+            source: "Watkins 1970",
+            precision: "image",
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: true,
+            coherence: &[
+                Coherence::Object,
+                Coherence::Face,
+                Coherence::Edge,
+                Coherence::ImpliedEdge,
+                Coherence::ScanLine,
+                Coherence::Area,
+                Coherence::Depth,
+                Coherence::Frame,
+            ],
+            steps: Legend::Cost("polygons that are in, over the spans of the pixel"),
+        },
         algorithm: &ScanLine,
-    },
-    VisibilityAlgorithm {
-        name: "warnock",
-        description: "windows are cut in four until they are simple",
-        source: "Warnock 1969",
-        precision: "image",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Area, Coherence::Depth, Coherence::Frame],
-        steps: Legend::Windows,
+    };
+    /// Warnock's area subdivision.
+    WARNOCK = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "warnock",
+            description: "windows are cut in four until they are simple",
+            source: "Warnock 1969",
+            precision: "image",
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Area, Coherence::Depth, Coherence::Frame],
+            steps: Legend::Windows,
+        },
         algorithm: &Warnock,
-    },
-    VisibilityAlgorithm {
-        name: "ray-cast",
-        description: "a ray through every sample, and a structure that finds what it meets (--acceleration)",
-        source: "Appel 1968",
-        precision: "image",
-        casts_rays: true,
-        coherence: &[Coherence::Object, Coherence::Area, Coherence::Frame],
-        steps: Legend::Cost("boxes or cells and facets that the rays of its block of pixels were tested against"),
+    };
+    /// Appel's ray casting.
+    RAY_CAST = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "ray-cast",
+            description: "a ray through every sample, and a structure that finds what it meets (--acceleration)",
+            source: "Appel 1968",
+            precision: "image",
+            casts_rays: true,
+            finds_layers_at_once: true,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Area, Coherence::Frame],
+            steps: Legend::Cost("boxes or cells and facets that the rays of its block of pixels were tested against"),
+        },
         algorithm: &RayCast,
-    },
-    VisibilityAlgorithm {
-        name: "brute-force",
-        description: "every facet against every sample: slow, the reference of the others",
-        source: "Foley et al. 1990",
-        precision: "image",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Frame],
-        steps: Legend::Cost("facets that the rays of its block of pixels were tested against"),
+    };
+    /// Every facet against every sample.
+    BRUTE_FORCE = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "brute-force",
+            description: "every facet against every sample: slow, the reference of the others",
+            source: "Foley et al. 1990",
+            precision: "image",
+            casts_rays: false,
+            finds_layers_at_once: true,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Frame],
+            steps: Legend::Cost("facets that the rays of its block of pixels were tested against"),
+        },
         algorithm: &BruteForce,
-    },
-    VisibilityAlgorithm {
-        name: "painter",
-        description: "polygons sorted by depth are painted over each other",
-        source: "Newell, Newell & Sancha 1972",
-        precision: "list-priority",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Frame],
-        steps: Legend::List,
+    };
+    /// The depth-sort of Newell, Newell and Sancha.
+    PAINTER = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "painter",
+            description: "polygons sorted by depth are painted over each other",
+            source: "Newell, Newell & Sancha 1972",
+            precision: LIST_PRIORITY,
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Frame],
+            steps: Legend::List,
+        },
         algorithm: &Painter,
-    },
-    VisibilityAlgorithm {
-        name: "bsp",
-        description: "a tree of planes gives the order from back to front",
-        source: "Fuchs, Kedem & Naylor 1980",
-        precision: "list-priority",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Frame],
-        steps: Legend::List,
+    };
+    /// The BSP tree of Fuchs, Kedem and Naylor.
+    BSP = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "bsp",
+            description: "a tree of planes gives the order from back to front",
+            source: "Fuchs, Kedem & Naylor 1980",
+            precision: LIST_PRIORITY,
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Frame],
+            steps: Legend::List,
+        },
         algorithm: &Bsp,
-    },
-    VisibilityAlgorithm {
-        name: "weiler-atherton",
-        description: "polygons are clipped against each other until only visible ones are left",
-        source: "Weiler & Atherton 1977",
-        precision: "object",
-        casts_rays: false,
-        coherence: &[Coherence::Object, Coherence::Frame],
-        steps: Legend::Outlines,
+    };
+    /// Weiler and Atherton's object-precision algorithm.
+    WEILER_ATHERTON = VisibilityAlgorithm {
+        info: VisibilityInfo {
+            name: "weiler-atherton",
+            description: "polygons are clipped against each other until only visible ones are left",
+            source: "Weiler & Atherton 1977",
+            precision: "object",
+            casts_rays: false,
+            finds_layers_at_once: false,
+            has_edge_table: false,
+            coherence: &[Coherence::Object, Coherence::Frame],
+            steps: Legend::Outlines,
+        },
         algorithm: &WeilerAtherton,
-    },
-];
-
-/// A visible-surface algorithm by its name.
-pub fn visibility(name: &str) -> Option<&'static VisibilityAlgorithm> {
-    VISIBILITY.iter().find(|a| a.name == name)
+    };
 }
 
-/// A structure that finds the triangles near a ray.
-#[derive(Clone, Copy, Debug)]
-pub struct AccelerationStructure {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// What it does, in a line.
-    pub description: &'static str,
-    /// Key into the bibliography.
-    pub source: &'static str,
-    /// As a setting.
-    pub value: Acceleration,
-    /// Whether a ray asks few of many triangles, however they are distributed over objects.
-    pub grows_slowly: bool,
-}
-
-/// All structures for rays, the default first.
-pub static ACCELERATION: &[AccelerationStructure] = &[
-    AccelerationStructure {
-        name: "bvh",
-        description: "a tree of boxes round triangles, cut by the surface area heuristic",
-        source: "MacDonald & Booth 1990",
-        value: Acceleration::Bvh,
-        grows_slowly: true,
-    },
-    AccelerationStructure {
-        name: "octree",
-        description: "a cube cut in eight where there is much, and its parts again",
-        source: "Glassner 1984",
-        value: Acceleration::Octree,
-        grows_slowly: true,
-    },
-    AccelerationStructure {
-        name: "bsp",
-        description: "a box cut in two across an axis where rays have least to do, and its parts again",
-        source: "Kaplan 1985",
-        value: Acceleration::Bsp,
-        grows_slowly: true,
-    },
-    AccelerationStructure {
-        name: "grid",
-        description: "equal cells, which a ray passes one by one",
-        source: "Amanatides & Woo 1987",
-        value: Acceleration::Grid,
-        grows_slowly: true,
-    },
-    AccelerationStructure {
-        name: "box",
-        description: "a box along the axes round each object, before its triangles",
-        source: "Rubin & Whitted 1980",
-        value: Acceleration::Box,
-        grows_slowly: false,
-    },
-    AccelerationStructure {
-        name: "oriented-box",
-        description: "a box that is turned to fit, round each object",
-        source: "Gottschalk, Lin & Manocha 1996",
-        value: Acceleration::OrientedBox,
-        grows_slowly: false,
-    },
-    AccelerationStructure {
-        name: "sphere",
-        description: "a sphere round each object",
-        source: "Ritter 1990",
-        value: Acceleration::Sphere,
-        grows_slowly: false,
-    },
-    AccelerationStructure {
-        name: "none",
-        description: "every ray asks every triangle",
-        source: "Appel 1968",
-        value: Acceleration::None,
-        grows_slowly: false,
-    },
-];
-
-/// A figure sequence of the notes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Panels {
-    /// Depths from the light and from the viewer, and how a picture is darkened by them.
-    ImageSpace,
-    /// What the light sees becomes polygons of the scene.
-    ObjectPrecision,
-}
-
-/// A way to find shadows.
+/// A way to find shadows: what is known of it, and its code.
 pub struct Shadowing {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// What it does, in a line.
-    pub description: &'static str,
-    /// Key into the bibliography.
-    pub source: &'static str,
-    /// What polygons it works with, if it does, which can be drawn.
-    pub polygons: Option<&'static str>,
-    /// The notes' figure sequence that shows how it works, if there is one.
-    pub panels: Option<Panels>,
+    /// What faces list.
+    pub info: ShadowInfo,
     /// The code; `None` for no shadows.
     pub algorithm: Option<&'static dyn ShadowAlgorithm>,
 }
 
-/// All shadow algorithms, the default first.
-pub static SHADOWS: &[Shadowing] = &[
-    Shadowing {
-        name: "none",
-        description: "every light reaches what faces it",
-        source: "Foley et al. 1990",
-        polygons: None,
-        panels: None,
+table! {
+    /// All shadow algorithms, the default first.
+    SHADOWS: Shadowing of ShadowInfo, "shadow algorithm";
+
+    /// No shadows.
+    NONE = Shadowing {
+        info: ShadowInfo {
+            is_none: true,
+            ..ShadowInfo::new(
+                "none",
+                "every light reaches what faces it",
+                "Foley et al. 1990",
+            )
+        },
         algorithm: None,
-    },
-    Shadowing {
-        name: "ray",
-        description: "a ray from every point to every light: the reference of the others",
-        source: "Appel 1968",
-        polygons: None,
-        panels: None,
+    };
+    /// Rays to the lights.
+    RAY = Shadowing {
+        info: ShadowInfo {
+            casts_rays: true,
+            ..ShadowInfo::new(
+                "ray",
+                "a ray from every point to every light: the reference of the others",
+                "Appel 1968",
+            )
+        },
         algorithm: Some(&RayShadows),
-    },
-    Shadowing {
-        name: "map",
-        description: "the z-buffer from the light, kept while lights and scene stay (--shadow-map-size, --shadow-cascades)",
-        source: "Williams 1978",
-        polygons: None,
-        panels: Some(Panels::ImageSpace),
+    };
+    /// Williams' shadow maps.
+    MAP = Shadowing {
+        info: ShadowInfo {
+            draws_maps: true,
+            panels: Some(Panels::ImageSpace),
+            ..ShadowInfo::new(
+                "map",
+                "the z-buffer from the light, kept while lights and scene stay (--shadow-map-size, --shadow-cascades)",
+                "Williams 1978",
+            )
+        },
         algorithm: Some(&MapShadows),
-    },
-    Shadowing {
-        name: "volume",
-        description: "solids behind what keeps light, counted along a path (--volume-counting)",
-        source: "Crow 1977",
-        polygons: Some("caps and sides of the volumes, as far as the scene is large"),
-        panels: None,
+    };
+    /// Crow's shadow volumes.
+    VOLUME = Shadowing {
+        info: ShadowInfo {
+            counts_volumes: true,
+            polygons: Some("caps and sides of the volumes, as far as the scene is large"),
+            ..ShadowInfo::new(
+                "volume",
+                "solids behind what keeps light, counted along a path (--volume-counting)",
+                "Crow 1977",
+            )
+        },
         algorithm: Some(&VolumeShadows),
-    },
-    Shadowing {
-        name: "scan-line",
-        description: "each line of pixels on a facet is cut where it crosses the shadows on the facet",
-        source: "Bouknight & Kelley 1970",
-        polygons: Some("shadow polygons, on the polygons that they fall on"),
-        panels: None,
+    };
+    /// The scan-line shadows of Bouknight and Kelley.
+    SCAN_LINE = Shadowing {
+        info: ShadowInfo {
+            polygons: Some("shadow polygons, on the polygons that they fall on"),
+            ..ShadowInfo::new(
+                "scan-line",
+                "each line of pixels on a facet is cut where it crosses the shadows on the facet",
+                "Bouknight & Kelley 1970",
+            )
+        },
         algorithm: Some(&ScanLineShadows),
-    },
-    Shadowing {
-        name: "object-precision",
-        description: "facets are cut in lit polygons, as the light sees them, kept while lights and scene stay",
-        source: "Atherton, Weiler & Greenberg 1978",
-        polygons: Some("lit polygons"),
-        panels: Some(Panels::ObjectPrecision),
+    };
+    /// The object-precision shadows of Atherton, Weiler and Greenberg.
+    OBJECT_PRECISION = Shadowing {
+        info: ShadowInfo {
+            polygons: Some("lit polygons"),
+            panels: Some(Panels::ObjectPrecision),
+            ..ShadowInfo::new(
+                "object-precision",
+                "facets are cut in lit polygons, as the light sees them, kept while lights and scene stay",
+                "Atherton, Weiler & Greenberg 1978",
+            )
+        },
         algorithm: Some(&ObjectPrecisionShadows),
-    },
-];
+    };
+}
 
 /// A way to find light that comes from other surfaces.
 #[derive(Clone, Copy, Debug)]
@@ -299,8 +261,8 @@ pub struct GlobalIllumination {
     pub source: &'static str,
     /// As a setting.
     pub value: Global,
-    /// Name of the shadow algorithm that belongs to it, for faces that choose one if the user does not.
-    pub shadows: &'static str,
+    /// The shadow algorithm that belongs to it, for faces that choose one if the user does not.
+    pub shadows: Shadows,
 }
 
 /// All global illumination models, the default first.
@@ -310,25 +272,38 @@ pub static GLOBALS: &[GlobalIllumination] = &[
         description: "surfaces are lit by lights alone",
         source: "Foley et al. 1990",
         value: Global::None,
-        shadows: "none",
+        shadows: Shadows::NONE,
     },
     GlobalIllumination {
         name: "ray-trace",
         description: "rays go on where they are mirrored and bent; with ray-traced shadows",
         source: "Whitted 1980",
         value: Global::RayTrace,
-        shadows: "ray",
+        shadows: Shadows::RAY,
     },
     GlobalIllumination {
         name: "radiosity",
         description: "matt surfaces light each other; solved once for all cameras",
         source: "Cohen et al. 1988",
         value: Global::Radiosity,
-        shadows: "ray",
+        shadows: Shadows::RAY,
     },
 ];
 
-/// A shadow algorithm by its name.
-pub fn shadows(name: &str) -> Option<&'static Shadowing> {
-    SHADOWS.iter().find(|s| s.name == name)
+/// The code of a visible-surface algorithm.
+///
+/// # Panics
+/// Never: a choice is made of a row.
+pub fn visibility(choice: Visibility) -> &'static dyn VisibleSurface {
+    let row = VISIBILITY.iter().find(|row| row.name == choice.name);
+    row.expect("a choice is made of a row").algorithm
+}
+
+/// The code of a shadow algorithm; `None` for no shadows.
+///
+/// # Panics
+/// Never: a choice is made of a row.
+pub fn shadows(choice: Shadows) -> Option<&'static dyn ShadowAlgorithm> {
+    let row = SHADOWS.iter().find(|row| row.name == choice.name);
+    row.expect("a choice is made of a row").algorithm
 }

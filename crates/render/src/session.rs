@@ -2,60 +2,21 @@
 //!
 //! Pictures with a fresh session and with a used one are equal.
 
-use crate::cull::{backface, bounds_tree::BoundsTree};
+use crate::cache::{Cache, PerMesh};
+use crate::cull::backface;
 use crate::prepare::is_layered;
-use crate::radiosity;
-use crate::raytrace::bsp::Bsp;
-use crate::raytrace::bvh::Bvh;
-use crate::raytrace::grid::Grid;
-use crate::raytrace::octree::Octree;
-use crate::raytrace::triangles::Triangles;
-use crate::raytrace::volumes::{Shape, Volumes};
-use crate::shading::{BackgroundKey, BackgroundRows, FaceTable, Scratch};
-use crate::shadow;
-use crate::trace::{Observer, Step};
-use crate::visible::BspTree;
 use crate::{Error, Transparency};
+use std::any::Any;
+use std::convert::Infallible;
 use std::sync::{Arc, Mutex, OnceLock};
-use vitral_exec::{Budget, Limit, Workers};
+use vitral_exec::Workers;
 use vitral_frame::Frame;
 use vitral_light::AlphaMode;
-use vitral_math::lanes::Level;
 use vitral_math::{Aabb, DMat4, Mat4, Vec3};
 use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
 use vitral_scene::{Attribute, Instance, Part, Scene, Solids, World, tangents};
-
-/// Who computes, with which instructions, and how much is allowed.
-#[derive(Clone, Debug)]
-pub struct Execution {
-    /// The threads.
-    pub workers: Workers,
-    /// The instruction set; pictures do not depend on it.
-    pub level: Level,
-    /// Time, memory, cancellation, progress.
-    pub budget: Budget,
-    /// Is told the steps of the algorithm.
-    pub observer: Option<Arc<dyn Observer>>,
-}
-
-impl Execution {
-    /// Tells the observer, if there is one, what `step` makes.
-    #[inline]
-    pub fn tell(&self, step: impl FnOnce() -> Step) {
-        if let Some(observer) = &self.observer {
-            observer.step(&step());
-        }
-    }
-}
-
-impl Default for Execution {
-    /// All threads that the process may use, the machine's best instruction set, no limits.
-    fn default() -> Self {
-        Self { workers: Workers::new(0), level: Level::new(), budget: Budget::default(), observer: None }
-    }
-}
 
 /// A scene made ready for many frames. The scene cannot change under it: edit a copy and make a new session.
 #[derive(Debug)]
@@ -69,58 +30,8 @@ pub struct Session {
     pub(crate) spare_unsorted: Mutex<Vec<Unsorted>>,
     pub(crate) spare_picture: Mutex<Vec<[u8; 4]>>,
     pub(crate) spare_tiles: Mutex<Vec<Tile>>,
-    pub(crate) spare_scratch: Mutex<Vec<Scratch>>,
-    pub(crate) background: KeptFor<BackgroundKey, BackgroundRows>,
-    pub(crate) bsp: Mutex<Option<Arc<BspTree>>>,
-    triangles: Kept<Triangles>,
-    bvh: Kept<Bvh>,
-    octree: Kept<Octree>,
-    partition: Kept<Bsp>,
-    uniform_grid: Kept<Grid>,
-    volumes: KeptFor<Shape, Volumes>,
-    pub(crate) radiosity: KeptFor<radiosity::Key, radiosity::Solution>,
-    pub(crate) loaded_radiosity: Kept<radiosity::Solution>,
-    pub(crate) shadow_maps: KeptFor<shadow::map::Key, shadow::map::Maps>,
-    /// Those of one view.
-    pub(crate) shadow_cascades: KeptFor<shadow::map::CascadesKey, shadow::map::Cascades>,
-    /// By whether blended materials keep all light.
-    pub(crate) shadow_casters: KeptFor<bool, shadow::Casters>,
-    pub(crate) shadow_surface: KeptFor<bool, shadow::volume::Surface>,
-    pub(crate) shadow_volumes: KeptFor<shadow::Key, shadow::volume::Volumes>,
-    pub(crate) lit_polygons: KeptFor<shadow::Key, shadow::object_precision::LitPolygons>,
-}
-
-/// What is made when it is first asked for, and then kept.
-pub(crate) type Kept<T> = Mutex<Option<Arc<T>>>;
-
-/// What is kept, or else what `make` makes.
-fn keep<T>(kept: &Kept<T>, make: impl FnOnce() -> Result<T, Limit>) -> Result<Arc<T>, Limit> {
-    let mut kept = kept.lock().expect("no thread panics while it makes what is kept");
-    if let Some(known) = &*kept {
-        return Ok(Arc::clone(known));
-    }
-    Ok(Arc::clone(kept.insert(Arc::new(make()?))))
-}
-
-/// What is kept until it is asked for with another key.
-pub(crate) type KeptFor<K, T> = Mutex<Option<(K, Arc<T>)>>;
-
-/// What is kept for this key, or else what `make` makes. The old one need not stay while the new one is made.
-pub(crate) fn keep_for<K: PartialEq, T, E>(
-    kept: &KeptFor<K, T>,
-    key: K,
-    make: impl FnOnce() -> Result<T, E>,
-) -> Result<Arc<T>, E> {
-    let mut kept = kept.lock().expect("no thread panics while it makes what is kept");
-    if let Some((known, value)) = &*kept
-        && *known == key
-    {
-        return Ok(Arc::clone(value));
-    }
-    *kept = None;
-    let value = Arc::new(make()?);
-    *kept = Some((key, Arc::clone(&value)));
-    Ok(value)
+    /// What algorithms keep between frames.
+    pub(crate) cache: Cache,
 }
 
 /// What is found out about a mesh when it is first needed.
@@ -129,8 +40,6 @@ struct MeshKnowledge {
     solids: OnceLock<Solids>,
     /// Of what is opaque, if that is not all and not nothing; without and with blended materials.
     opaque_solids: [OnceLock<Option<Solids>>; 2],
-    tree: OnceLock<BoundsTree>,
-    faces: OnceLock<FaceTable>,
     edges: OnceLock<Vec<Edge>>,
     sides: OnceLock<Vec<Side>>,
     centred: OnceLock<Vec<[f32; 3]>>,
@@ -153,8 +62,6 @@ impl MeshKnowledge {
         let known = [
             self.solids.get().is_some(),
             self.opaque_solids.iter().any(|s| s.get().is_some()),
-            self.tree.get().is_some(),
-            self.faces.get().is_some(),
             self.edges.get().is_some(),
             self.sides.get().is_some(),
             self.centred.get().is_some(),
@@ -205,23 +112,7 @@ impl Session {
             spare_unsorted: Mutex::default(),
             spare_picture: Mutex::default(),
             spare_tiles: Mutex::default(),
-            spare_scratch: Mutex::default(),
-            background: Mutex::default(),
-            bsp: Mutex::default(),
-            triangles: Mutex::default(),
-            bvh: Mutex::default(),
-            octree: Mutex::default(),
-            partition: Mutex::default(),
-            uniform_grid: Mutex::default(),
-            volumes: Mutex::default(),
-            radiosity: Mutex::default(),
-            loaded_radiosity: Mutex::default(),
-            shadow_maps: Mutex::default(),
-            shadow_cascades: Mutex::default(),
-            shadow_casters: Mutex::default(),
-            shadow_surface: Mutex::default(),
-            shadow_volumes: Mutex::default(),
-            lit_polygons: Mutex::default(),
+            cache: Cache::default(),
         })
     }
 
@@ -240,6 +131,17 @@ impl Session {
     /// The flattened scene.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// What algorithms keep between frames.
+    pub fn cache(&self) -> &Cache {
+        &self.cache
+    }
+
+    /// The cached values of type `T`, one for each mesh.
+    pub fn per_mesh<T: Any + Send + Sync>(&self) -> Arc<PerMesh<T>> {
+        let Ok(values) = self.cache.get_or_build((), || Ok::<_, Infallible>(PerMesh::new(self.scene.meshes.len())));
+        values
     }
 
     /// An instance's positions as they are brought to clip space, and by which matrix. A mesh far away from the origin of
@@ -300,108 +202,17 @@ impl Session {
         known.get_or_init(make).as_ref()
     }
 
-    /// The list of all triangles, made when it is first asked for, as are the structures over it: the views of a
-    /// turntable share them.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn triangles(&self, execution: &Execution) -> Result<Arc<Triangles>, Limit> {
-        keep(&self.triangles, || Ok(Triangles::of_world(&self.world, &execution.workers)))
-    }
-
-    /// The tree of boxes over all triangles.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn bvh(&self, execution: &Execution) -> Result<Arc<Bvh>, Limit> {
-        keep(&self.bvh, || {
-            // The tree has its own list, in its own order: the common one need not stay for it.
-            let list = Triangles::of_world(&self.world, &execution.workers);
-            Bvh::build(&list, &execution.workers, &execution.budget)
-        })
-    }
-
-    /// The octree over all triangles.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn octree(&self, execution: &Execution) -> Result<Arc<Octree>, Limit> {
-        let triangles = self.triangles(execution)?;
-        keep(&self.octree, || Octree::build(&triangles, &execution.workers, &execution.budget))
-    }
-
-    /// The binary partition of space over all triangles.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn partition(&self, execution: &Execution) -> Result<Arc<Bsp>, Limit> {
-        let triangles = self.triangles(execution)?;
-        keep(&self.partition, || Bsp::build(&triangles, &execution.workers, &execution.budget))
-    }
-
-    /// The uniform grid over all triangles.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn uniform_grid(&self, execution: &Execution) -> Result<Arc<Grid>, Limit> {
-        let triangles = self.triangles(execution)?;
-        keep(&self.uniform_grid, || Grid::build(&triangles, &execution.budget))
-    }
-
-    /// Volumes round all objects.
-    ///
-    /// # Errors
-    /// A limit of the budget.
-    pub fn volumes(&self, shape: Shape, execution: &Execution) -> Result<Arc<Volumes>, Limit> {
-        let triangles = self.triangles(execution)?;
-        let first_facets = self.world.instances.iter().map(|instance| instance.first_facet);
-        keep_for(&self.volumes, shape, || {
-            Volumes::build(&triangles, first_facets, shape, &execution.workers, &execution.budget)
-        })
-    }
-
     /// Forgets what the steps of a picture have found out for earlier ones: each picture of the steps is the first. Light from
     /// other surfaces stays, which has no steps, and the background.
     pub(crate) fn forget(&mut self) {
         self.meshes.iter_mut().for_each(|known| *known = MeshKnowledge::default());
-        self.bsp = Mutex::default();
-        self.triangles = Mutex::default();
-        self.bvh = Mutex::default();
-        self.octree = Mutex::default();
-        self.partition = Mutex::default();
-        self.uniform_grid = Mutex::default();
-        self.volumes = Mutex::default();
-        self.shadow_maps = Mutex::default();
-        self.shadow_cascades = Mutex::default();
-        self.shadow_casters = Mutex::default();
-        self.shadow_surface = Mutex::default();
-        self.shadow_volumes = Mutex::default();
-        self.lit_polygons = Mutex::default();
+        self.cache.forget_frames();
     }
 
     /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays, shadows.
     pub(crate) fn known(&self) -> u64 {
-        fn kept<T>(known: &Mutex<Option<T>>) -> usize {
-            usize::from(known.lock().is_ok_and(|known| known.is_some()))
-        }
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
-        let of_rays = kept(&self.bvh) + kept(&self.octree) + kept(&self.partition);
-        let of_rays = of_rays + kept(&self.uniform_grid) + kept(&self.volumes) + kept(&self.triangles);
-        let of_shadows = kept(&self.shadow_maps) + kept(&self.shadow_volumes) + kept(&self.lit_polygons);
-        let of_shadows = of_shadows + kept(&self.shadow_casters) + kept(&self.shadow_surface);
-        (of_meshes + of_rays + of_shadows + kept(&self.bsp)) as u64
-    }
-
-    pub(crate) fn tree(&self, mesh: u32) -> &BoundsTree {
-        let known = &self.meshes[mesh as usize].tree;
-        let (runs, triangles) =
-            (&self.world.run_bounds[mesh as usize], self.scene.meshes[mesh as usize].triangles.len());
-        known.get_or_init(|| BoundsTree::over_runs(runs, triangles))
-    }
-
-    pub(crate) fn faces(&self, mesh: u32) -> &FaceTable {
-        let known = &self.meshes[mesh as usize].faces;
-        known.get_or_init(|| FaceTable::new(&self.scene.meshes[mesh as usize]))
+        (of_meshes + self.cache.results()) as u64
     }
 
     /// The tangents of a mesh: its own, or along a set of texture coordinates, if it has these and normals.

@@ -45,6 +45,8 @@ pub fn cull(
         BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut counters.box_tests)
     };
 
+    let trees = session.per_mesh::<BoundsTree>();
+
     // Of large objects across the border, reject runs of triangles.
     let mut visible = Vec::new();
     for i in runs.into_iter().flatten().map(|i| i as usize) {
@@ -57,7 +59,13 @@ pub fn cull(
             match frustum.test_box(&instance.model_bounds) {
                 Containment::Outside => Vec::new(),
                 Containment::Inside => vec![all(i)],
-                Containment::Crossing => session.tree(instance.mesh_index).visible(&frustum, &mut counters.box_tests),
+                Containment::Crossing => {
+                    let tree = trees.get_or_build(instance.mesh_index, || {
+                        let runs = &session.world.run_bounds[instance.mesh_index as usize];
+                        BoundsTree::over_runs(runs, instance.mesh.triangles.len())
+                    });
+                    tree.visible(&frustum, &mut counters.box_tests)
+                }
             }
         };
         if !ranges.is_empty() || !instance.mesh.lines.is_empty() || !instance.mesh.points.is_empty() {

@@ -13,7 +13,7 @@
 
 use crate::raytrace::Visitor;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::chosen::Chosen;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::clearance;
@@ -52,7 +52,7 @@ impl Piles {
     /// it `is_first`, else where its number says. Returns the pile's number if more than one triangle is in it.
     pub(super) fn add(
         &mut self,
-        structure: &Chosen,
+        structure: &AnyStructure,
         (facet, corners): (u32, [DVec3; 3]),
         (position, normal): (DVec3, DVec3),
         is_first: bool,

@@ -36,7 +36,7 @@ use super::tell::Teller;
 use crate::marks::MarkColors;
 use crate::prepare::mirrors;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::chosen::Chosen;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Counters, Visitor};
@@ -46,7 +46,7 @@ use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
 use crate::stats::TracingCounters;
 use crate::transparency::scattering::Strata;
 use crate::visible::{few_enough, nearer};
-use crate::{Acceleration, Execution, Settings};
+use crate::{Execution, Settings};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use vitral_exec::Limit;
@@ -72,7 +72,7 @@ const TOGETHER: usize = 2048;
 pub(crate) struct Whitted<'a> {
     constants: &'a FrameConstants<'a>,
     execution: &'a Execution,
-    structure: Chosen,
+    structure: AnyStructure,
     /// What the eye is in.
     surroundings: Media,
     max_depth: u32,
@@ -131,15 +131,15 @@ impl<'a> Whitted<'a> {
     ) -> Result<Self, Limit> {
         let view = constants.view;
         let facets = u64::from(view.session.world.facet_count);
-        if view.acceleration == Acceleration::None {
+        if view.acceleration.asks_all {
             // About as many rays as samples.
             let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
             few_enough(samples.saturating_mul(facets), "ray tracing without a structure")?;
         }
         let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
-        let charged = Triangles::bytes(facets) + Chosen::bytes(view.acceleration, facets) + forests;
+        let charged = Triangles::bytes(facets) + AnyStructure::bytes(view.acceleration, facets) + forests;
         execution.budget.charge(charged, "ray tracing")?;
-        let structure = Chosen::new(view.acceleration, view.session, execution)
+        let structure = AnyStructure::new(view.acceleration, view.session, execution)
             .inspect_err(|_| execution.budget.release(charged))?;
         let view_from_world = DMat3::from_mat4(view.view.view_from_world);
         let stretch = view.view.clip_from_view.col(1).y;

@@ -28,7 +28,7 @@ pub use lamps::shines;
 pub use solution::Solution;
 
 use crate::stats::RadiosityCounters;
-use crate::{ColorSpace, Execution, Session, Settings, Transparency, session};
+use crate::{Cached, ColorSpace, Execution, Reuse, Session, Settings, Transparency};
 use enclosure::Enclosure;
 use hemicube::Hemicube;
 use progressive::Progress;
@@ -67,6 +67,19 @@ pub(crate) struct Key {
     light_samples: u32,
 }
 
+impl Cached for Solution {
+    type Key = Key;
+    const REUSE: Reuse = Reuse::Session;
+}
+
+/// A stored solution, which serves all frames in place of one of their own.
+struct LoadedSolution(Arc<Solution>);
+
+impl Cached for LoadedSolution {
+    type Key = ();
+    const REUSE: Reuse = Reuse::Session;
+}
+
 /// The solution for these lights: the one that was handed in, the one that is known, or a new one, whose making is
 /// counted.
 pub(crate) fn solution(
@@ -76,7 +89,7 @@ pub(crate) fn solution(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Arc<Solution>, crate::Error> {
-    if let Some(loaded) = &*session.loaded_radiosity.lock().expect("it is only replaced") {
+    if let Some(LoadedSolution(loaded)) = session.cache.get::<LoadedSolution>().as_deref() {
         if loaded.key() != fingerprint_of(lights, settings) {
             let found = "the stored radiosity was found for other lights, another color space or transparency; these must be \
                          as when it was saved";
@@ -93,7 +106,7 @@ pub(crate) fn solution(
         transparency: settings.transparency,
         light_samples: settings.light_samples,
     };
-    Ok(session::keep_for(&session.radiosity, key, || solve(session, lights, settings, execution, counters))?)
+    Ok(session.cache.get_or_build(key, || solve(session, lights, settings, execution, counters))?)
 }
 
 /// Patches, rough solutions that say where to cut elements, and the solution.
@@ -232,9 +245,8 @@ impl Session {
 
     /// The solution of the last picture with radiosity, as bytes for [`Self::load_radiosity`]; `None` without one.
     pub fn save_radiosity(&self) -> Option<Vec<u8>> {
-        let loaded = self.loaded_radiosity.lock().expect("it is only replaced");
-        let solved = self.radiosity.lock().expect("no thread panics while it solves");
-        let solution = loaded.as_ref().or(solved.as_ref().map(|(_, solution)| solution));
+        let loaded = self.cache.get::<LoadedSolution>().map(|loaded| Arc::clone(&loaded.0));
+        let solution = loaded.or_else(|| self.cache.get::<Solution>());
         solution.map(|solution| solution.to_bytes(self.fingerprint()))
     }
 
@@ -244,7 +256,7 @@ impl Session {
     /// [`crate::Error::Radiosity`] for bytes that are no solution for this scene.
     pub fn load_radiosity(&self, bytes: &[u8]) -> Result<(), crate::Error> {
         let solution = Solution::from_bytes(bytes, self.fingerprint())?;
-        *self.loaded_radiosity.lock().expect("it is only replaced") = Some(Arc::new(solution));
+        self.cache.insert((), Arc::new(LoadedSolution(Arc::new(solution))));
         Ok(())
     }
 }

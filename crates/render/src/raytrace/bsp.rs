@@ -17,9 +17,11 @@
 //!         triangle.
 
 use super::beam::Beam;
+use super::follow::{Follow, StructureUser};
 use super::triangles::{Triangles, bounds_of, reaches};
 use super::{Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
+use crate::{Cached, Execution, Session};
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
@@ -87,7 +89,20 @@ struct Build<'a> {
     budget: &'a Budget,
 }
 
+impl Cached for Bsp {
+    type Key = ();
+}
+
 impl Bsp {
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        let triangles = Triangles::of(session, execution)?;
+        session.cache.get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
+    }
+
     /// Bytes needed while a tree over this many triangles is built.
     pub fn bytes(triangles: u64) -> u64 {
         // Entries twice, while parts are joined; a leaf has one at least or is the other side of a cut.
@@ -262,6 +277,12 @@ impl Bsp {
     /// A leaf's entries.
     fn entries_of(&self, node: &Node) -> &[u32] {
         &self.entries[node.link as usize..(node.link + node.count) as usize]
+    }
+}
+
+impl Follow for Bsp {
+    fn lend<U: StructureUser>(&self, user: U) -> U::Outcome {
+        user.with_tree(self)
     }
 }
 

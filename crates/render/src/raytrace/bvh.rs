@@ -13,13 +13,15 @@
 //!       them: below a certain depth cuts are at the median, which bounds the stack.
 
 use super::beam::Beam;
+use super::follow::{Follow, StructureUser};
 use super::intersect::Ray;
 use super::packet::{self, Packet};
 use super::triangles::{Triangles, bounds_of};
 use super::wide::Wide;
 use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
-use std::sync::OnceLock;
+use crate::{Cached, Execution, Session};
+use std::sync::{Arc, OnceLock};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
@@ -117,7 +119,23 @@ struct Span<'a> {
     depth: usize,
 }
 
+impl Cached for Bvh {
+    type Key = ();
+}
+
 impl Bvh {
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        session.cache.get_or_build((), || {
+            // The tree has its own list, in its own order: the common one need not stay for it.
+            let list = Triangles::of_world(&session.world, &execution.workers);
+            Self::build(&list, &execution.workers, &execution.budget)
+        })
+    }
+
     /// Bytes needed while a tree over this many triangles, or the tree with eight boxes a node, is built.
     pub fn bytes(triangles: u64) -> u64 {
         triangles * (size_of::<Item>() + size_of::<Node>() + size_of::<[Vec3; 3]>() + 4 + Wide::BYTES) as u64
@@ -144,21 +162,6 @@ impl Bvh {
         let nodes = split(span, workers, budget)?;
         let triangles = triangles.reordered(items.iter().map(|item| item.index));
         Ok(Self { nodes, wide: OnceLock::new(), triangles })
-    }
-
-    /// Shows `visitor` what one to eight rays meet.
-    #[inline(always)]
-    pub(crate) fn follow<S: Simd>(
-        &self,
-        simd: S,
-        rays: &[Ray],
-        visitor: &mut impl packet::Visitor,
-        counters: &mut Counters,
-    ) {
-        simd.vectorize(
-            #[inline(always)]
-            || self.descend_together(simd, rays, visitor, counters),
-        );
     }
 
     #[inline(always)]
@@ -223,15 +226,29 @@ impl Bvh {
         }
     }
 
-    /// Builds what all but packets of rays go down, unless it is there. Without this, who goes down it first builds it
-    /// alone.
-    pub fn widen(&self, workers: &Workers) {
-        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles, workers));
-    }
-
     /// The tree for all but packets of rays.
     pub(super) fn wide(&self) -> &Wide {
         self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles, &Workers::single()))
+    }
+}
+
+impl Follow for Bvh {
+    #[inline(always)]
+    fn follow<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        visitor: &mut impl packet::Visitor,
+        counters: &mut Counters,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.descend_together(simd, rays, visitor, counters),
+        );
+    }
+
+    fn lend<U: StructureUser>(&self, user: U) -> U::Outcome {
+        user.with_tree(self)
     }
 }
 
@@ -266,6 +283,10 @@ impl Structure for Bvh {
 }
 
 impl Tree for Bvh {
+    fn widen(&self, workers: &Workers) {
+        self.wide.get_or_init(|| Wide::new(&self.nodes, &self.triangles, workers));
+    }
+
     fn root(&self) -> Option<[[f32; 3]; 2]> {
         self.nodes.first().map(|root| [root.min, root.max])
     }

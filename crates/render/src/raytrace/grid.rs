@@ -15,9 +15,11 @@
 //!         parameter of a wall is computed anew, not by adding, so that rounding does not grow along the way.
 
 use super::beam::Beam;
+use super::follow::{Follow};
 use super::triangles::{Triangles, bounds_of};
 use super::{Structure, Visitor, space_step};
 use crate::trace::{Passed, Step};
+use crate::{Cached, Execution, Session};
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit};
 use vitral_math::Vec3;
@@ -45,7 +47,20 @@ pub struct Grid {
     triangles: Arc<Triangles>,
 }
 
+impl Cached for Grid {
+    type Key = ();
+}
+
 impl Grid {
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        let triangles = Triangles::of(session, execution)?;
+        session.cache.get_or_build((), || Self::build(&triangles, &execution.budget))
+    }
+
     /// Bytes needed while a grid over this many triangles is built.
     pub fn bytes(triangles: u64) -> u64 {
         triangles * (40 + 4 * REFERENCES + 12 * DENSITY as u64)
@@ -279,6 +294,8 @@ impl Walk {
         count
     }
 }
+
+impl Follow for Grid {}
 
 impl Structure for Grid {
     const REPEATS: bool = true;

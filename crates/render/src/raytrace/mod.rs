@@ -8,13 +8,14 @@
 pub mod beam;
 pub mod bsp;
 pub mod bvh;
-pub(crate) mod chosen;
+pub(crate) mod follow;
 pub mod grid;
 pub mod intersect;
 pub mod octree;
 pub(crate) mod packet;
 pub mod pyramid;
 pub mod shaft;
+pub mod structures;
 pub mod triangles;
 pub mod volumes;
 mod wide;
@@ -23,6 +24,7 @@ use crate::trace::{Passed, Step};
 use beam::Beam;
 use intersect::Ray;
 use triangles::Triangles;
+use vitral_exec::Workers;
 use vitral_math::Vec3;
 use vitral_math::lanes::LANES;
 
@@ -131,6 +133,10 @@ pub trait Structure: Sync {
 
 /// A structure of boxes within boxes, which any probe can go down.
 pub trait Tree: Structure {
+    /// Builds, with all of `workers`, what probes but packets of rays go down, unless it is there. Without this, who goes down it
+    /// first builds it alone.
+    fn widen(&self, _: &Workers) {}
+
     /// The box round everything; `None` if there is nothing.
     fn root(&self) -> Option<[[f32; 3]; 2]>;
 

@@ -14,9 +14,11 @@
 //!         tested against the ray one by one, since what is followed may be as wide as a block of pixels.
 
 use super::beam::Beam;
+use super::follow::{Follow, StructureUser};
 use super::triangles::{Triangles, reaches};
 use super::{Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
+use crate::{Cached, Execution, Session};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
@@ -98,7 +100,20 @@ struct Build<'a> {
     budget: &'a Budget,
 }
 
+impl Cached for Octree {
+    type Key = ();
+}
+
 impl Octree {
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        let triangles = Triangles::of(session, execution)?;
+        session.cache.get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
+    }
+
     /// Bytes needed while a tree over this many triangles is built.
     pub fn bytes(triangles: u64) -> u64 {
         // Entries twice, while parts are joined; and about as many cells as leaves can fill.
@@ -190,6 +205,12 @@ fn join(root: Cell, parts: Vec<Result<Part, Limit>>) -> Result<Part, Limit> {
         below += part.cells.len() - 1;
     }
     Ok(all)
+}
+
+impl Follow for Octree {
+    fn lend<U: StructureUser>(&self, user: U) -> U::Outcome {
+        user.with_tree(self)
+    }
 }
 
 impl Structure for Octree {

@@ -10,10 +10,8 @@
 //! Source: \[Wald et al. 2001\].
 
 use super::beam::{self, Lines};
-use super::bvh::Bvh;
 use super::intersect::{Ray, surely_beside};
 use super::triangles::Triangles;
-use super::{Counters, Structure};
 use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd};
@@ -193,27 +191,6 @@ pub(super) fn closest_hits<'a>(
     let mut closest = Closest { triangles, own, slack, limits, best, crowded };
     follow(&mut closest);
     (closest.best, closest.crowded)
-}
-
-impl Bvh {
-    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`; and whether they hit something
-    /// else at the same place, as far as rounding tells.
-    #[inline(never)]
-    pub(crate) fn closest_hits<S: Simd>(
-        &self,
-        simd: S,
-        rays: &[Ray],
-        own: &[u32],
-        counters: &mut Counters,
-    ) -> ([Option<(usize, f32)>; LANES], [bool; LANES]) {
-        closest_hits(
-            self.triangles(),
-            rays,
-            own,
-            #[inline(always)]
-            |closest| self.follow(simd, rays, closest, counters),
-        )
-    }
 }
 
 #[cfg(test)]

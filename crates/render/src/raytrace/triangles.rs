@@ -11,9 +11,12 @@
 //! Source: [Appel 1968].
 
 use super::beam::Beam;
+use super::follow::{Follow};
 use super::{Structure, Visitor};
 use crate::trace::{Passed, Step};
-use vitral_exec::Workers;
+use crate::{Cached, Execution, Session};
+use std::sync::Arc;
+use vitral_exec::{Limit, Workers};
 use vitral_math::{DVec3, Vec3, vec3};
 use vitral_scene::World;
 
@@ -56,6 +59,10 @@ pub(super) fn reaches(corners: &[Vec3; 3], middle: Vec3, half: Vec3) -> bool {
     !beside
 }
 
+impl Cached for Triangles {
+    type Key = ();
+}
+
 impl Triangles {
     /// Bytes needed while a list of this many is made.
     pub fn bytes(triangles: u64) -> u64 {
@@ -74,6 +81,14 @@ impl Triangles {
         }
         let largest = corners.iter().flatten().fold(Vec3::ZERO, |m, p| m.max(p.abs()));
         Self { center, extent: largest.max_element(), corners, facets }
+    }
+
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        session.cache.get_or_build((), || Ok(Self::of_world(&session.world, &execution.workers)))
     }
 
     /// What coordinates are relative to: the middle of the world.
@@ -106,6 +121,8 @@ impl Triangles {
         Self { corners, facets: order.map(|i| self.facets[i as usize]).collect(), ..*self }
     }
 }
+
+impl Follow for Triangles {}
 
 impl Structure for Triangles {
     const REPEATS: bool = false;

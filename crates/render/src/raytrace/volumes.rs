@@ -9,9 +9,11 @@
 //! Source: [Clark 1976], [Rubin & Whitted 1980]; how the volumes are made, after [Gottschalk, Lin & Manocha 1996] and [Ritter 1990].
 
 use super::beam::{Beam, ROUNDING};
+use super::follow::Follow;
 use super::triangles::Triangles;
 use super::{Probe, Structure, Visitor, space_step};
 use crate::trace::{Passed, Step};
+use crate::{Cached, Execution, Session};
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{Aabb, DVec3, Obb, Sphere, Vec3};
@@ -45,7 +47,23 @@ pub struct Volumes {
     triangles: Arc<Triangles>,
 }
 
+impl Cached for Volumes {
+    type Key = Shape;
+}
+
 impl Volumes {
+    /// The session's, built when first asked for: the views of a turntable share it.
+    ///
+    /// # Errors
+    /// A limit of the budget.
+    pub fn of(session: &Session, shape: Shape, execution: &Execution) -> Result<Arc<Self>, Limit> {
+        let triangles = Triangles::of(session, execution)?;
+        let first_facets = session.world.instances.iter().map(|instance| instance.first_facet);
+        session.cache.get_or_build(shape, || {
+            Self::build(&triangles, first_facets, shape, &execution.workers, &execution.budget)
+        })
+    }
+
     /// Bytes needed while volumes are built: an object's corners in double precision.
     pub fn bytes(triangles: u64) -> u64 {
         triangles * (3 * size_of::<DVec3>() + size_of::<Volume>()) as u64
@@ -131,6 +149,8 @@ impl Volume {
         }
     }
 }
+
+impl Follow for Volumes {}
 
 impl Structure for Volumes {
     const REPEATS: bool = false;

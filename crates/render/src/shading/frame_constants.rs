@@ -1,14 +1,15 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
 use super::depth_cue::Fade;
+use super::flat::FaceTable;
 use super::group::{Model, model};
 use super::points::offset;
 use crate::prepare::{is_solid, mirrors};
 use crate::radiosity::Solution;
-use crate::session::keep_for;
 use crate::shadow::Shadows;
 use crate::transparency::{Lay, registry};
 use crate::{
+    Cached, PerMesh, Reuse,
     Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency,
     TransparencyOrder,
 };
@@ -104,6 +105,8 @@ pub(crate) struct FrameConstants<'a> {
     /// The scene's materials, and the default material last.
     pub materials: Vec<MaterialConstants<'a>>,
     pub lights: Vec<PreparedLight>,
+    /// What flat shading knows of each mesh.
+    pub faces: Arc<PerMesh<FaceTable>>,
     /// For each of these lights its number among all, as shadows count them.
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
@@ -148,6 +151,11 @@ pub(crate) struct BackgroundRows {
     pub bytes: Vec<[u8; 4]>,
 }
 
+impl Cached for BackgroundRows {
+    type Key = BackgroundKey;
+    const REUSE: Reuse = Reuse::Session;
+}
+
 impl BackgroundRows {
     /// The colour of a row, or of the last one, in the space of composition.
     #[inline]
@@ -180,7 +188,7 @@ impl<'a> FrameConstants<'a> {
         };
         let key = (settings.background, settings.height, raw);
         let make = || Ok::<_, Infallible>(background_rows(&settings.background, settings.height, raw));
-        let Ok(background) = keep_for(&session.background, key, make);
+        let Ok(background) = session.cache.get_or_build(key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
         Self {
@@ -201,9 +209,10 @@ impl<'a> FrameConstants<'a> {
             fade: settings.depth_cue.map(|cue| Fade::new(view, &cue, |color| composed(color, raw))),
             lay: registry::order(settings.transparency_order).lay,
             middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
-            in_passes: settings.transparency_order == TransparencyOrder::MultiPass,
+            in_passes: settings.transparency_order == TransparencyOrder::MULTI_PASS,
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
             background,
+            faces: session.per_mesh(),
             level: execution.level,
         }
     }

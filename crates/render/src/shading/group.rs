@@ -357,7 +357,7 @@ fn illuminate<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_
             }
             Shading::Flat => {
                 let k = looks.coefficients(simd, material, looks.base);
-                let faces = constants.view.session.faces(subject.mesh_index);
+                let faces = constants.faces.get_or_build(subject.mesh_index, || flat::FaceTable::new(mesh));
                 flat::shade(simd, mesh, faces, instance, slots, &surface, &lighting, &k)
             }
             Shading::Gouraud => {

@@ -46,7 +46,8 @@ pub(crate) use group::{Bounce, Lit, shade_hits};
 pub(crate) use points::{InFront, Points};
 
 use facets::FacetTable;
-use std::sync::Mutex;
+use std::convert::Infallible;
+use std::sync::{Arc, Mutex};
 use vitral_exec::{Limit, Workers};
 use vitral_math::lanes::dispatch;
 use vitral_raster::{LayerList, TILE, TILE_PIXELS, Tile, Viewport};
@@ -55,6 +56,7 @@ use crate::global::{Whitted, whitted::Forest};
 use crate::marks::MarkColors;
 use crate::stats::PictureCounters;
 use crate::visible::{Peel, TileSink};
+use crate::{Cached, Reuse};
 
 /// Shades tiles into display colours.
 pub(crate) struct ColorSink<'a> {
@@ -70,7 +72,7 @@ pub(crate) struct ColorSink<'a> {
     /// The buffers of each tile in the two-buffer order; empty where nobody asked.
     buffers: Vec<Mutex<BufferPlanes>>,
     /// The session's.
-    spare: &'a Mutex<Vec<Scratch>>,
+    spare: Arc<SpareScratch>,
     counters: Mutex<PictureCounters>,
 }
 
@@ -146,6 +148,25 @@ pub(crate) struct Scratch {
     picture: Vec<[u8; 4]>,
 }
 
+/// Scratch memory of finished tiles, for the next ones.
+#[derive(Default)]
+struct SpareScratch(Mutex<Vec<Scratch>>);
+
+impl Cached for SpareScratch {
+    type Key = ();
+    const REUSE: Reuse = Reuse::Session;
+}
+
+impl SpareScratch {
+    fn take(&self) -> Scratch {
+        self.0.lock().expect("spare scratch").pop().unwrap_or_default()
+    }
+
+    fn give_back(&self, scratch: Scratch) {
+        self.0.lock().expect("spare scratch").push(scratch);
+    }
+}
+
 impl std::fmt::Debug for Scratch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Scratch").finish_non_exhaustive()
@@ -160,6 +181,7 @@ impl<'a> ColorSink<'a> {
         deep: Option<DeepImage<'a>>,
         tiles: TileRows<'a>,
     ) -> Self {
+        let Ok(spare) = constants.view.session.cache.get_or_build((), || Ok::<_, Infallible>(SpareScratch::default()));
         Self {
             constants,
             marks,
@@ -168,7 +190,7 @@ impl<'a> ColorSink<'a> {
             tiles,
             passes: Vec::new(),
             buffers: Vec::new(),
-            spare: &constants.view.session.spare_scratch,
+            spare,
             counters: Mutex::default(),
         }
     }
@@ -225,7 +247,7 @@ impl TileSink for ColorSink<'_> {
     }
 
     fn tile_in_passes(&self, index: usize, tile: &Tile, pass: &mut dyn FnMut(&mut Peel) -> bool) {
-        let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
+        let mut scratch = self.spare.take();
         let Scratch { points, facets, lit, .. } = &mut scratch;
         let constants = self.constants;
         points.collect(tile, InFront::Samples(&[]), constants, self.marks);
@@ -243,7 +265,7 @@ impl TileSink for ColorSink<'_> {
         let shaded_points = opaque + shaded;
         let counters = PictureCounters { covered_pixels, shaded_points, layer_samples, ..PictureCounters::default() };
         self.counters.lock().expect("counters").add(&counters);
-        self.spare.lock().expect("spare scratch").push(scratch);
+        self.spare.give_back(scratch);
     }
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
@@ -252,7 +274,7 @@ impl TileSink for ColorSink<'_> {
             self.tracer.into_iter().for_each(Whitted::tile_done);
             return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
         }
-        let mut scratch = self.spare.lock().expect("spare scratch").pop().unwrap_or_default();
+        let mut scratch = self.spare.take();
         let Scratch { points, facets, lit, forest, composer, picture } = &mut scratch;
         let constants = self.constants;
         let layer_samples = layers.sample_count() as u64;
@@ -291,6 +313,6 @@ impl TileSink for ColorSink<'_> {
                 *buffers.lock().expect("buffers of a tile") = self.buffers(tile, points, lit);
             }
         }
-        self.spare.lock().expect("spare scratch").push(scratch);
+        self.spare.give_back(scratch);
     }
 }

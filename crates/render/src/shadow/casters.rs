@@ -12,8 +12,7 @@ use crate::raytrace::bvh::Bvh;
 use crate::raytrace::shaft::Shaft;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Probe, Structure, Tree, Visitor};
-use crate::session::keep_for;
-use crate::{Execution, Session};
+use crate::{Cached, Execution, Session};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Rgb;
@@ -161,14 +160,19 @@ pub(super) fn collect(tree: &Bvh, probe: &impl Probe, list: &mut Vec<u32>) {
     tree.descend(probe, &mut Collect(list));
 }
 
+impl Cached for Casters {
+    /// Whether blended materials keep all light.
+    type Key = bool;
+}
+
 impl Casters {
     /// Those of the session; lights do not matter.
     pub(super) fn of(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Arc<Self>, Limit> {
-        keep_for(&session.shadow_casters, occluders.key(), || Self::new(session, occluders, execution))
+        session.cache.get_or_build(occluders.key(), || Self::new(session, occluders, execution))
     }
 
     fn new(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Self, Limit> {
-        let tree = session.bvh(execution)?;
+        let tree = Bvh::of(session, execution)?;
         tree.widen(&execution.workers);
         let triangles = tree.triangles();
         let opaque: Vec<bool> = triangles.facets.iter().map(|&f| occluders.is_opaque(f)).collect();

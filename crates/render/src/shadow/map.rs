@@ -34,9 +34,8 @@ use super::occluders::Occluders;
 use super::sources::{Emitter, Shares, Source};
 use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::triangles::Triangles;
-use crate::session::keep_for;
-use crate::{ColorSpace, Execution, PreparedView, Session, Settings, Transparency};
-pub(crate) use cascade::Cascades;
+use crate::{Cached, ColorSpace, Execution, PreparedView, Reuse, Session, Settings, Transparency};
+use cascade::Cascades;
 use draw::When;
 use lens::Lens;
 use std::sync::{Arc, OnceLock};
@@ -133,6 +132,15 @@ struct Layer {
     passing: Rgb,
 }
 
+impl Cached for Maps {
+    type Key = Key;
+}
+
+impl Cached for Cascades {
+    type Key = CascadesKey;
+    const REUSE: Reuse = Reuse::View;
+}
+
 impl ShadowAlgorithm for MapShadows {
     fn prepare<'a>(
         &self,
@@ -160,7 +168,7 @@ impl ShadowAlgorithm for MapShadows {
             return Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }));
         }
         let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
-        let cascades = keep_for(&session.shadow_cascades, key, || {
+        let cascades = session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
             let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution, When::Asked);
             Cascades::new(&session.world, &view.view, &maps, (count, size), draw)
@@ -185,12 +193,10 @@ impl Maps {
     /// Those that the session keeps, or new ones.
     fn of(session: &Session, lights: &[Light], settings: &Settings, execution: &Execution) -> Result<Arc<Self>, Limit> {
         let key = Key::new(lights, settings);
-        let mut kept = session.shadow_maps.lock().expect("no thread panics while it makes what is kept");
-        if let Some((_, old)) = kept.take_if(|(known, _)| *known != key) {
+        if let Some(old) = session.cache.take_outdated::<Self>(&key) {
             Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
         }
-        drop(kept);
-        keep_for(&session.shadow_maps, key, || {
+        session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
             let maps = lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution));
             Ok(Self(maps.collect::<Result<_, Limit>>()?))

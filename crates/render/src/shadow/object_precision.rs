@@ -24,8 +24,7 @@ use super::ray::clearance;
 use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
-use crate::session::keep_for;
-use crate::{Execution, Session, Settings};
+use crate::{Cached, Execution, Session, Settings};
 use clip::{Cutter, Detail};
 use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
@@ -84,6 +83,10 @@ const SLACK: f64 = 1e-9;
 /// Triangles in one piece of work.
 const TRIANGLES_A_JOB: usize = 256;
 
+impl Cached for LitPolygons {
+    type Key = Key;
+}
+
 impl ShadowAlgorithm for ObjectPrecisionShadows {
     fn prepare<'a>(
         &self,
@@ -94,7 +97,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let polygons = keep_for(&session.lit_polygons, Key::new(lights, settings), || {
+        let polygons = session.cache.get_or_build(Key::new(lights, settings), || {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {

@@ -21,11 +21,11 @@ use super::occluders::Occluders;
 use super::place::horizon;
 use super::sources::{Shares, Source, hash};
 use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
-use crate::raytrace::chosen::Chosen;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::{Counters, packet};
 use crate::visible::few_enough;
-use crate::{Acceleration, Execution, Session, Settings};
+use crate::{Execution, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
@@ -44,7 +44,7 @@ pub(crate) fn clearance(position: DVec3, extent: f64) -> f64 {
 }
 
 struct Prepared<'a> {
-    structure: Chosen,
+    structure: AnyStructure,
     occluders: Occluders<'a>,
     sources: Vec<Source>,
     level: Level,
@@ -60,12 +60,12 @@ impl ShadowAlgorithm for RayShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let acceleration = settings.acceleration.unwrap_or_default();
-        if acceleration == Acceleration::None {
+        if acceleration.asks_all {
             let pixels = u64::from(settings.width) * u64::from(settings.height);
             let tests = pixels.saturating_mul(lights.len() as u64 * u64::from(session.world.facet_count));
             few_enough(tests, "shadows by rays without a structure")?;
         }
-        let structure = Chosen::new(acceleration, session, execution)?;
+        let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
         let sources = lights.iter().map(|l| Source::new(l, settings.light_samples, center)).collect();
         let (occluders, level) = (Occluders::new(session, settings), execution.level);

@@ -33,8 +33,7 @@ use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::session::keep_for;
-use crate::{Execution, Session, Settings, VolumeCounting};
+use crate::{Cached, Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit};
 pub(crate) use edges::Surface;
 use std::sync::Arc;
@@ -93,7 +92,7 @@ impl ShadowAlgorithm for VolumeShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let volumes = keep_for(&session.shadow_volumes, Key::new(lights, settings), || {
+        let volumes = session.cache.get_or_build(Key::new(lights, settings), || {
             Volumes::new(session, lights, &occluders, settings, execution)
         })?;
         let triangles = volumes.casters.triangles();
@@ -116,6 +115,10 @@ impl ShadowAlgorithm for VolumeShadows {
     }
 }
 
+impl Cached for Volumes {
+    type Key = Key;
+}
+
 impl Volumes {
     fn new(
         session: &Session,
@@ -126,7 +129,7 @@ impl Volumes {
     ) -> Result<Self, Limit> {
         let casters = Casters::of(session, occluders, execution)?;
         let surface =
-            keep_for(&session.shadow_surface, occluders.key(), || Surface::new(&session.world, &casters, execution))?;
+            session.cache.get_or_build(occluders.key(), || Surface::new(&session.world, &casters, execution))?;
         let triangles = casters.triangles();
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
             let places = Source::new(light, settings.light_samples, triangles.center).places();

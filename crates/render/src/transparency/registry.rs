@@ -1,7 +1,8 @@
 //! The tables of transparency models and orders, the defaults first.
 
 use super::{Lay, a_buffer, back_to_front, multi_pass, sorted, submission, two_buffer};
-use crate::{Transparency, TransparencyOrder};
+use crate::Transparency;
+use crate::choice::table;
 
 /// How much light a surface lets through.
 #[derive(Clone, Copy, Debug)]
@@ -57,77 +58,93 @@ pub struct Order {
     pub exact: bool,
     /// Whether it takes the list of a list-priority algorithm.
     pub needs_list: bool,
+    /// Whether it draws pass by pass, each of which can be shown.
+    pub draws_passes: bool,
+    /// Whether it keeps opaque and transparent surfaces in a buffer each, which can be shown.
+    pub has_buffers: bool,
     /// Whether it can show translucent surfaces.
     pub blurs: bool,
-    /// As a setting.
-    pub value: TransparencyOrder,
     /// The code.
     pub lay: Lay,
 }
 
-/// All orders.
-pub static ORDERS: &[Order] = &[
-    Order {
+table! {
+    /// All orders, the default first.
+    ORDERS: Order, "order of transparency";
+
+    /// Carpenter's A-buffer.
+    A_BUFFER = Order {
         name: "a-buffer",
         description: "lists of fragments with coverage masks in each pixel; exact",
         source: "Carpenter 1984",
         exact: true,
         needs_list: false,
+        draws_passes: false,
+        has_buffers: false,
         blurs: true,
-        value: TransparencyOrder::ABuffer,
         lay: a_buffer::lay,
-    },
-    Order {
+    };
+    /// Sorted at each sample.
+    SORTED = Order {
         name: "sorted",
         description: "from back to front by depth at each sample; exact",
         source: "Newell, Newell & Sancha 1972",
         exact: true,
         needs_list: false,
+        draws_passes: false,
+        has_buffers: false,
         blurs: true,
-        value: TransparencyOrder::Sorted,
         lay: sorted::lay,
-    },
-    Order {
+    };
+    /// Mammen's passes.
+    MULTI_PASS = Order {
         name: "multi-pass",
         description: "one pass for each layer, the farthest first; exact",
         source: "Mammen 1989",
         exact: true,
         needs_list: false,
+        draws_passes: true,
+        has_buffers: false,
         blurs: false,
-        value: TransparencyOrder::MultiPass,
         lay: multi_pass::lay,
-    },
-    Order {
+    };
+    /// In the order of a list.
+    BACK_TO_FRONT = Order {
         name: "back-to-front",
         description: "fragment over pixel in the order of a list; exact; with --visibility painter or bsp",
         source: "Newell, Newell & Sancha 1972",
         exact: true,
         needs_list: true,
+        draws_passes: false,
+        has_buffers: false,
         blurs: true,
-        value: TransparencyOrder::BackToFront,
         lay: back_to_front::lay,
-    },
-    Order {
+    };
+    /// Two buffers.
+    TWO_BUFFER = Order {
         name: "two-buffer",
         description: "opaque and transparent surfaces in a buffer each; exact for one layer",
         source: "Foley et al. 1990",
         exact: false,
         needs_list: false,
+        draws_passes: false,
+        has_buffers: true,
         blurs: false,
-        value: TransparencyOrder::TwoBuffer,
         lay: two_buffer::lay,
-    },
-    Order {
+    };
+    /// The order of the scene.
+    SUBMISSION = Order {
         name: "submission",
         description: "a plain z-buffer in the order of the scene: shows the classical error",
         source: "Catmull 1974",
         exact: false,
         needs_list: false,
+        draws_passes: false,
+        has_buffers: false,
         blurs: false,
-        value: TransparencyOrder::Submission,
         lay: submission::lay,
-    },
-];
+    };
+}
 
 /// How translucent surfaces blur what is behind them.
 #[derive(Clone, Copy, Debug)]
@@ -154,11 +171,6 @@ pub static TRANSLUCENCY: &[Blur] = &[
     },
 ];
 
-/// The row of an order; every order has one, as a test says.
-pub fn order(order: TransparencyOrder) -> &'static Order {
-    ORDERS.iter().find(|o| o.value == order).expect("every order has a row")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,22 +181,7 @@ mod tests {
             let name: Transparency = by_name(row.name);
             assert_eq!(name, row.value);
         }
-        for row in ORDERS {
-            let name: TransparencyOrder = by_name(row.name);
-            assert_eq!(name, row.value);
-        }
-        for value in [
-            TransparencyOrder::ABuffer,
-            TransparencyOrder::Sorted,
-            TransparencyOrder::MultiPass,
-            TransparencyOrder::BackToFront,
-            TransparencyOrder::TwoBuffer,
-            TransparencyOrder::Submission,
-        ] {
-            assert_eq!(order(value).value, value);
-        }
         assert_eq!(MODELS[0].value, Transparency::default());
-        assert_eq!(ORDERS[0].value, TransparencyOrder::default());
     }
 
     /// A value by its name in files.

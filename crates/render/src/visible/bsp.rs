@@ -22,7 +22,7 @@ use super::pieces::{Footprint, List, Pieces, Raster, draw, draw_layers, piece_st
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
-use crate::{Execution, PreparedView};
+use crate::{Cached, Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, DVec4};
@@ -67,15 +67,18 @@ impl VisibleSurface for Bsp {
     }
 }
 
+impl Cached for Tree {
+    type Key = ();
+}
+
 /// The session's tree, and whether it was there already.
 fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>, bool), Limit> {
-    let mut known = view.session.bsp.lock().expect("no thread panics while it builds a tree");
-    if let Some(tree) = &*known {
-        return Ok((Arc::clone(tree), true));
-    }
-    let tree = Arc::new(Tree::of_world(&view.session.world, execution)?);
-    *known = Some(Arc::clone(&tree));
-    Ok((tree, false))
+    let mut reused = true;
+    let tree = view.session.cache.get_or_build((), || {
+        reused = false;
+        Tree::of_world(&view.session.world, execution)
+    })?;
+    Ok((tree, reused))
 }
 
 /// Walks the tree and draws what comes.

@@ -23,12 +23,13 @@ use super::brute_force::{each_tile, few_enough};
 use super::screen_setups::{ScreenSetups, charged};
 use super::{Resolved, TileSink, VisibleSurface};
 use crate::marks::Marks;
-use crate::raytrace::chosen::Chosen;
+use crate::raytrace::follow::StructureUser;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Structure, Tree};
 use crate::stats::VisibilityCounters;
 use crate::trace::Passed;
-use crate::{Acceleration, Coherence, Execution, PreparedView};
+use crate::{Coherence, Execution, PreparedView};
 use eye::Eye;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -56,21 +57,11 @@ impl VisibleSurface for RayCast {
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
         let facets = u64::from(view.session.world.facet_count);
-        let bytes = Chosen::bytes(view.acceleration, facets);
+        let bytes = AnyStructure::bytes(view.acceleration, facets);
         let bytes = ScreenSetups::bytes(view) + Triangles::bytes(facets) + bytes + facets * 32;
         charged(&execution.budget, bytes, "ray casting", || {
             let job = Job { view, marks, execution, sink, start: execution.budget.elapsed() };
-            match Chosen::new(view.acceleration, view.session, execution)? {
-                Chosen::Bvh(tree) => {
-                    tree.widen(&execution.workers);
-                    job.run_packets(grid, &*tree)
-                }
-                Chosen::Octree(tree) => job.run_packets(grid, &*tree),
-                Chosen::Bsp(tree) => job.run_packets(grid, &*tree),
-                Chosen::Grid(cells) => job.run(grid, &*cells, single::look),
-                Chosen::Volumes(volumes) => job.run(grid, &*volumes, single::look),
-                Chosen::List(triangles) => job.run(grid, &*triangles, single::look),
-            }
+            AnyStructure::new(view.acceleration, view.session, execution)?.lend((job, grid))
         })
     }
 }
@@ -85,14 +76,27 @@ struct Job<'a> {
     start: f64,
 }
 
-impl Job<'_> {
-    fn run_packets<T: Tree>(&self, grid: &mut TileGrid, tree: &T) -> Result<Resolved, Limit> {
-        if self.view.coherence.has(Coherence::Area) {
-            self.run(grid, tree, packet::look)
+/// Rays through a tree go down it in packets; other structures take them one by one.
+impl StructureUser for (Job<'_>, &mut TileGrid) {
+    type Outcome = Result<Resolved, Limit>;
+
+    fn with_structure<T: Structure>(self, structure: &T) -> Self::Outcome {
+        let (job, grid) = self;
+        job.run(grid, structure, single::look)
+    }
+
+    fn with_tree<T: Tree>(self, tree: &T) -> Self::Outcome {
+        let (job, grid) = self;
+        tree.widen(&job.execution.workers);
+        if job.view.coherence.has(Coherence::Area) {
+            job.run(grid, tree, packet::look)
         } else {
-            self.run(grid, tree, single::look)
+            job.run(grid, tree, single::look)
         }
     }
+}
+
+impl Job<'_> {
 
     /// Sets up what is on the screen and lets `look` fill each tile.
     fn run<T: Structure>(
@@ -108,7 +112,7 @@ impl Job<'_> {
         let setups = cast.on_screen.setups.len() as u64;
         let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
         let all = (pixels * view.pattern.len() as u64).saturating_mul(setups);
-        if view.acceleration == Acceleration::None {
+        if view.acceleration.asks_all {
             few_enough(all, "ray casting without a structure")?;
         }
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;

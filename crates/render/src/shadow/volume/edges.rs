@@ -1,8 +1,8 @@
 //! Which triangles meet at an edge, and the sides of volumes that a light makes of the edges.
 
 use super::super::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
-use crate::Execution;
 use crate::raytrace::triangles::Triangles;
+use crate::{Cached, Execution};
 use vitral_exec::{Limit, Workers};
 use vitral_math::{DVec3, DVec4, Vec3};
 use vitral_scene::weld::Weld;
@@ -55,6 +55,11 @@ pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers
         }
     });
     all
+}
+
+impl Cached for Surface {
+    /// Whether blended materials keep all light.
+    type Key = bool;
 }
 
 impl Surface {

@@ -19,6 +19,10 @@ impl Clock for NoClock {
     }
 }
 
+/// Steps beyond which [`Budget::check_work`] refuses a computation: tests of a triangle at a sample, about an hour of them on
+/// one thread.
+pub const MAX_STEPS: u64 = 1 << 40;
+
 /// Called with a stage's name, the work done and the whole work.
 pub type Progress = dyn Fn(&str, u64, u64) + Send + Sync;
 
@@ -224,6 +228,30 @@ impl Budget {
         self.memory.fetch_sub(bytes, Ordering::Relaxed);
     }
 
+    /// Runs `work` while `bytes` are charged.
+    ///
+    /// # Errors
+    /// [`Limit::Memory`] where they are too many, and what stops `work`.
+    pub fn charged<R>(
+        &self,
+        bytes: u64,
+        stage: &'static str,
+        work: impl FnOnce() -> Result<R, Limit>,
+    ) -> Result<R, Limit> {
+        self.charge(bytes, stage)?;
+        let result = work();
+        self.release(bytes);
+        result
+    }
+
+    /// Refuses work of more than [`MAX_STEPS`] steps, whatever the time limit: a combination of choices that nobody waits for.
+    ///
+    /// # Errors
+    /// [`Limit::Work`].
+    pub fn check_work(&self, needed: u64, stage: &'static str) -> Result<(), Limit> {
+        if needed > MAX_STEPS { Err(Limit::Work { needed, limit: MAX_STEPS, stage }) } else { Ok(()) }
+    }
+
     /// The most bytes that were charged at one time.
     pub fn peak(&self) -> u64 {
         self.peak.load(Ordering::Relaxed)
@@ -263,6 +291,10 @@ mod tests {
         budget.release(80);
         assert!(budget.charge(100, "z").is_ok());
         assert_eq!((budget.peak(), budget.renewed().peak()), (100, 0));
+        assert_eq!(budget.charged(0, "z", || Ok(1)), Ok(1));
+        assert!(budget.charged(1, "z", || Ok(())).is_err());
+        assert!(budget.check_work(MAX_STEPS, "steps").is_ok());
+        assert!(matches!(budget.check_work(MAX_STEPS + 1, "steps"), Err(Limit::Work { stage: "steps", .. })));
         budget.cancel_flag().store(true, Ordering::Relaxed);
         assert!(matches!(budget.check("c"), Err(Limit::Cancelled { .. })));
     }

@@ -11,7 +11,7 @@ mod spare;
 mod started;
 mod workers;
 
-pub use budget::{Achieved, Budget, Clock, Limit, NoClock, Progress};
+pub use budget::{Achieved, Budget, Clock, Limit, MAX_STEPS, NoClock, Progress};
 pub use spare::Spare;
 pub use started::{Started, born_of_fork, forked, hold_for_fork};
 pub use workers::Workers;

@@ -10,10 +10,11 @@
 //! Source: \[Goral et al. 1984\].
 
 use super::direct::Direct;
-use super::gather::Row;
-use super::near::Neighbours;
+use super::element::{Color, Element, Patch, Row, turned};
+use super::neighbours::Neighbours;
+use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
-use super::surface::{PARTS, Surface, Surfaces, middle};
+use super::surface::{Surface, Surfaces};
 use super::targets::Targets;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
@@ -24,46 +25,8 @@ use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Light, Material};
 use vitral_math::DVec3;
 
-/// Red, green, blue.
-pub type Color = [f64; 3];
-
 /// More elements are not made.
 const MOST_ELEMENTS: usize = 4 << 20;
-
-/// A small triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Element {
-    /// Its node in the trees.
-    pub node: u32,
-    /// Its patch.
-    pub patch: u32,
-    /// Middle, world space less the scene's.
-    pub center: DVec3,
-    /// Unit normal of the front.
-    pub normal: DVec3,
-    /// Of the parts that are there, in squares of the world's unit.
-    pub area: f64,
-    /// A bit for each of 16 parts: those that are not cut out.
-    pub there: u16,
-    /// Reflected part of diffuse light.
-    pub reflectance: Color,
-}
-
-/// A triangle that sends light.
-#[derive(Clone, Copy, Debug)]
-pub struct Patch {
-    /// Middle.
-    pub center: DVec3,
-    /// Unit normal of the front.
-    pub normal: DVec3,
-    /// Corners, counter-clockwise seen from the front.
-    pub corners: [DVec3; 3],
-}
-
-/// 1 for the front of an element or a patch, -1 for its back, by the number of the side.
-pub(super) fn turned(side: usize) -> f64 {
-    1.0 - 2.0 * (side & 1) as f64
-}
 
 /// See the module.
 #[derive(Debug)]

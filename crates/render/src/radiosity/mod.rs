@@ -12,12 +12,15 @@
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
 mod direct;
+pub mod element;
 pub mod enclosure;
 pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
 pub(crate) mod lamps;
 mod near;
+mod neighbours;
+mod parts;
 pub mod patch;
 pub mod progressive;
 pub mod solution;

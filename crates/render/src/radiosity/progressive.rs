@@ -20,8 +20,8 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::enclosure::{Color, Element, Enclosure, turned};
-use super::gather::Row;
+use super::element::{Color, Element, Row, turned};
+use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use super::near::refined;
 use crate::Execution;

@@ -10,7 +10,8 @@
 //! Cost: a step for each level of the quadtree.
 //! Source: \[Cohen & Wallace 1993\], chapter 9.
 
-use super::enclosure::{Color, Enclosure};
+use super::element::Color;
+use super::enclosure::Enclosure;
 use super::patch::{MOST_CUTS, NONE, Node, Trees, descend, within};
 use super::progressive::Progress;
 use crate::Error;

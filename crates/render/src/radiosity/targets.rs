@@ -7,8 +7,8 @@
 //! In:   quadtrees over facets. Out: the facets as a scene, and the element at a point of each.
 //! Cost: linear in nodes; a question takes a step, and one for each level of a tree below the grid.
 
+use super::parts::{PARTS, WHOLE, parts};
 use super::patch::{Cell, NONE, Trees};
-use super::surface::{PARTS, WHOLE, parts};
 use crate::Session;
 use std::sync::{Arc, Mutex};
 use vitral_math::{DVec3, Vec3};

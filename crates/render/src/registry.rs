@@ -332,3 +332,8 @@ pub static GLOBALS: &[GlobalIllumination] = &[
 pub fn shadows(name: &str) -> Option<&'static Shadowing> {
     SHADOWS.iter().find(|s| s.name == name)
 }
+
+/// The algorithm of a row of [`SHADOWS`], by the row's name; `None` without shadows.
+pub fn shadow_algorithm(name: &str) -> Option<&'static dyn ShadowAlgorithm> {
+    shadows(name).and_then(|row| row.algorithm)
+}

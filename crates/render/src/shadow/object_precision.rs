@@ -20,9 +20,10 @@ mod clip;
 
 use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
-use super::ray::clearance;
+use super::places::{Parts, Places};
+use super::rounding::clearance;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::session::keep_for;
 use crate::{Execution, Session, Settings};

@@ -6,14 +6,14 @@
 //! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
 //! plane of a wall that begins there, and rounding would say on which side.
 
-use super::{EightPlaces, clearance};
+use super::places::EightPlaces;
+use super::rounding::clearance;
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
-use vitral_light::DIRECTION_ROUNDING;
+use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd, U32x8};
-use vitral_math::{DVec3, DVec4, dvec3};
 use vitral_scene::Instance;
 
 /// A facet in the world, less the scene's middle.
@@ -48,37 +48,6 @@ fn least_weights([a, b, c]: &[DVec3; 3], margin: f64) -> [f64; 3] {
 #[inline(always)]
 fn least_weight(weight: f64) -> f64 {
     if weight < MOST { weight } else { MOST }
-}
-
-/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
-/// on the side from which they run counter-clockwise in the model; zero without area.
-pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
-    let mirrored = mirrors(&instance.world_from_model);
-    let mesh = &instance.mesh;
-    let corner = |i: u32| {
-        let [x, y, z] = mesh.positions[i as usize];
-        let p = dvec3(f64::from(x), f64::from(y), f64::from(z));
-        (instance.world_from_model.transform_point3(p) - center).as_vec3().as_dvec3()
-    };
-    let [a, b, c] = mesh.triangles[triangle as usize];
-    let corners = [corner(a), corner(b), corner(c)];
-    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-    (corners, if mirrored { -normal } else { normal })
-}
-
-/// What the product of a facet's unit normal and the way from a place of it to a light (homogeneous) exceeds where the facet
-/// faces the light: less is rounding, and a light in the facet's plane shines past it.
-#[inline(always)]
-pub(crate) fn horizon(position: DVec3, light: DVec4) -> f64 {
-    let sum = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
-    let at = sum(light.truncate());
-    f64::from(DIRECTION_ROUNDING) * (at + light.w * (2.0 * sum(position) + at))
-}
-
-/// The point with these weights of the corners.
-pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
-    let w = weights.map(f64::from);
-    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
 }
 
 /// What all points of an object have in common.
@@ -297,10 +266,11 @@ fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shadow::facet::facet;
     use crate::{Execution, Session, Settings};
     use std::sync::Arc;
     use vitral_math::lanes::{available_levels, dispatch};
-    use vitral_math::{DMat4, DQuat};
+    use vitral_math::{DMat4, DQuat, dvec3};
     use vitral_raster::{SamplePattern, Viewport};
     use vitral_scene::{Camera, NodeTransform, Projection, builtin};
 

@@ -19,9 +19,11 @@
 //! Source: [Zhang et al. 2006], [Dimitrov 2007]. Departs from them: slices are fitted to objects, not to the frustum.
 
 use super::lens::Lens;
-use super::{LightMaps, Map, Maps, lookup, slice};
+use super::light_maps::{Key, LightMaps, Maps};
+use super::tiles::Map;
+use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::Places;
+use crate::shadow::places::Places;
 use vitral_exec::Limit;
 use vitral_light::Rgb;
 use vitral_math::lanes::Level;
@@ -34,6 +36,14 @@ const GEOMETRIC: f64 = 0.98;
 const FADE: f64 = 0.1;
 /// How much sharper than the map of the whole scene a map must be.
 const PAYS: f64 = 2.0;
+
+/// What cascades depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CascadesKey {
+    pub(super) maps: Key,
+    pub(super) count: u32,
+    pub(super) view: ViewTransform,
+}
 
 /// The slices of a view and their maps.
 #[derive(Debug)]

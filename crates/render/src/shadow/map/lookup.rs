@@ -6,14 +6,24 @@
 //! In:   places that face the light. Out: the part of the light that passes to each of them.
 //! Cost: a constant number of operations a place.
 
-use super::{BEYOND, DEPTH_BIAS, LIFT, Map, MapTile, SLOPE_BIAS};
-use crate::shadow::{EightPlaces, Parts, Places};
+use super::tiles::{Map, MapTile};
+use crate::shadow::places::{EightPlaces, Parts, Places};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 use vitral_math::{DMat4, DVec4};
 use vitral_raster::TILE;
+
+/// How far a point is lifted along its normal, in texels.
+const LIFT: f64 = 0.5;
+/// How far behind a point's plane a surface may be and still count as its own, in texels.
+const BEYOND: f64 = 2.0;
+/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
+/// texel, and two roundings may add up.
+const SLOPE_BIAS: f64 = 1.0 / 64.0;
+/// Relative error of a depth.
+const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
 
 /// Where eight places are on a map, and how deep.
 struct Eight<S: Simd> {

@@ -1,6 +1,6 @@
 //! Convex polygons in space, what solids leave of them, and the tree that leads to what is left.
 
-use super::super::casters::{Solid, box_around};
+use crate::shadow::casters::{Solid, box_around};
 use vitral_math::DVec3;
 
 /// As many solids are clipped one by one.

@@ -10,9 +10,9 @@
 //! Cost: for each receiver the triangles between it and the light.
 //! Source: [Bouknight & Kelley 1970], [Sutherland & Hodgman 1974].
 
-use super::super::casters::{Casters, Solid, away, near, wide, winding_normal};
-use super::super::ray::clearance;
 use crate::raytrace::shaft::Shaft;
+use crate::shadow::casters::{Casters, Solid, away, near, wide, winding_normal};
+use crate::shadow::rounding::clearance;
 use crate::{Execution, Session, Transparency};
 use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};

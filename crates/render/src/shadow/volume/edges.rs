@@ -1,8 +1,8 @@
 //! Which triangles meet at an edge, and the sides of volumes that a light makes of the edges.
 
-use super::super::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
 use crate::Execution;
 use crate::raytrace::triangles::Triangles;
+use crate::shadow::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
 use vitral_exec::{Limit, Workers};
 use vitral_math::{DVec3, DVec4, Vec3};
 use vitral_scene::weld::Weld;
@@ -43,6 +43,18 @@ pub(super) struct Side {
     pub(super) multiplicity: i32,
     /// Normals of the planes that it lies before: beyond the edge, beside its ray through `a`, beside that through `b`.
     pub(super) borders: [DVec3; 3],
+}
+
+/// `n · p + w`: twice the area, or more, times the height above a plane.
+#[inline(always)]
+pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
+    (plane.x * place.x + plane.y * place.y) + (plane.z * place.z + plane.w)
+}
+
+/// The side of a plane on which a place is. Two paths that end and begin there agree about it.
+#[inline(always)]
+pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
+    height(plane, place) > 0.0
 }
 
 /// How each triangle is turned.

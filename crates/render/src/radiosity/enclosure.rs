@@ -82,6 +82,56 @@ pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
     Trees::new(world.facet_count, corners, longest, MOST_ELEMENTS).ok_or(limit)
 }
 
+/// The leaves of trees, and what each sends out by itself on front and back.
+fn elements(
+    trees: &Trees,
+    session: &Session,
+    settings: &Settings,
+    execution: &Execution,
+) -> (Vec<Element>, Vec<[Color; 2]>) {
+    let leaves = trees.leaves();
+    let surfaces = Surfaces::new(session, settings);
+    let found = execution.workers.map(leaves.len(), |i| {
+        let Surface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
+        let corners = trees.places(leaves[i]);
+        let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
+        let patch = trees.nodes[leaves[i] as usize].patch;
+        let center = middle(corners);
+        (Element { node: leaves[i], patch, center, normal, area, there, reflectance }, emission)
+    });
+    found.into_iter().unzip()
+}
+
+/// The patches that the elements are parts of.
+fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
+    // A patch's own node comes before those of its elements.
+    let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
+    let mut patches = vec![none; trees.patches as usize];
+    for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
+        patches[node.patch as usize].corners = trees.places(number as u32);
+    }
+
+    // Add up the elements' middles, weighted by their areas.
+    let mut areas = vec![0.0; patches.len()];
+    for element in elements {
+        let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
+        (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
+        *area += element.area;
+    }
+
+    // Turn the corners to the front. Of a patch that is cut out nothing is asked.
+    for (patch, area) in patches.iter_mut().zip(areas) {
+        if area > 0.0 {
+            patch.center /= area;
+        }
+        let [a, b, c] = patch.corners;
+        if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
+            patch.corners = [a, c, b];
+        }
+    }
+    patches
+}
+
 impl Enclosure {
     /// Looks at the leaves of `trees`, which are of this session's facets.
     ///
@@ -94,39 +144,8 @@ impl Enclosure {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Self, Limit> {
-        let leaves = trees.leaves();
-        let surfaces = Surfaces::new(session, settings);
-        let found = execution.workers.map(leaves.len(), |i| {
-            let Surface { normal, there, reflectance, emission } = surfaces.of(&trees, leaves[i]);
-            let corners = trees.places(leaves[i]);
-            let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
-            let patch = trees.nodes[leaves[i] as usize].patch;
-            let center = middle(corners);
-            (Element { node: leaves[i], patch, center, normal, area, there, reflectance }, emission)
-        });
-        let (elements, own): (Vec<Element>, Vec<[Color; 2]>) = found.into_iter().unzip();
-        let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
-        let mut patches = vec![none; trees.patches as usize];
-        // A patch's own node comes before those of its elements.
-        for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
-            patches[node.patch as usize].corners = trees.places(number as u32);
-        }
-        let mut areas = vec![0.0; patches.len()];
-        for element in &elements {
-            let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
-            (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
-            *area += element.area;
-        }
-        for (patch, area) in patches.iter_mut().zip(areas) {
-            // Of a patch that is cut out nothing is asked.
-            if area > 0.0 {
-                patch.center /= area;
-            }
-            let [a, b, c] = patch.corners;
-            if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
-                patch.corners = [a, c, b];
-            }
-        }
+        let (elements, own) = elements(&trees, session, settings, execution);
+        let patches = patches(&trees, &elements);
         let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
         let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = targets.session.bvh(execution)?;

@@ -4,6 +4,7 @@ use crate::global::Whitted;
 use crate::marks;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::{lamps, solution};
+use crate::registry::shadow_algorithm;
 use crate::shading::{
     BYTES_A_PIXEL, BufferPlanes, ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants,
     LitCorner, Shown, TileRows, lit_corners,
@@ -123,7 +124,7 @@ pub fn illuminate_corners(
         }
         Global::None | Global::RayTrace => None,
     };
-    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+    let shadows = shadow::prepare(shadow_algorithm(&settings.shadows), &view, shot.lights, settings, execution)?;
     let (shadows, radiosity) = (shadows.as_deref(), radiosity.as_deref());
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows, radiosity, &tables, execution);
@@ -206,7 +207,7 @@ fn render_color(
         Global::Radiosity => Some(solution(view.session, shot.lights, settings, execution, &mut stats.radiosity)?),
         Global::None | Global::RayTrace => None,
     };
-    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+    let shadows = shadow::prepare(shadow_algorithm(&settings.shadows), &view, shot.lights, settings, execution)?;
     let constants = FrameConstants::new(
         &view,
         settings,
@@ -320,7 +321,7 @@ fn render_data(
     let mut cull = CullCounters::default();
     let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, &mut cull);
     let tables = DecodeTables::new(settings.color_space);
-    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+    let shadows = shadow::prepare(shadow_algorithm(&settings.shadows), &view, shot.lights, settings, execution)?;
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows.as_deref(), None, &tables, execution);
     let sink = ChannelSink::new(&constants, settings.channels, grid.tiles.len());

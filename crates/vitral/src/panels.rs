@@ -225,7 +225,9 @@ fn lit_scene(renderer: &Renderer, number: usize) -> Result<Renderer, Error> {
     let lights = renderer.lights.clone().unwrap_or_default();
     let mut mesh = Mesh { name: "lit".to_owned(), ..Mesh::default() };
     let (mut starts, mut corners) = (vec![0], Vec::new());
-    let drawn = shadow::draw(renderer.session(), &lights, &renderer.settings, renderer.execution(), &mut |polygon| {
+    let (session, settings) = (renderer.session(), &renderer.settings);
+    let algorithm = registry::shadow_algorithm(&settings.shadows);
+    let drawn = shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
         if polygon.light == number {
             let first = mesh.positions.len() as u32;
             mesh.positions.extend(polygon.corners.iter().map(|c| c.as_vec3().to_array()));

@@ -23,7 +23,8 @@ pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
     let camera = renderer.frame_camera();
     let lights = renderer.frame_lights(&camera);
     let (mut text, mut count, mut group) = (String::new(), 0u64, None);
-    let drawn = shadow::draw(renderer.session(), &lights, settings, renderer.execution(), &mut |polygon| {
+    let (session, algorithm) = (renderer.session(), registry::shadow_algorithm(&settings.shadows));
+    let drawn = shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
         // A group is named where it begins.
         let name = (polygon.light, polygon.kind);
         if group != Some(name) {

@@ -6,9 +6,8 @@
 //! In:   sides of elements. Out: the mean of what arrives.
 //! Cost: 16 places for each light, each with a ray or as many as an area light has samples; up to 336 where light ends.
 
-use super::enclosure::Color;
-use super::near::quarters;
-use super::surface::{PARTS, WHOLE, middle, parts};
+use super::element::Color;
+use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Parts, Place, Places, ShadowAlgorithm, Shadows, ray::RayShadows};
 use crate::{Execution, Session, Settings};

@@ -10,10 +10,11 @@
 //! Source: \[Goral et al. 1984\].
 
 use super::direct::Direct;
-use super::gather::Row;
-use super::near::Neighbours;
+use super::element::{Color, Element, Patch, Row, turned};
+use super::neighbours::Neighbours;
+use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
-use super::surface::{PARTS, Surface, Surfaces, middle};
+use super::surface::{Surface, Surfaces};
 use super::targets::Targets;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
@@ -24,46 +25,8 @@ use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Light, Material};
 use vitral_math::DVec3;
 
-/// Red, green, blue.
-pub type Color = [f64; 3];
-
 /// More elements are not made.
 const MOST_ELEMENTS: usize = 4 << 20;
-
-/// A small triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Element {
-    /// Its node in the trees.
-    pub node: u32,
-    /// Its patch.
-    pub patch: u32,
-    /// Middle, world space less the scene's.
-    pub center: DVec3,
-    /// Unit normal of the front.
-    pub normal: DVec3,
-    /// Of the parts that are there, in squares of the world's unit.
-    pub area: f64,
-    /// A bit for each of 16 parts: those that are not cut out.
-    pub there: u16,
-    /// Reflected part of diffuse light.
-    pub reflectance: Color,
-}
-
-/// A triangle that sends light.
-#[derive(Clone, Copy, Debug)]
-pub struct Patch {
-    /// Middle.
-    pub center: DVec3,
-    /// Unit normal of the front.
-    pub normal: DVec3,
-    /// Corners, counter-clockwise seen from the front.
-    pub corners: [DVec3; 3],
-}
-
-/// 1 for the front of an element or a patch, -1 for its back, by the number of the side.
-pub(super) fn turned(side: usize) -> f64 {
-    1.0 - 2.0 * (side & 1) as f64
-}
 
 /// See the module.
 #[derive(Debug)]
@@ -119,6 +82,56 @@ pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
     Trees::new(world.facet_count, corners, longest, MOST_ELEMENTS).ok_or(limit)
 }
 
+/// The leaves of trees, and what each sends out by itself on front and back.
+fn elements(
+    trees: &Trees,
+    session: &Session,
+    settings: &Settings,
+    execution: &Execution,
+) -> (Vec<Element>, Vec<[Color; 2]>) {
+    let leaves = trees.leaves();
+    let surfaces = Surfaces::new(session, settings);
+    let found = execution.workers.map(leaves.len(), |i| {
+        let Surface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
+        let corners = trees.places(leaves[i]);
+        let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
+        let patch = trees.nodes[leaves[i] as usize].patch;
+        let center = middle(corners);
+        (Element { node: leaves[i], patch, center, normal, area, there, reflectance }, emission)
+    });
+    found.into_iter().unzip()
+}
+
+/// The patches that the elements are parts of.
+fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
+    // A patch's own node comes before those of its elements.
+    let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
+    let mut patches = vec![none; trees.patches as usize];
+    for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
+        patches[node.patch as usize].corners = trees.places(number as u32);
+    }
+
+    // Add up the elements' middles, weighted by their areas.
+    let mut areas = vec![0.0; patches.len()];
+    for element in elements {
+        let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
+        (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
+        *area += element.area;
+    }
+
+    // Turn the corners to the front. Of a patch that is cut out nothing is asked.
+    for (patch, area) in patches.iter_mut().zip(areas) {
+        if area > 0.0 {
+            patch.center /= area;
+        }
+        let [a, b, c] = patch.corners;
+        if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
+            patch.corners = [a, c, b];
+        }
+    }
+    patches
+}
+
 impl Enclosure {
     /// Looks at the leaves of `trees`, which are of this session's facets.
     ///
@@ -131,39 +144,8 @@ impl Enclosure {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Self, Limit> {
-        let leaves = trees.leaves();
-        let surfaces = Surfaces::new(session, settings);
-        let found = execution.workers.map(leaves.len(), |i| {
-            let Surface { normal, there, reflectance, emission } = surfaces.of(&trees, leaves[i]);
-            let corners = trees.places(leaves[i]);
-            let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
-            let patch = trees.nodes[leaves[i] as usize].patch;
-            let center = middle(corners);
-            (Element { node: leaves[i], patch, center, normal, area, there, reflectance }, emission)
-        });
-        let (elements, own): (Vec<Element>, Vec<[Color; 2]>) = found.into_iter().unzip();
-        let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
-        let mut patches = vec![none; trees.patches as usize];
-        // A patch's own node comes before those of its elements.
-        for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
-            patches[node.patch as usize].corners = trees.places(number as u32);
-        }
-        let mut areas = vec![0.0; patches.len()];
-        for element in &elements {
-            let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
-            (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
-            *area += element.area;
-        }
-        for (patch, area) in patches.iter_mut().zip(areas) {
-            // Of a patch that is cut out nothing is asked.
-            if area > 0.0 {
-                patch.center /= area;
-            }
-            let [a, b, c] = patch.corners;
-            if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
-                patch.corners = [a, c, b];
-            }
-        }
+        let (elements, own) = elements(&trees, session, settings, execution);
+        let patches = patches(&trees, &elements);
         let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
         let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = Bvh::of(targets.session, execution)?;

@@ -7,13 +7,11 @@
 //! Cost: a hemicube for each side, memory for all form factors, and some ten passes over them.
 //! Source: \[Goral et al. 1984\], \[Cohen & Greenberg 1985\].
 
-use super::enclosure::{Color, Enclosure, turned};
+use super::element::{Color, Row, turned};
+use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use crate::Execution;
 use vitral_exec::Limit;
-
-/// The form factors from one side of an element to sides of others.
-pub type Row = Vec<(u32, f64)>;
 
 /// Passes at most.
 const MOST_PASSES: usize = 1000;

@@ -12,12 +12,15 @@
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
 mod direct;
+pub mod element;
 pub mod enclosure;
 pub mod form_factor;
 pub mod gather;
 pub mod hemicube;
 pub(crate) mod lamps;
 mod near;
+mod neighbours;
+mod parts;
 pub mod patch;
 pub mod progressive;
 pub mod solution;
@@ -122,25 +125,34 @@ fn solve(
     let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
     let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
     let most = settings.iterations.unwrap_or(u64::MAX);
+
+    // Solve roughly, and cut elements where light changes fast.
     let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
     for round in 0..ROUNDS {
         let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
         let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
         let contrasts = contrasts(&enclosure, &rough);
-        let mut trees = std::mem::take(&mut enclosure.trees);
         let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
         if cut.is_empty() {
-            enclosure.trees = trees;
             break;
         }
+        let mut trees = std::mem::take(&mut enclosure.trees);
         cut.iter().for_each(|(element, _)| trees.split(element.node as usize));
         trees.balance();
         enclosure = enclosed(trees, session, lights, settings, execution)?;
     }
+
+    // Solve.
     let last = part_of(execution, BEGINNINGS[ROUNDS]..1000);
     let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, &last)?;
     let solution = Solution::new(&enclosure, &progress).with_key(fingerprint_of(lights, settings));
-    *counters = RadiosityCounters {
+    *counters = counted(&enclosure, &progress, execution.budget.elapsed() - start);
+    Ok(solution)
+}
+
+/// What was made for a solution, and where the light went.
+fn counted(enclosure: &Enclosure, progress: &Progress, seconds: f64) -> RadiosityCounters {
+    RadiosityCounters {
         patches: enclosure.patches.len() as u64,
         elements: enclosure.elements.len() as u64,
         shots: progress.shots,
@@ -148,9 +160,8 @@ fn solve(
         emitted: progress.emitted,
         absorbed: progress.absorbed,
         escaped: progress.escaped,
-        seconds: execution.budget.elapsed() - start,
-    };
-    Ok(solution)
+        seconds,
+    }
 }
 
 /// How much light changes over each element, that of other surfaces or that of light sources.

@@ -63,6 +63,15 @@ impl Trees {
             return None;
         }
         let mut trees = Self { roots: vec![NONE; facets as usize], cuts, ..Self::default() };
+        trees.plant_all(facets, corners);
+        trees.split_longer(longest, most)?;
+        trees.balance();
+        trees.number_patches();
+        Some(trees)
+    }
+
+    /// Makes the roots of all facets; facets with a corner at one place share its vertex.
+    fn plant_all(&mut self, facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>) {
         let mut welded: HashMap<[u64; 3], u32> = HashMap::new();
         let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
         for facet in 0..facets {
@@ -71,31 +80,38 @@ impl Trees {
                 // Adding 0 makes -0 to 0.
                 let key = (p + 0.0).to_array().map(f64::to_bits);
                 *welded.entry(key).or_insert_with(|| {
-                    trees.vertices.push(p);
-                    trees.vertices.len() as u32 - 1
+                    self.vertices.push(p);
+                    self.vertices.len() as u32 - 1
                 })
             });
-            trees.roots[facet as usize] = trees.nodes.len() as u32;
-            trees.plant(facet, corners, &mut edges);
+            self.roots[facet as usize] = self.nodes.len() as u32;
+            self.plant(facet, corners, &mut edges);
         }
+    }
+
+    /// Cuts nodes until no edge is longer than `longest`. `None`: there would be more than `most` leaves.
+    fn split_longer(&mut self, longest: f64, most: usize) -> Option<()> {
         let mut at = 0;
-        while at < trees.nodes.len() {
-            if longest_edge(trees.places(at as u32)) > longest * (1.0 + ROUNDING) {
-                trees.split(at);
+        while at < self.nodes.len() {
+            if longest_edge(self.places(at as u32)) > longest * (1.0 + ROUNDING) {
+                self.split(at);
             }
             at += 1;
-            if trees.nodes.len() > 2 * most {
+            if self.nodes.len() > 2 * most {
                 return None;
             }
         }
-        trees.balance();
-        for at in 0..trees.nodes.len() {
-            if trees.nodes[at].children == NONE {
-                trees.nodes[at].patch = trees.patches;
-                trees.patches += 1;
+        Some(())
+    }
+
+    /// Makes each leaf a patch.
+    fn number_patches(&mut self) {
+        for node in &mut self.nodes {
+            if node.children == NONE {
+                node.patch = self.patches;
+                self.patches += 1;
             }
         }
-        Some(trees)
     }
 
     /// The leaves.

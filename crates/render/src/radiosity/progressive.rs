@@ -20,8 +20,8 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::enclosure::{Color, Element, Enclosure, turned};
-use super::gather::Row;
+use super::element::{Color, Element, Row, turned};
+use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use super::near::refined;
 use crate::Execution;
@@ -77,45 +77,16 @@ pub fn solve(
     most: u64,
     execution: &Execution,
 ) -> Result<Progress, Limit> {
-    let sides = enclosure.emission.len();
-    let mut progress = Progress { irradiance: vec![[0.0; 3]; sides], ..Progress::default() };
-    // Power left to send of each side of each patch.
-    let mut unsent = vec![[0.0; 3]; 2 * enclosure.patches.len()];
-    for (side, emission) in enclosure.emission.iter().enumerate() {
-        let element = &enclosure.elements[side / 2];
-        let to = &mut unsent[2 * element.patch as usize + side % 2];
-        (0..3).for_each(|k| to[k] += emission[k] * element.area);
-    }
-    progress.emitted = unsent.iter().map(power).sum();
-    let receiver = |e: &Element| Receiver { patch: e.patch, per_area: 1.0 / e.area, reflectance: e.reflectance };
-    let receivers: Vec<Receiver> = enclosure.elements.iter().map(receiver).collect();
+    let mut unsent = emitted_power(enclosure);
+    let emitted = unsent.iter().map(power).sum();
+    let irradiance = vec![[0.0; 3]; enclosure.emission.len()];
+    let mut progress = Progress { irradiance, emitted, ..Progress::default() };
+    let shooting = Shooting::new(enclosure, hemicubes, (emitted, most), execution);
     let mut known = Known { rows: vec![None; unsent.len()], room: MOST_KNOWN };
-    let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
-    let emitted = progress.emitted;
-    // The sides with the most light, and the hemicubes that they need where so much light stays in the scene.
-    let choose = |unsent: &[Color], staying: f64, shots: u64| -> Vec<(usize, usize)> {
-        let sides = strongest(unsent, volley.min((most - shots).try_into().unwrap_or(usize::MAX)));
-        let (all, elements) = (emitted.min(MOST_LEAVING * staying), enclosure.elements.len());
-        let part = |side: usize| power(&unsent[side]) / all;
-        sides.into_iter().map(|side| (side, fineness(hemicubes, part(side), elements))).collect()
-    };
-    // Whom they see.
-    let look = |shooters: &[(usize, usize)], known: &Known| -> Result<Vec<Arc<Seen>>, Limit> {
-        let seen = execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
-            (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
-            (_, (side, fineness)) => {
-                let row = look(enclosure, &hemicubes[fineness], side, execution)?;
-                Ok(Arc::new(Seen::new(fineness, &row)))
-            }
-        });
-        seen.into_iter().collect()
-    };
     let (mut shooters, mut seen) = (Vec::new(), Vec::new());
     loop {
-        let left: f64 = unsent.iter().map(power).sum();
-        // Light that leaves is no measure: however much of it there is, the rest is to go as far as without.
-        let staying = progress.absorbed + left;
-        progress.residual = if staying > 0.0 { left / staying } else { 0.0 };
+        // Measure what is left.
+        let staying = progress.note_residual(&unsent);
         let finished = progress.residual <= residual || progress.shots >= most;
         let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
         tell(if finished { 1.0 } else { share }, execution);
@@ -123,19 +94,24 @@ pub fn solve(
             break;
         }
         execution.budget.check("radiosity")?;
+
+        // Choose the first shooters; later ones were chosen in the step before.
         if shooters.is_empty() {
-            shooters = choose(&unsent, staying, progress.shots);
-            seen = look(&shooters, &known)?;
+            shooters = shooting.choose(&unsent, staying, progress.shots);
+            seen = shooting.look(&shooters, &known)?;
         }
+
+        // Take their light and choose the next ones by what is left without it.
         let powers: Vec<Color> = shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
-        let next = choose(&unsent, staying, progress.shots + shooters.len() as u64);
+        let next = shooting.choose(&unsent, staying, progress.shots + shooters.len() as u64);
+
+        // Deal the light out, while the next shooters look around.
         let receive = || {
-            powers
-                .iter()
-                .zip(&seen)
-                .for_each(|(sent, seen)| receive(&receivers, seen, sent, &mut unsent, &mut progress));
+            for (sent, seen) in powers.iter().zip(&seen) {
+                receive(&shooting.receivers, seen, sent, &mut unsent, &mut progress);
+            }
         };
-        let ((), next_seen) = execution.workers.join(receive, || look(&next, &known));
+        let ((), next_seen) = execution.workers.join(receive, || shooting.look(&next, &known));
         shooters.iter().zip(seen).for_each(|(&(side, _), seen)| known.keep(side, seen));
         (shooters, seen) = (next, next_seen?);
     }
@@ -144,6 +120,76 @@ pub fn solve(
         progress.ambient = ambient(enclosure, &unsent);
     }
     Ok(progress)
+}
+
+/// The power that each side of each patch has to send in the beginning.
+fn emitted_power(enclosure: &Enclosure) -> Vec<Color> {
+    let mut unsent = vec![[0.0; 3]; 2 * enclosure.patches.len()];
+    for (side, emission) in enclosure.emission.iter().enumerate() {
+        let element = &enclosure.elements[side / 2];
+        let to = &mut unsent[2 * element.patch as usize + side % 2];
+        (0..3).for_each(|k| to[k] += emission[k] * element.area);
+    }
+    unsent
+}
+
+impl Progress {
+    /// Notes which part of the light in the scene has not been sent on; returns the light that stays there.
+    fn note_residual(&mut self, unsent: &[Color]) -> f64 {
+        let left: f64 = unsent.iter().map(power).sum();
+        // Light that leaves is no measure: however much of it there is, the rest is to go as far as without.
+        let staying = self.absorbed + left;
+        self.residual = if staying > 0.0 { left / staying } else { 0.0 };
+        staying
+    }
+}
+
+/// What stays the same from shot to shot.
+struct Shooting<'a> {
+    enclosure: &'a Enclosure,
+    hemicubes: &'a [Hemicube],
+    execution: &'a Execution,
+    receivers: Vec<Receiver>,
+    /// Light that was sent out in the beginning, of all colours.
+    emitted: f64,
+    /// Shots at most.
+    most: u64,
+    /// Patches that shoot in one step.
+    volley: usize,
+}
+
+impl<'a> Shooting<'a> {
+    fn new(
+        enclosure: &'a Enclosure,
+        hemicubes: &'a [Hemicube],
+        (emitted, most): (f64, u64),
+        execution: &'a Execution,
+    ) -> Self {
+        let receiver = |e: &Element| Receiver { patch: e.patch, per_area: 1.0 / e.area, reflectance: e.reflectance };
+        let receivers = enclosure.elements.iter().map(receiver).collect();
+        let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
+        Self { enclosure, hemicubes, execution, receivers, emitted, most, volley }
+    }
+
+    /// The sides with the most light, and the hemicubes that they need where so much light stays in the scene.
+    fn choose(&self, unsent: &[Color], staying: f64, shots: u64) -> Vec<(usize, usize)> {
+        let sides = strongest(unsent, self.volley.min((self.most - shots).try_into().unwrap_or(usize::MAX)));
+        let (all, elements) = (self.emitted.min(MOST_LEAVING * staying), self.enclosure.elements.len());
+        let part = |side: usize| power(&unsent[side]) / all;
+        sides.into_iter().map(|side| (side, fineness(self.hemicubes, part(side), elements))).collect()
+    }
+
+    /// What these sides see, by hemicubes that are at least as fine as theirs.
+    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<Seen>>, Limit> {
+        let seen = self.execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
+            (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
+            (_, (side, fineness)) => {
+                let row = look(self.enclosure, &self.hemicubes[fineness], side, self.execution)?;
+                Ok(Arc::new(Seen::new(fineness, &row)))
+            }
+        });
+        seen.into_iter().collect()
+    }
 }
 
 /// Elements take their parts of what is sent to those that are seen.

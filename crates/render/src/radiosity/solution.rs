@@ -10,7 +10,8 @@
 //! Cost: a step for each level of the quadtree.
 //! Source: \[Cohen & Wallace 1993\], chapter 9.
 
-use super::enclosure::{Color, Enclosure};
+use super::element::Color;
+use super::enclosure::Enclosure;
 use super::patch::{MOST_CUTS, NONE, Node, Trees, descend, within};
 use super::progressive::Progress;
 use crate::Error;
@@ -134,7 +135,7 @@ impl Solution {
     /// # Errors
     /// Bytes that are something else, damaged, or of another scene.
     pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, Error> {
-        let bad = |what: &str| Error::Radiosity(what.to_owned());
+        // Read the head.
         let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| bad("this is no stored solution"))?;
         let (own, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
         if u64::from_le_bytes(*own) != fingerprint {
@@ -154,36 +155,56 @@ impl Solution {
         if !(1..=MOST_CUTS).contains(&cuts) {
             return Err(bad("facets cannot be cut in so many parts"));
         }
-        let node = |i: usize| {
-            let [children, facet, patch] = [0, 1, 2].map(|k| word(4 + 3 * i + k));
-            Node { corners: [NONE; 3], children, facet, patch }
-        };
-        let nodes: Vec<Node> = (0..nodes).map(node).collect();
+
+        // Read nodes, roots and light, one after the other.
+        let (node_words, rest) = words[4..].split_at(3 * nodes);
+        let (root_words, light_words) = rest.split_at(roots);
+        let nodes = stored_nodes(node_words, leaves)?;
+        let roots: Vec<u32> = root_words.iter().map(|word| u32::from_le_bytes(*word)).collect();
         let count = nodes.len() as u64;
-        // Children come after their parents, so that going down ends.
-        let sound =
-            |i: usize, n: &Node| n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count);
-        if !nodes.iter().enumerate().all(|(i, n)| sound(i, n)) {
-            return Err(bad("a node has no children where it says"));
-        }
-        if nodes.iter().filter(|n| n.children == NONE).count() != leaves {
-            return Err(bad("the number of leaves is wrong"));
-        }
-        let start = 4 + 3 * nodes.len();
-        let roots: Vec<u32> = (0..roots).map(|i| word(start + i)).collect();
         if roots.iter().any(|&r| r != NONE && u64::from(r) + u64::from(cuts * cuts) > count) {
             return Err(bad("a facet's trees are not there"));
         }
-        let start = start + roots.len();
-        let float = |i: usize| f32::from_le_bytes(words[start + i]);
-        if !(0..36 * leaves + 3).all(|i| float(i).is_finite()) {
-            return Err(bad("light that is not a finite number"));
-        }
-        let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
-        let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
-        let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
-        Ok(Self::assemble(nodes, (roots, cuts), light, color(12 * leaves)).with_key(u64::from_le_bytes(*key)))
+        let (light, ambient) = stored_light(light_words, leaves)?;
+        Ok(Self::assemble(nodes, (roots, cuts), light, ambient).with_key(u64::from_le_bytes(*key)))
     }
+}
+
+/// Why bytes are no solution.
+fn bad(what: &str) -> Error {
+    Error::Radiosity(what.to_owned())
+}
+
+/// The nodes that were stored as these words, so many of them leaves.
+fn stored_nodes(words: &[[u8; 4]], leaves: usize) -> Result<Vec<Node>, Error> {
+    let node = |words: &[[u8; 4]; 3]| {
+        let [children, facet, patch] = words.map(u32::from_le_bytes);
+        Node { corners: [NONE; 3], children, facet, patch }
+    };
+    let nodes: Vec<Node> = words.as_chunks::<3>().0.iter().map(node).collect();
+    let count = nodes.len() as u64;
+    // Children come after their parents, so that going down ends.
+    let sound =
+        |i: usize, n: &Node| n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count);
+    if !nodes.iter().enumerate().all(|(i, n)| sound(i, n)) {
+        return Err(bad("a node has no children where it says"));
+    }
+    if nodes.iter().filter(|n| n.children == NONE).count() != leaves {
+        return Err(bad("the number of leaves is wrong"));
+    }
+    Ok(nodes)
+}
+
+/// The light of the leaves that was stored as these words, and the ambient term behind it.
+fn stored_light(words: &[[u8; 4]], leaves: usize) -> Result<(Vec<[Six; 2]>, Rgb), Error> {
+    let float = |i: usize| f32::from_le_bytes(words[i]);
+    if !(0..36 * leaves + 3).all(|i| float(i).is_finite()) {
+        return Err(bad("light that is not a finite number"));
+    }
+    let color = |i: usize| [float(3 * i), float(3 * i + 1), float(3 * i + 2)];
+    let six = |i: usize| std::array::from_fn(|k| color(6 * i + k));
+    let light = (0..leaves).map(|e| [six(2 * e), six(2 * e + 1)]).collect();
+    Ok((light, color(12 * leaves)))
 }
 
 /// The elements round each vertex.

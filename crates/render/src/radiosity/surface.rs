@@ -8,8 +8,8 @@
 //! In:   an element's corners. Out: [`Surface`].
 //! Cost: 16 lookups in each texture.
 
-use super::enclosure::Color;
-use super::near::quarters;
+use super::element::Color;
+use super::parts::{PARTS, WHOLE, middle, parts};
 use super::patch::{Trees, area};
 use crate::raytrace::triangles::Triangles;
 use crate::shading::DecodeTables;
@@ -20,25 +20,10 @@ use vitral_math::lanes::Lanes;
 use vitral_math::{DVec3, Vec3, func};
 use vitral_scene::Mesh;
 
-/// Parts of an element.
-pub(super) const PARTS: usize = 16;
-/// All of them are there.
-pub(super) const WHOLE: u16 = u16::MAX;
 /// Reflectances above this count as this, so that light dies out.
 const MOST_REFLECTED: f64 = 0.99;
 /// Surfaces that let more of the light pass are not there.
 const MOST_PASSING: f32 = 0.5;
-
-/// The parts of a triangle; four neighbours that make a quarter of it come one after another.
-pub(super) fn parts(corners: [DVec3; 3]) -> [[DVec3; 3]; PARTS] {
-    let quarters = quarters(corners).map(quarters);
-    std::array::from_fn(|i| quarters[i / 4][i % 4])
-}
-
-/// The middle of a triangle.
-pub(super) fn middle([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (a + b + c) / 3.0
-}
 
 /// See the module.
 pub(super) struct Surface {

@@ -7,8 +7,8 @@
 //! In:   quadtrees over facets. Out: the facets as a scene, and the element at a point of each.
 //! Cost: linear in nodes; a question takes a step, and one for each level of a tree below the grid.
 
+use super::parts::{PARTS, WHOLE, parts};
 use super::patch::{Cell, NONE, Trees};
-use super::surface::{PARTS, WHOLE, parts};
 use crate::Session;
 use std::sync::{Arc, Mutex};
 use vitral_math::{DVec3, Vec3};
@@ -98,6 +98,7 @@ impl Targets {
         let with_holes = leaves.iter().zip(there).filter(|(_, there)| **there != WHOLE);
         with_holes.for_each(|(&leaf, _)| whole[facet(leaf)] = false);
 
+        // Facets that are whole, with a grid of cells each.
         let (mut triangles, mut grids, mut cells) = (Vec::new(), Vec::new(), Vec::new());
         for facet in (0..whole.len() as u32).filter(|&f| whole[f as usize]) {
             let roots = trees.roots_of(facet);
@@ -110,6 +111,8 @@ impl Targets {
             triangles.push(trees.corners_of(facet));
             grids.push(Grid { first: first as u32, side });
         }
+
+        // The leaves of the others, or the parts of them that are there, with a cell each leaf.
         for ((&leaf, &there), number) in
             leaves.iter().zip(there).zip(0..).filter(|((leaf, _), _)| !whole[facet(**leaf)])
         {
@@ -124,12 +127,7 @@ impl Targets {
             grids.extend((before..triangles.len()).map(|_| Grid { first: cells.len() as u32, side: 1 }));
             cells.push(Content::Leaf(number));
         }
-        let positions = triangles.iter().flatten().map(|v| v.as_vec3().to_array()).collect();
-        let count = triangles.len() as u32;
-        let triangles: Vec<_> = (0..count).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
-        let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
-        let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
-        let session = Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound");
+        let session = scene_of(&triangles);
         Self { session, grids, cells, numbers, leaves: leaves.len(), spare: Mutex::default() }
     }
 
@@ -197,6 +195,16 @@ impl Targets {
             }
         }
     }
+}
+
+/// Triangles as a scene of their own.
+fn scene_of(triangles: &[[DVec3; 3]]) -> Session {
+    let positions = triangles.iter().flatten().map(|v| v.as_vec3().to_array()).collect();
+    let count = triangles.len() as u32;
+    let triangles: Vec<_> = (0..count).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+    let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
+    let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
+    Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound")
 }
 
 /// Levels below a node down to its first leaf.

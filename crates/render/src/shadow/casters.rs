@@ -4,10 +4,9 @@
 //! homogeneous point: `w` is 1, or 0 for a direction. Whatever two triangles share, an edge or a corner, gives both the same
 //! numbers, so that their solids leave no gap.
 
-use super::Place;
 use super::occluders::Occluders;
-use super::place::horizon;
-use super::ray::clearance;
+use super::places::Place;
+use super::rounding::{clearance, horizon};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::shaft::Shaft;
 use crate::raytrace::triangles::Triangles;

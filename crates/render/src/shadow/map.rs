@@ -24,122 +24,33 @@
 mod cascade;
 mod draw;
 mod lens;
+mod light_maps;
 mod lookup;
 mod slice;
 #[cfg(test)]
 mod testing;
+mod tiles;
 
 use super::casters::faces;
 use super::occluders::Occluders;
-use super::sources::{Emitter, Shares, Source};
-use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
-use crate::raytrace::triangles::Triangles;
-use crate::{Cached, ColorSpace, Execution, PreparedView, Reuse, Session, Settings, Transparency};
-use cascade::Cascades;
-use draw::When;
-use lens::Lens;
-use std::sync::{Arc, OnceLock};
+use super::places::{Parts, Place, Places};
+use super::sources::Shares;
+use super::{ShadowAlgorithm, Shadows};
+use crate::{Execution, PreparedView, Session, Settings};
+use cascade::{Cascades, CascadesKey};
+use draw::{FirstPass, When};
+use light_maps::LightMaps;
+use light_maps::{Key, Maps};
+use std::sync::Arc;
+use tiles::Map;
 use vitral_exec::Limit;
-use vitral_light::{Light, LightKind, Rgb};
+use vitral_light::{Light, Rgb};
+use vitral_math::DVec4;
 use vitral_math::lanes::Level;
-use vitral_math::{DVec3, DVec4};
-use vitral_raster::Batch;
-use vitral_scene::ViewTransform;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct MapShadows;
-
-/// Shortest side of an area light's maps.
-const LEAST_SIDE: u32 = 256;
-/// How far a point is lifted along its normal, in texels.
-const LIFT: f64 = 0.5;
-/// How far behind a point's plane a surface may be and still count as its own, in texels.
-const BEYOND: f64 = 2.0;
-/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
-/// texel, and two roundings may add up.
-const SLOPE_BIAS: f64 = 1.0 / 64.0;
-/// Relative error of a depth.
-const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
-
-/// What maps depend on, besides the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
-    lights: Vec<Light>,
-    size: u32,
-    samples: u32,
-    transparency: Transparency,
-    color_space: ColorSpace,
-}
-
-/// What cascades depend on, besides the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct CascadesKey {
-    maps: Key,
-    count: u32,
-    view: ViewTransform,
-}
-
-/// The maps of all lights, in order.
-#[derive(Debug)]
-pub(crate) struct Maps(Vec<LightMaps>);
-
-#[derive(Debug)]
-enum LightMaps {
-    Unhindered,
-    Infinity {
-        towards: DVec3,
-        map: Box<Map>,
-    },
-    /// Each place of a light with its maps.
-    Places(Vec<(Emitter, Vec<Map>)>),
-}
-
-/// What the light sees through one lens.
-#[derive(Debug)]
-struct Map {
-    lens: Lens,
-    /// Tiles in a row.
-    columns: usize,
-    tiles: Vec<OnceLock<MapTile>>,
-    /// What tiles that are not there yet are drawn from; without it, nothing is in them.
-    pending: Option<Pending>,
-}
-
-/// Opaque triangles of a map.
-#[derive(Debug)]
-struct Pending {
-    batches: Vec<Batch>,
-    level: Level,
-}
-
-/// What the light sees in a tile.
-#[derive(Debug, Default)]
-struct MapTile {
-    /// Distance of the nearest opaque thing along the axis, ∞ where there is none; empty if there is none at all.
-    depth: Vec<f32>,
-    /// Transparent things, sorted by texel.
-    layers: Vec<Layer>,
-}
-
-/// A transparent thing at a texel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Layer {
-    /// Within the tile.
-    texel: u32,
-    depth: f32,
-    /// The part of each colour of light that passes.
-    passing: Rgb,
-}
-
-impl Cached for Maps {
-    type Key = Key;
-}
-
-impl Cached for Cascades {
-    type Key = CascadesKey;
-    const REUSE: Reuse = Reuse::View;
-}
 
 impl ShadowAlgorithm for MapShadows {
     fn prepare<'a>(
@@ -170,99 +81,10 @@ impl ShadowAlgorithm for MapShadows {
         let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
         let cascades = session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
-            let draw = |lens: Lens| Map::draw(lens, session, &occluders, settings, execution, When::Asked);
-            Cascades::new(&session.world, &view.view, &maps, (count, size), draw)
+            let pass = FirstPass { session, occluders: &occluders, settings, execution, when: When::Asked };
+            Cascades::new(&session.world, &view.view, &maps, (count, size), |lens| pass.draw(lens))
         })?;
         Ok(Box::new(Prepared { maps, cascades: Some(cascades), level: execution.level }))
-    }
-}
-
-impl Key {
-    fn new(lights: &[Light], settings: &Settings) -> Self {
-        Self {
-            lights: lights.to_vec(),
-            size: settings.shadow_map_size,
-            samples: settings.light_samples,
-            transparency: settings.transparency,
-            color_space: settings.color_space,
-        }
-    }
-}
-
-impl Maps {
-    /// Those that the session keeps, or new ones.
-    fn of(session: &Session, lights: &[Light], settings: &Settings, execution: &Execution) -> Result<Arc<Self>, Limit> {
-        let key = Key::new(lights, settings);
-        if let Some(old) = session.cache.take_outdated::<Self>(&key) {
-            Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
-        }
-        session.cache.get_or_build(key, || {
-            let occluders = Occluders::new(session, settings);
-            let maps = lights.iter().map(|l| LightMaps::new(l, session, &occluders, settings, execution));
-            Ok(Self(maps.collect::<Result<_, Limit>>()?))
-        })
-    }
-}
-
-impl Maps {
-    /// Hands memory back to the session.
-    fn recycle(self, session: &Session) {
-        let mut spare = session.spare_batches.lock().expect("spare batches");
-        for maps in self.0 {
-            let maps = match maps {
-                LightMaps::Unhindered => Vec::new(),
-                LightMaps::Infinity { map, .. } => vec![*map],
-                LightMaps::Places(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
-            };
-            spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
-        }
-    }
-}
-
-impl LightMaps {
-    fn new(
-        light: &Light,
-        session: &Session,
-        occluders: &Occluders<'_>,
-        settings: &Settings,
-        execution: &Execution,
-    ) -> Result<Self, Limit> {
-        let world = &session.world;
-        if world.bounds.is_empty() {
-            return Ok(Self::Unhindered);
-        }
-        let source = Source::new(light, settings.light_samples, Triangles::center_of(world));
-        let when = if matches!(source, Source::Area(_)) { When::Before } else { When::Asked };
-        let draw = |lens: Lens| Map::draw(lens, session, occluders, settings, execution, when);
-        let size = settings.shadow_map_size;
-        let around = |from: Emitter, size: u32| -> Result<(Emitter, Vec<Map>), Limit> {
-            let lenses = Lens::around(from.at.truncate(), world, size);
-            let maps: Result<_, Limit> = lenses.into_iter().map(draw).collect();
-            Ok((from, maps?))
-        };
-        let emitters = source.places();
-        Ok(match source {
-            Source::Unhindered => Self::Unhindered,
-            Source::Infinity(towards) => {
-                Self::Infinity { towards, map: Box::new(draw(Lens::parallel(towards, world, size))?) }
-            }
-            Source::Point(at) => {
-                let lens = match light.kind {
-                    LightKind::Spot { direction, cutoff, .. } => Lens::cone(at, direction, cutoff, world, size),
-                    _ => None,
-                };
-                Self::Places(vec![match lens {
-                    Some(lens) => (emitters[0], vec![draw(lens)?]),
-                    None => around(emitters[0], size)?,
-                }])
-            }
-            Source::Area(_) => {
-                let side = (f64::from(size) / (emitters.len() as f64).sqrt()) as u32;
-                let side = side.max(LEAST_SIDE.min(size));
-                let places: Result<_, Limit> = emitters.into_iter().map(|from| around(from, side)).collect();
-                Self::Places(places?)
-            }
-        })
     }
 }
 
@@ -321,16 +143,5 @@ impl Prepared {
             Some(cascades) => cascades.answers(self.level, light, maps, questions, places),
             None => lookup::answers(self.level, maps, questions, places),
         }
-    }
-}
-
-impl MapTile {
-    /// What the transparent things at a texel let through to this depth.
-    #[inline(never)]
-    fn filtered(&self, texel: usize, depth: f64) -> Rgb {
-        let first = self.layers.partition_point(|l| (l.texel as usize) < texel);
-        let here = self.layers[first..].iter().take_while(|l| l.texel as usize == texel);
-        let before = here.filter(|l| f64::from(l.depth) < depth);
-        before.fold([1.0; 3], |left, l| [0, 1, 2].map(|k| left[k] * l.passing[k]))
     }
 }

@@ -12,44 +12,31 @@
 //! coloured by its filter where transparency is filtered; a cut-out one lets light through its holes.
 
 mod casters;
+mod facet;
+mod hash;
 pub mod map;
 pub mod object_precision;
 mod occluders;
 mod place;
 mod places;
 pub mod ray;
+mod rounding;
 pub mod scan_line;
 mod sources;
 pub mod volume;
 
 pub(crate) use casters::Casters;
-pub(crate) use occluders::{Occluders, texel, weights};
-pub(crate) use place::{Placing, facet, weighted};
-pub(crate) use places::EightPlaces;
-pub use places::{Parts, Places};
-pub(crate) use ray::clearance;
-pub(crate) use sources::hash;
+pub(crate) use facet::{facet, weighted, weights};
+pub(crate) use hash::hash;
+pub(crate) use occluders::{Occluders, texel};
+pub(crate) use place::Placing;
+pub use places::{Parts, Place, Places};
+pub(crate) use rounding::clearance;
 
-use crate::{Execution, PreparedView, Session, Settings, Transparency, registry};
+use crate::{Execution, PreparedView, Session, Settings, Transparency};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
-
-/// A point of a surface that asks for light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// World space less [`crate::raytrace::triangles::Triangles::center`].
-    pub position: DVec3,
-    /// Unit normal of the facet on the side that is seen, world space; zero for a facet without area.
-    pub normal: DVec3,
-    /// The facet.
-    pub facet: u32,
-    /// Chooses the places on area lights that are asked; neighbours should differ.
-    pub seed: u32,
-    /// Where it is seen, in pixels of the picture, if the viewer sees it straight: places with one `y` that are on one
-    /// facet are on one line.
-    pub pixel: Option<[f32; 2]>,
-}
 
 /// Shadows of one set of lights in one scene.
 pub trait Shadows: Sync {
@@ -126,19 +113,20 @@ pub(crate) fn grey([r, g, b]: Rgb) -> f32 {
 /// Bytes that are charged to the budget together while polygons are handed on.
 const CHARGED_AHEAD: u64 = 1 << 20;
 
-/// Hands on the polygons that the chosen algorithm works with, until a limit is reached. `take` says how many bytes it
-/// keeps of all that it got; the budget allows them or ends it.
+/// Hands on the polygons that an algorithm works with, none for `None`, until a limit is reached. `take` says how many bytes
+/// it keeps of all that it got; the budget allows them or ends it.
 ///
 /// # Errors
 /// The limit; what was handed on until then stays handed on.
 pub fn draw(
+    algorithm: Option<&dyn ShadowAlgorithm>,
     session: &Session,
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
     take: &mut dyn FnMut(Drawn<'_>) -> u64,
 ) -> Result<(), Limit> {
-    let Some(algorithm) = registry::shadows(&settings.shadows).and_then(|s| s.algorithm) else { return Ok(()) };
+    let Some(algorithm) = algorithm else { return Ok(()) };
     // They are the same for every viewer.
     let shadows = algorithm.prepare(session, lights, DVec4::Z, settings, execution)?;
     let budget = &execution.budget;
@@ -157,14 +145,14 @@ pub fn draw(
     within.and_then(|()| budget.check("shadow polygons"))
 }
 
-/// The chosen algorithm, ready; `None` without shadows.
+/// The shadows of a picture by this algorithm; `None` without one, and where nothing asks for light.
 pub(crate) fn prepare<'a>(
+    algorithm: Option<&dyn ShadowAlgorithm>,
     view: &PreparedView<'a>,
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Option<Box<dyn Shadows + 'a>>, Limit> {
-    let algorithm = registry::shadows(&settings.shadows).and_then(|s| s.algorithm);
     if !settings.lighting && !settings.channels.cast_shadow {
         return Ok(None);
     }

@@ -20,9 +20,10 @@ mod clip;
 
 use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
-use super::ray::clearance;
+use super::places::{Parts, Places};
+use super::rounding::clearance;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Cached, Execution, Session, Settings};
 use clip::{Cutter, Detail};
@@ -160,47 +161,61 @@ impl OfLight {
 impl Details {
     /// Clips a triangle.
     fn add(&mut self, triangle: usize, light: DVec4, casters: &Casters) {
-        let triangles = casters.triangles();
-        let extent = triangles.extent;
-        let (corners, near) = (wide(&triangles.corners[triangle]), near(light, extent));
+        let corners = wide(&casters.triangles().corners[triangle]);
         let first = self.filters.len() as u32;
         let winding = winding_normal(&corners).normalize_or_zero();
         let height = -winding.dot(away(light, corners[0]));
         let root = match height.partial_cmp(&0.0) {
             // What the light sees edge-on, or what has no area, is not lit.
             None | Some(Ordering::Equal) => self.detail.dark(),
-            Some(_) => {
-                let normal = winding * height.signum();
-                let lift = lift(&corners, extent);
-                // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind. A facet
-                // that light grazes lies along their sides, too: it is looked at from a little above.
-                let cosine = |c: &DVec3| -normal.dot(away(light, *c).normalize_or_zero());
-                let grazed = corners.iter().any(|c| cosine(c) < GRAZING);
-                let (above, behind) = if grazed { (lift, 0.0) } else { (0.0, lift) };
-                let corners = corners.map(|c| c + normal * above);
-                let (min, max) =
-                    (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
-                let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                let shaft = Shaft::between(min, max, light, extent);
-                let (mut list, mut filters) = (Vec::new(), Vec::new());
-                casters.opaque_near(&shaft, &mut list);
-                casters.filters_near(&shaft, &mut filters);
-                let solid = |corners: &[DVec3; 3]| {
-                    let mut solid = Solid::new(corners, light, near).filter(|s| s.touches(middle, half))?;
-                    solid.planes = solid.planes.map(|(normal, at)| (normal.normalize_or_zero(), at));
-                    let (normal, at) = &mut solid.planes[0];
-                    *at += *normal * behind;
-                    Some(solid)
-                };
-                let own = triangles.facets[triangle];
-                let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
-                let solids: Vec<_> = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
-                self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
-                let eps = f64::from(extent) * EPS;
-                Cutter { detail: &mut self.detail, normal, eps, solids: &solids }.add(corners.to_vec())
-            }
+            Some(_) => self.clip(triangle, (corners, winding * height.signum()), light, casters),
         };
         self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });
+    }
+
+    /// Takes from a triangle what others hide from the light, to which its normal is turned; gives the root of what is left.
+    fn clip(
+        &mut self,
+        triangle: usize,
+        (corners, normal): ([DVec3; 3], DVec3),
+        light: DVec4,
+        casters: &Casters,
+    ) -> u32 {
+        let triangles = casters.triangles();
+        let extent = triangles.extent;
+        let near = near(light, extent);
+
+        // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind. A facet
+        // that light grazes lies along their sides, too: it is looked at from a little above.
+        let lift = lift(&corners, extent);
+        let cosine = |c: &DVec3| -normal.dot(away(light, *c).normalize_or_zero());
+        let grazed = corners.iter().any(|c| cosine(c) < GRAZING);
+        let (above, behind) = if grazed { (lift, 0.0) } else { (0.0, lift) };
+        let corners = corners.map(|c| c + normal * above);
+
+        // Find the triangles between it and the light.
+        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let shaft = Shaft::between(min, max, light, extent);
+        let (mut list, mut filters) = (Vec::new(), Vec::new());
+        casters.opaque_near(&shaft, &mut list);
+        casters.filters_near(&shaft, &mut filters);
+
+        // Keep the solids that reach it.
+        let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let solid = |corners: &[DVec3; 3]| {
+            let mut solid = Solid::new(corners, light, near).filter(|s| s.touches(middle, half))?;
+            solid.planes = solid.planes.map(|(normal, at)| (normal.normalize_or_zero(), at));
+            let (normal, at) = &mut solid.planes[0];
+            *at += *normal * behind;
+            Some(solid)
+        };
+        let own = triangles.facets[triangle];
+        let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
+        let solids: Vec<_> = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+        self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
+
+        let eps = f64::from(extent) * EPS;
+        Cutter { detail: &mut self.detail, normal, eps, solids: &solids }.add(corners.to_vec())
     }
 
     fn bytes(&self) -> u64 {

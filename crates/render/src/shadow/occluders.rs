@@ -1,6 +1,7 @@
 //! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures and vertex colours say
 //! at the point where the ray passes. With filtered transparency, what passes has the colour of the glass.
 
+use super::facet::weights;
 use crate::shading::DecodeTables;
 use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
@@ -160,31 +161,4 @@ pub(crate) fn texel(
 fn blend<const N: usize>(a: &Attribute<[f32; N]>, mesh: &Mesh, triangle: usize, weights: [f32; 3]) -> [f32; N] {
     let corners = a.at(triangle, &mesh.triangles);
     std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
-}
-
-/// Barycentric coordinates of a point in a triangle's plane.
-pub(crate) fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
-    let (a, b, c) = (corners[0].as_dvec3(), corners[1].as_dvec3(), corners[2].as_dvec3());
-    let normal = (b - a).cross(c - a);
-    let whole = normal.length_squared();
-    if whole == 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let at = |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / whole) as f32;
-    [at(b, c), at(c, a), at(a, b)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use vitral_math::{dvec3, vec3};
-
-    #[test]
-    fn weights_bring_the_point_back() {
-        let corners = [vec3(1.0, 0.0, 2.0), vec3(4.0, 1.0, 2.0), vec3(1.0, 3.0, 5.0)];
-        let p = corners[0] * 0.5 + corners[1] * 0.25 + corners[2] * 0.25;
-        let w = weights(&corners, p.as_dvec3());
-        assert!((w[0] - 0.5).abs() < 1e-6 && (w[1] - 0.25).abs() < 1e-6 && (w[2] - 0.25).abs() < 1e-6, "{w:?}");
-        assert_eq!(weights(&[Vec3::ONE; 3], dvec3(1.0, 1.0, 1.0)), [1.0, 0.0, 0.0]);
-    }
 }

@@ -6,14 +6,14 @@
 //! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
 //! plane of a wall that begins there, and rounding would say on which side.
 
-use super::{EightPlaces, clearance};
+use super::places::EightPlaces;
+use super::rounding::clearance;
 use crate::PreparedView;
 use crate::prepare::mirrors;
 use crate::raytrace::triangles::Triangles;
-use vitral_light::DIRECTION_ROUNDING;
+use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x4, F64x8, LANES, Simd, U32x8};
-use vitral_math::{DVec3, DVec4, dvec3};
 use vitral_scene::Instance;
 
 /// A facet in the world, less the scene's middle.
@@ -50,37 +50,6 @@ fn least_weight(weight: f64) -> f64 {
     if weight < MOST { weight } else { MOST }
 }
 
-/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
-/// on the side from which they run counter-clockwise in the model; zero without area.
-pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
-    let mirrored = mirrors(&instance.world_from_model);
-    let mesh = &instance.mesh;
-    let corner = |i: u32| {
-        let [x, y, z] = mesh.positions[i as usize];
-        let p = dvec3(f64::from(x), f64::from(y), f64::from(z));
-        (instance.world_from_model.transform_point3(p) - center).as_vec3().as_dvec3()
-    };
-    let [a, b, c] = mesh.triangles[triangle as usize];
-    let corners = [corner(a), corner(b), corner(c)];
-    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-    (corners, if mirrored { -normal } else { normal })
-}
-
-/// What the product of a facet's unit normal and the way from a place of it to a light (homogeneous) exceeds where the facet
-/// faces the light: less is rounding, and a light in the facet's plane shines past it.
-#[inline(always)]
-pub(crate) fn horizon(position: DVec3, light: DVec4) -> f64 {
-    let sum = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
-    let at = sum(light.truncate());
-    f64::from(DIRECTION_ROUNDING) * (at + light.w * (2.0 * sum(position) + at))
-}
-
-/// The point with these weights of the corners.
-pub(crate) fn weighted(corners: &[DVec3; 3], weights: [f32; 3]) -> DVec3 {
-    let w = weights.map(f64::from);
-    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / (w[0] + w[1] + w[2])
-}
-
 /// What all points of an object have in common.
 pub(crate) struct Placing<'a> {
     view: &'a PreparedView<'a>,
@@ -113,7 +82,7 @@ impl<'a> Placing<'a> {
         facets
     }
 
-    /// [`facet`] of eight triangles, by the same operations.
+    /// [`super::facet::facet`] of eight triangles, by the same operations.
     pub(crate) fn eight_facets<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [Facet; LANES] {
         simd.vectorize(
             #[inline(always)]
@@ -123,52 +92,26 @@ impl<'a> Placing<'a> {
 
     #[inline(always)]
     fn eight_facets_inlined<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [Facet; LANES] {
-        let (mesh, m) = (&self.instance.mesh, &self.instance.world_from_model);
-        let axes = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
-        let center = self.center.to_array();
-        let mut corners = [[[0.0; LANES]; 3]; 3];
-        for (lane, &triangle) in triangles.iter().enumerate() {
-            for (corner, &vertex) in corners.iter_mut().zip(&mesh.triangles[triangle as usize]) {
-                for (axis, value) in corner.iter_mut().zip(mesh.positions[vertex as usize]) {
-                    axis[lane] = f64::from(value);
-                }
-            }
-        }
-        let load = lanes::inlined(
-            #[inline(always)]
-            |values: &[f64; LANES]| F64x8::from_slice(simd, values),
-        );
-        for corner in &mut corners {
-            let [x, y, z] = [load(&corner[0]), load(&corner[1]), load(&corner[2])];
-            for (k, axis) in corner.iter_mut().enumerate() {
-                let world = (z * axes[2][k] + (y * axes[1][k] + x * axes[0][k])) + axes[3][k];
-                (world - center[k]).store_slice(axis);
-                for value in axis {
-                    *value = f64::from(*value as f32);
-                }
-            }
-        }
+        let corners = self.world_corners(simd, triangles);
+
+        // Take the cross product of two sides.
         let side = lanes::inlined(
             #[inline(always)]
-            |c: usize, k: usize| load(&corners[c][k]) - load(&corners[0][k]),
+            |c: usize, k: usize| F64x8::from_slice(simd, &corners[c][k]) - F64x8::from_slice(simd, &corners[0][k]),
         );
         let (a, b) = ([side(1, 0), side(1, 1), side(1, 2)], [side(2, 0), side(2, 1), side(2, 2)]);
         let across = [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
         let length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
-        let inverse = F64x8::splat(simd, 1.0) / length;
-        let (zero, infinity) = (F64x8::splat(simd, 0.0), F64x8::splat(simd, f64::INFINITY));
-        let usable = inverse.simd_gt(zero) & inverse.simd_lt(infinity);
-        let mut normals = [[0.0; LANES]; 3];
-        for (stored, value) in normals.iter_mut().zip(across) {
-            let unit = usable.select(value * inverse, zero);
-            (if self.mirrored { -unit } else { unit }).store_slice(stored);
-        }
+
+        // Divide by its length: the unit normal, and from each side's length the least weight of the corner opposite.
+        let normals = self.unit_normals(simd, across, length);
         let scale = F64x8::splat(simd, self.margin) / length;
         let mut least = [[0.0; LANES]; 3];
         for (stored, edge) in least.iter_mut().zip([[b[0] - a[0], b[1] - a[1], b[2] - a[2]], b, a]) {
             let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
             (length * scale).store_slice(stored);
         }
+
         std::array::from_fn(|lane| {
             let [x, y, z] = [normals[0][lane], normals[1][lane], normals[2][lane]];
             let corner = |c: usize| {
@@ -177,6 +120,55 @@ impl<'a> Placing<'a> {
             };
             Facet { corners: [corner(0), corner(1), corner(2)], normal: [x, y, z, 0.0] }
         })
+    }
+
+    /// The corners of eight triangles, by corner and axis, in single precision less the scene's middle.
+    #[inline(always)]
+    fn world_corners<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [[[f64; LANES]; 3]; 3] {
+        let (mesh, m) = (&self.instance.mesh, &self.instance.world_from_model);
+        let axes = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
+        let center = self.center.to_array();
+
+        // Gather the model's corners.
+        let mut corners = [[[0.0; LANES]; 3]; 3];
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            for (corner, &vertex) in corners.iter_mut().zip(&mesh.triangles[triangle as usize]) {
+                for (axis, value) in corner.iter_mut().zip(mesh.positions[vertex as usize]) {
+                    axis[lane] = f64::from(value);
+                }
+            }
+        }
+
+        // Transform them, and round as the rays' triangles are rounded.
+        for corner in &mut corners {
+            let [x, y, z] = lanes::three(
+                #[inline(always)]
+                |k| F64x8::from_slice(simd, &corner[k]),
+            );
+            for (k, axis) in corner.iter_mut().enumerate() {
+                let world = (z * axes[2][k] + (y * axes[1][k] + x * axes[0][k])) + axes[3][k];
+                (world - center[k]).store_slice(axis);
+                for value in axis {
+                    *value = f64::from(*value as f32);
+                }
+            }
+        }
+        corners
+    }
+
+    /// Unit normals from vectors of these lengths, on the side from which the model's corners run counter-clockwise; zero
+    /// without area.
+    #[inline(always)]
+    fn unit_normals<S: Simd>(&self, simd: S, across: [F64x8<S>; 3], length: F64x8<S>) -> [[f64; LANES]; 3] {
+        let inverse = F64x8::splat(simd, 1.0) / length;
+        let (zero, infinity) = (F64x8::splat(simd, 0.0), F64x8::splat(simd, f64::INFINITY));
+        let usable = inverse.simd_gt(zero) & inverse.simd_lt(infinity);
+        let mut normals = [[0.0; LANES]; 3];
+        for (stored, value) in normals.iter_mut().zip(across) {
+            let unit = usable.select(value * inverse, zero);
+            (if self.mirrored { -unit } else { unit }).store_slice(stored);
+        }
+        normals
     }
 
     /// Eight points of such facets, whose triangles these are: by the corners' weights, and where they are on the screen.
@@ -188,60 +180,14 @@ impl<'a> Placing<'a> {
         weights: &[F32x8<S>; 3],
         screen: [&[f32; LANES]; 2],
     ) -> EightPlaces {
-        let mut w = lanes::three(
-            #[inline(always)]
-            |c| lanes::widened(simd, weights[c]),
-        );
-        let corners = lanes::three(
-            #[inline(always)]
-            |c| {
-                let columns = lanes::columns_of_rows(
-                    simd,
-                    #[inline(always)]
-                    |lane| bytemuck::cast(facets[lane].corners[c]),
-                );
-                lanes::four(
-                    #[inline(always)]
-                    |k| lanes::widened(simd, columns[k].bitcast()),
-                )
-            },
-        );
-        // Weights may have the other sign, all of them.
-        let sum = w[0] + w[1] + w[2];
-        for c in 0..3 {
-            let least = corners[c][3] * sum;
-            w[c] = (w[c] * sum).simd_lt(least * sum).select(least, w[c]);
-        }
-        let inverse = F64x8::splat(simd, 1.0) / (w[0] + w[1] + w[2]);
-        let position = lanes::three(
-            #[inline(always)]
-            |k| (corners[0][k] * w[0] + corners[1][k] * w[1] + corners[2][k] * w[2]) * inverse,
-        );
+        let position = position(simd, &facets, weights);
         let mut normal = wide_columns(
             simd,
             #[inline(always)]
             |lane| facets[lane].normal,
         );
         if self.turns {
-            let (eye, perspective) = self.view.eye();
-            let towards = if perspective {
-                let eye = (eye - self.center).to_array();
-                lanes::three(
-                    #[inline(always)]
-                    |k| F64x8::splat(simd, eye[k]) - position[k],
-                )
-            } else {
-                let parallel = self.view.view.view_from_world.row(2).truncate().to_array();
-                lanes::three(
-                    #[inline(always)]
-                    |k| F64x8::splat(simd, parallel[k]),
-                )
-            };
-            let cos = normal[0] * towards[0] + normal[1] * towards[1] + normal[2] * towards[2];
-            let behind = cos.simd_lt(F64x8::splat(simd, 0.0));
-            for axis in &mut normal {
-                *axis = behind.select(-*axis, *axis);
-            }
+            self.turn_to_viewer(simd, &position, &mut normal);
         }
         let mut places = EightPlaces {
             position: [[0.0; LANES]; 3],
@@ -256,6 +202,65 @@ impl<'a> Placing<'a> {
         }
         places
     }
+
+    /// Turns normals at these positions to the side that the viewer sees.
+    #[inline(always)]
+    fn turn_to_viewer<S: Simd>(&self, simd: S, position: &[F64x8<S>; 3], normal: &mut [F64x8<S>; 3]) {
+        let (eye, perspective) = self.view.eye();
+        let towards = if perspective {
+            let eye = (eye - self.center).to_array();
+            lanes::three(
+                #[inline(always)]
+                |k| F64x8::splat(simd, eye[k]) - position[k],
+            )
+        } else {
+            let parallel = self.view.view.view_from_world.row(2).truncate().to_array();
+            lanes::three(
+                #[inline(always)]
+                |k| F64x8::splat(simd, parallel[k]),
+            )
+        };
+        let cos = normal[0] * towards[0] + normal[1] * towards[1] + normal[2] * towards[2];
+        let behind = cos.simd_lt(F64x8::splat(simd, 0.0));
+        for axis in normal {
+            *axis = behind.select(-*axis, *axis);
+        }
+    }
+}
+
+/// The positions with these weights of the facets' corners, kept from the edges.
+#[inline(always)]
+fn position<S: Simd>(simd: S, facets: &[&Facet; LANES], weights: &[F32x8<S>; 3]) -> [F64x8<S>; 3] {
+    let mut w = lanes::three(
+        #[inline(always)]
+        |c| lanes::widened(simd, weights[c]),
+    );
+    let corners = lanes::three(
+        #[inline(always)]
+        |c| {
+            let columns = lanes::columns_of_rows(
+                simd,
+                #[inline(always)]
+                |lane| bytemuck::cast(facets[lane].corners[c]),
+            );
+            lanes::four(
+                #[inline(always)]
+                |k| lanes::widened(simd, columns[k].bitcast()),
+            )
+        },
+    );
+
+    // Raise weights to the least ones. All weights may have the other sign.
+    let sum = w[0] + w[1] + w[2];
+    for c in 0..3 {
+        let least = corners[c][3] * sum;
+        w[c] = (w[c] * sum).simd_lt(least * sum).select(least, w[c]);
+    }
+    let inverse = F64x8::splat(simd, 1.0) / (w[0] + w[1] + w[2]);
+    lanes::three(
+        #[inline(always)]
+        |k| (corners[0][k] * w[0] + corners[1][k] * w[1] + corners[2][k] * w[2]) * inverse,
+    )
 }
 
 /// What chooses places on area lights for points on the screen.
@@ -297,10 +302,11 @@ fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shadow::facet::facet;
     use crate::{Execution, Session, Settings};
     use std::sync::Arc;
     use vitral_math::lanes::{available_levels, dispatch};
-    use vitral_math::{DMat4, DQuat};
+    use vitral_math::{DMat4, DQuat, dvec3};
     use vitral_raster::{SamplePattern, Viewport};
     use vitral_scene::{Camera, NodeTransform, Projection, builtin};
 

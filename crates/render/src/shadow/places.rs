@@ -1,11 +1,26 @@
 //! Places of a group and what arrives at them, in eights: each number of eight neighbours lies in a row, for algorithms that
 //! answer eight together; others ask for them one by one.
 
-use super::Place;
 use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Simd, V3};
 use vitral_math::{DVec3, dvec3};
+
+/// A point of a surface that asks for light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// World space less [`crate::raytrace::triangles::Triangles::center`].
+    pub position: DVec3,
+    /// Unit normal of the facet on the side that is seen, world space; zero for a facet without area.
+    pub normal: DVec3,
+    /// The facet.
+    pub facet: u32,
+    /// Chooses the places on area lights that are asked; neighbours should differ.
+    pub seed: u32,
+    /// Where it is seen, in pixels of the picture, if the viewer sees it straight: places with one `y` that are on one
+    /// facet are on one line.
+    pub pixel: Option<[f32; 2]>,
+}
 
 /// Eight places, by their numbers; see [`Place`].
 #[derive(Clone, Copy, Debug)]

@@ -6,9 +6,7 @@
 //!
 //! A point found by arithmetic lies a hair off its surface, and its ray might meet the very surface it leaves. The facet
 //! itself cannot hide its own points from a light in front of it, so it is left out by its number; as its neighbours may,
-//! the ray starts as far above the facet as rounding can have put things wrong. With `u = 2^-24` and no coordinate larger
-//! than `e`, a corner relative to the origin is wrong by at most `u (|p| + 2 e)`, and shearing and the hit's weighted mean
-//! each add a few times as much: `16 u (|p| + e)` covers them.
+//! the ray starts as far above the facet as rounding can have put things wrong ([`clearance`]).
 //!
 //! Neighbours' rays to one light go together, eight at a time (`raytrace/packet.rs`).
 //!
@@ -17,12 +15,14 @@
 //! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without bending it.
 
 use super::casters::{near, turned, wide};
+use super::hash::hash;
 use super::occluders::Occluders;
-use super::place::horizon;
-use super::sources::{Shares, Source, hash};
-use super::{Parts, Place, Places, ShadowAlgorithm, Shadows};
-use crate::raytrace::structures::AnyStructure;
+use super::places::{Parts, Place, Places};
+use super::rounding::{clearance, horizon};
+use super::sources::{Shares, Source};
+use super::{ShadowAlgorithm, Shadows};
 use crate::raytrace::intersect::Ray;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::{Counters, packet};
 use crate::visible::few_enough;
 use crate::{Execution, Session, Settings};
@@ -34,14 +34,6 @@ use vitral_math::{DVec3, DVec4, Vec3};
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct RayShadows;
-
-/// Rounding of one operation.
-const UNIT: f64 = 1.0 / (1u32 << 24) as f64;
-
-/// How far above its facet a ray must start at this place of a scene of half-width `extent`; see the module.
-pub(crate) fn clearance(position: DVec3, extent: f64) -> f64 {
-    16.0 * UNIT * (position.abs().max_element() + extent)
-}
 
 struct Prepared<'a> {
     structure: AnyStructure,

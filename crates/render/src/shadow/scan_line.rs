@@ -20,8 +20,9 @@ mod on_receivers;
 
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
+use super::places::{Parts, Place, Places};
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Parts, Place, Places, ShadowAlgorithm, Shadows};
+use super::{Drawn, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
 use on_receivers::Receivers;

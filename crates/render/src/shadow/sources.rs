@@ -16,8 +16,9 @@
 //! Cost: one ray for each cell.
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
-use super::place::horizon;
-use super::{Parts, Place, Places};
+use super::hash::hash;
+use super::places::{Parts, Place, Places};
+use super::rounding::horizon;
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
 use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
@@ -241,14 +242,6 @@ fn contains(corners: &[DVec2], p: DVec2) -> bool {
         }
     }
     inside
-}
-
-/// Mixes bits.
-pub(crate) fn hash(value: u32) -> u32 {
-    let mut h = value.wrapping_mul(0x9e37_79b9);
-    h = (h ^ h >> 16).wrapping_mul(0x85eb_ca6b);
-    h = (h ^ h >> 13).wrapping_mul(0xc2b2_ae35);
-    h ^ h >> 16
 }
 
 #[cfg(test)]

@@ -25,22 +25,23 @@
 
 mod count;
 mod edges;
+mod light_volumes;
 mod paths;
 
-use super::casters::{Casters, away, box_around, faces, lifted, near, wide};
+use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
-use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, Parts, Places, ShadowAlgorithm, Shadows};
-use crate::raytrace::bvh::Bvh;
-use crate::raytrace::triangles::Triangles;
+use super::places::{Parts, Places};
+use super::sources::{Shares, Source};
+use super::{Drawn, Key, ShadowAlgorithm, Shadows};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
-use count::{Batch, Lit};
+use count::{Batch, Lit, ODD};
 pub(crate) use edges::Surface;
+use light_volumes::LightVolumes;
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_light::Light;
+use vitral_math::DVec4;
 use vitral_math::lanes::Level;
-use vitral_math::{DVec3, DVec4, Vec3};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -54,17 +55,6 @@ pub(crate) struct Volumes {
     lights: Vec<Vec<LightVolumes>>,
 }
 
-/// The volumes of one place of a light.
-#[derive(Debug)]
-struct LightVolumes {
-    from: Emitter,
-    /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
-    turned: Vec<i8>,
-    sides: Vec<edges::Side>,
-    /// Over runs of sides.
-    tree: Bvh,
-}
-
 /// The volumes, and where a viewer's paths begin.
 struct Counting<'a> {
     volumes: Arc<Volumes>,
@@ -76,11 +66,6 @@ struct Counting<'a> {
     /// How many volumes of each place of each light the viewer is in.
     around_viewer: Vec<Vec<i32>>,
 }
-
-/// Sides in one leaf of a tree.
-const RUN: usize = 8;
-/// No plane of a model is likely to run along it.
-const ODD: DVec3 = DVec3::new(0.7312, -0.3917, 0.5589);
 
 impl ShadowAlgorithm for VolumeShadows {
     fn prepare<'a>(
@@ -144,33 +129,6 @@ impl Volumes {
     }
 }
 
-impl LightVolumes {
-    fn new(from: Emitter, triangles: &Triangles, surface: &Surface, execution: &Execution) -> Result<Self, Limit> {
-        let light = from.at;
-        execution.budget.check("shadow volumes")?;
-        let turned = edges::turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
-        let sides = surface.sides(light, &turned, triangles, &execution.workers);
-        // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
-        let runs = || sides.chunks(RUN);
-        let around = |run: &[edges::Side]| {
-            let (middle, half) = box_around(run.iter().flat_map(|s| [s.a, s.b]), 0.0);
-            let [min, max] = [middle - half, middle + half].map(|p: DVec3| -> Vec3 { p.as_vec3() });
-            [min, max, max]
-        };
-        let boxes = Triangles {
-            corners: runs().map(around).collect(),
-            facets: (0..runs().len() as u32).collect(),
-            ..*triangles
-        };
-        let bytes = sides.len() as u64 * size_of::<edges::Side>() as u64 + Bvh::bytes(sides.len() as u64);
-        execution.budget.charge(bytes, "shadow volumes")?;
-        execution.budget.release(bytes);
-        let tree = Bvh::build(&boxes, &execution.workers, &execution.budget)?;
-        tree.widen(&execution.workers);
-        Ok(Self { from, turned, sides, tree })
-    }
-}
-
 impl Shadows for Counting<'_> {
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
@@ -202,34 +160,6 @@ impl Shadows for Counting<'_> {
         let triangles = self.volumes.casters.triangles();
         for (light, places) in self.volumes.lights.iter().enumerate() {
             places.iter().for_each(|place| place.draw(light, &self.volumes.casters, triangles, take));
-        }
-    }
-}
-
-impl LightVolumes {
-    /// Hands on caps and sides, cut where the scene is well left behind.
-    fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
-        let reach = f64::from(triangles.extent) * 2.0;
-        let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
-        let mut hand = |kind: &'static str, corners: &[DVec3]| {
-            let corners: Vec<DVec3> = corners.iter().map(|&c| c + triangles.center).collect();
-            take(Drawn { light, kind, corners: &corners });
-        };
-        // Outwards: the near cap towards the light, the far cap away from it.
-        let casting = || (0..self.turned.len()).filter(|&i| casters.opaque[i] && self.turned[i] != 0);
-        let towards = |i: usize| {
-            let [a, b, c] = wide(&triangles.corners[i]);
-            if self.turned[i] > 0 { [a, b, c] } else { [a, c, b] }
-        };
-        casting().for_each(|i| hand("near-cap", &towards(i)));
-        for i in casting() {
-            let [a, b, c] = towards(i).map(beyond);
-            hand("far-cap", &[a, c, b]);
-        }
-        for side in &self.sides {
-            // Its normal points inwards where volumes begin. As often as volumes have it in common.
-            let (p, q) = if side.multiplicity > 0 { (side.a, side.b) } else { (side.b, side.a) };
-            (0..side.multiplicity.abs()).for_each(|_| hand("side", &[p, q, beyond(q), beyond(p)]));
         }
     }
 }

@@ -152,7 +152,8 @@ fn drawn(scene: &Scene, light: &Light, settings: &Settings) -> Vec<(&'static str
         all.push((polygon.kind, polygon.corners.to_vec()));
         0
     };
-    shadow::draw(&session, lights, settings, &Execution::default(), &mut take).unwrap();
+    let algorithm = registry::shadow_algorithm(&settings.shadows);
+    shadow::draw(algorithm, &session, lights, settings, &Execution::default(), &mut take).unwrap();
     all
 }
 
@@ -262,7 +263,8 @@ fn two_viewers_share(shadows: &str) {
         after.push((polygon.kind, polygon.corners.to_vec()));
         0
     };
-    shadow::draw(&session, lights, &settings, &Execution::default(), &mut take).unwrap();
+    let algorithm = registry::shadow_algorithm(&settings.shadows);
+    shadow::draw(algorithm, &session, lights, &settings, &Execution::default(), &mut take).unwrap();
     assert!(!after.is_empty() && after == alone);
 }
 

@@ -19,9 +19,11 @@
 //! Source: [Zhang et al. 2006], [Dimitrov 2007]. Departs from them: slices are fitted to objects, not to the frustum.
 
 use super::lens::Lens;
-use super::{LightMaps, Map, Maps, lookup, slice};
+use super::light_maps::{Key, LightMaps, Maps};
+use super::tiles::Map;
+use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::Places;
+use crate::shadow::places::Places;
 use vitral_exec::Limit;
 use vitral_light::Rgb;
 use vitral_math::lanes::Level;
@@ -35,6 +37,14 @@ const FADE: f64 = 0.1;
 /// How much sharper than the map of the whole scene a map must be.
 const PAYS: f64 = 2.0;
 
+/// What cascades depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CascadesKey {
+    pub(super) maps: Key,
+    pub(super) count: u32,
+    pub(super) view: ViewTransform,
+}
+
 /// The slices of a view and their maps.
 #[derive(Debug)]
 pub(crate) struct Cascades {
@@ -44,6 +54,11 @@ pub(crate) struct Cascades {
     cuts: Vec<f64>,
     /// For each light, for each slice its map; none where the one of the whole scene serves.
     maps: Vec<Vec<Option<Map>>>,
+}
+
+impl Cached for Cascades {
+    type Key = CascadesKey;
+    const REUSE: Reuse = Reuse::View;
 }
 
 impl Cascades {
@@ -85,7 +100,7 @@ impl Cascades {
         questions: &[(usize, usize)],
         places: &Places,
     ) -> Vec<Rgb> {
-        // The slices' maps are numbered from the end of the others on.
+        // Ask one map or two about each place. The slices' maps are numbered from the end of the others on.
         let slices = &self.maps[light];
         let all: Vec<&Map> = maps.iter().copied().chain(slices.iter().flatten()).collect();
         let number = |slice: usize| maps.len() + slices[..slice].iter().flatten().count();
@@ -95,23 +110,19 @@ impl Cascades {
         let mut fades = Vec::with_capacity(questions.len());
         for &(whole, place) in questions {
             let position = places.position(place);
-            let depth = self.depth.dot(position.extend(1.0));
-            // A little before the first cut is in the first slice, as is what rays find beside the view.
-            let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;
             let map = |slice: usize| {
                 let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(position));
                 if sharper.is_some() { numbers[slice] } else { whole }
             };
-            let ends = self.cuts.get(slice).zip(self.cuts.get(slice + 1));
-            let fade = ends.map_or(0.0, |(start, end)| (depth - end) / ((end - start) * FADE) + 1.0);
-            let inside = ends.is_some();
-            asked.push((if inside { map(slice) } else { whole }, place));
-            let fades_out = inside && !(fade <= 0.0 || slice + 2 >= self.cuts.len());
-            if fades_out {
+            let (slice, fade) = self.slice_at(position);
+            asked.push((slice.map_or(whole, map), place));
+            if let (Some(slice), Some(_)) = (slice, fade) {
                 asked.push((map(slice + 1), place));
             }
-            fades.push(fades_out.then_some(fade.min(1.0) as f32));
+            fades.push(fade);
         }
+
+        // Blend the answers where there are two.
         let mut found = lookup::answers(level, &all, &asked, places).into_iter();
         let mut next = || found.next().unwrap_or([1.0; 3]);
         let mut blend = |fade: Option<f32>| {
@@ -121,6 +132,17 @@ impl Cascades {
             [0, 1, 2].map(|k| here[k] + (there[k] - here[k]) * fade)
         };
         fades.into_iter().map(&mut blend).collect()
+    }
+
+    /// The slice that holds a position, if there is one; and how far it has faded there into the next one, if it has begun to.
+    fn slice_at(&self, position: DVec3) -> (Option<usize>, Option<f32>) {
+        let depth = self.depth.dot(position.extend(1.0));
+        // A little before the first cut is in the first slice, as is what rays find beside the view.
+        let slice = self.cuts.partition_point(|&cut| cut < depth).max(1) - 1;
+        let Some((start, end)) = self.cuts.get(slice).zip(self.cuts.get(slice + 1)) else { return (None, None) };
+        let fade = (depth - end) / ((end - start) * FADE) + 1.0;
+        let fades_out = !(fade <= 0.0 || slice + 2 >= self.cuts.len());
+        (Some(slice), fades_out.then_some(fade.min(1.0) as f32))
     }
 }
 

@@ -6,8 +6,10 @@
 //! Much of what the light sees is hidden from the viewer. A tile with opaque things alone is drawn when it is first asked
 //! about; until then the map keeps its triangles.
 
-use super::super::occluders::Occluders;
-use super::{Layer, Lens, Map, MapTile, Pending};
+use super::lens::Lens;
+use super::tiles::{Layer, Map, MapTile, Pending, nearest_depths};
+use crate::raytrace::triangles::Triangles;
+use crate::shadow::occluders::Occluders;
 use crate::stats::CullCounters;
 use crate::visible::TileSink;
 use crate::visible::zbuffer::{all_batches, resolve_in_passing, tile_place, touching, walk, with_spare};
@@ -15,9 +17,8 @@ use crate::{Background, Execution, Lines, PreparedView, Session, Settings};
 use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
-use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_math::{DMat4, DVec3, dvec3};
-use vitral_raster::{Batch, LayerList, NO_FACET, NearestDepths, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
+use vitral_raster::{Batch, LayerList, NO_FACET, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
 
 /// Turns tiles into distances and layers.
 struct DepthSink<'a> {
@@ -40,113 +41,73 @@ pub(super) enum When {
     Asked,
 }
 
-impl Map {
-    pub(super) fn draw(
-        lens: Lens,
-        session: &Session,
-        occluders: &Occluders<'_>,
-        settings: &Settings,
-        execution: &Execution,
-        when: When,
-    ) -> Result<Self, Limit> {
+/// What is drawn into maps, and when.
+#[derive(Clone, Copy)]
+pub(super) struct FirstPass<'a> {
+    pub(super) session: &'a Session,
+    pub(super) occluders: &'a Occluders<'a>,
+    pub(super) settings: &'a Settings,
+    pub(super) execution: &'a Execution,
+    pub(super) when: When,
+}
+
+impl FirstPass<'_> {
+    /// The map of what the light sees through a lens.
+    pub(super) fn draw(&self, lens: Lens) -> Result<Map, Limit> {
+        let Self { session, execution, .. } = *self;
         let viewport = Viewport { width: lens.width, height: lens.height };
         let bytes = u64::from(lens.width) * u64::from(lens.height) * 8;
         execution.budget.check("shadow maps")?;
         execution.budget.charge(bytes, "a shadow map")?;
         execution.budget.release(bytes);
-        let settings = Settings {
-            visibility: "z-buffer".to_owned(),
-            acceleration: None,
-            lines: Lines::None,
-            background: Background::Transparent,
-            ..settings.clone()
-        };
+
+        // Prepare the view from the light.
+        let settings = self.view_settings();
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
         let view = PreparedView::new(session, &lens.camera, &settings, viewport, pattern, execution, counters);
-        let center = crate::raytrace::triangles::Triangles::center_of(&session.world);
+        let sink = DepthSink::new(self, &lens, viewport);
         let columns = viewport.tiles_x() as usize;
-        let tiles = (0..columns * viewport.tiles_y() as usize).map(|_| OnceLock::new()).collect();
-        let charged = Mutex::default();
-        let sink = DepthSink { lens: &lens, session, occluders, center, execution, tiles, charged };
-        let Some(mut batches) = all_batches(&view, execution)? else {
+
+        // Draw everything at once if the triangles are too many to be kept.
+        let Some(batches) = all_batches(&view, execution)? else {
             resolve_in_passing(&view, viewport.tiles_y(), execution, &sink)?;
             let tiles = sink.finish()?;
-            return Ok(Self { lens, columns, tiles, pending: None });
+            return Ok(Map { lens, columns, tiles, pending: None });
         };
+
+        // Draw the tiles that cannot wait.
+        let numbers = sink.settle_tiles(&batches, self.when);
         let spare = Mutex::default();
-        // By opaque things, by transparent ones.
-        let mut touched = [vec![false; sink.tiles.len()], vec![false; sink.tiles.len()]];
-        for (layered, batch) in &batches {
-            for (tile, here) in touched[usize::from(*layered)].iter_mut().zip(batch.touched()) {
-                *tile |= here;
-            }
-        }
-        let [opaque, layered] = touched;
-        let mut numbers = Vec::new();
-        for (index, tile) in sink.tiles.iter().enumerate() {
-            if !(opaque[index] || layered[index]) {
-                // Nobody need draw it.
-                let _ = tile.set(MapTile::default());
-            } else if when == When::Before || layered[index] {
-                numbers.push(index);
-            }
-        }
         execution.workers.for_each(numbers, |index: usize| {
             sink.draw(&view, index, &touching(&batches, index), &spare);
         });
         let tiles = sink.finish()?;
+        Ok(Map { lens, columns, tiles, pending: self.keep_pending(batches) })
+    }
+
+    /// The settings of the view from the light: nothing but surfaces.
+    fn view_settings(&self) -> Settings {
+        Settings {
+            visibility: "z-buffer".to_owned(),
+            acceleration: None,
+            lines: Lines::None,
+            background: Background::Transparent,
+            ..self.settings.clone()
+        }
+    }
+
+    /// Keeps the opaque batches for tiles that wait, if any may; the session gets the memory of the others back.
+    fn keep_pending(&self, mut batches: Vec<(bool, Batch)>) -> Option<Pending> {
         let mut pending = None;
-        if when == When::Asked {
+        if self.when == When::Asked {
             let (layered, opaque): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
             batches = layered;
             let opaque = opaque.into_iter().map(|(_, batch)| batch).collect();
-            pending = Some(Pending { batches: opaque, level: execution.level });
+            pending = Some(Pending { batches: opaque, level: self.execution.level });
         }
-        let mut spare = session.spare_batches.lock().expect("spare batches");
+        let mut spare = self.session.spare_batches.lock().expect("spare batches");
         spare.extend(batches.into_iter().map(|(_, batch)| batch));
-        drop(spare);
-        Ok(Self { lens, columns, tiles, pending })
-    }
-
-    /// A tile, drawn if nobody asked about it before.
-    #[inline(always)]
-    pub(super) fn tile(&self, number: usize) -> &MapTile {
-        self.tiles[number].get().unwrap_or_else(|| self.drawn(number))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn drawn(&self, number: usize) -> &MapTile {
-        self.tiles[number].get_or_init(|| {
-            let Some(pending) = &self.pending else { return MapTile::default() };
-            let place = [number % self.columns, number / self.columns].map(|tile| (tile * TILE) as u32);
-            let nearest = nearest_depths(pending.level, place.into(), pending.batches.iter(), number);
-            MapTile::new(pending.level, &self.lens, nearest.into_depths(), Vec::new())
-        })
-    }
-}
-
-/// The nearest depths in a tile whose first texel is given.
-fn nearest_depths<'b>(
-    level: Level,
-    place: (u32, u32),
-    batches: impl Iterator<Item = &'b Batch>,
-    tile: usize,
-) -> NearestDepths {
-    let mut nearest = NearestDepths::new(place);
-    for batch in batches {
-        nearest.draw(level, batch.tile(tile));
-    }
-    nearest
-}
-
-impl MapTile {
-    /// Keeps a tile, given its depths, −∞ where nothing is.
-    fn new(level: Level, lens: &Lens, mut depth: Vec<f32>, layers: Vec<Layer>) -> Self {
-        if !dispatch!(level, simd => distances(simd, lens, &mut depth)) {
-            depth = Vec::new();
-        }
-        Self { depth, layers }
+        pending
     }
 }
 
@@ -159,7 +120,36 @@ impl TileSink for DepthSink<'_> {
     }
 }
 
-impl DepthSink<'_> {
+impl<'a> DepthSink<'a> {
+    fn new(pass: &FirstPass<'a>, lens: &'a Lens, viewport: Viewport) -> Self {
+        let FirstPass { session, occluders, execution, .. } = *pass;
+        let center = Triangles::center_of(&session.world);
+        let tiles = (0..(viewport.tiles_x() * viewport.tiles_y()) as usize).map(|_| OnceLock::new()).collect();
+        Self { lens, session, occluders, center, execution, tiles, charged: Mutex::default() }
+    }
+
+    /// Settles the tiles that no batch touches as empty. The numbers of those that are to be drawn: all others, or
+    /// those with transparent things if the rest may wait.
+    fn settle_tiles(&self, batches: &[(bool, Batch)], when: When) -> Vec<usize> {
+        // By opaque things, by transparent ones.
+        let mut touched = [vec![false; self.tiles.len()], vec![false; self.tiles.len()]];
+        for (layered, batch) in batches {
+            for (tile, here) in touched[usize::from(*layered)].iter_mut().zip(batch.touched()) {
+                *tile |= here;
+            }
+        }
+        let [opaque, layered] = touched;
+        let mut numbers = Vec::new();
+        for (index, tile) in self.tiles.iter().enumerate() {
+            if !(opaque[index] || layered[index]) {
+                let _ = tile.set(MapTile::default());
+            } else if when == When::Before || layered[index] {
+                numbers.push(index);
+            }
+        }
+        numbers
+    }
+
     fn is_given_up(&self) -> bool {
         self.charged.lock().expect("bytes of a map").1.is_some()
     }
@@ -262,24 +252,6 @@ impl DepthSink<'_> {
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
         self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
     }
-}
-
-/// Makes distances of depths, ∞ of −∞. Whether there is any of the former.
-fn distances<S: Simd>(simd: S, lens: &Lens, depths: &mut [f32]) -> bool {
-    // Plain loops, for the compiler to do several at once.
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            if depths.iter().all(|&depth| depth == f32::NEG_INFINITY) {
-                return false;
-            }
-            for depth in depths {
-                let distance = lens.distance(*depth);
-                *depth = if *depth < 0.0 { f32::INFINITY } else { distance };
-            }
-            true
-        },
-    )
 }
 
 #[cfg(test)]

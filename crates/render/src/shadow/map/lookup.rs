@@ -6,14 +6,24 @@
 //! In:   places that face the light. Out: the part of the light that passes to each of them.
 //! Cost: a constant number of operations a place.
 
-use super::{BEYOND, DEPTH_BIAS, LIFT, Map, MapTile, SLOPE_BIAS};
-use crate::shadow::{EightPlaces, Parts, Places};
+use super::tiles::{Map, MapTile};
+use crate::shadow::places::{EightPlaces, Parts, Places};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 use vitral_math::{DMat4, DVec4};
 use vitral_raster::TILE;
+
+/// How far a point is lifted along its normal, in texels.
+const LIFT: f64 = 0.5;
+/// How far behind a point's plane a surface may be and still count as its own, in texels.
+const BEYOND: f64 = 2.0;
+/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
+/// texel, and two roundings may add up.
+const SLOPE_BIAS: f64 = 1.0 / 64.0;
+/// Relative error of a depth.
+const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
 
 /// Where eight places are on a map, and how deep.
 struct Eight<S: Simd> {
@@ -25,6 +35,17 @@ struct Eight<S: Simd> {
     depths: [F64x8<S>; 4],
     /// What lies farther in the four texels than this is not the surface that the place is on.
     ends: [F64x8<S>; 4],
+}
+
+/// Where the four texels of eight places lie.
+struct Addresses {
+    /// Column and row of the upper left one.
+    corner: [[i32; LANES]; 2],
+    /// The tile that holds it, and which of the tile's texels it is.
+    tiles: [i32; LANES],
+    first: [i32; LANES],
+    /// The places whose four texels are in one tile, one bit each.
+    together: u32,
 }
 
 /// What a texel says about a surface.
@@ -102,49 +123,32 @@ impl Map {
     #[inline(always)]
     fn passing<S: Simd>(&self, simd: S, places: &EightPlaces, asked: u32, parts: &mut [[f32; LANES]; 3]) {
         let eight = self.locate(simd, places);
-        // Outside of the map, and where it does not tell, all is lit.
+
+        // Look at the texels. Outside of the map, and where it does not tell, all is lit.
         let near = lanes::inlined(
             #[inline(always)]
             |first: F64x8<S>, side: u32| first.simd_ge(splat(simd, -1.0)) & first.simd_lt(splat(simd, f64::from(side))),
         );
         let told = (near(eight.first[0], self.lens.width) & near(eight.first[1], self.lens.height)).to_bitmask() as u32;
         let (texels, apart) = self.texels(simd, &eight, asked & told);
-        let told = lanes_of(simd, told);
 
-        let (one, zero) = (F32x8::splat(simd, 1.0), F32x8::splat(simd, 0.0));
+        // Blend the answers by where the place is between the texels.
+        let told = lanes_of(simd, told);
+        let zero = F32x8::splat(simd, 0.0);
         let share = lanes::inlined(
             #[inline(always)]
             |k: usize| lanes::Lanes::select(told, lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]), zero),
         );
-        let (right, bottom) = (share(0), share(1));
-        let (mut lit, mut beyond) = ([one; 4], [Mask8::splat(simd, false); 4]);
-        for k in 0..4 {
-            let texel = lanes::widened(simd, F32x8::from_slice(simd, &texels[k]));
-            let dark = lanes_of(simd, texel.simd_lt(eight.depths[k]).to_bitmask() as u32);
-            lit[k] = lanes::Lanes::select(dark, zero, one);
-            beyond[k] = lanes_of(simd, texel.simd_gt(eight.ends[k]).to_bitmask() as u32) & !dark;
-        }
-        let mut part = blended(lit, right, bottom);
-        let differ = part.simd_gt(zero) & part.simd_lt(one);
-        let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
-        if beside.to_bitmask() as u32 & asked != 0 {
-            // See `four_apart`, of which these are the operations.
-            let (left, top) = (one - right, one - bottom);
-            let (mut sum, mut all) = (zero, zero);
-            for (k, share) in [left * top, right * top, left * bottom, right * bottom].into_iter().enumerate() {
-                let share = lanes::Lanes::select(beyond[k], zero, share);
-                sum += lit[k] * share;
-                all += share;
-            }
-            let rest = lanes::Lanes::select(all.simd_gt(zero), sum / all, zero);
-            part = lanes::Lanes::select(beside, rest, part);
-        }
+        let shares = [share(0), share(1)];
+        let part = eight.filtered(simd, &texels, shares, asked);
         let asked_lanes = lanes_of(simd, asked);
         for channel in &mut *parts {
             lanes::Lanes::select(asked_lanes, part, F32x8::from_slice(simd, channel)).store_slice(channel);
         }
+
+        // Ask texels with something transparent one by one.
         if apart != 0 {
-            self.eight_apart(&Stored::new(&eight, [right, bottom]), apart, parts);
+            self.eight_apart(&Stored::new(&eight, shares), apart, parts);
         }
     }
 
@@ -153,25 +157,7 @@ impl Map {
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
         let mut texels = [[f32::INFINITY; LANES]; 4];
-        let whole = lanes::inlined(
-            #[inline(always)]
-            |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
-        );
-        let (left, top) = (whole(eight.first[0]), whole(eight.first[1]));
-        let (size, shift) = (TILE as i32, TILE.trailing_zeros());
-        let (x, y) = (left & (size - 1), top & (size - 1));
-        let splat = lanes::inlined(
-            #[inline(always)]
-            |number: i32| I32x8::splat(simd, number),
-        );
-        let (width, height) = (self.lens.width as i32 - 1, self.lens.height as i32 - 1);
-        let inside = left.simd_ge(splat(0)) & top.simd_ge(splat(0));
-        let inside = inside & left.simd_lt(splat(width)) & top.simd_lt(splat(height));
-        let together = inside & x.simd_lt(splat(size - 1)) & y.simd_lt(splat(size - 1));
-        let tiles = ((top >> shift) * self.columns as i32 + (left >> shift)).to_array();
-        let first = (y * size + x).to_array();
-        let corner = [left.to_array(), top.to_array()];
-        let together = together.to_bitmask() as u32;
+        let Addresses { corner, tiles, first, together } = self.addresses(simd, eight);
         let mut apart = 0;
         // Neighbours mostly find theirs in one tile.
         let mut current: Option<(i32, &MapTile)> = None;
@@ -202,6 +188,32 @@ impl Map {
             }
         }
         (texels, apart)
+    }
+
+    /// Where the four texels of each place lie.
+    #[inline(always)]
+    fn addresses<S: Simd>(&self, simd: S, eight: &Eight<S>) -> Addresses {
+        let whole = lanes::inlined(
+            #[inline(always)]
+            |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
+        );
+        let (left, top) = (whole(eight.first[0]), whole(eight.first[1]));
+        let (size, shift) = (TILE as i32, TILE.trailing_zeros());
+        let (x, y) = (left & (size - 1), top & (size - 1));
+        let splat = lanes::inlined(
+            #[inline(always)]
+            |number: i32| I32x8::splat(simd, number),
+        );
+        let (width, height) = (self.lens.width as i32 - 1, self.lens.height as i32 - 1);
+        let inside = left.simd_ge(splat(0)) & top.simd_ge(splat(0));
+        let inside = inside & left.simd_lt(splat(width)) & top.simd_lt(splat(height));
+        let together = inside & x.simd_lt(splat(size - 1)) & y.simd_lt(splat(size - 1));
+        Addresses {
+            corner: [left.to_array(), top.to_array()],
+            tiles: ((top >> shift) * self.columns as i32 + (left >> shift)).to_array(),
+            first: (y * size + x).to_array(),
+            together: together.to_bitmask() as u32,
+        }
     }
 
     /// The depths of four texels that are not in one tile, ∞ outside of the map; `None` if something transparent may be there.
@@ -243,24 +255,33 @@ impl Map {
         }
     }
 
+    /// Finds where places are on the map, and how deep their planes are in the texels there.
     #[inline(always)]
     fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> Eight<S> {
         let lens = &self.lens;
-        let (zero, infinity) = (splat(simd, 0.0), splat(simd, f64::INFINITY));
         let matrix = &lens.view_from_world;
         let normal = rotated(matrix, load(simd, &places.normal));
         let [px, py, pz] = rotated(matrix, load(simd, &places.position));
         let (px, py, pz) = (px + matrix.w_axis.x, py + matrix.w_axis.y, pz + matrix.w_axis.z);
 
-        // Lifted along the normal.
+        // Lift the places along their normals.
         let texel = if lens.perspective { pz.abs() * lens.side() } else { splat(simd, lens.side()) };
         let lift = texel * LIFT;
         let point = [px + normal[0] * lift, py + normal[1] * lift, pz + normal[2] * lift];
-        let own = -point[2];
 
-        let distance = if lens.perspective { own } else { splat(simd, 1.0) };
+        let at = self.project(simd, point);
+        let first = [(at[0] + 0.5).floor() - 1.0, (at[1] + 0.5).floor() - 1.0];
+        let (depths, ends) = self.plane_depths(simd, point, normal, first, texel);
+        Eight { at, first, depths, ends }
+    }
+
+    /// Where points of view space are on the map, in texels; not a number behind the light.
+    #[inline(always)]
+    fn project<S: Simd>(&self, simd: S, point: [F64x8<S>; 3]) -> [F64x8<S>; 2] {
+        let lens = &self.lens;
+        let distance = if lens.perspective { -point[2] } else { splat(simd, 1.0) };
         let (width, height) = (f64::from(lens.width), f64::from(lens.height));
-        let before = distance.simd_gt(zero);
+        let before = distance.simd_gt(splat(simd, 0.0));
         let nowhere = splat(simd, f64::NAN);
         let [across, down] = if lens.perspective {
             [point[0] / (distance * lens.extent[0]), point[1] / (distance * lens.extent[1])]
@@ -269,8 +290,24 @@ impl Map {
         };
         let u = (across + 1.0) * 0.5 * width;
         let v = (splat(simd, 1.0) - down) * 0.5 * height;
-        let (u, v) = (before.select(u, nowhere), before.select(v, nowhere));
-        let (left, top) = ((u + 0.5).floor() - 1.0, (v + 0.5).floor() - 1.0);
+        [before.select(u, nowhere), before.select(v, nowhere)]
+    }
+
+    /// Depths of the planes through points of view space in the four texels from `first` on, less what they may be wrong by;
+    /// and where what lies farther is not the surface any more. `texel` is the side of a texel at each point.
+    #[inline(always)]
+    fn plane_depths<S: Simd>(
+        &self,
+        simd: S,
+        point: [F64x8<S>; 3],
+        normal: [F64x8<S>; 3],
+        [left, top]: [F64x8<S>; 2],
+        texel: F64x8<S>,
+    ) -> ([F64x8<S>; 4], [F64x8<S>; 4]) {
+        let lens = &self.lens;
+        let (zero, infinity) = (splat(simd, 0.0), splat(simd, f64::INFINITY));
+        let (width, height) = (f64::from(lens.width), f64::from(lens.height));
+        let own = -point[2];
 
         // The facet's plane: how a step of a texel changes what the normal measures, at distance 1 or at any, and so what
         // its height is to be divided by; for a parallel light the distance itself.
@@ -301,7 +338,7 @@ impl Map {
             // The farther of the two, and as much again for a surface that bends away.
             *end = nearer + slope * 2.0 + texel * BEYOND;
         }
-        Eight { at: [u, v], first: [left, top], depths, ends }
+        (depths, ends)
     }
 
     /// What passes four texels, some of them behind transparent things. `surface` is how deep the place's surface begins and ends
@@ -338,6 +375,41 @@ impl Map {
             // The surface itself may be among the transparent things.
             Answer { passing: tile.filtered(texel, begin), beyond: false }
         }
+    }
+}
+
+impl<S: Simd> Eight<S> {
+    /// The part of light that passes texels of these depths, blended by the places' `shares` to the right and below; exact for
+    /// places whose bits are set in `asked`.
+    #[inline(always)]
+    fn filtered(&self, simd: S, texels: &[[f32; LANES]; 4], [right, bottom]: [F32x8<S>; 2], asked: u32) -> F32x8<S> {
+        // Compare the depths.
+        let (one, zero) = (F32x8::splat(simd, 1.0), F32x8::splat(simd, 0.0));
+        let (mut lit, mut beyond) = ([one; 4], [Mask8::splat(simd, false); 4]);
+        for k in 0..4 {
+            let texel = lanes::widened(simd, F32x8::from_slice(simd, &texels[k]));
+            let dark = lanes_of(simd, texel.simd_lt(self.depths[k]).to_bitmask() as u32);
+            lit[k] = lanes::Lanes::select(dark, zero, one);
+            beyond[k] = lanes_of(simd, texel.simd_gt(self.ends[k]).to_bitmask() as u32) & !dark;
+        }
+        let part = blended(lit, right, bottom);
+
+        // Where answers differ, leave out texels that the surface does not reach: see `four_apart`, of which these are the
+        // operations.
+        let differ = part.simd_gt(zero) & part.simd_lt(one);
+        let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
+        if beside.to_bitmask() as u32 & asked == 0 {
+            return part;
+        }
+        let (left, top) = (one - right, one - bottom);
+        let (mut sum, mut all) = (zero, zero);
+        for (k, share) in [left * top, right * top, left * bottom, right * bottom].into_iter().enumerate() {
+            let share = lanes::Lanes::select(beyond[k], zero, share);
+            sum += lit[k] * share;
+            all += share;
+        }
+        let rest = lanes::Lanes::select(all.simd_gt(zero), sum / all, zero);
+        lanes::Lanes::select(beside, rest, part)
     }
 }
 

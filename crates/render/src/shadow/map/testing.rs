@@ -1,7 +1,8 @@
 //! A map for the tests of this folder.
 
-use super::draw::When;
-use super::{Lens, Map};
+use super::draw::{FirstPass, When};
+use super::lens::Lens;
+use super::tiles::Map;
 use crate::shadow::occluders::Occluders;
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
@@ -20,6 +21,7 @@ pub(super) fn teapot(transparent: bool, towards: DVec3, size: u32, when: When) -
     let (settings, execution) = (Settings::default(), Execution::default());
     let occluders = Occluders::new(&session, &settings);
     let lens = Lens::parallel(towards, &session.world, size);
-    let map = Map::draw(lens, &session, &occluders, &settings, &execution, when).expect("no limit");
+    let pass = FirstPass { session: &session, occluders: &occluders, settings: &settings, execution: &execution, when };
+    let map = pass.draw(lens).expect("no limit");
     (map, session.world.bounds)
 }

@@ -1,6 +1,6 @@
 //! Convex polygons in space, what solids leave of them, and the tree that leads to what is left.
 
-use super::super::casters::{Solid, box_around};
+use crate::shadow::casters::{Solid, box_around};
 use vitral_math::DVec3;
 
 /// As many solids are clipped one by one.
@@ -131,23 +131,7 @@ impl Cutter<'_> {
 
     /// Adds a part of it, which these solids may reach.
     fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], mut cuts: Cuts) -> u32 {
-        // Keep the solids that reach it; one that covers it decides.
-        let mut reaching = Vec::with_capacity(solids.len());
-        let mut covered = false;
-        for &solid in solids {
-            match reach(&polygon, &self.solids[solid as usize], self.eps) {
-                Reach::None => {}
-                Reach::Some => reaching.push(solid),
-                Reach::Covers => {
-                    covered = true;
-                    break;
-                }
-            }
-        }
-        let solids = reaching;
-        if covered {
-            return self.detail.dark();
-        }
+        let Some(solids) = self.reaching(&polygon, solids) else { return self.detail.dark() };
         if solids.len() <= cuts.last / 4 * 3 {
             (cuts.last, cuts.in_vain) = (solids.len(), 0);
         } else {
@@ -174,6 +158,19 @@ impl Cutter<'_> {
         }
         self.detail.nodes.push(Node::Cut { axis: axis as u8, at: middle[axis], children: [lower, upper] });
         self.detail.nodes.len() as u32 - 1
+    }
+
+    /// Those of the solids that reach a polygon; `None` if one covers it.
+    fn reaching(&self, polygon: &[DVec3], solids: &[u32]) -> Option<Vec<u32>> {
+        let mut reaching = Vec::with_capacity(solids.len());
+        for &solid in solids {
+            match reach(polygon, &self.solids[solid as usize], self.eps) {
+                Reach::None => {}
+                Reach::Some => reaching.push(solid),
+                Reach::Covers => return None,
+            }
+        }
+        Some(reaching)
     }
 
     /// Takes the solids away one by one.

@@ -10,9 +10,10 @@
 //! Cost: for each receiver the triangles between it and the light.
 //! Source: [Bouknight & Kelley 1970], [Sutherland & Hodgman 1974].
 
-use super::super::casters::{Casters, Solid, away, near, wide, winding_normal};
-use super::super::ray::clearance;
+use crate::prepare::mirrors;
 use crate::raytrace::shaft::Shaft;
+use crate::shadow::casters::{Casters, Solid, away, near, wide, winding_normal};
+use crate::shadow::rounding::clearance;
 use crate::{Execution, Session, Transparency};
 use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};
@@ -76,40 +77,19 @@ impl Receivers<'_> {
 
     /// Finds the shadow polygons on a triangle.
     fn on(&self, receiver: usize, back_faces: &[BackFaces<'_>], lists: &mut [Vec<u32>; 2], found: &mut Found) {
-        let (casters, light) = (self.casters, self.light);
-        let triangles = casters.triangles();
-        let (corners, own) = (wide(&triangles.corners[receiver]), triangles.facets[receiver]);
+        let triangles = self.casters.triangles();
+        let corners = wide(&triangles.corners[receiver]);
         let winding = winding_normal(&corners);
-        let height = -winding.dot(away(light, corners[0]));
-        if height == 0.0 || height.is_nan() {
+        if !self.can_receive(receiver, -winding.dot(away(self.light, corners[0])), back_faces) {
             return;
         }
-        let world = &self.session.world;
-        let number = world.instance_of_facet(own);
-        let instance = &world.instances[number];
-        let outside = if crate::prepare::mirrors(&instance.world_from_model) { -height } else { height };
-        if outside < 0.0 && back_faces[number].drops(own - instance.first_facet) {
-            return;
-        }
-
-        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
-        let shaft = Shaft::between(min, max, light, triangles.extent);
-        let [opaque, filters] = lists;
-        opaque.clear();
-        filters.clear();
-        casters.opaque_near(&shaft, opaque);
-        casters.filters_near(&shaft, filters);
-        let others = opaque.iter().filter(|&&t| triangles.facets[t as usize] != own);
-        let opaque = others.map(|&t| ("shadow", wide(&triangles.corners[t as usize])));
-        let filters = filters.iter().filter(|&&t| casters.filter_facet(t) != own);
-        let filters = filters.map(|&t| ("tinted-shadow", casters.filter(t)));
 
         // What touches the receiver, as its neighbours do, casts nothing on it: solids begin a little behind their triangle.
         let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
         let behind = clearance(position, f64::from(triangles.extent));
-        let near = near(light, triangles.extent);
-        for (kind, caster) in opaque.chain(filters) {
-            let Some(mut solid) = Solid::new(&caster, light, near) else { continue };
+        let near = near(self.light, triangles.extent);
+        for (kind, caster) in self.before(receiver, &corners, lists) {
+            let Some(mut solid) = Solid::new(&caster, self.light, near) else { continue };
             let (normal, at) = &mut solid.planes[0];
             *at += normal.normalize_or_zero() * behind;
             let shadow = clipped(&corners, &solid);
@@ -119,6 +99,41 @@ impl Receivers<'_> {
                 found.polygons.push((kind, found.corners.len()));
             }
         }
+    }
+
+    /// Whether shadows can fall on a triangle, given the light's height above it by its winding: not on what the light sees
+    /// edge-on, nor on faces of solid bodies that turn away from it.
+    fn can_receive(&self, receiver: usize, height: f64, back_faces: &[BackFaces<'_>]) -> bool {
+        if height == 0.0 || height.is_nan() {
+            return false;
+        }
+        let (world, facet) = (&self.session.world, self.casters.triangles().facets[receiver]);
+        let number = world.instance_of_facet(facet);
+        let instance = &world.instances[number];
+        let outside = if mirrors(&instance.world_from_model) { -height } else { height };
+        !(outside < 0.0 && back_faces[number].drops(facet - instance.first_facet))
+    }
+
+    /// The triangles between a triangle and the light, each with the kind of its shadow; `lists` is workspace.
+    fn before<'l>(
+        &'l self,
+        receiver: usize,
+        corners: &[DVec3; 3],
+        [opaque, filters]: &'l mut [Vec<u32>; 2],
+    ) -> impl Iterator<Item = (&'static str, [DVec3; 3])> + 'l {
+        let casters = self.casters;
+        let triangles = casters.triangles();
+        let own = triangles.facets[receiver];
+        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let shaft = Shaft::between(min, max, self.light, triangles.extent);
+        opaque.clear();
+        filters.clear();
+        casters.opaque_near(&shaft, opaque);
+        casters.filters_near(&shaft, filters);
+        let others = opaque.iter().filter(move |&&t| triangles.facets[t as usize] != own);
+        let opaque = others.map(move |&t| ("shadow", wide(&triangles.corners[t as usize])));
+        let filters = filters.iter().filter(move |&&t| casters.filter_facet(t) != own);
+        opaque.chain(filters.map(move |&t| ("tinted-shadow", casters.filter(t))))
     }
 }
 

@@ -1,20 +1,21 @@
 //! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
 
-use super::super::casters::{Casters, Solid, away, box_around, collect, near, ordered, wide};
-use super::edges::Side;
+use super::edges::{Side, before};
+use super::light_volumes::LightVolumes;
 use super::paths::{Boxes, Paths};
-use super::{LightVolumes, ODD, RUN};
 use crate::VolumeCounting;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::shaft::{Block, Shaft};
-use crate::raytrace::{Probe, Structure};
+use crate::shadow::casters::{Casters, Solid, away, box_around, near, ordered, wide};
 use std::ops::Range;
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
 use vitral_math::{DVec3, DVec4};
 
 /// Pairs of a place and a polygon that are sooner looked at than thinned out.
 const FEW_PAIRS: usize = 320;
+/// No plane of a model is likely to run along it.
+pub(super) const ODD: DVec3 = DVec3::new(0.7312, -0.3917, 0.5589);
 
 /// The volumes of one place of a light, and the triangles that cast them.
 #[derive(Clone, Copy)]
@@ -23,18 +24,6 @@ pub(super) struct Lit<'a> {
     pub(super) casters: &'a Casters,
     /// For each triangle its plane by its winding.
     pub(super) planes: &'a [DVec4],
-}
-
-/// `n · p + w`: twice the area, or more, times the height above a plane.
-#[inline(always)]
-pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
-    (plane.x * place.x + plane.y * place.y) + (plane.z * place.z + plane.w)
-}
-
-/// The side of a plane on which a place is. Two paths that end and begin there agree about it.
-#[inline(always)]
-pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
-    height(plane, place) > 0.0
 }
 
 /// A straight path, to its end or to infinity: one alone, by the formulas of [`Paths`].
@@ -146,20 +135,8 @@ impl Lit<'_> {
         let end = path.to.extend(f64::from(u8::from(path.ends)));
         let shaft = Shaft::triangle(path.from, [self.light(), end], self.casters.extent());
         let mut sides = Vec::new();
-        self.sides_near(&shaft, &mut sides);
+        self.volumes.sides_near(&shaft, &mut sides);
         self.change(path, &sides, &self.caps_near(path))
-    }
-
-    /// Appends the sides near a probe.
-    fn sides_near(&self, probe: &impl Probe, list: &mut Vec<u32>) {
-        let mut runs = Vec::new();
-        collect(&self.volumes.tree, probe, &mut runs);
-        let (of_place, count) = (&self.volumes.tree.triangles().facets, self.volumes.sides.len());
-        let run = |&place: &u32| {
-            let first = of_place[place as usize] as usize * RUN;
-            (first..count.min(first + RUN)).map(|s| s as u32)
-        };
-        list.extend(runs.iter().flat_map(run));
     }
 
     #[inline(always)]
@@ -225,7 +202,7 @@ impl Batch {
         let (min, max) = (middle - half, middle + half);
         self.lists.iter_mut().for_each(Vec::clear);
         let shaft = Shaft::between(min, max, lit.light(), extent);
-        lit.sides_near(&shaft, &mut self.lists[0]);
+        lit.volumes.sides_near(&shaft, &mut self.lists[0]);
         lit.casters.opaque_near(&Block::new(min, max), &mut self.lists[1]);
         lit.casters.filters_near(&shaft, &mut self.lists[2]);
         let from = inner(middle, half);

@@ -1,7 +1,7 @@
 //! Which triangles meet at an edge, and the sides of volumes that a light makes of the edges.
 
-use super::super::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
 use crate::raytrace::triangles::Triangles;
+use crate::shadow::casters::{Casters, away, ordered, side_normal, turned, wide, winding_normal};
 use crate::{Cached, Execution};
 use vitral_exec::{Limit, Workers};
 use vitral_math::{DVec3, DVec4, Vec3};
@@ -45,6 +45,18 @@ pub(super) struct Side {
     pub(super) borders: [DVec3; 3],
 }
 
+/// `n · p + w`: twice the area, or more, times the height above a plane.
+#[inline(always)]
+pub(super) fn height(plane: DVec4, place: DVec3) -> f64 {
+    (plane.x * place.x + plane.y * place.y) + (plane.z * place.z + plane.w)
+}
+
+/// The side of a plane on which a place is. Two paths that end and begin there agree about it.
+#[inline(always)]
+pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
+    height(plane, place) > 0.0
+}
+
 /// How each triangle is turned.
 pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<i8> {
     const CHUNK: usize = 8192;
@@ -71,49 +83,9 @@ impl Surface {
         budget.charge(bytes, "shadow volumes")?;
         budget.release(bytes);
 
-        // Number the corners, mesh by mesh.
-        let mut count = 0u32;
-        let weld = |instance: &Instance| {
-            let first = count;
-            count += instance.mesh.positions.len() as u32;
-            (first, Weld::new(&instance.mesh.positions, &execution.workers))
-        };
-        let welds: Vec<_> = world.instances.iter().map(weld).collect();
-        let mut found = Vec::with_capacity(triangles.count() * 3);
-        // Where the edges of each corner begin, shifted by one, so that filling the table leaves the final places.
-        let mut starts = vec![0u32; count as usize + 2];
-        for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| casters.opaque[*i]) {
-            let instance = world.instance_of_facet(triangles.facets[i]);
-            let (first, weld) = &welds[instance];
-            let instance = &world.instances[instance];
-            let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
-            let number = triangle.map(|v| first + weld.representative[v as usize]);
-            let corners = wide(corners);
-            for k in 0..3 {
-                let m = (k + 1) % 3;
-                if number[k] == number[m] || corners[k] == corners[m] {
-                    continue;
-                }
-                let backwards = !ordered(corners[k], corners[m]);
-                let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
-                found.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
-                starts[ends[0] as usize + 2] += 1;
-            }
-        }
-
-        // Sort them by their first corner, then those of each corner.
+        let (found, counts) = opaque_edges(world, casters, &execution.workers);
         budget.check("shadow volumes")?;
-        for v in 2..starts.len() {
-            starts[v] += starts[v - 1];
-        }
-        let nothing = Use { ends: [0; 2], triangle: 0, corner: 0 };
-        let mut uses = vec![nothing; found.len()];
-        for edge in found {
-            let place = &mut starts[edge.ends[0] as usize + 1];
-            uses[*place as usize] = edge;
-            *place += 1;
-        }
-        uses.chunk_by_mut(|one, two| one.ends[0] == two.ends[0]).for_each(<[Use]>::sort_unstable);
+        let uses = sorted_by_ends(found, counts);
         let plane = |corners: &[Vec3; 3]| {
             let (normal, at) = (winding_normal(&wide(corners)), corners[0].as_dvec3());
             normal.extend(-normal.dot(at))
@@ -150,6 +122,61 @@ impl Surface {
         }
         sides
     }
+}
+
+/// The edges of the opaque triangles, and of how many of them each corner is the first, two places late: the table from
+/// which [`sorted_by_ends`] makes where the edges of each corner begin.
+fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use>, Vec<u32>) {
+    // Number the corners, mesh by mesh.
+    let mut count = 0u32;
+    let weld = |instance: &Instance| {
+        let first = count;
+        count += instance.mesh.positions.len() as u32;
+        (first, Weld::new(&instance.mesh.positions, workers))
+    };
+    let welds: Vec<_> = world.instances.iter().map(weld).collect();
+
+    // Collect the edges of each triangle, and count them by their first corner.
+    let triangles = casters.triangles();
+    let mut found = Vec::with_capacity(triangles.count() * 3);
+    let mut counts = vec![0u32; count as usize + 2];
+    for (i, corners) in triangles.corners.iter().enumerate().filter(|(i, _)| casters.opaque[*i]) {
+        let instance = world.instance_of_facet(triangles.facets[i]);
+        let (first, weld) = &welds[instance];
+        let instance = &world.instances[instance];
+        let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
+        let number = triangle.map(|v| first + weld.representative[v as usize]);
+        let corners = wide(corners);
+        for k in 0..3 {
+            let m = (k + 1) % 3;
+            if number[k] == number[m] || corners[k] == corners[m] {
+                continue;
+            }
+            let backwards = !ordered(corners[k], corners[m]);
+            let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
+            found.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+            counts[ends[0] as usize + 2] += 1;
+        }
+    }
+    (found, counts)
+}
+
+/// Sorts edges by their first corner, counted by [`opaque_edges`], then those of each corner.
+fn sorted_by_ends(found: Vec<Use>, counts: Vec<u32>) -> Vec<Use> {
+    // Where the edges of each corner begin, one place late, so that filling the table leaves the final places.
+    let mut starts = counts;
+    for v in 2..starts.len() {
+        starts[v] += starts[v - 1];
+    }
+    let nothing = Use { ends: [0; 2], triangle: 0, corner: 0 };
+    let mut uses = vec![nothing; found.len()];
+    for edge in found {
+        let place = &mut starts[edge.ends[0] as usize + 1];
+        uses[*place as usize] = edge;
+        *place += 1;
+    }
+    uses.chunk_by_mut(|one, two| one.ends[0] == two.ends[0]).for_each(<[Use]>::sort_unstable);
+    uses
 }
 
 impl Side {

@@ -3,9 +3,8 @@
 //! In double precision, the operations in the order of the formulas for one path, so that a path has the same crossings
 //! whichever way it is looked at.
 
-use super::super::casters::{away, ordered, wide};
-use super::count::before;
-use super::edges::Side;
+use super::edges::{Side, before};
+use crate::shadow::casters::{away, ordered, wide};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F64x8, LANES, Simd};
 use vitral_math::{DVec3, DVec4, Vec3};
@@ -44,7 +43,7 @@ fn minus<S: Simd>(a: Points<S>, b: Points<S>) -> Points<S> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// [`super::count::height`] of each point.
+/// [`super::edges::height`] of each point.
 #[inline(always)]
 fn heights<S: Simd>(simd: S, plane: DVec4, p: Points<S>) -> F64x8<S> {
     let [x, y, z] = splat(simd, plane.truncate());
@@ -206,8 +205,8 @@ impl<S: Simd> Boxes<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::count::height;
     use super::*;
+    use crate::shadow::volume::edges::height;
     use vitral_math::lanes::{available_levels, dispatch};
 
     const LIGHT: DVec4 = DVec4::new(0.3, 0.4, 8.0, 1.0);

@@ -1,0 +1,137 @@
+//! The maps of lights: how many each light needs, of what frusta, and what the session keeps of them.
+
+use super::draw::{FirstPass, When};
+use super::lens::Lens;
+use super::tiles::Map;
+use crate::raytrace::triangles::Triangles;
+use crate::shadow::occluders::Occluders;
+use crate::shadow::sources::{Emitter, Source};
+use crate::{Cached, ColorSpace, Execution, Session, Settings, Transparency};
+use std::sync::Arc;
+use vitral_exec::Limit;
+use vitral_light::{Light, LightKind};
+use vitral_math::DVec3;
+
+/// Shortest side of an area light's maps.
+const LEAST_SIDE: u32 = 256;
+
+/// What maps depend on, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    lights: Vec<Light>,
+    size: u32,
+    samples: u32,
+    transparency: Transparency,
+    color_space: ColorSpace,
+}
+
+/// The maps of all lights, in order.
+#[derive(Debug)]
+pub(crate) struct Maps(pub(super) Vec<LightMaps>);
+
+impl Cached for Maps {
+    type Key = Key;
+}
+
+/// The maps of one light.
+#[derive(Debug)]
+pub(super) enum LightMaps {
+    Unhindered,
+    Infinity {
+        towards: DVec3,
+        map: Box<Map>,
+    },
+    /// Each place of a light with its maps.
+    Places(Vec<(Emitter, Vec<Map>)>),
+}
+
+impl Key {
+    pub(super) fn new(lights: &[Light], settings: &Settings) -> Self {
+        Self {
+            lights: lights.to_vec(),
+            size: settings.shadow_map_size,
+            samples: settings.light_samples,
+            transparency: settings.transparency,
+            color_space: settings.color_space,
+        }
+    }
+}
+
+impl Maps {
+    /// Those that the session keeps, or new ones.
+    pub(super) fn of(
+        session: &Session,
+        lights: &[Light],
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Arc<Self>, Limit> {
+        let key = Key::new(lights, settings);
+        if let Some(old) = session.cache.take_outdated::<Self>(&key) {
+            Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
+        }
+        session.cache.get_or_build(key, || {
+            let occluders = Occluders::new(session, settings);
+            let pass = FirstPass { session, occluders: &occluders, settings, execution, when: When::Asked };
+            let maps = lights.iter().map(|light| LightMaps::new(light, pass));
+            Ok(Self(maps.collect::<Result<_, Limit>>()?))
+        })
+    }
+
+    /// Hands memory back to the session.
+    fn recycle(self, session: &Session) {
+        let mut spare = session.spare_batches.lock().expect("spare batches");
+        for maps in self.0 {
+            let maps = match maps {
+                LightMaps::Unhindered => Vec::new(),
+                LightMaps::Infinity { map, .. } => vec![*map],
+                LightMaps::Places(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
+            };
+            spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
+        }
+    }
+}
+
+impl LightMaps {
+    fn new(light: &Light, pass: FirstPass<'_>) -> Result<Self, Limit> {
+        let (world, size) = (&pass.session.world, pass.settings.shadow_map_size);
+        if world.bounds.is_empty() {
+            return Ok(Self::Unhindered);
+        }
+        let source = Source::new(light, pass.settings.light_samples, Triangles::center_of(world));
+        let emitters = source.places();
+        match source {
+            Source::Unhindered => Ok(Self::Unhindered),
+            Source::Infinity(towards) => {
+                let map = Box::new(pass.draw(Lens::parallel(towards, world, size))?);
+                Ok(Self::Infinity { towards, map })
+            }
+            Source::Point(at) => Ok(Self::Places(vec![match spot_lens(light, at, pass) {
+                Some(lens) => (emitters[0], vec![pass.draw(lens)?]),
+                None => maps_around(emitters[0], size, pass)?,
+            }])),
+            Source::Area(_) => {
+                let side = (f64::from(size) / (emitters.len() as f64).sqrt()) as u32;
+                let side = side.max(LEAST_SIDE.min(size));
+                let pass = FirstPass { when: When::Before, ..pass };
+                let places = emitters.into_iter().map(|from| maps_around(from, side, pass));
+                Ok(Self::Places(places.collect::<Result<_, Limit>>()?))
+            }
+        }
+    }
+}
+
+/// The lens of a spot at a point, if one is wide enough.
+fn spot_lens(light: &Light, at: DVec3, pass: FirstPass<'_>) -> Option<Lens> {
+    let (world, size) = (&pass.session.world, pass.settings.shadow_map_size);
+    match light.kind {
+        LightKind::Spot { direction, cutoff, .. } => Lens::cone(at, direction, cutoff, world, size),
+        _ => None,
+    }
+}
+
+/// The maps of this size round a place of a light.
+fn maps_around(from: Emitter, size: u32, pass: FirstPass<'_>) -> Result<(Emitter, Vec<Map>), Limit> {
+    let lenses = Lens::around(from.at.truncate(), &pass.session.world, size);
+    let maps: Result<_, Limit> = lenses.into_iter().map(|lens| pass.draw(lens)).collect();
+    Ok((from, maps?))
+}

@@ -7,6 +7,7 @@
 
 pub mod coherence;
 pub mod cull;
+mod display;
 pub mod global;
 pub mod marks;
 pub mod pipeline;

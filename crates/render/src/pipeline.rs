@@ -1,12 +1,13 @@
 //! The spine: scene → cull → prepare → visible → shade → frame.
 
+use crate::display::DecodeTables;
 use crate::global::Whitted;
 use crate::marks;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::{lamps, solution};
 use crate::shading::{
-    BYTES_A_PIXEL, BufferPlanes, ChannelSink, ColorSink, DataPlanes, DecodeTables, DeepImage, FrameConstants,
-    LitCorner, Shown, TileRows, lit_corners,
+    BYTES_A_PIXEL, BufferPlanes, ChannelSink, ColorSink, DataPlanes, DeepImage, FrameConstants, LitCorner, Shown,
+    TileRows, Tracer, lit_corners,
 };
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
@@ -238,7 +239,8 @@ fn render_color(
     // The old contents do not matter: every tile is written whole.
     let mut picture = if spare.len() == pixels { spare } else { vec![[0; 4]; pixels] };
     let rows = TileRows::new(viewport, &mut picture);
-    let mut sink = ColorSink::new(&constants, &mark_colors, tracer.as_ref(), deep, rows);
+    let traced = tracer.as_ref().map(|t| t as &dyn Tracer);
+    let mut sink = ColorSink::new(&constants, &mark_colors, traced, deep, rows);
     if settings.channels.passes {
         sink.show_passes();
     }

@@ -3,6 +3,7 @@
 //! Pictures with a fresh session and with a used one are equal.
 
 use crate::cull::{backface, bounds_tree::BoundsTree};
+use crate::display::{BackgroundKey, BackgroundRows};
 use crate::prepare::is_layered;
 use crate::radiosity;
 use crate::raytrace::bsp::Bsp;
@@ -11,7 +12,7 @@ use crate::raytrace::grid::Grid;
 use crate::raytrace::octree::Octree;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::volumes::{Shape, Volumes};
-use crate::shading::{BackgroundKey, BackgroundRows, FaceTable, Scratch};
+use crate::shading::{FaceTable, Scratch};
 use crate::shadow;
 use crate::trace::{Observer, Step};
 use crate::visible::BspTree;

@@ -1,7 +1,7 @@
 //! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures and vertex colours say
 //! at the point where the ray passes. With filtered transparency, what passes has the colour of the glass.
 
-use crate::shading::DecodeTables;
+use crate::display::DecodeTables;
 use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
 use vitral_frame::Encoding;

@@ -5,10 +5,9 @@ use super::media::{Border, Media};
 use super::ray_scene::RayScene;
 use super::rays::{Branch, Haze, Rays, counts};
 use super::surface::Surface;
-use crate::shading::{Bounce, ShadedPoints};
+use crate::shading::{Bounce, ShadedPoints, Strata};
 use crate::shadow::{Place, hash};
 use crate::stats::TracingCounters;
-use crate::transparency::scattering::Strata;
 use vitral_light::transmitted;
 use vitral_math::DVec3;
 

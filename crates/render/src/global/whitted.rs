@@ -38,10 +38,9 @@ use crate::raytrace::Counters;
 use crate::raytrace::chosen::Chosen;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Tracer, shade_hits};
+use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Strata, Tracer, shade_hits};
 use crate::shadow::Place;
 use crate::stats::TracingCounters;
-use crate::transparency::scattering::Strata;
 use crate::visible::{few_enough, nearer};
 use crate::{Acceleration, Execution, Settings};
 use std::sync::Mutex;
@@ -76,7 +75,7 @@ pub(crate) struct Whitted<'a> {
     outcome: Mutex<Result<TracingCounters, Limit>>,
 }
 
-/// Memory of one tile's work, used again for the next.
+/// Memory of one tile's work, reused for the next tile.
 #[derive(Default)]
 struct Forest {
     rays: Rays,

@@ -22,7 +22,7 @@ pub(crate) struct ShadingBatch8<'a> {
     pub records: &'a [Record],
     /// The rays that see them, if it is not the eye.
     pub along: Option<&'a Along>,
-    /// What of each light comes to all points of the group; empty without shadows, or if nobody asks.
+    /// Which part of each light reaches the points of the group; empty without shadows, or if the material does not need it.
     pub light_visibility: &'a [Parts],
     /// The same for the other side of a translucent sheet.
     pub light_visibility_behind: &'a [Parts],
@@ -30,8 +30,8 @@ pub(crate) struct ShadingBatch8<'a> {
     pub first: usize,
 }
 
-/// Goes through the points of all groups, eight at a time. `asks` says for which materials light's ways are looked at,
-/// and `rays` counts those that are followed for it.
+/// Goes through the points of all groups, eight at a time. `asks` says which materials need the visibility of
+/// the lights, and `rays` counts the shadow rays.
 #[inline(always)]
 pub(crate) fn each_eight<S: Simd>(
     simd: S,

@@ -24,11 +24,11 @@
 use super::FrameConstants;
 use super::fragments::fragment;
 use super::points::{FragmentPoint, NO_POINT, Points, Source, samples_in};
+use super::scattering::Strata;
 use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::marks::MarkColors;
 use crate::shadow::{facet, hash};
-use crate::transparency::scattering::Strata;
 use std::sync::Mutex;
 use vitral_exec::{Budget, Limit};
 use vitral_math::{DMat4, DVec2, DVec3, DVec4, dvec2};

@@ -57,7 +57,7 @@ impl FacetTable {
             }
             self.of_point.push(recent[1]);
         }
-        // What is left from before is written over.
+        // Every record is written, so old contents may stay.
         self.records.resize(self.triangles.len(), Record([0.0; 32]));
         let eights = self.triangles.chunks(LANES).zip(self.anchors.chunks(LANES)).zip(self.records.chunks_mut(LANES));
         for ((triangles, anchors), records) in eights {

@@ -63,7 +63,7 @@ pub(crate) struct Lighting<'a> {
     perspective: bool,
     /// The rays that see the points, if it is not the eye.
     along: Option<&'a Along>,
-    /// Which part of each light arrives at the group's points; empty without shadows.
+    /// Which part of each light reaches the group's points; empty without shadows.
     light_visibility: &'a [Parts],
     /// The first of the eight points in the group.
     first: usize,

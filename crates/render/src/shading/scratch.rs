@@ -5,7 +5,7 @@ use super::facets::FacetTable;
 use super::points::Points;
 use super::shaded_points::ShadedPoints;
 
-/// Memory of one tile's work, used again for the next.
+/// Memory of one tile's work, reused for the next tile.
 #[derive(Default)]
 pub(crate) struct Scratch {
     pub(super) points: Points,

@@ -10,7 +10,7 @@ use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Lanes, Simd, V3};
 
-/// What comes of a tile's points, in the space in which pictures are composed.
+/// The light of a tile's points, in the space in which pictures are composed.
 #[derive(Default)]
 pub(crate) struct ShadedPoints {
     /// Premultiplied RGBA.
@@ -19,7 +19,7 @@ pub(crate) struct ShadedPoints {
     pub passes: Vec<[f32; 3]>,
     /// How rays go on from there; kept for materials that let them, and empty where none are followed.
     pub bounces: Vec<Bounce>,
-    /// Rays that were followed to lights.
+    /// Shadow rays that were followed.
     pub shadow_rays: u64,
 }
 
@@ -45,7 +45,7 @@ impl ShadedPoints {
     /// Makes room for `count` points.
     pub(crate) fn reset(&mut self, count: usize, constants: &FrameConstants<'_>) {
         let filtered = constants.transparency == Transparency::Filtered;
-        // What is left from before is written over.
+        // Every colour is written, so old contents may stay.
         self.colors.resize(count, [0.0; 4]);
         self.passes.clear();
         self.passes.resize(if filtered { count } else { 0 }, [0.0; 3]);

@@ -1,4 +1,4 @@
-//! What of each light arrives at the points of a group, and the shadows as pictures of their own.
+//! Which part of each light reaches the points of a group, and the shadows as pictures of their own.
 //!
 //! Shadows are found where the surface is, once for each point, whatever the shading model: flat and Gouraud shading
 //! illuminate centres and corners, but a shadow's edge runs across facets.
@@ -14,7 +14,7 @@ use crate::shadow::{Parts, Place, Places, Placing, grey};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
 
-/// What of each light arrives at the points of a group that the eye sees, and on the other side of a translucent sheet;
+/// Which part of each light reaches the points of a group that the eye sees, and the other side of a translucent sheet;
 /// empty without shadows. Adds the rays that it took.
 pub(crate) fn light_visibility<S: Simd>(
     simd: S,
@@ -52,7 +52,7 @@ pub(crate) fn light_visibility<S: Simd>(
     light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
 }
 
-/// What of each light arrives at these places, and if asked, on the other side of their facets; empty without shadows.
+/// Which part of each light reaches these places, and if `both`, the other side of their facets; empty without shadows.
 /// Adds the rays that it took.
 pub(crate) fn light_visibility_on_sides(
     constants: &FrameConstants<'_>,
@@ -67,7 +67,7 @@ pub(crate) fn light_visibility_on_sides(
     [seen, light_visibility_at(constants, &places.turned(), rays)]
 }
 
-/// What of each light arrives at these places; empty without shadows. Adds the rays that it took.
+/// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
 fn light_visibility_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |&light: &usize| {

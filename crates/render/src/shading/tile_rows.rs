@@ -47,7 +47,7 @@ impl<'a> TileRows<'a> {
         rows
     }
 
-    /// Nothing may be left from what the memory was used for before.
+    /// Every tile must be written, since the memory holds another picture at first.
     pub(super) fn check(&self) {
         let written = |tile: &Mutex<Vec<_>>| tile.lock().is_ok_and(|rows| rows.is_empty());
         assert!(self.tiles.iter().all(written), "every tile is finished");

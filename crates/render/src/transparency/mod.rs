@@ -19,7 +19,6 @@ pub mod kay;
 pub mod linear;
 pub mod multi_pass;
 pub mod registry;
-pub(crate) mod scattering;
 pub mod sorted;
 pub mod submission;
 pub mod two_buffer;

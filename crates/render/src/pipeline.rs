@@ -114,7 +114,7 @@ pub fn illuminate_corners(
     // Illuminate their corners.
     let tables = DecodeTables::new(settings.color_space);
     let radiosity = context.radiosity(session, &mut RadiosityCounters::default())?;
-    let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+    let shadows = context.shadows(&view)?;
     let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
     let bytes = facets.len() as u64 * 3 * size_of::<LitCorner>() as u64;
     let corners = charged(&execution.budget, bytes, "illuminated corners", || {
@@ -161,7 +161,7 @@ impl<'a> FrameContext<'a> {
 
     /// The colour picture, with all samples.
     fn render_color(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
-        let Self { shot, settings, execution, .. } = *self;
+        let Self { settings, execution, .. } = *self;
         let clock = || execution.budget.elapsed();
         let pattern = SamplePattern::new(settings.samples as usize);
         let mut grid = self.take_grid(session, pattern.len())?;
@@ -171,7 +171,7 @@ impl<'a> FrameContext<'a> {
         let view = self.view(session, pattern, &mut stats.cull);
         let tables = DecodeTables::new(settings.color_space);
         let radiosity = self.radiosity(view.session, &mut stats.radiosity)?;
-        let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+        let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
         let t1 = clock();
         let marks = marks::build(&view, settings, constants.fade, execution);
@@ -248,12 +248,12 @@ impl<'a> FrameContext<'a> {
 
     /// Depth, ids, normals and shadows at pixel centres.
     fn render_data(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
-        let Self { shot, settings, viewport, execution } = *self;
+        let Self { settings, viewport, execution, .. } = *self;
         let mut grid = self.take_grid(session, 1)?;
         let mut cull = CullCounters::default();
         let view = self.view(session, SamplePattern::new(1), &mut cull);
         let tables = DecodeTables::new(settings.color_space);
-        let shadows = shadow::prepare(&view, shot.lights, settings, execution)?;
+        let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), None, &tables);
         let sink = ChannelSink::new(&constants, settings.channels, grid.tiles.len());
         let resolved = self.visibility().resolve(&view, None, &mut grid, execution, &sink)?;
@@ -308,6 +308,11 @@ impl<'a> FrameContext<'a> {
             }
             Global::None | Global::RayTrace => Ok(None),
         }
+    }
+
+    /// The chosen shadow algorithm, ready for the lights; `None` without shadows.
+    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn Shadows + 'v>>, Limit> {
+        shadow::prepare(view, self.shot.lights, self.settings, self.execution)
     }
 
     /// What stays the same for all points of the frame.

@@ -188,13 +188,12 @@ impl<'a> FrameContext<'a> {
 
         // Put the tiles together.
         self.assemble_color(picture, &shown, frame)?;
-        let t4 = clock();
         stats.seconds.prepare = t1 - t0;
         stats.seconds.marks = t2 - t1;
         stats.seconds.geometry = resolved.geometry_seconds;
         stats.seconds.tiles = t3 - t2 - resolved.geometry_seconds;
         stats.tracing.rays_per_second = stats.tracing.rate(stats.seconds.tiles);
-        stats.seconds.assemble = t4 - t3;
+        stats.seconds.assemble = clock() - t3;
         Ok(())
     }
 

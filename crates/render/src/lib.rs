@@ -10,6 +10,7 @@ pub mod catalogue;
 pub mod choice;
 pub mod coherence;
 pub mod cull;
+mod display;
 mod execution;
 pub mod global;
 pub mod marks;

@@ -19,7 +19,7 @@
 //! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
-use crate::shading::Fade;
+use crate::display::Fade;
 use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings, Transparency};
 use vitral_light::{AlphaMode, Reflectance};
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};

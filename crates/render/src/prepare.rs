@@ -6,7 +6,6 @@
 
 use crate::cull::frustum;
 use crate::stats::CullCounters;
-use crate::transparency::registry::order;
 use crate::visible::TileSink;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
@@ -113,7 +112,7 @@ impl<'a> PreparedView<'a> {
             screen,
             acceleration,
             coherence,
-            lists_layers: order(settings.transparency_order).needs_list,
+            lists_layers: settings.transparency.order.needs_list,
             layer_limit,
             instances,
         }

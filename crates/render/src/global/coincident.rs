@@ -27,7 +27,7 @@ const PARALLEL: f64 = 0.99;
 const WITHIN: [f64; 3] = [0.47, 0.31, 0.22];
 
 /// Triangles that touch at a place.
-pub(super) struct Pile {
+pub(super) struct CoincidentGroup {
     /// Where.
     pub position: DVec3,
     /// Which, as a range of all piles' places, in the order in which they are met.
@@ -36,13 +36,13 @@ pub(super) struct Pile {
 
 /// The piles of some rays.
 #[derive(Default)]
-pub(super) struct Piles {
-    piles: Vec<Pile>,
+pub(super) struct CoincidentGroups {
+    piles: Vec<CoincidentGroup>,
     /// Places of triangles in the structure.
     places: Vec<u32>,
 }
 
-impl Piles {
+impl CoincidentGroups {
     pub(super) fn clear(&mut self) {
         self.piles.clear();
         self.places.clear();
@@ -89,12 +89,12 @@ impl Piles {
             found[..=own].rotate_right(1);
         }
         self.places.extend(found);
-        self.piles.push(Pile { position, range: first as u32..self.places.len() as u32 });
+        self.piles.push(CoincidentGroup { position, range: first as u32..self.places.len() as u32 });
         Some(self.piles.len() as u32 - 1)
     }
 
     /// A pile and its triangles.
-    pub(super) fn get(&self, pile: u32) -> (&Pile, &[u32]) {
+    pub(super) fn get(&self, pile: u32) -> (&CoincidentGroup, &[u32]) {
         let pile = &self.piles[pile as usize];
         (pile, &self.places[pile.range.start as usize..pile.range.end as usize])
     }

@@ -4,12 +4,14 @@
 //! rays on where they are mirrored and bent. They take what a visibility algorithm found and add to how it is coloured,
 //! so each works with every visibility algorithm and every local model. [`crate::registry::GLOBALS`] lists them.
 
+mod branching;
 mod coincident;
 pub mod media;
+mod ray_scene;
 mod rays;
 mod sky;
 mod surface;
-mod tell;
-pub(crate) mod whitted;
+mod trace_writer;
+mod whitted;
 
 pub(crate) use whitted::Whitted;

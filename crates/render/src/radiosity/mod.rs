@@ -203,7 +203,8 @@ fn enclosed(
 /// A number that tells these lights, whether they are on, and how light is computed with, from others, for stored solutions.
 /// How fine a solution is does not matter.
 fn fingerprint_of(lights: &[Light], settings: &Settings) -> u64 {
-    let Settings { lighting, color_space, transparency, .. } = settings;
+    let (lighting, color_space) = (settings.shading.lighting, settings.picture.color_space);
+    let transparency = settings.transparency.model;
     solution::mix(FINGERPRINT, format!("{lights:?} {lighting} {color_space:?} {transparency:?}").as_bytes())
 }
 

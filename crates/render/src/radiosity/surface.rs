@@ -11,8 +11,8 @@
 use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts};
 use super::patch::{Trees, area};
+use crate::display::DecodeTables;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::DecodeTables;
 use crate::shadow::{Occluders, facet as facet_of, texel, weights};
 use crate::{ColorSpace, Session, Settings, Transparency};
 use vitral_light::{Material, Reflectance, TextureRef};

@@ -22,13 +22,13 @@
 //! to fragment, as in the lists of \[Carpenter 1984\].
 
 use super::FrameConstants;
-use super::composite::fragment;
-use super::group::Lit;
+use super::fragments::fragment;
 use super::points::{FragmentPoint, NO_POINT, Points, Source, samples_in};
+use super::scattering::Strata;
+use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::marks::MarkColors;
 use crate::shadow::{facet, hash};
-use crate::transparency::scattering::Strata;
 use std::sync::Mutex;
 use vitral_exec::{Budget, Limit};
 use vitral_math::{DMat4, DVec2, DVec3, DVec4, dvec2};
@@ -51,7 +51,7 @@ pub(crate) struct DeepTile {
     /// Depths and facets of the opaque samples.
     tile: Option<Tile>,
     points: Points,
-    lit: Lit,
+    lit: ShadedPoints,
     /// What fills each pixel.
     sources: Vec<Source>,
     /// Where each pixel's fragments begin.
@@ -102,7 +102,7 @@ impl<'a> DeepImage<'a> {
     }
 
     /// Keeps a tile; after a limit it is dropped.
-    pub(crate) fn keep(&self, index: usize, tile: &Tile, mut points: Points, lit: Lit) {
+    pub(crate) fn keep(&self, index: usize, tile: &Tile, mut points: Points, lit: ShadedPoints) {
         points.forget_workspace();
         let mut sources = vec![Source::Point(NO_POINT); TILE_PIXELS];
         points.pixels.iter().for_each(|p| sources[p.index as usize] = p.source);
@@ -180,7 +180,7 @@ impl Drop for DeepPicture<'_> {
 /// The next thing on a ray's way, over some pixel.
 enum Next {
     /// Something behind the ray's start.
-    Surface(Met),
+    Surface(LayerHit),
     /// Nothing.
     Background,
     /// The picture shows something else there.
@@ -189,7 +189,7 @@ enum Next {
 
 /// What a ray meets.
 #[derive(Clone, Copy)]
-struct Met {
+struct LayerHit {
     /// Distance from the eye along the direction of view.
     away: f64,
     color: [f32; 4],
@@ -206,9 +206,13 @@ impl DeepPicture<'_> {
     }
 
     /// A tile, with a copy of its colours for the composition to change.
-    pub(crate) fn tile(&self, index: usize) -> Option<(&Tile, &Points, Lit)> {
+    pub(crate) fn tile(&self, index: usize) -> Option<(&Tile, &Points, ShadedPoints)> {
         let tile = &self.tiles[index];
-        let lit = Lit { colors: tile.lit.colors.clone(), passes: tile.lit.passes.clone(), ..Lit::default() };
+        let lit = ShadedPoints {
+            colors: tile.lit.colors.clone(),
+            passes: tile.lit.passes.clone(),
+            ..ShadedPoints::default()
+        };
         Some((tile.tile.as_ref()?, &tile.points, lit))
     }
 
@@ -334,7 +338,7 @@ impl DeepPicture<'_> {
         if let Some((f, away)) = nearest {
             let exponent = self.exponent(tile, f);
             let of = fragment(f, opaque, &tile.points, &tile.lit, self.constants, self.marks);
-            return Next::Surface(Met { away, color: of.color, passes: of.passes, exponent });
+            return Next::Surface(LayerHit { away, color: of.color, passes: of.passes, exponent });
         }
 
         // Or the opaque surface.
@@ -350,7 +354,7 @@ impl DeepPicture<'_> {
         if point == NO_POINT || away <= least || !faces(point as usize) {
             return Next::Hidden;
         }
-        Next::Surface(Met { away, color: tile.lit.colors[point as usize], passes: [0.0; 3], exponent: 0.0 })
+        Next::Surface(LayerHit { away, color: tile.lit.colors[point as usize], passes: [0.0; 3], exponent: 0.0 })
     }
 }
 

@@ -2,11 +2,13 @@
 //! looked through; cut-out ones are seen where they are there.
 
 use super::FrameConstants;
+use super::batch::each_eight;
+use super::collect::InFront;
 use super::facets::FacetTable;
 use super::geometry::surface;
-use super::group::{Lit, each_eight, shade_all};
-use super::phong::interpolated_normal;
-use super::points::{InFront, Points, Source};
+use super::points::{Points, Source};
+use super::shade::shade;
+use super::shaded_points::ShadedPoints;
 use super::shadowed::shadow_shares;
 use crate::Channels;
 use crate::marks::MarkColors;
@@ -100,11 +102,9 @@ impl ChannelSink<'_> {
         // Their alpha is part of what they look like; what is behind them need not be illuminated for that.
         let mut bare = tile.clone();
         bare.facet.fill(NO_FACET);
-        let (mut points, mut lit) = (Points::default(), Lit::default());
+        let (mut points, mut lit) = (Points::default(), ShadedPoints::default());
         points.collect(&bare, InFront::Samples(&cut_outs), self.constants, &MarkColors::default());
-        lit.reset(points.len(), self.constants);
-        let facets = &mut FacetTable::default();
-        dispatch!(self.constants.level, simd => shade_all(simd, &points, facets, self.constants, &mut lit));
+        shade(&points, &mut FacetTable::default(), self.constants, &mut lit);
         let mut front = tile.clone();
         for f in &points.fragments {
             let (at, candidate) = (f.pixel as usize, (points.depth(f, 0), f.facet));
@@ -153,7 +153,7 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
         (|_: &_| false, &mut 0),
         #[inline(always)]
         |eight| {
-            let n = interpolated_normal(&surface(simd, eight.records, eight.slots));
+            let n = surface(simd, eight.records, eight.slots).interpolated_normal();
             let soa = [n.x.to_array(), n.y.to_array(), n.z.to_array()];
             for (lane, &p) in eight.points.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
@@ -184,7 +184,7 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         |eight| {
             let mut surface = surface(simd, eight.records, eight.slots);
             surface.screen_linear = eight.subject.viewing.screen_linear();
-            let [attached, cast] = shadow_shares(constants, &surface, eight.arriving, eight.first);
+            let [attached, cast] = shadow_shares(constants, &surface, eight.light_visibility, eight.first);
             for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];
             }

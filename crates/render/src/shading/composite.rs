@@ -7,15 +7,13 @@
 
 use super::FrameConstants;
 use super::behind::DeepPicture;
-use super::group::Lit;
-use super::points::{FragmentPoint, NO_POINT, Points, Source, visible_part};
+use super::fragments::fragment;
+use super::points::{NO_POINT, Points, Source, visible_part};
+use super::shaded_points::ShadedPoints;
+use crate::display::encode;
 use crate::marks::MarkColors;
-use crate::transparency::{Fragment, MOST_SAMPLES};
-use vitral_math::Vec2;
-use vitral_math::color::{SrgbBytes, byte_from_unit};
-use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{F32x8, Level, Simd, dispatch};
-use vitral_raster::{TILE, Tile};
+use crate::transparency::MOST_SAMPLES;
+use vitral_raster::{TILE, TILE_PIXELS, Tile};
 
 /// Memory of one tile's composition.
 #[derive(Default)]
@@ -32,7 +30,7 @@ impl Composer {
         &mut self,
         tile: &Tile,
         points: &Points,
-        lit: &Lit,
+        lit: &ShadedPoints,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
         deep: Option<(&DeepPicture<'_>, usize)>,
@@ -55,7 +53,7 @@ impl Composer {
 
     /// Begins a picture with the background.
     pub(super) fn begin(&mut self, tile: &Tile, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
-        let (width, height) = visible_part(tile, constants);
+        let (width, height) = visible_part(tile, constants.view.viewport);
         for y in 0..height {
             out[y * TILE..y * TILE + width].fill(constants.background.bytes[tile.y as usize + y]);
         }
@@ -75,7 +73,7 @@ impl Composer {
     }
 
     /// [`Self::mix`] where nothing lies in front.
-    fn mix_opaque(&mut self, tile: &Tile, points: &Points, lit: &Lit, constants: &FrameConstants<'_>) {
+    fn mix_opaque(&mut self, tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameConstants<'_>) {
         let samples = constants.view.pattern.len();
         let background = &constants.background.colors[tile.y as usize..];
         self.places.extend(points.pixels.iter().map(|p| p.index));
@@ -94,7 +92,7 @@ impl Composer {
         &mut self,
         tile: &Tile,
         points: &Points,
-        lit: &Lit,
+        lit: &ShadedPoints,
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
         deep: Option<(&DeepPicture<'_>, usize)>,
@@ -160,86 +158,26 @@ fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4] {
     sum.map(|c| c / count)
 }
 
-/// A fragment of a tile with its colour.
-pub(super) fn fragment<'a>(
-    f: &FragmentPoint,
+/// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and the background.
+pub(super) fn opaque_samples(
     tile: &Tile,
-    points: &'a Points,
-    lit: &Lit,
+    points: &Points,
+    lit: &ShadedPoints,
     constants: &FrameConstants<'_>,
-    marks: &MarkColors,
-) -> Fragment<'a> {
-    let (start, source) = (f.start as usize, f.source as usize);
-    let color = if f.is_mark {
-        let (x, y) = (tile.x + f.pixel % TILE as u32, tile.y + f.pixel / TILE as u32);
-        marks.color(source, Vec2::new(x as f32, y as f32), constants.background.colors[y as usize])
-    } else {
-        lit.colors[source]
-    };
-    let passes = match lit.passes.get(source) {
-        Some(passes) if !f.is_mark => *passes,
-        _ => [1.0 - color[3]; 3],
-    };
-    let depths = &points.depths[start..start + f.count as usize];
-    let FragmentPoint { facet, mask, far, near, .. } = *f;
-    Fragment { facet, mask, depths, far, near, color, passes, behind: None }
-}
-
-/// Premultiplied colours to display bytes with straight alpha, put in their places.
-fn encode(level: Level, places: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
-    if raw {
-        return places.iter().zip(colors).for_each(|(&place, color)| {
-            let [r, g, b, alpha] = straight(color);
-            out[place as usize] = [r, g, b, alpha].map(byte_from_unit);
-        });
-    }
-    dispatch!(level, simd => encode_srgb(simd, places, colors, out));
-}
-
-#[inline(always)]
-fn encode_srgb<S: Simd>(simd: S, places: &[u32], colors: &[[f32; 4]], out: &mut [[u8; 4]]) {
-    let table = SrgbBytes::get();
-    for (places, colors) in places.chunks(2).zip(colors.chunks(2)) {
-        if let ([first, second], &[[_, _, _, a], [_, _, _, b]]) = (places, colors)
-            && a >= 1.0
-            && b >= 1.0
-        {
-            // Nearly all pixels are opaque: no division, no alpha to encode.
-            let bytes = table.eight(F32x8::from_slice(simd, colors.as_flattened())).to_array();
-            let [r, g, b, _, s, h, c, _] = bytes.map(|byte| byte as u8);
-            out[*first as usize] = [r, g, b, u8::MAX];
-            out[*second as usize] = [s, h, c, u8::MAX];
-            continue;
-        }
-        for (&place, color) in places.iter().zip(colors) {
-            let [r, g, b, alpha] = straight(color);
-            out[place as usize] = [table.byte(r), table.byte(g), table.byte(b), byte_from_unit(alpha)];
+) -> Vec<[f32; 4]> {
+    let background = |pixel: usize| constants.background.color(tile.y + (pixel / TILE) as u32);
+    let samples = constants.view.pattern.len();
+    let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
+    for pixel in &points.pixels {
+        for sample in 0..samples {
+            let point = match pixel.source {
+                Source::Point(point) => point,
+                Source::Mixed(start) => points.mixed[start as usize + sample],
+            };
+            if point != NO_POINT {
+                colors[sample * TILE_PIXELS + pixel.index as usize] = lit.colors[point as usize];
+            }
         }
     }
-}
-
-/// A premultiplied colour with straight alpha.
-#[inline(always)]
-fn straight(&[r, g, b, alpha]: &[f32; 4]) -> [f32; 4] {
-    let straight = match alpha {
-        1.0.. => 1.0,
-        _ if alpha > 0.0 => 1.0 / alpha,
-        _ => 0.0,
-    };
-    [r * straight, g * straight, b * straight, alpha]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn colors_encode_with_straight_alpha() {
-        let (level, mut out) = (Level::new(), [[9; 4]; 3]);
-        encode(level, &[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out);
-        assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
-        let colors = [[0.25, 0.0, 0.5, 1.0], [2.0, f32::NAN, 1.0, 1.0], [0.125, 0.5, 0.25, 0.5]];
-        encode(level, &[2, 0, 1], &colors, false, &mut out);
-        assert_eq!(out, [[255, 0, 255, 255], [137, 255, 188, 128], [137, 0, 188, 255]]);
-    }
+    colors
 }

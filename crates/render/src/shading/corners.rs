@@ -6,9 +6,11 @@
 //! In:   a prepared view. Out: a colour for each corner of the facets that culling left.
 //! Cost: three points a facet.
 
-use super::group::{Lit, shade_hits};
+use super::FrameConstants;
 use super::hits::Hit;
-use super::{FrameConstants, Points};
+use super::points::Points;
+use super::shade::shade_hits;
+use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{self, Place};
@@ -44,7 +46,7 @@ pub(crate) fn lit_corners(
     budget: &Budget,
 ) -> Result<Vec<LitCorner>, Limit> {
     let mut corners = Vec::with_capacity(3 * facets.len());
-    let (mut points, mut lit, mut hits) = (Points::default(), Lit::default(), Vec::new());
+    let (mut points, mut lit, mut hits) = (Points::default(), ShadedPoints::default(), Vec::new());
     for facets in facets.chunks(FACETS_AT_ONCE) {
         budget.check("illuminating corners")?;
         hits.clear();

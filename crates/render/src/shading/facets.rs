@@ -10,64 +10,12 @@
 //! Cost: linear in points; the record of a facet costs as much as a few points.
 //! Source: [Heckbert & Moreton 1991], [Olano & Greer 1997].
 
-use super::frame_constants::InstanceConstants;
-use super::geometry::{F, affine, constant, gather, linear};
+use super::geometry::{F, Record, affine, constant, gather, linear};
 use super::points::Points;
-use crate::Interpolation;
+use super::subject::Subject;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3};
-use vitral_scene::{Attribute, Mesh};
-
-/// Numbers of a facet, in view space:
-/// `c a b` of the three corners' weights, anchor `x y`, facet normal, three positions, three normals.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(crate) struct Record(pub [f32; 32]);
-
-/// What a frame says about points and viewer.
-#[derive(Clone, Copy)]
-pub(crate) struct Viewing {
-    pub interpolation: Interpolation,
-    pub perspective: bool,
-    /// The material shows both sides.
-    pub double_sided: bool,
-    /// The material has holes or lets light through: what it covers is seen, the inner side of its own body, too.
-    pub layered: bool,
-}
-
-impl Viewing {
-    /// Whether interpolation is linear on the screen where that is not linear in space.
-    pub(crate) fn screen_linear(&self) -> bool {
-        self.interpolation == Interpolation::Linear && self.perspective
-    }
-}
-
-/// An object and a way to look at it.
-#[derive(Clone, Copy)]
-pub(crate) struct Subject<'a> {
-    pub mesh: &'a Mesh,
-    /// Tangents for the normal texture, model space, if there is one and the mesh has normals.
-    pub tangents: Option<&'a Attribute<[f32; 4]>>,
-    pub instance: &'a InstanceConstants,
-    /// Facet id of the mesh's first triangle.
-    pub first_facet: u32,
-    pub mesh_index: u32,
-    /// Index into the world's instances.
-    pub instance_index: u32,
-    pub viewing: Viewing,
-}
-
-impl Subject<'_> {
-    /// Whether both sides are seen, so that normals are turned to the viewer.
-    pub(crate) fn turns(&self) -> bool {
-        self.is_sheet() || self.viewing.layered
-    }
-
-    /// Whether it is not the skin of a body, which has a side on which nobody stands.
-    pub(crate) fn is_sheet(&self) -> bool {
-        self.instance.two_sided || self.viewing.double_sided
-    }
-}
+use vitral_scene::Mesh;
 
 /// The records of a group's facets.
 #[derive(Default)]
@@ -109,7 +57,7 @@ impl FacetTable {
             }
             self.of_point.push(recent[1]);
         }
-        // What is left from before is written over.
+        // Every record is written, so old contents may stay.
         self.records.resize(self.triangles.len(), Record([0.0; 32]));
         let eights = self.triangles.chunks(LANES).zip(self.anchors.chunks(LANES)).zip(self.records.chunks_mut(LANES));
         for ((triangles, anchors), records) in eights {

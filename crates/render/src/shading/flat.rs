@@ -6,9 +6,10 @@
 //! Input: the face's centre and normal, model space. Output: reflected light, the same at all points of the face.
 //! Source: [Foley et al. 1990], 16.2.1.
 
-use super::frame_constants::InstanceConstants;
-use super::geometry::{Slots, Surface, affine, gather, linear};
+use super::geometry::{Surface, affine, gather, linear};
+use super::instance_constants::InstanceConstants;
 use super::lighting::{Coefficients, Lighting};
+use super::slots::Slots;
 use vitral_light::Reflected;
 use vitral_math::lanes::{F32x8, Lanes, Simd, V3};
 use vitral_scene::{Faces, Mesh, normals};

@@ -1,102 +1,21 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
-use super::depth_cue::Fade;
 use super::flat::FaceTable;
-use super::group::{Model, model};
-use super::points::offset;
-use crate::prepare::{is_solid, mirrors};
+use super::instance_constants::InstanceConstants;
+use super::material_constants::MaterialConstants;
+use crate::display::{BackgroundRows, DecodeTables, Fade};
 use crate::radiosity::Solution;
 use crate::shadow::Shadows;
-use crate::transparency::{Lay, registry};
+use crate::transparency::Lay;
 use crate::{
-    Cached, PerMesh, Reuse,
-    Background, ColorSpace, Execution, Global, Interpolation, PreparedView, Settings, Shading, Transparency,
+    ColorSpace, DepthCue, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading, Transparency,
     TransparencyOrder,
 };
 use std::convert::Infallible;
 use std::sync::Arc;
-use vitral_frame::Texture;
-use vitral_frame::texture::decode_table;
-use vitral_light::{AlphaMode, Light, Material, PreparedLight, Rgb, TextureRef, Transmission, scattering_exponent};
-use vitral_math::color::byte_from_unit;
-use vitral_math::lanes::{Lanes, Level};
-use vitral_math::{DMat4, DVec4};
-
-/// Matrices of an instance, as rows.
-#[derive(Clone, Debug)]
-pub(crate) struct InstanceConstants {
-    /// Model space to `(X, Y, W)` with `X / W`, `Y / W` in pixels.
-    pub screen_from_model: [[f32; 4]; 3],
-    /// Model space to view space.
-    pub view_from_model: [[f32; 4]; 3],
-    /// Normals, model to view space, up to a positive factor.
-    pub view_from_model_normal: [[f32; 3]; 3],
-    /// Back faces can be seen and are lit like front faces.
-    pub two_sided: bool,
-    /// The transform turns right into left: geometric normals change sign.
-    pub mirrored: bool,
-}
-
-/// A texture as a material uses it, ready to sample.
-pub(crate) struct TextureConstants<'a> {
-    pub texture: &'a Texture,
-    pub reference: TextureRef,
-    pub decode: &'a [f32; 256],
-}
-
-/// A material, ready for the formulas.
-pub(crate) struct MaterialConstants<'a> {
-    pub material: Material,
-    pub model: Model,
-    pub base: Option<TextureConstants<'a>>,
-    pub specular: Option<TextureConstants<'a>>,
-    pub emission: Option<TextureConstants<'a>>,
-    pub opacity: Option<TextureConstants<'a>>,
-    pub metallic_roughness: Option<TextureConstants<'a>>,
-    pub occlusion: Option<TextureConstants<'a>>,
-    pub normal: Option<TextureConstants<'a>>,
-    /// Below this alpha nothing is there (cut-outs), else `None`.
-    pub cutoff: Option<f32>,
-    /// Its cut-outs have soft borders, a pixel wide: pixels have several samples, which do not decide by themselves.
-    pub soft_cut: bool,
-    /// Alpha matters.
-    pub blend: bool,
-    /// Rays that meet it are followed on.
-    pub follows: bool,
-    /// It is translucent: the exponent with which it scatters what passes.
-    pub scatters: Option<f32>,
-}
-
-impl MaterialConstants<'_> {
-    /// Whether something may be seen behind it.
-    pub(super) fn is_layered(&self) -> bool {
-        self.cutoff.is_some() || self.blend
-    }
-
-    /// Whether textures vary it.
-    pub(super) fn has_textures(&self) -> bool {
-        let Self { base, specular, emission, opacity, metallic_roughness, occlusion, normal, .. } = self;
-        [base, specular, emission, opacity, metallic_roughness, occlusion, normal]
-            .iter()
-            .any(|texture| texture.is_some())
-    }
-}
-
-/// Decode tables of one frame.
-pub(crate) struct DecodeTables {
-    pub(crate) srgb: [f32; 256],
-    pub(crate) linear: [f32; 256],
-}
-
-impl DecodeTables {
-    pub(crate) fn new(color_space: ColorSpace) -> Self {
-        let raw = color_space == ColorSpace::Raw;
-        Self {
-            srgb: decode_table(vitral_frame::Encoding::Srgb, raw),
-            linear: decode_table(vitral_frame::Encoding::Linear, raw),
-        }
-    }
-}
+use vitral_light::{Light, Material, PreparedLight, Rgb};
+use vitral_math::lanes::Level;
+use vitral_raster::SamplePattern;
 
 /// See the module.
 pub(crate) struct FrameConstants<'a> {
@@ -128,7 +47,7 @@ pub(crate) struct FrameConstants<'a> {
     pub lay: Lay,
     /// How distance shows; `None` where it does not.
     pub fade: Option<Fade>,
-    /// For each set of few samples their middle within the pixel, see `points`.
+    /// For each set of few samples their middle within the pixel, see [`Self::middle`].
     pub middles: Vec<[f32; 2]>,
     /// Layers are wanted pass by pass.
     pub in_passes: bool,
@@ -137,31 +56,6 @@ pub(crate) struct FrameConstants<'a> {
     pub background: Arc<BackgroundRows>,
     /// Instructions to use.
     pub level: Level,
-}
-
-/// What the rows of the background depend on: what it is, the picture's height, whether the colour space is raw.
-pub(crate) type BackgroundKey = (Background, u32, bool);
-
-/// The background of each row of a picture.
-#[derive(Debug)]
-pub(crate) struct BackgroundRows {
-    /// In the space in which colours are composed, and 0 or 1 for its alpha.
-    pub colors: Vec<[f32; 4]>,
-    /// As display bytes.
-    pub bytes: Vec<[u8; 4]>,
-}
-
-impl Cached for BackgroundRows {
-    type Key = BackgroundKey;
-    const REUSE: Reuse = Reuse::Session;
-}
-
-impl BackgroundRows {
-    /// The colour of a row, or of the last one, in the space of composition.
-    #[inline]
-    pub(crate) fn color(&self, row: u32) -> [f32; 4] {
-        self.colors[(row as usize).min(self.colors.len() - 1)]
-    }
 }
 
 impl<'a> FrameConstants<'a> {
@@ -178,16 +72,16 @@ impl<'a> FrameConstants<'a> {
         let session = view.session;
         let raw = settings.color_space == ColorSpace::Raw;
         let instances =
-            (0..session.world.instances.len()).map(|i| instance_constants(view, i, settings, execution)).collect();
+            (0..session.world.instances.len()).map(|i| InstanceConstants::new(view, i, settings, execution)).collect();
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
-        let materials: Vec<_> = materials.map(|m| material_constants(m, view, settings, tables)).collect();
+        let materials: Vec<_> = materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
         let follows = match settings.global {
             Global::RayTrace => facets_that_follow(view, &materials),
             _ => Vec::new(),
         };
         let key = (settings.background, settings.height, raw);
-        let make = || Ok::<_, Infallible>(background_rows(&settings.background, settings.height, raw));
+        let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
@@ -206,10 +100,10 @@ impl<'a> FrameConstants<'a> {
             raw,
             transparency: settings.transparency,
             kay_exponent: settings.kay_exponent,
-            fade: settings.depth_cue.map(|cue| Fade::new(view, &cue, |color| composed(color, raw))),
-            lay: registry::order(settings.transparency_order).lay,
+            fade: settings.depth_cue.map(|cue| fade(view, &cue, raw)),
+            lay: settings.transparency.order.lay,
             middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
-            in_passes: settings.transparency_order == TransparencyOrder::MULTI_PASS,
+            in_passes: settings.transparency.order.draws_passes,
             surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
             background,
             faces: session.per_mesh(),
@@ -237,11 +131,26 @@ impl<'a> FrameConstants<'a> {
         parts.find_map(|part| Some(self.material(part.material)).filter(scatters)).map(|m| m.material.name.as_str())
     }
 
+    /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the pixel's centre if it
+    /// covers them all, else in their middle, so that nothing is extrapolated.
+    #[inline(always)]
+    pub(super) fn middle(&self, place: [f32; 2], mask: u32) -> [f32; 2] {
+        let [x, y] = self.middles.get(mask as usize).copied().unwrap_or_else(|| offset(mask, &self.view.pattern));
+        [place[0] + x, place[1] + y]
+    }
+
     /// The material of a part of a mesh.
     pub(crate) fn material(&self, index: Option<u32>) -> &MaterialConstants<'a> {
         let last = self.materials.len() - 1;
         &self.materials[index.map_or(last, |m| (m as usize).min(last))]
     }
+}
+
+/// Depth cueing in a view of the whole scene.
+fn fade(view: &PreparedView<'_>, cue: &DepthCue, raw: bool) -> Fade {
+    let sphere = view.session.world.bounds.bounding_sphere();
+    let middle = -view.view.view_from_world.transform_point3(sphere.center).z;
+    Fade::new(cue, middle, sphere.radius, raw)
 }
 
 /// For each facet whether its material lets rays on.
@@ -258,97 +167,16 @@ fn facets_that_follow(view: &PreparedView<'_>, materials: &[MaterialConstants<'_
     follows
 }
 
-fn rows(m: &DMat4) -> [[f32; 4]; 3] {
-    [0, 1, 2].map(|r| m.row(r).as_vec4().to_array())
-}
-
-fn instance_constants(
-    view: &PreparedView<'_>,
-    index: usize,
-    settings: &Settings,
-    execution: &Execution,
-) -> InstanceConstants {
-    let instance = &view.session.world.instances[index];
-    let view_from_model = view.view.view_from_world * instance.world_from_model;
-    let clip = view.view.clip_from_view * view_from_model;
-    let (w, h) = (f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5);
-    let [x, y, clip_w] = [clip.row(0), clip.row(1), clip.row(3)];
-    let screen: [DVec4; 3] = [x * w + clip_w * w, clip_w * h - y * h, clip_w];
-    // The cofactor matrix is the inverse transpose times the determinant, and exists for flat transforms too.
-    let [a, b, c] = [0, 1, 2].map(|k| view_from_model.col(k).truncate());
-    let cofactor = [b.cross(c), c.cross(a), a.cross(b)];
-    let mirrored = mirrors(&instance.world_from_model);
-    let sign = if mirrored { -1.0 } else { 1.0 };
-    let scale = cofactor.iter().map(|v| v.length()).fold(0.0, f64::max);
-    let scale = if scale > 0.0 { sign / scale } else { 0.0 };
-    let normal_row = |r: usize| [0, 1, 2].map(|k| (cofactor[k][r] * scale) as f32);
-    InstanceConstants {
-        screen_from_model: screen.map(|r| r.as_vec4().to_array()),
-        view_from_model: rows(&view_from_model),
-        view_from_model_normal: [0, 1, 2].map(normal_row),
-        two_sided: !is_solid(view.session, instance, &view.camera, &view.view, settings, execution),
-        mirrored,
+/// The middle of the samples `mask` within their pixel.
+fn offset(mask: u32, pattern: &SamplePattern) -> [f32; 2] {
+    let count = mask.count_ones();
+    if count as usize == pattern.len() {
+        return [0.5; 2];
     }
-}
-
-fn material_constants<'a>(
-    material: &Material,
-    view: &'a PreparedView<'a>,
-    settings: &Settings,
-    tables: &'a DecodeTables,
-) -> MaterialConstants<'a> {
-    let scene = &view.session.scene;
-    let texture = |reference: Option<TextureRef>| {
-        let reference = reference?;
-        let texture = scene.textures.get(reference.texture as usize)?;
-        let decode = match texture.encoding {
-            vitral_frame::Encoding::Srgb => &tables.srgb,
-            vitral_frame::Encoding::Linear => &tables.linear,
-        };
-        Some(TextureConstants { texture, reference, decode })
-    };
-    let (cutoff, blend) = match material.alpha_mode {
-        AlphaMode::Opaque => (None, false),
-        AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
-        AlphaMode::Blend => (None, settings.transparency != Transparency::None),
-    };
-    MaterialConstants {
-        model: model(material, settings.illumination, settings.lighting),
-        base: texture(material.base_texture),
-        specular: texture(material.specular_texture),
-        emission: texture(material.emission_texture),
-        opacity: texture(material.opacity_texture),
-        metallic_roughness: texture(material.metallic_roughness_texture),
-        occlusion: texture(material.occlusion_texture),
-        normal: texture(material.normal_texture),
-        cutoff,
-        soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global != Global::RayTrace,
-        blend,
-        follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
-        scatters: (blend && material.transmission == Transmission::Translucent)
-            .then(|| scattering_exponent(&material.reflectance)),
-        material: material.clone(),
+    let mut sum = [0.0; 2];
+    for s in (0..pattern.len()).filter(|s| mask >> s & 1 == 1) {
+        let offset = pattern.offset(s);
+        sum = [sum[0] + offset[0], sum[1] + offset[1]];
     }
-}
-
-/// A colour in the display's encoding, in the space in which colours are composed.
-fn composed(color: [f32; 3], raw: bool) -> [f32; 3] {
-    if raw { color } else { color.map(Lanes::linear_from_srgb) }
-}
-
-fn background_rows(background: &Background, height: u32, raw: bool) -> BackgroundRows {
-    let light = |c| composed(c, raw);
-    let opaque = |c: [f32; 3]| [c[0], c[1], c[2], 1.0];
-    let row = |y: u32| match background {
-        Background::Transparent => [0.0; 4],
-        Background::Color { color } => opaque(light(*color)),
-        Background::Gradient { top, bottom } => {
-            let t = (y as f32 + 0.5) / height as f32;
-            opaque(light([0, 1, 2].map(|k| top[k] + (bottom[k] - top[k]) * t)))
-        }
-    };
-    let encode = |c: f32| byte_from_unit(if raw { c } else { Lanes::srgb_from_linear(c) });
-    let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
-    let colors: Vec<[f32; 4]> = (0..height).map(row).collect();
-    BackgroundRows { bytes: colors.iter().map(bytes).collect(), colors }
+    sum.map(|s| s / count as f32)
 }

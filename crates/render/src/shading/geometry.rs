@@ -1,24 +1,16 @@
 //! The surface at eight points: which corners each point lies between, and with which weights.
 //!
-//! What is the same all over a facet was computed before, see [`super::facets`]; here each point weighs the corners.
+//! What is the same all over a facet is in its [`Record`], see [`super::facets`]; here each point weighs the corners.
 
-use super::facets::Record;
-use super::phong;
+use super::slots::Slots;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x4, F32x8, Floats, LANES, Lanes, Simd, V3};
 
-/// Up to eight points of one object and material.
-#[derive(Clone, Copy)]
-pub(crate) struct Slots {
-    /// Triangle of each point within its mesh; unused lanes repeat the last.
-    pub triangle: [u32; LANES],
-    /// Record of each point's facet.
-    pub record: [u32; LANES],
-    /// Places in pixels.
-    pub x: [f32; LANES],
-    /// Places in pixels, downwards.
-    pub y: [f32; LANES],
-}
+/// Numbers of a facet, in view space:
+/// `c a b` of the three corners' weights, anchor `x y`, facet normal, three positions, three normals.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Record(pub [f32; 32]);
 
 /// A number in each lane.
 pub(crate) type F<S> = F32x8<S>;
@@ -88,7 +80,7 @@ impl<T: Lanes> Placed<T> {
     /// At a surface's points, with the normal between the corners'.
     #[inline(always)]
     pub(crate) fn new(surface: &Surface<T>) -> Self {
-        Self { position: surface.position(), normal: phong::interpolated_normal(surface) }
+        Self { position: surface.position(), normal: surface.interpolated_normal() }
     }
 }
 
@@ -290,6 +282,16 @@ impl<T: Lanes> Surface<T> {
     #[inline(always)]
     pub(crate) fn position(&self) -> V3<T> {
         blend3(&self.place_weights(), &self.positions)
+    }
+
+    /// The unit normal between the corners'.
+    #[inline(always)]
+    pub(crate) fn interpolated_normal(&self) -> V3<T> {
+        let n = blend3(&self.weights, &self.normals).normalize();
+        // Opposite corner normals can cancel out: use the facet's.
+        let length2 = n.dot(n);
+        let usable = (length2 * 0.0).lt(length2);
+        V3::select(usable, n, self.facet_normal)
     }
 
     /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives; they may leave

@@ -9,11 +9,10 @@
 //! Source: \[Rushmeier & Torrance 1990\], see `vitral_light::transmitted_light`.
 
 use super::FrameConstants;
+use super::batch::ShadingBatch8;
 use super::geometry::{F, Surface, constant};
-use super::group::Eight;
 use super::lighting::towards_viewer;
-use super::looks::Looks;
-use super::phong;
+use super::surface_parameters::SurfaceParameters;
 use crate::{Shading, Transparency};
 use vitral_light::transmitted_light;
 use vitral_math::lanes::{self, Simd, V3};
@@ -22,8 +21,8 @@ use vitral_math::lanes::{self, Simd, V3};
 #[inline(never)]
 pub(super) fn glow<S: Simd>(
     simd: S,
-    eight: &Eight<'_>,
-    looks: &Looks<S>,
+    eight: &ShadingBatch8<'_>,
+    parameters: &SurfaceParameters<S>,
     surface: &Surface<F<S>>,
     constants: &FrameConstants<'_>,
 ) -> V3<F<S>> {
@@ -34,25 +33,25 @@ pub(super) fn glow<S: Simd>(
             let position = surface.position();
             let normal = match constants.shading {
                 Shading::Flat => surface.facet_normal,
-                _ => looks
+                _ => parameters
                     .mapped_normal(simd, subject, eight.slots, surface, material)
-                    .unwrap_or_else(|| phong::interpolated_normal(surface)),
+                    .unwrap_or_else(|| surface.interpolated_normal()),
             };
 
             // Normals are turned to the viewer, light comes from the other side.
-            let parts = eight.arriving_behind;
+            let parts = eight.light_visibility_behind;
             let (v, zero) =
                 (towards_viewer(simd, &position, eight.along, subject.viewing.perspective), constant(simd, 0.0));
             let away = lanes::Lanes::lt(surface.facet_normal.dot(v), zero);
             let normal = V3::select(away, -normal, normal);
-            let arriving = lanes::inlined(
+            let light_visibility = lanes::inlined(
                 #[inline(always)]
                 |j: usize| match parts.get(j) {
                     Some(parts) => parts.eight(simd, eight.first),
                     None => V3::new(one, one, one),
                 },
             );
-            let mut light = transmitted_light(&constants.lights, position, normal, arriving);
+            let mut light = transmitted_light(&constants.lights, position, normal, light_visibility);
             if !subject.is_sheet() {
                 let [a, b, c] = surface.positions;
                 let winding = (b - a).cross(c - a).dot(v);
@@ -63,7 +62,7 @@ pub(super) fn glow<S: Simd>(
                 Transparency::Filtered => V3::splat(one, material.material.filter.map(|f| f.clamp(0.0, 1.0))),
                 _ => V3::new(one, one, one),
             };
-            light.times(passes).scale(lanes::Lanes::saturate(looks.kt) * looks.coverage)
+            light.times(passes).scale(lanes::Lanes::saturate(parameters.kt) * parameters.coverage)
         },
     )
 }

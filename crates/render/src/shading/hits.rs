@@ -7,8 +7,10 @@
 //! In:   hits on one object. Out: a record for each of them.
 //! Source: the footprint after [Amanatides 1984], a cone round the ray.
 
-use super::facets::{Record, Subject, model_corners, write_records};
-use super::geometry::{F, Slots, constant};
+use super::facets::{model_corners, write_records};
+use super::geometry::{F, Record, constant};
+use super::slots::Slots;
+use super::subject::Subject;
 use crate::shadow::Place;
 use vitral_math::lanes::prelude::SimdBase;
 use vitral_math::lanes::{F32x8, LANES, Simd, V3};

@@ -4,9 +4,10 @@
 //! Cost: linear in points, times the number of lights.
 
 use super::FrameConstants;
+use super::batch::ShadingBatch8;
 use super::geometry::every;
-use super::group::{Eight, Model};
 use super::hits::Along;
+use super::model::Model;
 use crate::shadow::Parts;
 use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, cook_torrance};
 use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
@@ -62,8 +63,8 @@ pub(crate) struct Lighting<'a> {
     perspective: bool,
     /// The rays that see the points, if it is not the eye.
     along: Option<&'a Along>,
-    /// Which part of each light arrives at the group's points; empty without shadows.
-    arriving: &'a [Parts],
+    /// Which part of each light reaches the group's points; empty without shadows.
+    light_visibility: &'a [Parts],
     /// The first of the eight points in the group.
     first: usize,
 }
@@ -105,7 +106,7 @@ impl Lighting<'_> {
             || {
                 let one = every(simd, 1.0);
                 // As in `shade_all`.
-                if !cfg!(target_family = "wasm") && self.arriving.is_empty() {
+                if !cfg!(target_family = "wasm") && self.light_visibility.is_empty() {
                     // Factors of 1 that are known to be that are left out.
                     let all = lanes::inlined(
                         #[inline(always)]
@@ -115,7 +116,7 @@ impl Lighting<'_> {
                 }
                 let lit = lanes::inlined(
                     #[inline(always)]
-                    |j: usize| match self.arriving.get(j) {
+                    |j: usize| match self.light_visibility.get(j) {
                         Some(parts) => V3::from_array(V::by_eights(
                             simd,
                             [],
@@ -157,7 +158,7 @@ impl Lighting<'_> {
 
 /// The lights of a frame for some points and those that follow in their group.
 #[inline(always)]
-pub(super) fn lighting<'a>(eight: &Eight<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
+pub(super) fn lighting<'a>(eight: &ShadingBatch8<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
     Lighting {
         lights: &constants.lights,
         ambient: constants.ambient,
@@ -167,7 +168,7 @@ pub(super) fn lighting<'a>(eight: &Eight<'a>, constants: &'a FrameConstants<'_>)
         },
         perspective: eight.subject.viewing.perspective,
         along: eight.along,
-        arriving: eight.arriving,
+        light_visibility: eight.light_visibility,
         first: eight.first,
     }
 }

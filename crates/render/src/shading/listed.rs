@@ -6,7 +6,7 @@
 //! the law for all algorithms; everywhere else the list is the order, and how often it was overruled is counted.
 
 use super::FrameConstants;
-use super::points::{FragmentPoint, LayerPoint, Points, middle, samples_in};
+use super::points::{FragmentPoint, LayerPoint, Points, samples_in};
 use crate::marks::MarkColors;
 use crate::visible::nearer;
 
@@ -34,7 +34,7 @@ impl Points {
         for (facet, mask, source) in &mut facets {
             *source = match marks.index(*facet) {
                 Some(mark) => mark,
-                None => self.push(*facet, middle(place, *mask, constants)),
+                None => self.push(*facet, constants.middle(place, *mask)),
             };
         }
 

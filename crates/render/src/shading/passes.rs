@@ -8,13 +8,16 @@
 //! Cost: see `visible/peel.rs`; memory: a colour for each sample.
 //! Source: \[Mammen 1989\].
 
-use super::composite::fragment;
-use super::group::Lit;
-use super::points::{NO_POINT, Points, Source, samples_in};
-use super::{ColorSink, Scratch, group};
+use super::FrameConstants;
+use super::composite::{Composer, opaque_samples};
+use super::fragments::fragment;
+use super::points::{Points, Source, samples_in};
+use super::scratch::Scratch;
+use super::shade::shade;
+use super::shaded_points::ShadedPoints;
+use crate::marks::MarkColors;
 use crate::visible::Peel;
-use vitral_math::lanes::dispatch;
-use vitral_raster::{TILE, TILE_PIXELS, Tile};
+use vitral_raster::{TILE_PIXELS, Tile};
 
 /// The picture of a tile, as far as it is composed.
 struct Canvas {
@@ -24,90 +27,69 @@ struct Canvas {
     layered: Vec<bool>,
 }
 
-impl ColorSink<'_> {
-    /// Composes a tile; `pass` goes through the layers. Gives what each pass made of it, the opaque tile first, if it is
-    /// to be `shown`, else the last alone; and how many samples of layers there were.
-    pub(super) fn compose_in_passes(
-        &self,
-        tile: &Tile,
-        scratch: &mut Scratch,
-        pass: &mut dyn FnMut(&mut Peel) -> bool,
-        shown: bool,
-    ) -> (Vec<Vec<[u8; 4]>>, u64, u64) {
-        let samples = self.constants.view.pattern.len();
-        let mut canvas = self.canvas(tile, &scratch.points, &scratch.lit);
-        let (mut pictures, mut layers, mut shaded) = (Vec::new(), 0, 0);
-        let mut peel = Peel::default();
-        peel.reset(samples);
-        while pass(&mut peel) {
-            if shown {
-                pictures.push(self.encode(tile, scratch, &canvas, samples));
-            }
-            let Scratch { points, facets, lit, .. } = &mut *scratch;
-            points.collect_pass(tile, &peel, self.constants, self.marks);
-            lit.reset(points.len(), self.constants);
-            dispatch!(self.constants.level, simd => group::shade_all(simd, points, facets, self.constants, lit));
-            shaded += points.len() as u64;
-            for of in &points.fragments {
-                let fragment = fragment(of, tile, points, lit, self.constants, self.marks);
-                (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
-                for sample in samples_in(of.mask) {
-                    fragment.over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);
-                    layers += 1;
-                }
+/// Composes a tile; `pass` goes through the layers. Gives what each pass made of it, the opaque tile first, if it is
+/// to be `shown`, else the last alone; and how many samples of layers there were.
+pub(super) fn compose(
+    tile: &Tile,
+    scratch: &mut Scratch,
+    constants: &FrameConstants<'_>,
+    marks: &MarkColors,
+    pass: &mut dyn FnMut(&mut Peel) -> bool,
+    shown: bool,
+) -> (Vec<Vec<[u8; 4]>>, u64, u64) {
+    let samples = constants.view.pattern.len();
+    let mut canvas = canvas(tile, &scratch.points, &scratch.lit, constants);
+    let (mut pictures, mut layers, mut shaded) = (Vec::new(), 0, 0);
+    let mut peel = Peel::default();
+    peel.reset(samples);
+    while pass(&mut peel) {
+        if shown {
+            pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
+        }
+        let Scratch { points, facets, lit, .. } = &mut *scratch;
+        points.collect_pass(tile, &peel, constants, marks);
+        shade(points, facets, constants, lit);
+        shaded += points.len() as u64;
+        for of in &points.fragments {
+            let fragment = fragment(of, tile, points, lit, constants, marks);
+            (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
+            for sample in samples_in(of.mask) {
+                fragment.over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);
+                layers += 1;
             }
         }
-        pictures.push(self.encode(tile, scratch, &canvas, samples));
-        (pictures, layers, shaded)
     }
+    pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
+    (pictures, layers, shaded)
+}
 
-    /// What is opaque, and the background.
-    fn canvas(&self, tile: &Tile, points: &Points, lit: &Lit) -> Canvas {
-        let mut canvas = Canvas {
-            samples: self.opaque_samples(tile, points, lit),
-            filled: vec![false; TILE_PIXELS],
-            layered: vec![false; TILE_PIXELS],
-        };
-        for pixel in &points.pixels {
-            canvas.filled[pixel.index as usize] = true;
-            canvas.layered[pixel.index as usize] = matches!(pixel.source, Source::Mixed(_));
-        }
-        canvas
+/// What is opaque, and the background.
+fn canvas(tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameConstants<'_>) -> Canvas {
+    let mut canvas = Canvas {
+        samples: opaque_samples(tile, points, lit, constants),
+        filled: vec![false; TILE_PIXELS],
+        layered: vec![false; TILE_PIXELS],
+    };
+    for pixel in &points.pixels {
+        canvas.filled[pixel.index as usize] = true;
+        canvas.layered[pixel.index as usize] = matches!(pixel.source, Source::Mixed(_));
     }
+    canvas
+}
 
-    /// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and the background.
-    pub(super) fn opaque_samples(&self, tile: &Tile, points: &Points, lit: &Lit) -> Vec<[f32; 4]> {
-        let background = |pixel: usize| self.constants.background.color(tile.y + (pixel / TILE) as u32);
-        let samples = self.constants.view.pattern.len();
-        let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
-        for pixel in &points.pixels {
-            for sample in 0..samples {
-                let point = match pixel.source {
-                    Source::Point(point) => point,
-                    Source::Mixed(start) => points.mixed[start as usize + sample],
-                };
-                if point != NO_POINT {
-                    colors[sample * TILE_PIXELS + pixel.index as usize] = lit.colors[point as usize];
-                }
-            }
-        }
-        colors
+/// The canvas as display bytes.
+fn encode(tile: &Tile, composer: &mut Composer, canvas: &Canvas, constants: &FrameConstants<'_>) -> Vec<[u8; 4]> {
+    let mut picture = vec![[0; 4]; TILE_PIXELS];
+    let samples = constants.view.pattern.len();
+    composer.begin(tile, constants, &mut picture);
+    let mut of_pixel = Vec::with_capacity(samples);
+    for pixel in (0..TILE_PIXELS).filter(|&p| canvas.filled[p]) {
+        of_pixel.clear();
+        // Pixels that one opaque point fills are that point, not a mean.
+        let count = if canvas.layered[pixel] { samples } else { 1 };
+        of_pixel.extend((0..count).map(|s| canvas.samples[s * TILE_PIXELS + pixel]));
+        composer.put(pixel as u32, &of_pixel);
     }
-
-    /// The canvas as display bytes.
-    fn encode(&self, tile: &Tile, scratch: &mut Scratch, canvas: &Canvas, samples: usize) -> Vec<[u8; 4]> {
-        let mut picture = vec![[0; 4]; TILE_PIXELS];
-        let (composer, constants) = (&mut scratch.composer, self.constants);
-        composer.begin(tile, constants, &mut picture);
-        let mut of_pixel = Vec::with_capacity(samples);
-        for pixel in (0..TILE_PIXELS).filter(|&p| canvas.filled[p]) {
-            of_pixel.clear();
-            // Pixels that one opaque point fills are that point, not a mean.
-            let count = if canvas.layered[pixel] { samples } else { 1 };
-            of_pixel.extend((0..count).map(|s| canvas.samples[s * TILE_PIXELS + pixel]));
-            composer.put(pixel as u32, &of_pixel);
-        }
-        composer.end(constants, &mut picture);
-        picture
-    }
+    composer.end(constants, &mut picture);
+    picture
 }

@@ -3,10 +3,10 @@
 //! Input: corners and weights of a point, view space. Output: reflected light at the point.
 //! Source: [Phong 1975].
 
-use super::geometry::{Placed, Surface, blend3};
+use super::geometry::{Placed, Surface};
 use super::lighting::{Coefficients, Lighting};
 use vitral_light::Reflected;
-use vitral_math::lanes::{F32x8, Lanes, Simd, V3};
+use vitral_math::lanes::{F32x8, Simd, V3};
 
 /// Illuminates each point with its interpolated normal; `normal` replaces it (normal maps).
 #[inline(always)]
@@ -24,15 +24,5 @@ pub(crate) fn shade<S: Simd>(
 /// Where each point is, and its normal.
 #[inline(always)]
 pub(super) fn placed<S: Simd>(surface: &Surface<F32x8<S>>, normal: Option<V3<F32x8<S>>>) -> Placed<F32x8<S>> {
-    Placed { position: surface.position(), normal: normal.unwrap_or_else(|| interpolated_normal(surface)) }
-}
-
-/// The unit normal between the corners'.
-#[inline(always)]
-pub(crate) fn interpolated_normal<T: Lanes>(surface: &Surface<T>) -> V3<T> {
-    let n = blend3(&surface.weights, &surface.normals).normalize();
-    // Opposite corner normals can cancel out: use the facet's.
-    let length2 = n.dot(n);
-    let usable = (length2 * 0.0).lt(length2);
-    V3::select(usable, n, surface.facet_normal)
+    Placed { position: surface.position(), normal: normal.unwrap_or_else(|| surface.interpolated_normal()) }
 }

@@ -1,22 +1,22 @@
-//! What of each light arrives at the points of a group, and the shadows as pictures of their own.
+//! Which part of each light reaches the points of a group, and the shadows as pictures of their own.
 //!
 //! Shadows are found where the surface is, once for each point, whatever the shading model: flat and Gouraud shading
 //! illuminate centres and corners, but a shadow's edge runs across facets.
 
 use super::FrameConstants;
-use super::facets::{FacetTable, Subject};
-use super::frame_constants::MaterialConstants;
-use super::geometry::{F, Slots, Surface, point_weights, surface};
-use super::group::slots;
-use super::phong::interpolated_normal;
+use super::facets::FacetTable;
+use super::geometry::{F, Surface, point_weights, surface};
+use super::material_constants::MaterialConstants;
 use super::points::Points;
+use super::slots::Slots;
+use super::subject::Subject;
 use crate::shadow::{Parts, Place, Places, Placing, grey};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
 
-/// What of each light arrives at the points of a group that the eye sees, and on the other side of a translucent sheet;
+/// Which part of each light reaches the points of a group that the eye sees, and the other side of a translucent sheet;
 /// empty without shadows. Adds the rays that it took.
-pub(crate) fn arriving<S: Simd>(
+pub(crate) fn light_visibility<S: Simd>(
     simd: S,
     constants: &FrameConstants<'_>,
     (subject, material): (&Subject<'_>, &MaterialConstants<'_>),
@@ -35,7 +35,7 @@ pub(crate) fn arriving<S: Simd>(
         simd.vectorize(
             #[inline(always)]
             || {
-                let slots = slots(points, eight, records, subject.first_facet);
+                let slots = Slots::of_points(points, eight, records, subject.first_facet);
                 let weights = if subject.viewing.screen_linear() {
                     let mut surface = surface(simd, &facets.records, &slots);
                     surface.screen_linear = true;
@@ -49,26 +49,26 @@ pub(crate) fn arriving<S: Simd>(
             },
         );
     }
-    arriving_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
+    light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
 }
 
-/// What of each light arrives at these places, and if asked, on the other side of their facets; empty without shadows.
+/// Which part of each light reaches these places, and if `both`, the other side of their facets; empty without shadows.
 /// Adds the rays that it took.
-pub(crate) fn arriving_on_sides(
+pub(crate) fn light_visibility_on_sides(
     constants: &FrameConstants<'_>,
     both: bool,
     places: Places,
     rays: &mut u64,
 ) -> [Vec<Parts>; 2] {
-    let seen = arriving_at(constants, &places, rays);
+    let seen = light_visibility_at(constants, &places, rays);
     if !both {
         return [seen, Vec::new()];
     }
-    [seen, arriving_at(constants, &places.turned(), rays)]
+    [seen, light_visibility_at(constants, &places.turned(), rays)]
 }
 
-/// What of each light arrives at these places; empty without shadows. Adds the rays that it took.
-fn arriving_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
+/// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
+fn light_visibility_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |&light: &usize| {
         let mut parts = Parts::new(places.len(), [0.0; 3]);
@@ -105,10 +105,10 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
     surface: &Surface<F<S>>,
-    arriving: &[Parts],
+    light_visibility: &[Parts],
     first: usize,
 ) -> [[f32; LANES]; 2] {
-    let (position, normal) = (surface.position(), interpolated_normal(surface));
+    let (position, normal) = (surface.position(), surface.interpolated_normal());
     let soa = |v: V3<_>| {
         let V3 { x, y, z }: V3<F<S>> = v;
         [x.to_array(), y.to_array(), z.to_array()]
@@ -117,7 +117,7 @@ pub(crate) fn shadow_shares<S: Simd>(
     let mut shares = [[0.0; LANES]; 2];
     for lane in 0..LANES {
         let at = |v: &[[f32; LANES]; 3]| V3::new(v[0][lane], v[1][lane], v[2][lane]);
-        let part = |light: usize| arriving.get(light).map_or(1.0, |parts| grey(parts.get(first + lane)));
+        let part = |light: usize| light_visibility.get(light).map_or(1.0, |parts| grey(parts.get(first + lane)));
         let [attached, cast] = shares_at(constants, at(&position), [at(&normal), at(&facet)], part);
         (shares[0][lane], shares[1][lane]) = (attached, cast);
     }

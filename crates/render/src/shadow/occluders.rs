@@ -2,7 +2,7 @@
 //! at the point where the ray passes. With filtered transparency, what passes has the colour of the glass.
 
 use super::facet::weights;
-use crate::shading::DecodeTables;
+use crate::display::DecodeTables;
 use crate::transparency::{filtered, linear};
 use crate::{Session, Settings, Transparency};
 use vitral_frame::Encoding;

@@ -1,7 +1,7 @@
 //! What the colours of a picture of steps mean, algorithm by algorithm: `docs/steps.md`, `vitral algorithms`.
 
 use super::picture::{MARKS, OUTLINE, STOPS};
-use crate::registry;
+use crate::Visibility;
 use std::fmt::Write;
 
 /// What an algorithm's picture of steps shows.
@@ -84,7 +84,7 @@ pub fn page() -> String {
         tells those of a pixel in words. This page is made of the tables that draw the picture \
         (`crates/render/src/trace/legend.rs`).\n"
         .to_owned();
-    for algorithm in registry::VISIBILITY {
+    for algorithm in Visibility::all() {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "\n## `--visibility {}`\n\n| colour | meaning |\n|---|---|", algorithm.name);
         for (color, meaning) in algorithm.steps.colors() {

@@ -10,7 +10,8 @@
 //! Cost: n²/4 comparisons for up to 32 fragments in the worst order, beyond that as [`super::sorted`].
 //! Source: \[Carpenter 1984\].
 
-use super::{Fragment, MOST_SAMPLES, sorted};
+use super::fragment::{Fragment, MOST_SAMPLES};
+use super::sorted;
 
 /// Fragments up to which one order for all samples is looked for.
 const FEW: usize = 32;
@@ -82,7 +83,7 @@ fn pack<const MOST: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]])
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

@@ -16,7 +16,7 @@
 //! Cost: linear, no memory; the list costs what it costs.
 //! Source: \[Newell, Newell & Sancha 1972\]; the tree's list is that of \[Fuchs, Kedem & Naylor 1980\].
 
-use super::Fragment;
+use super::fragment::Fragment;
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
@@ -25,7 +25,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

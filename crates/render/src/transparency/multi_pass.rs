@@ -13,7 +13,7 @@
 //! Source: \[Mammen 1989\]; from near to far \[Everitt 2001\]. Departs from both: of coincident facets each gets a pass of
 //! its own, the lower facet last.
 
-use super::Fragment;
+use super::fragment::Fragment;
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
@@ -36,7 +36,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

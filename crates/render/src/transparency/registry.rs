@@ -1,6 +1,7 @@
 //! The tables of transparency models and orders, the defaults first.
 
-use super::{Lay, a_buffer, back_to_front, multi_pass, sorted, submission, two_buffer};
+use super::fragment::Lay;
+use super::{a_buffer, back_to_front, multi_pass, sorted, submission, two_buffer};
 use crate::Transparency;
 use crate::choice::table;
 

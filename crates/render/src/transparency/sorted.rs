@@ -8,7 +8,7 @@
 //! Cost: n log n for n layers, at each sample.
 //! Source: \[Newell, Newell & Sancha 1972\].
 
-use super::Fragment;
+use super::fragment::Fragment;
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
@@ -25,7 +25,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

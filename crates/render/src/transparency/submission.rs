@@ -8,7 +8,7 @@
 //! Cost: linear, no memory.
 //! Source: \[Catmull 1974\] for the z-buffer; the defect is T11 of COURSE.md.
 
-use super::{Fragment, in_front_of_opaque};
+use super::fragment::{Fragment, in_front_of_opaque};
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
@@ -30,7 +30,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

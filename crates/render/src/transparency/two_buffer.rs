@@ -11,7 +11,7 @@
 //! Cost: linear; memory: one colour and coefficient a sample.
 //! Source: course notes F; \[Foley et al. 1990\], 16.5.1. The notes' `f` is left open; here it is that of two filters.
 
-use super::{Fragment, in_front_of_opaque};
+use super::fragment::{Fragment, in_front_of_opaque};
 
 /// What is behind the transparent surfaces of a sample: the first buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{laid, pane};
+    use super::super::fragment::tests::{laid, pane};
     use super::*;
 
     #[test]

@@ -24,6 +24,7 @@ use super::tiles::Map;
 use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::places::Places;
+use crate::{Cached, Reuse};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
 use vitral_math::lanes::Level;

@@ -3,18 +3,18 @@
 //! A material says how a surface reflects on the whole; its textures and the mesh's colours vary that from point to
 //! point. Here they are looked up and put together into the coefficients that the illumination models take.
 //!
-//! In:   points of one object and material. Out: [`Looks`], linear or raw as the picture is.
+//! In:   points of one object and material. Out: [`SurfaceParameters`], linear or raw as the picture is.
 //! Cost: a lookup for each texture and point.
 //! Source: \[Foley et al. 1990\], 16.3, for textures; the transparency models name their own.
 
 use super::FrameConstants;
-use super::facets::Subject;
-use super::frame_constants::{MaterialConstants, TextureConstants};
-use super::geometry::{F, Slots, Surface, blend, blend3, constant, gather, linear as linear_map};
-use super::group::Model;
+use super::geometry::{F, Surface, blend, blend3, constant, gather, linear as linear_map};
 use super::hits::Along;
 use super::lighting::Coefficients;
-use super::phong;
+use super::material_constants::{MaterialConstants, TextureConstants};
+use super::model::Model;
+use super::slots::Slots;
+use super::subject::Subject;
 use crate::transparency::{kay, linear};
 use crate::{Shading, Transparency};
 use vitral_light::{DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet};
@@ -23,7 +23,7 @@ use vitral_math::lanes::{self, F32x8, LANES, Lanes, Simd, V3};
 use vitral_scene::{Attribute, Mesh};
 
 /// What textures and vertex colours make of a material at eight points.
-pub(super) struct Looks<S: Simd> {
+pub(super) struct SurfaceParameters<S: Simd> {
     /// Texture colour alone.
     pub(super) texture: V3<F<S>>,
     /// Texture colour times vertex colour: multiplies the diffuse or base colour.
@@ -44,7 +44,7 @@ pub(super) struct Looks<S: Simd> {
     pub(super) alpha: F<S>,
 }
 
-impl<S: Simd> Looks<S> {
+impl<S: Simd> SurfaceParameters<S> {
     #[inline(always)]
     pub(super) fn new(
         simd: S,
@@ -64,23 +64,8 @@ impl<S: Simd> Looks<S> {
             },
         );
 
-        // Vertex colours are kept linear; the raw colour space wants them as they were in the file: glTF's are linear
-        // there, as its factors are.
-        let (mut corner_colors, mut vertex_color, mut alpha) = ([white; 3], white, one);
-        if let Some(attribute) = &mesh.colors {
-            let corners = gather_attribute(simd, attribute, mesh, slots);
-            for c in 0..3 {
-                let [r, g, b, _] = corners[c];
-                corner_colors[c] = V3::new(r, g, b);
-                if raw && mesh.colors_from_srgb {
-                    let encode = Lanes::srgb_from_linear;
-                    corner_colors[c] = V3::new(encode(r), encode(g), encode(b));
-                }
-            }
-            vertex_color = blend3(&surface.weights, &corner_colors);
-            alpha = blend(&surface.weights, [corners[0][3], corners[1][3], corners[2][3]]);
-        }
-
+        let colors = vertex_colors(simd, mesh, slots, surface, raw);
+        let mut alpha = colors.alpha;
         let base_texture = lookup(&material.base);
         let mut texture = white;
         if let Some(t) = &base_texture {
@@ -124,8 +109,8 @@ impl<S: Simd> Looks<S> {
         }
         Self {
             texture,
-            base: texture.times(vertex_color),
-            corner_colors,
+            base: texture.times(colors.color),
+            corner_colors: colors.corners,
             specular,
             emission,
             metallic_factor,
@@ -152,7 +137,7 @@ impl<S: Simd> Looks<S> {
             return;
         }
         let flat = constants.shading == Shading::Flat;
-        let n = if flat { surface.facet_normal } else { phong::interpolated_normal(surface) };
+        let n = if flat { surface.facet_normal } else { surface.interpolated_normal() };
         let facing = match along {
             Some(along) => {
                 let position = surface.position();
@@ -241,7 +226,7 @@ impl<S: Simd> Looks<S> {
                 let texel = sample(simd, mesh, slots, (surface, &surface.weights), texture)?;
                 let attribute = mesh.uvs.get(texture.reference.uv_set as usize)?;
                 let uv = gather_attribute(simd, attribute, mesh, slots);
-                let n = phong::interpolated_normal(surface);
+                let n = surface.interpolated_normal();
 
                 let (e1, e2) =
                     (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
@@ -277,6 +262,36 @@ impl<S: Simd> Looks<S> {
             },
         )
     }
+}
+
+/// Vertex colours of eight points.
+struct VertexColors<S: Simd> {
+    /// At the three corners of each facet.
+    corners: [V3<F<S>>; 3],
+    /// At the points.
+    color: V3<F<S>>,
+    alpha: F<S>,
+}
+
+/// The mesh's vertex colours at eight points; white without any. They are kept linear; the raw colour space wants them as they
+/// were in the file: glTF's are linear there, as its factors are.
+#[inline(always)]
+fn vertex_colors<S: Simd>(simd: S, mesh: &Mesh, slots: &Slots, surface: &Surface<F<S>>, raw: bool) -> VertexColors<S> {
+    let one = constant(simd, 1.0);
+    let white = V3::new(one, one, one);
+    let Some(attribute) = &mesh.colors else { return VertexColors { corners: [white; 3], color: white, alpha: one } };
+    let values = gather_attribute(simd, attribute, mesh, slots);
+    let mut corners = [white; 3];
+    for c in 0..3 {
+        let [r, g, b, _] = values[c];
+        corners[c] = V3::new(r, g, b);
+        if raw && mesh.colors_from_srgb {
+            let encode = Lanes::srgb_from_linear;
+            corners[c] = V3::new(encode(r), encode(g), encode(b));
+        }
+    }
+    let color = blend3(&surface.weights, &corners);
+    VertexColors { corners, color, alpha: blend(&surface.weights, [values[0][3], values[1][3], values[2][3]]) }
 }
 
 /// Between the tangents at the corners of each lane's facet, view space, and their common `w`.
@@ -342,7 +357,7 @@ fn coefficients<T: Lanes>(material: &MaterialConstants<'_>, color: V3<T>, factor
 
 /// A material's coefficients and opacity where neither textures nor vertex colours vary them; `one` is 1.
 #[inline(always)]
-pub(super) fn unvaried<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (Coefficients<T>, T) {
+pub(super) fn uniform<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (Coefficients<T>, T) {
     let white = V3::new(one, one, one);
     let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
     (coefficients(material, white, &factors), opaque_part(material, one))
@@ -427,7 +442,7 @@ fn gather_attribute<S: Simd, const N: usize>(
     )
 }
 
-/// Looks a texture up at eight points, where the corners have these weights; `None` if the mesh has no such texture coordinates.
+/// SurfaceParameters a texture up at eight points, where the corners have these weights; `None` if the mesh has no such texture coordinates.
 fn sample<S: Simd>(
     simd: S,
     mesh: &Mesh,

@@ -6,20 +6,22 @@
 //! Cost: linear in points, times the number of lights.
 
 use super::FrameConstants;
-use super::frame_constants::MaterialConstants;
+use super::batch::ShadingBatch8;
 use super::geometry::{F, Placed, every, surface, surfaces};
-use super::group::{Eight, Lit, Model, asks, premultiplied, put_colors};
 use super::lighting::{Coefficients, NUMBERS, lighting};
-use super::looks::{self, Looks};
+use super::material_constants::MaterialConstants;
+use super::model::Model;
 use super::phong;
+use super::shaded_points::{ShadedPoints, premultiplied};
+use super::surface_parameters::{self, SurfaceParameters};
 use crate::{Interpolation, Shading, Transparency};
 use vitral_math::lanes::{Floats, LANES, Lanes, Simd, V3};
 
 /// Whether the picture takes nothing of a material's points but what they reflect and shine.
 #[inline(always)]
-pub(super) fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
+pub(super) fn has_color_only(material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
     constants.shading == Shading::Phong
-        && asks(material)
+        && material.model.needs_light_visibility()
         && constants.radiosity.is_none()
         && constants.transparency != Transparency::Filtered
         && material.scatters.is_none()
@@ -28,20 +30,20 @@ pub(super) fn is_simple(material: &MaterialConstants<'_>, constants: &FrameConst
         && constants.fade.is_none()
 }
 
-/// Illuminates what [`is_simple`]: eight points and the next eight of the group, or the first eight alone.
-pub(super) fn shade_together<S: Simd, V: Floats<S>>(
+/// Illuminates what [`has_color_only`]: eight points and the next eight of the group, or the first eight alone.
+pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
     simd: S,
-    eights: [&Eight<'_>; 2],
-    unvaried: bool,
+    eights: [&ShadingBatch8<'_>; 2],
+    uniform: bool,
     constants: &FrameConstants<'_>,
-    lit: &mut Lit,
+    lit: &mut ShadedPoints,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
             let first = eights[0];
-            let points: PointNumbers<V> = if unvaried {
-                PointNumbers::unvaried(simd, eights)
+            let points: PointNumbers<V> = if uniform {
+                PointNumbers::uniform(simd, eights)
             } else {
                 PointNumbers::from_array(
                     first.material.model,
@@ -61,7 +63,7 @@ pub(super) fn shade_together<S: Simd, V: Floats<S>>(
                 [color.x, color.y, color.z, alpha],
                 #[inline(always)]
                 |lane, color| {
-                    put_colors(simd, eights[lane / LANES].points, color, lit);
+                    lit.put_colors(simd, eights[lane / LANES].points, color);
                     []
                 },
             );
@@ -69,7 +71,7 @@ pub(super) fn shade_together<S: Simd, V: Floats<S>>(
     );
 }
 
-/// What [`shade_together`] needs of points.
+/// What [`shade_color_only`] needs of points.
 struct PointNumbers<T> {
     placed: Placed<T>,
     emission: V3<T>,
@@ -106,19 +108,19 @@ impl<T: Lanes> PointNumbers<T> {
 impl<T: Lanes> PointNumbers<T> {
     /// Of a material that nothing varies.
     #[inline(always)]
-    fn unvaried<S: Simd>(simd: S, eights: [&Eight<'_>; 2]) -> Self
+    fn uniform<S: Simd>(simd: S, eights: [&ShadingBatch8<'_>; 2]) -> Self
     where
         T: Floats<S>,
     {
         let (one, material) = (every(simd, 1.0), eights[0].material);
-        let (coefficients, alpha) = looks::unvaried(one, material);
+        let (coefficients, alpha) = surface_parameters::uniform(one, material);
         let placed = Placed::new(&surfaces(simd, eights[0].records, [eights[0].slots, eights[1].slots]));
         Self { placed, emission: V3::splat(one, material.material.emission), alpha, coverage: one, coefficients }
     }
 }
 
 /// Whether all points of a material on a mesh look the same but for how they are placed.
-pub(super) fn is_unvaried(eight: &Eight<'_>, constants: &FrameConstants<'_>) -> bool {
+pub(super) fn is_uniform(eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>) -> bool {
     let (material, mesh) = (eight.material, eight.subject.mesh);
     let varied_by_angle = material.blend && (material.material.glass || constants.transparency == Transparency::Kay);
     !varied_by_angle && !material.has_textures() && mesh.colors.is_none()
@@ -126,21 +128,21 @@ pub(super) fn is_unvaried(eight: &Eight<'_>, constants: &FrameConstants<'_>) -> 
 
 /// [`PointNumbers`] of eight points, whatever the material.
 #[inline(never)]
-fn point_numbers<S: Simd>(simd: S, eight: &Eight<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
+fn point_numbers<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
     simd.vectorize(
         #[inline(always)]
         || {
-            let &Eight { subject, material, slots, records, .. } = eight;
+            let &ShadingBatch8 { subject, material, slots, records, .. } = eight;
             let surface = surface(simd, records, slots);
-            let mut looks = Looks::new(simd, subject.mesh, slots, &surface, material, constants.raw);
-            looks.let_through(simd, &surface, material, constants, None);
-            let normal = looks.mapped_normal(simd, subject, slots, &surface, material);
+            let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
+            parameters.let_through(simd, &surface, material, constants, None);
+            let normal = parameters.mapped_normal(simd, subject, slots, &surface, material);
             let numbers = PointNumbers {
                 placed: phong::placed(&surface, normal),
-                emission: looks.emission,
-                alpha: looks.alpha,
-                coverage: looks.coverage,
-                coefficients: looks.coefficients(simd, material, looks.base),
+                emission: parameters.emission,
+                alpha: parameters.alpha,
+                coverage: parameters.coverage,
+                coefficients: parameters.coefficients(simd, material, parameters.base),
             };
             numbers.to_array()
         },

@@ -8,7 +8,7 @@ use crate::trace::{Observer, Step, Way};
 use vitral_math::{DVec3, func};
 
 /// Tells the rays of a tile.
-pub(super) struct Teller<'a> {
+pub(super) struct TraceWriter<'a> {
     pub(super) observer: &'a dyn Observer,
     /// Where each target is, in pixels of the picture.
     pub(super) pixels: &'a [[f32; 2]],
@@ -17,7 +17,7 @@ pub(super) struct Teller<'a> {
     pub(super) constants: &'a FrameConstants<'a>,
 }
 
-impl Teller<'_> {
+impl TraceWriter<'_> {
     fn pixel(&self, ray: &Branch) -> [u32; 2] {
         self.pixels[ray.target as usize].map(|v| v as u32)
     }

@@ -1,0 +1,200 @@
+//! How rays go on where they meet a surface: mirrored, passing straight, bent or scattered.
+
+use super::coincident::CoincidentGroups;
+use super::media::{Border, Media};
+use super::ray_scene::RayScene;
+use super::rays::{Branch, Haze, Rays, counts};
+use super::surface::Surface;
+use crate::shading::{Bounce, ShadedPoints, Strata};
+use crate::shadow::{Place, hash};
+use crate::stats::TracingCounters;
+use vitral_light::transmitted;
+use vitral_math::DVec3;
+
+/// A surface that a ray met: its light and properties, by number.
+pub(super) struct RayHit<'a> {
+    pub(super) lit: &'a ShadedPoints,
+    pub(super) at: usize,
+    /// Whether the ray came from the side from which the facet's corners run clockwise.
+    pub(super) from_behind: bool,
+}
+
+/// See the module.
+pub(super) struct Branching<'a> {
+    pub(super) scene: RayScene<'a>,
+    /// Turns that a ray takes at the most.
+    pub(super) max_depth: u32,
+    /// The directions in which each sample sees through the first translucent surface.
+    pub(super) strata: Strata,
+}
+
+impl Branching<'_> {
+    /// The rays that go on where `ray` meets a surface.
+    pub(super) fn branch(
+        &self,
+        ray: &Branch,
+        travelled: f64,
+        met: &RayHit<'_>,
+        piles: &CoincidentGroups,
+        rays: &mut Rays,
+        counters: &mut TracingCounters,
+    ) {
+        let RayHit { lit, at, from_behind } = *met;
+        let Bounce { normal, mirror, place } = lit.bounces[at];
+        let alpha = lit.colors[at][3];
+        let passes = lit.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
+        let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
+        let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
+        let haze = Haze::new(self.scene.constants, ray.row, place.position + self.scene.structure.triangles().center);
+        // The colour that it fades into was added with the surface's own light.
+        let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0].map(|m| m * haze.kept));
+        let surface = self.scene.surface(ray, normal, &place);
+        let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
+        let next = |towards: DVec3| place.position + towards * self.scene.clearance(place.position);
+
+        if counts(passing, ray.least) {
+            let branch = Branch { weight: passing, origin: next(-surface.facet), ..go_on };
+            let pile = ray.pile.map(|pile| piles.get(pile).1).unwrap_or_default();
+            if pile.len() > ray.layer as usize {
+                let branch = Branch { weight: passing, seed: place.seed, ..*ray };
+                self.pass_to_next(&branch, (&surface, &haze), &place, rays, counters);
+            } else if !self.pass(ray, &branch, (&surface, &haze), from_behind, pile, rays, counters) {
+                counters.total_reflections += 1;
+                let passing = rays.fade(ray.target, passing, &haze);
+                mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
+            }
+        } else if passing != [0.0; 4] {
+            counters.stopped_by_weight += 1;
+            rays.end(ray.target, passing);
+        }
+        if counts(mirrored, ray.least) {
+            if ray.depth < self.max_depth {
+                counters.mirrored += 1;
+                let (origin, depth) = (next(surface.facet), ray.depth + 1);
+                let direction = surface.mirrored(ray.direction);
+                rays.free.push(Branch { weight: mirrored, origin, direction, depth, row: None, ..go_on });
+            } else {
+                counters.stopped_by_depth += 1;
+                rays.end(ray.target, mirrored);
+            }
+        } else if mirrored != [0.0; 4] {
+            counters.stopped_by_weight += 1;
+            rays.end(ray.target, mirrored);
+        }
+    }
+
+    /// The rays that go on as `branch` behind a surface, or all of a pile, that `ray` meets. None do if all light is reflected:
+    /// says so.
+    fn pass(
+        &self,
+        ray: &Branch,
+        branch: &Branch,
+        (surface, haze): (&Surface, &Haze),
+        from_behind: bool,
+        pile: &[u32],
+        rays: &mut Rays,
+        counters: &mut TracingCounters,
+    ) -> bool {
+        let (direction, media, bent) = match self.through(ray, surface, (branch.own, from_behind), pile) {
+            Way::Straight(media) => (ray.direction, media, false),
+            Way::Bent(direction, media) => (direction, media, true),
+            Way::None => return false,
+        };
+        let branch = Branch { media, ..*branch };
+        let scatters = self.scene.scatters(branch.own);
+        if !bent && scatters.is_none() {
+            counters.passed += 1;
+            rays.free.push(branch);
+            return true;
+        }
+        let branch = Branch { weight: rays.fade(branch.target, branch.weight, haze), ..branch };
+        if ray.depth >= self.max_depth {
+            counters.stopped_by_depth += 1;
+            rays.end(branch.target, branch.weight);
+        } else if let Some(exponent) = scatters {
+            self.scatter(&branch, direction, surface, exponent, &mut rays.free, counters);
+        } else {
+            counters.refracted += 1;
+            rays.free.push(Branch { direction, depth: ray.depth + 1, row: None, ..branch });
+        }
+        true
+    }
+
+    /// The rays that go on as `branch` to the next surface of a pile, at the same place.
+    fn pass_to_next(
+        &self,
+        branch: &Branch,
+        (surface, haze): (&Surface, &Haze),
+        place: &Place,
+        rays: &mut Rays,
+        counters: &mut TracingCounters,
+    ) {
+        let Some(exponent) = self.scene.scatters(place.facet) else {
+            counters.passed += 1;
+            rays.piled.push(*branch);
+            return;
+        };
+        let branch = &Branch { weight: rays.fade(branch.target, branch.weight, haze), ..*branch };
+        if branch.depth >= self.max_depth {
+            counters.stopped_by_depth += 1;
+            rays.end(branch.target, branch.weight);
+            return;
+        }
+        let first = rays.piled.len();
+        self.scatter(branch, branch.direction, surface, exponent, &mut rays.piled, counters);
+        // They come to the place from where they would have come without the surface.
+        let distance = branch.origin.distance(place.position);
+        for ray in &mut rays.piled[first..] {
+            ray.origin = place.position - ray.direction * distance;
+        }
+    }
+
+    /// The rays that go on where a translucent surface scatters `branch`, which clear glass would send to `axis`.
+    fn scatter(
+        &self,
+        branch: &Branch,
+        axis: DVec3,
+        surface: &Surface,
+        exponent: f32,
+        rays: &mut Vec<Branch>,
+        counters: &mut TracingCounters,
+    ) {
+        let strata = if branch.scattered { Strata::new(1) } else { self.strata };
+        let share = 1.0 / strata.count() as f32;
+        let (weight, least) = (branch.weight.map(|w| w * share), branch.least * share);
+        counters.scattered += u64::from(strata.count());
+        for i in 0..strata.count() {
+            let direction = surface.behind(strata.direction(i, branch.seed, exponent, axis));
+            let (depth, seed) = (branch.depth + 1, hash(branch.seed ^ hash(i)));
+            rays.push(Branch { weight, least, direction, depth, seed, scattered: true, row: None, ..*branch });
+        }
+    }
+
+    /// How the ray goes on behind the surface, or behind all those of a pile.
+    fn through(&self, ray: &Branch, surface: &Surface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
+        let border = if pile.is_empty() {
+            self.scene.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
+        } else {
+            let facet = |&place: &u32| self.scene.structure.triangles().facets[place as usize];
+            let crossings = pile.iter().map(facet).map(|f| self.scene.crossing(f, self.scene.seen(ray.direction, f).1));
+            ray.media.cross_all(crossings.flatten())
+        };
+        let Some(Border { before, behind, then }) = border else { return Way::Straight(ray.media) };
+        let index = |m: Option<u32>| m.map_or(1.0, |m| f64::from(self.scene.constants.material(Some(m)).material.ior));
+        let eta = index(before) / index(behind);
+        if (eta - 1.0).abs() < 1e-6 {
+            return Way::Straight(then);
+        }
+        let bent = transmitted(surface.n, -ray.direction, eta).filter(|t| t.dot(surface.facet) < 0.0);
+        let bent = bent.or_else(|| transmitted(surface.facet, -ray.direction, eta));
+        bent.map_or(Way::None, |direction| Way::Bent(direction.normalize(), then))
+    }
+}
+
+/// How a ray goes on behind a surface.
+enum Way {
+    Straight(Media),
+    Bent(DVec3, Media),
+    /// Total internal reflection.
+    None,
+}

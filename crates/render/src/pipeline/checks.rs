@@ -1,0 +1,59 @@
+//! What a scene must not ask for together with the settings, and what the user has to know about a picture.
+
+use crate::radiosity::enclosure::{has_holes, partly_transparent};
+use crate::radiosity::lamps;
+use crate::TransparencyOrder;
+use crate::{Error, Global, Session, Settings, SettingsError, Stats, Transparency};
+use vitral_exec::Workers;
+use vitral_scene::Scene;
+
+/// Indices of refraction must be ones.
+pub(super) fn check_indices(scene: &Scene) -> Result<(), Error> {
+    let bad = scene.materials.iter().find(|m| !(m.ior > 0.0 && m.ior.is_finite()));
+    bad.map_or(Ok(()), |m| {
+        let name = &m.name;
+        Err(Error::Scene(format!("material `{name}`: index of refraction {}: above 0 is required", m.ior)))
+    })
+}
+
+/// Translucent surfaces need an order that can show them.
+pub(super) fn check_order(material: &str, settings: &Settings) -> Result<(), SettingsError> {
+    let order = settings.transparency.order;
+    if order.blurs {
+        return Ok(());
+    }
+    let choices = TransparencyOrder::names(|order| order.blurs);
+    Err(SettingsError::Translucent { material: material.to_owned(), order: order.name, choices })
+}
+
+/// What the user has to know about the picture.
+pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if settings.global == Global::RayTrace && settings.transparency != Transparency::None {
+        warnings.extend(session.sheets(workers).into_iter().map(|name| {
+            let of =
+                if name.is_empty() { "a material without a name".to_owned() } else { format!("material `{name}`") };
+            format!(
+                "rays pass straight through the surfaces of {of} that are not closed, whatever its index of refraction"
+            )
+        }));
+    }
+    if settings.global == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
+        let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
+        warnings.push(glass.to_owned());
+    }
+    if settings.global == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
+        let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
+        warnings.push(holes.to_owned());
+    }
+    let picture = &stats.picture;
+    let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
+    if settings.channels.color && !shown && !session.world.bounds.is_empty() {
+        warnings.push("nothing is in view".to_owned());
+    }
+    if stats.picture.lost_layers > 0 {
+        let allowed = settings.layer_memory >> 20;
+        warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
+    }
+    warnings
+}

@@ -1,0 +1,91 @@
+//! A material in a frame: its model, its textures, and how it lets light through.
+
+use super::model::Model;
+use crate::display::DecodeTables;
+use crate::{Global, PreparedView, Settings, Transparency};
+use vitral_frame::Texture;
+use vitral_light::{AlphaMode, Material, TextureRef, Transmission, scattering_exponent};
+
+/// A texture as a material uses it, ready to sample.
+pub(crate) struct TextureConstants<'a> {
+    pub texture: &'a Texture,
+    pub reference: TextureRef,
+    pub decode: &'a [f32; 256],
+}
+
+/// A material, ready for the formulas.
+pub(crate) struct MaterialConstants<'a> {
+    pub material: Material,
+    pub model: Model,
+    pub base: Option<TextureConstants<'a>>,
+    pub specular: Option<TextureConstants<'a>>,
+    pub emission: Option<TextureConstants<'a>>,
+    pub opacity: Option<TextureConstants<'a>>,
+    pub metallic_roughness: Option<TextureConstants<'a>>,
+    pub occlusion: Option<TextureConstants<'a>>,
+    pub normal: Option<TextureConstants<'a>>,
+    /// Below this alpha nothing is there (cut-outs), else `None`.
+    pub cutoff: Option<f32>,
+    /// Its cut-outs have soft borders, a pixel wide: pixels have several samples, which do not decide by themselves.
+    pub soft_cut: bool,
+    /// Alpha matters.
+    pub blend: bool,
+    /// Rays that meet it are followed on.
+    pub follows: bool,
+    /// It is translucent: the exponent with which it scatters what passes.
+    pub scatters: Option<f32>,
+}
+
+impl<'a> MaterialConstants<'a> {
+    /// Of a material of the scene.
+    pub(super) fn new(
+        material: &Material,
+        view: &'a PreparedView<'a>,
+        settings: &Settings,
+        tables: &'a DecodeTables,
+    ) -> Self {
+        let scene = &view.session.scene;
+        let texture = |reference: Option<TextureRef>| {
+            let reference = reference?;
+            let texture = scene.textures.get(reference.texture as usize)?;
+            Some(TextureConstants { texture, reference, decode: tables.table(texture.encoding) })
+        };
+        let (cutoff, blend) = match material.alpha_mode {
+            AlphaMode::Opaque => (None, false),
+            AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
+            AlphaMode::Blend => (None, settings.transparency != Transparency::None),
+        };
+        Self {
+            model: Model::of_material(material, settings.illumination, settings.lighting),
+            base: texture(material.base_texture),
+            specular: texture(material.specular_texture),
+            emission: texture(material.emission_texture),
+            opacity: texture(material.opacity_texture),
+            metallic_roughness: texture(material.metallic_roughness_texture),
+            occlusion: texture(material.occlusion_texture),
+            normal: texture(material.normal_texture),
+            cutoff,
+            soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global != Global::RayTrace,
+            blend,
+            follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
+            scatters: (blend && material.transmission == Transmission::Translucent)
+                .then(|| scattering_exponent(&material.reflectance)),
+            material: material.clone(),
+        }
+    }
+}
+
+impl MaterialConstants<'_> {
+    /// Whether something may be seen behind it.
+    pub(super) fn is_layered(&self) -> bool {
+        self.cutoff.is_some() || self.blend
+    }
+
+    /// Whether textures vary it.
+    pub(super) fn has_textures(&self) -> bool {
+        let Self { base, specular, emission, opacity, metallic_roughness, occlusion, normal, .. } = self;
+        [base, specular, emission, opacity, metallic_roughness, occlusion, normal]
+            .iter()
+            .any(|texture| texture.is_some())
+    }
+}

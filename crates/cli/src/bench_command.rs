@@ -33,7 +33,7 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     let mut state = State { models, ..State::default() };
     state.load.allow_external = args.allow_external;
     let settings = &mut state.settings;
-    ([settings.width, settings.height], settings.samples) = (args.resolution, args.samples);
+    ([settings.picture.width, settings.picture.height], settings.picture.samples) = (args.resolution, args.samples);
     settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
     let scene = state.load_scene(&execution.workers)?;
     if !args.quiet {

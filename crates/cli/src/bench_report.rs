@@ -54,7 +54,7 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
 fn step(args: &BenchArgs, execution: &Execution, polygons: usize, size: [u32; 2]) -> Result<Step, Failure> {
     let mut renderer = Renderer::with_execution(heap(polygons), execution.clone())?;
     let settings = &mut renderer.settings;
-    ([settings.width, settings.height], settings.samples) = (size, 1);
+    ([settings.picture.width, settings.picture.height], settings.picture.samples) = (size, 1);
     if !args.quiet {
         report::line(&format!("{} triangles, {} x {} pixels", renderer.world().facet_count, size[0], size[1]));
     }

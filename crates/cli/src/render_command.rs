@@ -153,7 +153,7 @@ struct Drawn {
 
 fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
     let model = model_name(plan.state.models.first().map_or("", String::as_str));
-    let srgb = plan.state.settings.color_space == ColorSpace::Srgb;
+    let srgb = plan.state.settings.picture.color_space == ColorSpace::Srgb;
     let options = EncodeOptions { srgb, ..EncodeOptions::default() };
     let count = u64::from(plan.frames.end() - plan.frames.start() + 1);
     let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count);

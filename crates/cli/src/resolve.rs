@@ -48,7 +48,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let output = &args.output;
     let files = [("--save-radiosity", &output.save_radiosity), ("--load-radiosity", &output.load_radiosity)];
     if let Some((option, _)) = files.iter().find(|(_, file)| file.is_some())
-        && state.settings.global != Global::Radiosity
+        && state.settings.global.model != Global::Radiosity
     {
         return Err(no_radiosity(option));
     }
@@ -58,7 +58,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
         // Layers are dropped with a warning rather than that the picture fails.
-        state.settings.layer_memory = state.settings.layer_memory.min(limit / 2);
+        state.settings.transparency.layer_memory = state.settings.transparency.layer_memory.min(limit / 2);
     }
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
@@ -75,7 +75,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let outputs = Output::pair(&args.output.output, &args.output.channel)?;
     let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
     outputs.iter().for_each(|o| o.channel.request(&mut channels));
-    state.settings.channels = channels;
+    state.settings.picture.channels = channels;
     if let Some(file) = args.report.trace.as_ref().filter(|_| outputs.is_empty()) {
         return Err(
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
@@ -91,7 +91,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(Failure::usage("--panels: no picture is made").with_hint("give --output"));
     }
     let drawn = !outputs.is_empty() || output.reference.is_some();
-    if output.save_radiosity.is_some() && !(drawn && state.settings.channels.color) {
+    if output.save_radiosity.is_some() && !(drawn && state.settings.picture.channels.color) {
         return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
     state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
@@ -100,7 +100,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         let what = format!("--no-background: {} knows no transparency", opaque.format().name());
         return Err(Failure::usage(what).with_hint("write a .png, or give --background-color"));
     }
-    let [width, height] = [state.settings.width, state.settings.height];
+    let [width, height] = [state.settings.picture.width, state.settings.picture.height];
     if let Some([x, y]) = args.report.pixel.filter(|[x, y]| *x >= width || *y >= height) {
         return Err(Failure::usage(format!("--pixel {x},{y}: the picture has {width}x{height} pixels"))
             .with_hint("they are counted from 0"));
@@ -196,15 +196,15 @@ fn overlay(state: &mut State, file: &Path, option: &str) -> Result<(), Failure> 
 fn set_picture(state: &mut State, args: &PictureArgs) {
     let settings = &mut state.settings;
     if let Some([width, height]) = args.resolution {
-        (settings.width, settings.height) = (width, height);
+        (settings.picture.width, settings.picture.height) = (width, height);
     }
-    settings.samples = args.samples.unwrap_or(settings.samples);
-    settings.color_space = args.color_space.unwrap_or(settings.color_space);
+    settings.picture.samples = args.samples.unwrap_or(settings.picture.samples);
+    settings.picture.color_space = args.color_space.unwrap_or(settings.picture.color_space);
     if let Some(color) = args.background_color {
-        settings.background = Background::Color { color };
+        settings.picture.background = Background::Color { color };
     }
     if args.no_background {
-        settings.background = Background::Transparent;
+        settings.picture.background = Background::Transparent;
     }
 }
 
@@ -218,60 +218,60 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
         settings.coherence.clone_from(kinds);
     }
     settings.cull = args.cull.unwrap_or(settings.cull);
-    settings.illumination = args.illumination.unwrap_or(settings.illumination);
-    settings.shading = args.shading.unwrap_or(settings.shading);
-    settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
-    settings.transparency = args.transparency.unwrap_or(settings.transparency);
-    if args.kay_exponent.is_some() && settings.transparency != Transparency::Kay {
+    settings.shading.illumination = args.illumination.unwrap_or(settings.shading.illumination);
+    settings.shading.model = args.shading.unwrap_or(settings.shading.model);
+    settings.shading.interpolation = args.interpolation.unwrap_or(settings.shading.interpolation);
+    settings.transparency.model = args.transparency.unwrap_or(settings.transparency.model);
+    if args.kay_exponent.is_some() && settings.transparency.model != Transparency::Kay {
         return Err(Failure::usage("--kay-exponent: transparency is not Kay's").with_hint("add --transparency kay"));
     }
-    settings.kay_exponent = args.kay_exponent.unwrap_or(settings.kay_exponent);
-    settings.depth_cue = args.depth_cue.or(settings.depth_cue);
-    settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
-    settings.scatter_samples = args.scatter_samples.unwrap_or(settings.scatter_samples);
+    settings.transparency.kay_exponent = args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
+    settings.picture.depth_cue = args.depth_cue.or(settings.picture.depth_cue);
+    settings.transparency.order = args.transparency_order.unwrap_or(settings.transparency.order);
+    settings.transparency.scatter_samples = args.scatter_samples.unwrap_or(settings.transparency.scatter_samples);
     if let Some(name) = &args.shadows {
-        settings.shadows.clone_from(name);
+        settings.shadows.algorithm.clone_from(name);
     }
     if let Some(global) = args.global {
         // Each model comes with its own shadows, unless others are chosen.
         let row = registry::GLOBALS.iter().find(|row| row.value == global);
-        if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global) {
-            row.shadows.clone_into(&mut settings.shadows);
+        if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global.model) {
+            row.shadows.clone_into(&mut settings.shadows.algorithm);
         }
-        settings.global = global;
+        settings.global.model = global;
     }
     if let Some(depth) = args.max_depth {
-        if settings.global != Global::RayTrace {
+        if settings.global.model != Global::RayTrace {
             return Err(Failure::usage("--max-depth: no rays are traced").with_hint("add --global ray-trace"));
         }
-        settings.max_depth = depth;
+        settings.global.max_depth = depth;
     }
-    let radiosity = settings.global == Global::Radiosity;
+    let radiosity = settings.global.model == Global::Radiosity;
     for (option, given) in [("--patch-size", args.patch_size.is_some()), ("--iterations", args.iterations.is_some())] {
         if given && !radiosity {
             return Err(no_radiosity(option));
         }
     }
-    settings.patch_size = args.patch_size.or(settings.patch_size);
-    settings.iterations = args.iterations.or(settings.iterations);
-    if args.light_samples.is_some() && settings.shadows == "none" {
+    settings.global.patch_size = args.patch_size.or(settings.global.patch_size);
+    settings.global.iterations = args.iterations.or(settings.global.iterations);
+    if args.light_samples.is_some() && settings.shadows.algorithm == "none" {
         return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
     }
-    settings.light_samples = args.light_samples.unwrap_or(settings.light_samples);
+    settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
     let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
-    if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows != "map") {
+    if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows.algorithm != "map") {
         return Err(Failure::usage(format!("{option}: no shadow maps are drawn")).with_hint("add --shadows map"));
     }
-    settings.shadow_map_size = args.shadow_map_size.unwrap_or(settings.shadow_map_size);
-    settings.shadow_cascades = args.shadow_cascades.unwrap_or(settings.shadow_cascades);
-    settings.volume_counting = args.volume_counting.or(settings.volume_counting);
+    settings.shadows.map_size = args.shadow_map_size.unwrap_or(settings.shadows.map_size);
+    settings.shadows.cascades = args.shadow_cascades.unwrap_or(settings.shadows.cascades);
+    settings.shadows.volume_counting = args.volume_counting.or(settings.shadows.volume_counting);
     let lines = [
         (args.wireframe, Lines::Wireframe),
         (args.wireframe_hidden_line, Lines::WireframeHiddenLine),
         (args.edges, Lines::Edges),
     ];
     if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
-        settings.lines = chosen;
+        settings.picture.lines = chosen;
     }
     state.load.normals = args.normals.unwrap_or(state.load.normals);
     if args.crease_angle.is_some() && state.load.normals == Normals::None {
@@ -287,9 +287,9 @@ fn no_radiosity(option: &str) -> Failure {
 }
 
 fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
-    state.settings.lighting = args.lighting.unwrap_or(state.settings.lighting);
+    state.settings.shading.lighting = args.lighting.unwrap_or(state.settings.shading.lighting);
     if !args.light.is_empty() {
-        let raw = state.settings.color_space == ColorSpace::Raw;
+        let raw = state.settings.picture.color_space == ColorSpace::Raw;
         let lights = args.light.iter().map(|text| light_spec::parse(text, raw)).collect::<Result<_, _>>();
         state.lights = Some(lights.map_err(|e| Failure::usage(format!("--light: {e}")))?);
     }

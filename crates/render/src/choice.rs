@@ -48,6 +48,11 @@ impl<T: Row> Choice<T> {
         T::rows().map(Self)
     }
 
+    /// The choice of `row`.
+    pub const fn of(row: &'static T) -> Self {
+        Self(row)
+    }
+
     /// The row.
     pub fn row(self) -> &'static T {
         self.0

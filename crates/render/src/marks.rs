@@ -189,19 +189,19 @@ pub(crate) fn build(
     let samples =
         if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
     let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
-    let raw = settings.color_space == crate::ColorSpace::Raw;
+    let raw = settings.picture.color_space == crate::ColorSpace::Raw;
     let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
     let mut marks = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
     let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
     let mut pen = Pen { view, drawn, clip_from_model, lift, half };
-    let edge_color = encode(edge_color(&settings.background));
+    let edge_color = encode(edge_color(&settings.picture.background));
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
         let (positions, clip_from_model) = view.session.placed_positions(instance, &view.view.clip_from_world());
         pen.clip_from_model = clip_from_model;
         let toward = (view.view.view_from_world * instance.world_from_model).row(2).as_vec4();
         let depth = |i: u32| -toward.dot(Vec3::from(instance.mesh.positions[i as usize]).extend(1.0));
-        if settings.lines != Lines::None {
+        if settings.picture.lines != Lines::None {
             for edge in view.session.edges(instance.mesh_index, &execution.workers) {
                 let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
                 if let Some(drawn) = pen.stroke(edge.ends.map(|i| positions[i as usize]), id) {
@@ -219,7 +219,7 @@ pub(crate) fn build(
             marks.place(&drawn, line.map(depth));
             if start != end {
                 let mark = marks.colors.len() - 1;
-                let gradient = drawn.gradient([start, end], settings.interpolation);
+                let gradient = drawn.gradient([start, end], settings.shading.interpolation);
                 marks.colors[mark] = gradient.0;
                 marks.gradients.push((mark as u32, gradient.1));
             }
@@ -260,7 +260,7 @@ impl Paint<'_, '_> {
         let mesh = &self.instance.mesh;
         let colors = mesh.colors.as_ref().filter(|c| c.corners.is_none());
         let own = colors.and_then(|c| c.values.get(vertex as usize)).map(|&[r, g, b, a]| {
-            let raw = self.settings.color_space == crate::ColorSpace::Raw && mesh.colors_from_srgb;
+            let raw = self.settings.picture.color_space == crate::ColorSpace::Raw && mesh.colors_from_srgb;
             let [r, g, b] = if raw { [r, g, b].map(srgb_from_linear) } else { [r, g, b] };
             [r, g, b, a]
         });
@@ -279,7 +279,7 @@ impl Paint<'_, '_> {
         let alpha = match material.alpha_mode {
             AlphaMode::Opaque => 1.0,
             AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= AlphaMode::least_opacity(cutoff))),
-            AlphaMode::Blend if self.settings.transparency == Transparency::None => 1.0,
+            AlphaMode::Blend if self.settings.transparency.model == Transparency::None => 1.0,
             AlphaMode::Blend => alpha,
         };
         let [r, g, b] = [0, 1, 2].map(|k| (base[k] * own[k] + glow[k]) * alpha);

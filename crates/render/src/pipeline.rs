@@ -57,9 +57,9 @@ pub fn render(
     execution: &Execution,
 ) -> Result<Rendered, Error> {
     let viewport = settings.check()?;
-    let direct = (settings.global == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     let left_out = direct.as_ref().and_then(|direct| lamps::left_out(shot.lights, direct));
-    if settings.global == Global::RayTrace {
+    if settings.global.model == Global::RayTrace {
         check_indices(session.scene())?;
     }
     let start = execution.budget.elapsed();
@@ -100,7 +100,7 @@ pub fn illuminate_corners(
     only: Option<u32>,
 ) -> Result<Vec<LitCorner>, Error> {
     let viewport = settings.check()?;
-    let direct = (settings.global == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     let shot = &direct_shot(shot, direct.as_deref());
     let context = FrameContext { shot, settings, viewport, execution };
     let view = context.view(session, SamplePattern::new(1), &mut CullCounters::default());
@@ -112,7 +112,7 @@ pub fn illuminate_corners(
     facets.sort_unstable();
 
     // Illuminate their corners.
-    let tables = DecodeTables::new(settings.color_space);
+    let tables = DecodeTables::new(settings.picture.color_space);
     let radiosity = context.radiosity(session, &mut RadiosityCounters::default())?;
     let shadows = context.shadows(&view)?;
     let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
@@ -144,7 +144,7 @@ impl<'a> FrameContext<'a> {
     fn render_channels(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
         let execution = Execution { observer: None, ..self.execution.clone() };
         let unwatched = FrameContext { execution: &execution, ..*self };
-        let channels = self.settings.channels;
+        let channels = self.settings.picture.channels;
         let has_color = channels.color || channels.steps;
         if has_color {
             self.render_color(session, stats, frame)?;
@@ -163,13 +163,13 @@ impl<'a> FrameContext<'a> {
     fn render_color(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
         let Self { settings, execution, .. } = *self;
         let clock = || execution.budget.elapsed();
-        let pattern = SamplePattern::new(settings.samples as usize);
+        let pattern = SamplePattern::new(settings.picture.samples as usize);
         let mut grid = self.take_grid(session, pattern.len())?;
 
         // Cull, prepare the view and what illumination needs of the whole scene.
         let t0 = clock();
         let view = self.view(session, pattern, &mut stats.cull);
-        let tables = DecodeTables::new(settings.color_space);
+        let tables = DecodeTables::new(settings.picture.color_space);
         let radiosity = self.radiosity(view.session, &mut stats.radiosity)?;
         let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
@@ -213,10 +213,10 @@ impl<'a> FrameContext<'a> {
         let mut picture = self.take_picture(constants.view.session);
         let rows = TileRows::new(viewport, &mut picture);
         let mut sink = ColorSink::new(constants, mark_colors, tracer.as_ref().map(|t| t as &dyn Tracer), deep, rows);
-        if settings.channels.passes {
+        if settings.picture.channels.passes {
             sink.show_passes();
         }
-        if settings.channels.buffers {
+        if settings.picture.channels.buffers {
             self.check_room_for_buffers()?;
             sink.show_buffers();
         }
@@ -239,7 +239,7 @@ impl<'a> FrameContext<'a> {
         let assembler = Assembler { viewport, workers };
         frame.color = Plane::from_rows(viewport.width, viewport.height, picture);
         frame.passes = assembler.passes(&shown.passes, &self.execution.budget)?;
-        if self.settings.channels.buffers {
+        if self.settings.picture.channels.buffers {
             frame.buffers = assembler.two_buffers(&shown.buffers);
         }
         Ok(())
@@ -251,16 +251,16 @@ impl<'a> FrameContext<'a> {
         let mut grid = self.take_grid(session, 1)?;
         let mut cull = CullCounters::default();
         let view = self.view(session, SamplePattern::new(1), &mut cull);
-        let tables = DecodeTables::new(settings.color_space);
+        let tables = DecodeTables::new(settings.picture.color_space);
         let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), None, &tables);
-        let sink = ChannelSink::new(&constants, settings.channels, grid.tiles.len());
+        let sink = ChannelSink::new(&constants, settings.picture.channels, grid.tiles.len());
         let resolved = self.visibility().resolve(&view, None, &mut grid, execution, &sink)?;
-        if !settings.channels.color {
+        if !settings.picture.channels.color {
             // Beside a colour picture, its numbers count.
             (stats.cull, stats.geometry, stats.visibility) = (cull, resolved.geometry, resolved.counters);
         }
-        Assembler { viewport, workers: &execution.workers }.data(&sink.tiles, settings.channels, frame);
+        Assembler { viewport, workers: &execution.workers }.data(&sink.tiles, settings.picture.channels, frame);
         drop(constants);
         drop(shadows);
         drop(view);
@@ -282,7 +282,7 @@ impl<'a> FrameContext<'a> {
             frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
             Ok(())
         })?;
-        if !self.settings.channels.color {
+        if !self.settings.picture.channels.color {
             frame.color = None;
         }
         Ok(())
@@ -301,7 +301,7 @@ impl<'a> FrameContext<'a> {
 
     /// Light from other surfaces, if it is wanted.
     fn radiosity(&self, session: &Session, counters: &mut RadiosityCounters) -> Result<Option<Arc<Solution>>, Error> {
-        match self.settings.global {
+        match self.settings.global.model {
             Global::Radiosity => {
                 Ok(Some(solution(session, self.shot.lights, self.settings, self.execution, counters)?))
             }
@@ -331,7 +331,7 @@ impl<'a> FrameContext<'a> {
     where
         'a: 'v,
     {
-        match self.settings.global {
+        match self.settings.global.model {
             Global::RayTrace => {
                 let tiles = grid.tiles.len() as u64;
                 Ok(Some(Whitted::new(constants, self.settings, tiles, self.execution)?))
@@ -352,7 +352,7 @@ impl<'a> FrameContext<'a> {
     {
         let Some(material) = constants.translucent().filter(|_| !is_traced) else { return Ok(None) };
         check_order(material, self.settings)?;
-        Ok(Some(DeepImage::new(constants, marks, self.settings.scatter_samples, &self.execution.budget)))
+        Ok(Some(DeepImage::new(constants, marks, self.settings.transparency.scatter_samples, &self.execution.budget)))
     }
 
     /// Room for the two buffers, for which memory is needed for a while.

@@ -76,7 +76,7 @@ impl<'a> PreparedView<'a> {
         let aspect = f64::from(viewport.width) / f64::from(viewport.height);
         let view = camera.transform(aspect, depth_range(camera, &session.world.bounds));
         let clip_from_world = view.clip_from_world();
-        let surfaces = !matches!(settings.lines, crate::Lines::Wireframe);
+        let surfaces = !matches!(settings.picture.lines, crate::Lines::Wireframe);
         let mut instances = Vec::new();
         let coherence = settings.coherence();
         let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
@@ -87,7 +87,7 @@ impl<'a> PreparedView<'a> {
                 if !drops || class.double_sided || class.layered {
                     return BackFaces::Kept;
                 }
-                session.back_faces(instance.mesh_index, settings.transparency, &execution.workers)
+                session.back_faces(instance.mesh_index, settings.transparency.model, &execution.workers)
             };
             let draws = if surfaces {
                 draws(session, instance, &visible.ranges, &clip_from_world, settings, back_faces)
@@ -102,7 +102,7 @@ impl<'a> PreparedView<'a> {
         }
         let screen = Screen::new(viewport, &pattern);
         let acceleration = settings.acceleration.unwrap_or_default();
-        let layer_limit = layer_limit(viewport, settings.layer_memory);
+        let layer_limit = layer_limit(viewport, settings.transparency.layer_memory);
         Self {
             session,
             view,
@@ -205,7 +205,7 @@ pub fn is_solid(
     execution: &Execution,
 ) -> bool {
     is_outside(instance, camera, view)
-        && session.is_solid(instance.mesh_index, settings.transparency, &execution.workers)
+        && session.is_solid(instance.mesh_index, settings.transparency.model, &execution.workers)
 }
 
 /// Whether an instance lies wholly beyond the near plane, so that nothing is seen from within.
@@ -252,7 +252,7 @@ fn draws<'a>(
     let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
     for part in &mesh.parts {
         let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
-        let class = class(material, settings.transparency);
+        let class = class(material, settings.transparency.model);
         for range in ranges {
             let (start, end) = (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
             if start >= end {

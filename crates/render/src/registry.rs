@@ -307,8 +307,3 @@ pub fn shadows(choice: Shadows) -> Option<&'static dyn ShadowAlgorithm> {
     let row = SHADOWS.iter().find(|row| row.name == choice.name);
     row.expect("a choice is made of a row").algorithm
 }
-
-/// The algorithm of a row of [`SHADOWS`], by the row's name; `None` without shadows.
-pub fn shadow_algorithm(name: &str) -> Option<&'static dyn ShadowAlgorithm> {
-    shadows(name).and_then(|row| row.algorithm)
-}

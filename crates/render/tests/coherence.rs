@@ -59,16 +59,9 @@ fn saved(rendered: &Rendered, kind: Coherence) -> u64 {
 fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
     let scene = scene();
     for algorithm in VISIBILITY {
-        let structures = [Acceleration::Bvh, Acceleration::Octree, Acceleration::Bsp, Acceleration::Grid].map(Some);
+        let structures = [Acceleration::BVH, Acceleration::OCTREE, Acceleration::BSP, Acceleration::GRID].map(Some);
         for acceleration in if algorithm.casts_rays { structures.to_vec() } else { vec![None] } {
-            let mut settings = Settings {
-                width: 64,
-                height: 48,
-                visibility: algorithm.name.to_owned(),
-                acceleration,
-                channels: Channels { depth: true, surface: true, ..Channels::default() },
-                ..Settings::default()
-            };
+            let mut settings = Settings { picture: PictureSettings { width: 64, height: 48, channels: Channels { depth: true, surface: true, ..Channels::default() }, ..PictureSettings::default() }, visibility: algorithm.name.to_owned(), acceleration, ..Settings::default() };
             let mut session = Session::new(Arc::clone(&scene)).unwrap();
             shown(&mut session, &settings, 0.0);
             let all = shown(&mut session, &settings, 0.5);
@@ -97,7 +90,7 @@ fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
 #[test]
 fn a_turntable_reuses_what_its_first_picture_found_out() {
     for name in ["z-buffer", "bsp", "ray-cast"] {
-        let mut settings = Settings { width: 32, height: 24, visibility: name.to_owned(), ..Settings::default() };
+        let mut settings = Settings { picture: PictureSettings { width: 32, height: 24, ..PictureSettings::default() }, visibility: name.to_owned(), ..Settings::default() };
         let turn = |settings: &Settings| {
             let mut session = Session::new(scene()).unwrap();
             (0..4).map(|i| shown(&mut session, settings, f64::from(i))).collect::<Vec<_>>()

@@ -342,15 +342,7 @@ fn look_in(scene: &Scene) -> (Session, Camera) {
 }
 
 fn settings() -> Settings {
-    Settings {
-        width: 64,
-        height: 64,
-        samples: 1,
-        global: Global::Radiosity,
-        patch_size: Some(0.21),
-        background: Background::Color { color: [0.0; 3] },
-        ..Settings::default()
-    }
+    Settings { picture: PictureSettings { width: 64, height: 64, samples: 1, background: Background::Color { color: [0.0; 3] }, ..PictureSettings::default() }, global: GlobalSettings { model: Global::Radiosity, patch_size: Some(0.21), ..GlobalSettings::default() }, ..Settings::default() }
 }
 
 #[test]
@@ -412,7 +404,7 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
         projection: Projection::Perspective { view_angle: 0.8 },
         clip: None,
     };
-    let settings = Settings { width: 8, height: 8, patch_size: Some(0.8), ..settings() };
+    let settings = Settings { picture: PictureSettings { width: 8, height: 8, ..settings().picture }, global: GlobalSettings { patch_size: Some(0.8), ..settings().global }, ..settings() };
     let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
     let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
     let red = [255, 0, 0, 255];
@@ -429,7 +421,7 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
     let mut same = textured(red, &|scene| scene.materials[2].ior = 1.7);
     same.load_radiosity(&stored).unwrap();
     assert_eq!(picture(&mut same, &settings).unwrap().stats.radiosity.shots, 0);
-    let raw = Settings { color_space: ColorSpace::Raw, ..settings };
+    let raw = Settings { picture: PictureSettings { color_space: ColorSpace::Raw, ..settings.picture }, ..settings };
     assert!(picture(&mut same, &raw).unwrap_err().to_string().contains("another color space"));
 }
 
@@ -439,7 +431,7 @@ fn glass_in_radiosity_is_warned_about_once() {
     let execution = Execution::default();
     let warnings = |scene: &Scene| {
         let (mut session, camera) = look_in(scene);
-        let settings = Settings { width: 8, height: 8, patch_size: Some(2.0), iterations: Some(1), ..settings() };
+        let settings = Settings { picture: PictureSettings { width: 8, height: 8, ..settings().picture }, global: GlobalSettings { patch_size: Some(2.0), iterations: Some(1), ..settings().global }, ..settings() };
         let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &execution).unwrap().warnings
     };
@@ -482,12 +474,12 @@ fn what_lamps_light_lights_the_rest() {
     };
     let mut session = Session::new(Arc::new(scene)).unwrap();
     let settings =
-        Settings { color_space: ColorSpace::Raw, patch_size: Some(0.5), shadows: "ray".to_owned(), ..settings() };
+        Settings { picture: PictureSettings { color_space: ColorSpace::Raw, ..settings().picture }, global: GlobalSettings { patch_size: Some(0.5), ..settings().global }, shadows: ShadowSettings { algorithm: vitral_render::Shadows::RAY, ..settings().shadows }, ..settings() };
     let shot = Shot { camera, lights: &lights, ambient: [0.0; 3] };
     let lit = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     let [r, g, b, _] = lit.frame.color.unwrap().data()[32 * 64 + 32];
     assert!(r > 10 && g == b && r > 5 * g, "{r} {g} {b}");
-    let local = Settings { global: Global::None, ..settings };
+    let local = Settings { global: GlobalSettings { model: Global::None, ..settings.global }, ..settings };
     let dark = render(&mut session, &shot, &local, &Execution::default()).unwrap();
     assert_eq!(dark.frame.color.unwrap().data()[32 * 64 + 32], [0, 0, 0, 255]);
 }

@@ -47,19 +47,19 @@ type Choice = (&'static str, Option<Acceleration>);
 const Z_BUFFER: Choice = ("z-buffer", None);
 const BRUTE_FORCE: Choice = ("brute-force", None);
 const RAYS: [Choice; 8] = [
-    ("ray-cast", Some(Acceleration::Bvh)),
-    ("ray-cast", Some(Acceleration::Octree)),
-    ("ray-cast", Some(Acceleration::Bsp)),
-    ("ray-cast", Some(Acceleration::Grid)),
-    ("ray-cast", Some(Acceleration::Box)),
-    ("ray-cast", Some(Acceleration::OrientedBox)),
-    ("ray-cast", Some(Acceleration::Sphere)),
-    ("ray-cast", Some(Acceleration::None)),
+    ("ray-cast", Some(Acceleration::BVH)),
+    ("ray-cast", Some(Acceleration::OCTREE)),
+    ("ray-cast", Some(Acceleration::BSP)),
+    ("ray-cast", Some(Acceleration::GRID)),
+    ("ray-cast", Some(Acceleration::BOX)),
+    ("ray-cast", Some(Acceleration::ORIENTED_BOX)),
+    ("ray-cast", Some(Acceleration::SPHERE)),
+    ("ray-cast", Some(Acceleration::NONE)),
 ];
 
 fn settings([width, height]: [u32; 2], samples: usize, (visibility, acceleration): Choice) -> Settings {
     let visibility = visibility.to_owned();
-    Settings { width, height, samples: samples as u32, visibility, acceleration, ..Settings::default() }
+    Settings { picture: PictureSettings { width, height, samples: samples as u32, ..PictureSettings::default() }, visibility, acceleration, ..Settings::default() }
 }
 
 fn resolve(
@@ -68,12 +68,12 @@ fn resolve(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<(Vec<Picture>, VisibilityCounters), Limit> {
-    let (viewport, samples) = (settings.check().unwrap(), settings.samples as usize);
+    let (viewport, samples) = (settings.check().unwrap(), settings.picture.samples as usize);
     let pattern = SamplePattern::new(samples);
     let counters = &mut CullCounters::default();
     let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
-    let sink = Collect { size: [settings.width, settings.height], tiles: Mutex::default() };
+    let sink = Collect { size: [settings.picture.width, settings.picture.height], tiles: Mutex::default() };
     let algorithm = registry::visibility(&settings.visibility).unwrap().algorithm;
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
     let mut tiles = sink.tiles.into_inner().unwrap();
@@ -88,9 +88,9 @@ fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
     let found = |size, choice| resolve(session, camera, &settings(size, samples, choice), &execution).unwrap();
     let z_buffers = [SIZE, SMALL].map(|size| found(size, Z_BUFFER).0);
     for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
-        let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::None);
+        let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::NONE);
         let of_objects =
-            [Acceleration::Box, Acceleration::OrientedBox, Acceleration::Sphere].map(Some).contains(&choice.1);
+            [Acceleration::BOX, Acceleration::ORIENTED_BOX, Acceleration::SPHERE].map(Some).contains(&choice.1);
         let small = (asks_all || of_objects) && session.world().facet_count > 400;
         let (size, expected) = if small { (SMALL, &z_buffers[1]) } else { (SIZE, &z_buffers[0]) };
         let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
@@ -247,7 +247,7 @@ fn structures_are_built_once_and_save_work() {
     assert!(Arc::ptr_eq(&session.partition(&execution).unwrap(), &session.partition(&execution).unwrap()));
     assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
     let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
-    let all = count(("ray-cast", Some(Acceleration::None)));
+    let all = count(("ray-cast", Some(Acceleration::NONE)));
     for choice in &RAYS[..4] {
         let counters = count(*choice);
         assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
@@ -307,7 +307,7 @@ fn looked_on(settings: &Settings) -> Told {
 
 #[test]
 fn p15_the_trace_tells_the_cells_of_a_grid_that_each_ray_goes_through() {
-    let settings = settings(SIZE, 1, ("ray-cast", Some(Acceleration::Grid)));
+    let settings = settings(SIZE, 1, ("ray-cast", Some(Acceleration::GRID)));
     let told = looked_on(&settings);
     let ([min, max], cells) = (told.space, told.cells.unwrap());
     assert_eq!(told.steps.len(), (SIZE[0] * SIZE[1]) as usize, "a step a pixel");
@@ -405,7 +405,7 @@ fn what_is_too_much_is_refused_and_limits_hold() {
 
 #[test]
 fn a_structure_without_rays_is_refused() {
-    let settings = settings(SIZE, 1, ("warnock", Some(Acceleration::Grid)));
+    let settings = settings(SIZE, 1, ("warnock", Some(Acceleration::GRID)));
     let error = settings.check().unwrap_err().to_string();
     assert!(
         error.contains(

@@ -15,8 +15,8 @@ fn renderer(triangles: u32, size: (u32, u32)) -> Renderer {
     scene.add_material(Material::default());
     scene.add_mesh(solids::torus(2.0, 1.0, side, side), DMat4::IDENTITY);
     let mut renderer = Renderer::new(scene).expect("a torus is a scene");
-    (renderer.settings.width, renderer.settings.height) = size;
-    renderer.settings.samples = 1;
+    (renderer.settings.picture.width, renderer.settings.picture.height) = size;
+    renderer.settings.picture.samples = 1;
     renderer
 }
 

@@ -16,8 +16,8 @@ fn renderer(scene: &Scene, patch_size: f64) -> Renderer {
     let mut renderer = Renderer::new(scene.clone()).expect("the box is a scene");
     renderer.camera = renderer.world().cameras.first().copied();
     let settings = &mut renderer.settings;
-    (settings.width, settings.height, settings.samples) = (8, 8, 1);
-    (settings.global, settings.patch_size) = (Global::Radiosity, Some(patch_size));
+    (settings.picture.width, settings.picture.height, settings.picture.samples) = (8, 8, 1);
+    (settings.global.model, settings.global.patch_size) = (Global::Radiosity, Some(patch_size));
     renderer
 }
 
@@ -28,7 +28,7 @@ fn bench(criterion: &mut Criterion) {
     for patch_size in PATCH_SIZES {
         // One shot, to know how many patches there are.
         let mut one = renderer(&scene, patch_size);
-        one.settings.iterations = Some(1);
+        one.settings.global.iterations = Some(1);
         let patches = one.render().expect("nothing limits it").stats.radiosity.patches;
         group.throughput(Throughput::Elements(patches));
         group.bench_function(BenchmarkId::from_parameter(patches), |b| {

@@ -34,13 +34,13 @@ fn sun(turn: f64) -> Light {
 
 fn measure(arguments: &Arguments) -> Result<(), Error> {
     let mut renderer = arguments.renderer(arguments.scene()?)?;
-    renderer.settings.shadow_map_size = 2048;
+    renderer.settings.shadows.map_size = 2048;
     let wanted = WAYS.into_iter().filter(|(name, ..)| arguments.wants(name));
     let mut ways: Vec<_> = wanted.map(|(name, shadows, most)| (Way::new(name, most), shadows)).collect();
     for round in 0..arguments.rounds {
         for (way, (shadows, cascades, moves)) in &mut ways {
-            (*shadows).clone_into(&mut renderer.settings.shadows);
-            renderer.settings.shadow_cascades = *cascades;
+            (*shadows).clone_into(&mut renderer.settings.shadows.algorithm);
+            renderer.settings.shadows.cascades = *cascades;
             renderer.lights = Some(vec![sun(0.0)]);
             way.turn(&mut renderer, |renderer, frame| {
                 if *moves {

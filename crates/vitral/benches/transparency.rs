@@ -26,10 +26,10 @@ fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
     let renderer = || arguments.renderer(scene.clone());
 
     let mut ways = vec![(Way::new("opaque", None), renderer()?)];
-    ways[0].1.settings.transparency = Transparency::None;
+    ways[0].1.settings.transparency.model = Transparency::None;
     for order in ORDERS {
         let mut renderer = renderer()?;
-        renderer.settings.transparency_order = order.value;
+        renderer.settings.transparency.order = order.value;
         let visibility = if order.needs_list { "bsp" } else { "z-buffer" };
         visibility.clone_into(&mut renderer.settings.visibility);
         let most = (order.name == ORDERS[0].name).then_some(MOST);
@@ -37,7 +37,7 @@ fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
     }
     for model in MODELS.iter().filter(|m| m.value != Transparency::default() && m.value != Transparency::None) {
         let mut renderer = renderer()?;
-        renderer.settings.transparency = model.value;
+        renderer.settings.transparency.model = model.value;
         ways.push((Way::new(model.name, None), renderer));
     }
     ways.push((Way::new("translucent", None), arguments.renderer(blurred)?));

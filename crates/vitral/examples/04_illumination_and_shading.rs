@@ -21,7 +21,7 @@ fn main() -> Result<(), Error> {
     scene.meshes[0] = std::sync::Arc::new(ball);
     let mut renderer = Renderer::new(scene)?;
     renderer.camera = renderer.world().cameras.first().copied();
-    (renderer.settings.width, renderer.settings.height) = (SIDE, SIDE);
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (SIDE, SIDE);
 
     // Put the pictures side by side.
     let (columns, rows) = (Illumination::ALL.len() as u32, Shading::ALL.len() as u32);
@@ -30,7 +30,7 @@ fn main() -> Result<(), Error> {
     for (row, (shading, name, meaning)) in Shading::ALL.into_iter().enumerate() {
         println!("row {}: {name}, {meaning}", row + 1);
         for (column, illumination) in Illumination::ALL.into_iter().enumerate() {
-            (renderer.settings.shading, renderer.settings.illumination) = (shading, illumination);
+            (renderer.settings.shading.model, renderer.settings.shading.illumination) = (shading, illumination);
             let picture = renderer.render()?.frame.color.unwrap_or_default();
             for y in 0..SIDE {
                 let start = (row * SIDE as usize + y as usize) * width + column * SIDE as usize;

@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
 
     let mut renderer = Renderer::new(load(&model, &LoadOptions::default(), &Workers::new(0))?)?;
-    (renderer.settings.width, renderer.settings.height) = (400, 300);
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (400, 300);
     let mut seconds = 0.0;
     renderer.turntable(count, |i, rendered| {
         seconds += rendered.stats.seconds.total;

@@ -10,8 +10,8 @@ use vitral::{Channel, Error, Renderer, Scene, load_builtin, picture};
 fn draw(scene: Scene, lighting: bool, path: &Path) -> Result<(), Error> {
     let mut renderer = Renderer::new(scene)?;
     renderer.camera = renderer.world().cameras.first().copied();
-    (renderer.settings.width, renderer.settings.height) = (480, 360);
-    renderer.settings.lighting = lighting;
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (480, 360);
+    renderer.settings.shading.lighting = lighting;
     picture::save(path, &renderer.render()?.frame, Channel::Color)?;
     println!("wrote {}", path.display());
     Ok(())

@@ -32,10 +32,10 @@ fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
     let scene = load(model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     let settings = &mut renderer.settings;
-    (settings.width, settings.height, settings.samples) = (WIDTH, HEIGHT, 1);
-    settings.visibility = "ray-cast".to_owned();
+    (settings.picture.width, settings.picture.height, settings.picture.samples) = (WIDTH, HEIGHT, 1);
+    settings.visibility = vitral::render::Visibility::RAY_CAST;
     // The same triangles for everyone: none is left out because it is turned away, none is passed through.
-    settings.transparency = Transparency::None;
+    settings.transparency.model = Transparency::None;
     (settings.cull.frustum, settings.cull.back_face) = (false, false);
     Ok(renderer)
 }
@@ -73,7 +73,7 @@ fn rays(view: &PreparedView<'_>, center: DVec3) -> Vec<[Vec3; 2]> {
 fn prepare(model: &str, file: &str) -> Result<(), Failure> {
     let renderer = renderer(model, 0)?;
     let triangles = renderer.session().triangles(renderer.execution())?;
-    let rays = rays(&prepared(&renderer, Acceleration::Bvh), triangles.center);
+    let rays = rays(&prepared(&renderer, Acceleration::BVH), triangles.center);
     let mut bytes = Vec::new();
     bytes.extend((triangles.count() as u32).to_le_bytes());
     bytes.extend((rays.len() as u32).to_le_bytes());
@@ -152,11 +152,11 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
     let (octree_ms, _) = timed(1, || Ok(Octree::build(&triangles, workers, &budget)?))?;
     let (bsp_ms, _) = timed(1, || Ok(Bsp::build(&triangles, workers, &budget)?))?;
     let (grid_ms, _) = timed(1, || Ok(Grid::build(&triangles, &budget)?))?;
-    let (picture_ms, counters, seen) = picture(&renderer, Acceleration::Bvh, rounds)?;
-    let (octree_picture_ms, _, through_octree) = picture(&renderer, Acceleration::Octree, 1)?;
-    let (bsp_picture_ms, _, through_bsp) = picture(&renderer, Acceleration::Bsp, 1)?;
-    let (grid_picture_ms, _, through_grid) = picture(&renderer, Acceleration::Grid, 1)?;
-    let rays = rays(&prepared(&renderer, Acceleration::Bvh), triangles.center);
+    let (picture_ms, counters, seen) = picture(&renderer, Acceleration::BVH, rounds)?;
+    let (octree_picture_ms, _, through_octree) = picture(&renderer, Acceleration::OCTREE, 1)?;
+    let (bsp_picture_ms, _, through_bsp) = picture(&renderer, Acceleration::BSP, 1)?;
+    let (grid_picture_ms, _, through_grid) = picture(&renderer, Acceleration::GRID, 1)?;
+    let rays = rays(&prepared(&renderer, Acceleration::BVH), triangles.center);
     let (single_ms, (single, single_counters)) = timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
 
     // Count the rays on which answers differ.

@@ -42,8 +42,8 @@ impl Plan {
 fn open(plan: &Plan, execution: &Execution) -> Result<Renderer, Error> {
     let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution.clone())?;
-    (renderer.settings.width, renderer.settings.height) = plan.size;
-    renderer.settings.samples = plan.samples;
+    (renderer.settings.picture.width, renderer.settings.picture.height) = plan.size;
+    renderer.settings.picture.samples = plan.samples;
     Ok(renderer)
 }
 

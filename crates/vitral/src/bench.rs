@@ -9,10 +9,10 @@
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_raster::{SamplePattern, TileGrid};
-use vitral_render::registry::{ACCELERATION, VISIBILITY, VisibilityAlgorithm};
+use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
+use vitral_render::{Acceleration, Channels, Choice, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
 use vitral_scene::{Camera, Scene};
 
 /// An algorithm of the registry, and for rays the structure.
@@ -21,14 +21,13 @@ pub struct Entrant {
     /// The algorithm.
     pub algorithm: &'static VisibilityAlgorithm,
     /// The structure, where it casts rays.
-    pub acceleration: Option<(&'static str, Acceleration)>,
+    pub acceleration: Option<Acceleration>,
 }
 
 impl Entrant {
     /// All algorithms; those that cast rays once for each structure that is made for many triangles. The z-buffer comes first.
     pub fn all() -> Vec<Self> {
-        let structures = ACCELERATION.iter().filter(|a| a.grows_slowly);
-        let structures: Vec<_> = structures.map(|a| Some((a.name, a.value))).collect();
+        let structures: Vec<_> = Acceleration::all().filter(|a| a.grows_slowly).map(Some).collect();
         let of = |algorithm: &'static VisibilityAlgorithm| {
             let choices = if algorithm.casts_rays { structures.clone() } else { vec![None] };
             choices.into_iter().map(move |acceleration| Self { algorithm, acceleration })
@@ -38,19 +37,20 @@ impl Entrant {
 
     /// These settings with the algorithm. It decides about opaque surfaces, since not every one has all orders of transparent ones.
     pub(crate) fn settings(&self, settings: &Settings) -> Settings {
-        Settings {
-            visibility: self.algorithm.name.to_owned(),
-            acceleration: self.acceleration.map(|(_, value)| value),
-            transparency_order: TransparencyOrder::default(),
-            channels: Channels { passes: false, buffers: false, ..settings.channels },
+        let mut settings = Settings {
+            visibility: Choice::of(&self.algorithm.info),
+            acceleration: self.acceleration,
             ..settings.clone()
-        }
+        };
+        settings.transparency.order = TransparencyOrder::default();
+        settings.picture.channels = Channels { passes: false, buffers: false, ..settings.picture.channels };
+        settings
     }
 
     /// The algorithm's name, with the structure.
     pub fn name(&self) -> String {
         match self.acceleration {
-            Some((structure, _)) => format!("{} ({structure})", self.algorithm.name),
+            Some(structure) => format!("{} ({structure})", self.algorithm.name),
             None => self.algorithm.name.to_owned(),
         }
     }
@@ -126,7 +126,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
     let session = Session::with_workers(Arc::clone(task.scene), &execution.workers)?;
     let budget = execution.budget.renewed().with_time_limit(task.time_limit).with_memory_limit(task.memory_limit);
     let execution = Execution { budget, ..execution.clone() };
-    let samples = settings.samples as usize;
+    let samples = settings.picture.samples as usize;
     let mut grid = TileGrid::new(viewport, samples);
     let picture = |grid: &mut TileGrid| -> Result<_, Limit> {
         let start = execution.budget.elapsed();
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn p25_every_algorithm_is_measured_and_agrees() {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (48, 36, 1);
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (48, 36, 1);
         let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
         let (scene, settings) = (renderer.scene(), &renderer.settings);
         let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };

@@ -58,7 +58,7 @@ pub fn dump(
     let lights = renderer.frame_lights(camera);
     let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
     let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
-    let of_buffers = renderer.settings.transparency_order == TransparencyOrder::TwoBuffer;
+    let of_buffers = renderer.settings.transparency.order == TransparencyOrder::TWO_BUFFER;
     let (mut of_samples, mut of_picture) = (Vec::new(), Vec::new());
     let cull_counters = {
         let mut counters = CullCounters::default();
@@ -77,7 +77,7 @@ pub fn dump(
         }
         counters
     };
-    if renderer.settings.visibility == "scan-line" {
+    if renderer.settings.visibility.has_edge_table {
         let (name, what) = ("8-edge-table.txt".to_owned(), "polygon table, edge table, active edges, spans".to_owned());
         write(&name, edge_table::edge_tables(renderer, camera, viewport)?.as_bytes())?;
         of_samples.push(Listed { name, what });
@@ -85,15 +85,15 @@ pub fn dump(
 
     // The same picture again, with the planes of the visible surface.
     let in_passes = has_passes(&renderer.settings);
-    let wanted = renderer.settings.channels;
-    let channels = &mut renderer.settings.channels;
+    let wanted = renderer.settings.picture.channels;
+    let channels = &mut renderer.settings.picture.channels;
     [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
     let rendered = renderer.render_from(camera);
-    renderer.settings.channels = wanted;
+    renderer.settings.picture.channels = wanted;
     let rendered = rendered?;
     debug_assert_eq!(rendered.stats.cull.triangles, cull_counters.triangles);
-    let options = EncodeOptions { srgb: renderer.settings.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
+    let options = EncodeOptions { srgb: renderer.settings.picture.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
     for (name, channel) in [
         ("8-surface.npy", Channel::Id),
         ("8-surface.png", Channel::Id),
@@ -118,7 +118,7 @@ pub fn dump(
 /// Whether the picture is made in passes.
 fn has_passes(settings: &Settings) -> bool {
     let mut asked = settings.clone();
-    asked.channels.passes = true;
+    asked.picture.channels.passes = true;
     asked.check().is_ok()
 }
 
@@ -161,9 +161,9 @@ fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> S
          9. [Frame buffer](9-framebuffer.png): {} x {} pixels, {} samples each\n{}",
         settings.visibility,
         list(of_samples),
-        settings.width,
-        settings.height,
-        settings.samples,
+        settings.picture.width,
+        settings.picture.height,
+        settings.picture.samples,
         list(of_picture)
     )
 }
@@ -194,7 +194,7 @@ mod tests {
 
     fn small(name: &str) -> Renderer {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (64, 48, 1);
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (64, 48, 1);
         renderer
     }
 
@@ -286,8 +286,8 @@ mod tests {
     #[test]
     fn p1_l8_corners_are_illuminated_by_the_formula() {
         let mut renderer = small("cubs");
-        renderer.settings.color_space = ColorSpace::Raw;
-        renderer.settings.illumination = vitral_light::Illumination::Lambert;
+        renderer.settings.picture.color_space = ColorSpace::Raw;
+        renderer.settings.shading.illumination = vitral_light::Illumination::Lambert;
         let material = vitral_light::Material::default();
         let vitral_light::Reflectance::Phong { kd, .. } = material.reflectance else { panic!("{material:?}") };
         let mut scene = Scene::clone(renderer.scene());
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn f7_both_buffers_are_exported() {
         let mut renderer = small("lens");
-        renderer.settings.transparency_order = TransparencyOrder::TwoBuffer;
+        renderer.settings.transparency.order = TransparencyOrder::TWO_BUFFER;
         let files = dumped(&mut renderer);
         let picture = renderer.render().unwrap().frame;
         let encoded = picture::encode_with(

@@ -211,21 +211,21 @@ pub fn explain(
     time_limit: Option<f64>,
 ) -> Result<Explanation, Error> {
     let settings = &renderer.settings;
-    if pixel[0] >= settings.width || pixel[1] >= settings.height {
-        let size = format!("the picture has {} x {} pixels, counted from 0", settings.width, settings.height);
+    if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
+        let size = format!("the picture has {} x {} pixels, counted from 0", settings.picture.width, settings.picture.height);
         return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
     }
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
     let surfaces = surfaces(renderer, camera, pixel, &budget)?;
-    let nearest = surfaces.first().filter(|_| settings.shading == Shading::Gouraud);
+    let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
     let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
     let mut decisions = Vec::new();
     for entrant in Entrant::all() {
         decisions.push(decide(renderer, camera, pixel, &entrant, time_limit)?);
         budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
     }
-    let rays = match settings.global {
+    let rays = match settings.global.model {
         Global::RayTrace => rays(renderer, camera, pixel, &budget.with_time_limit(time_limit))?,
         Global::None | Global::Radiosity => Vec::new(),
     };
@@ -234,7 +234,7 @@ pub fn explain(
 
 /// Traces the picture, a ray through each pixel's centre, and looks on at one of them.
 fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<TracedRay>, Error> {
-    let settings = Settings { samples: 1, channels: Channels::default(), ..renderer.settings.clone() };
+    let settings = renderer.settings.clone().with_samples(1).with_channels(Channels::default());
     let onlooker = Arc::new(RayOnlooker { pixel, rays: Mutex::default() });
     let observer = Some(Arc::clone(&onlooker) as Arc<dyn Observer>);
     let execution = Execution { budget: budget.clone(), observer, ..renderer.execution().clone() };
@@ -477,7 +477,7 @@ mod tests {
     #[test]
     fn the_nearest_surface_is_what_every_algorithm_sees_and_says_why() {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height) = (64, 48);
+        (renderer.settings.picture.width, renderer.settings.picture.height) = (64, 48);
         renderer.settings.cull.back_face = false;
         let camera = renderer.frame_camera();
         let told = explain(&renderer, &camera, [32, 20], None).unwrap();
@@ -496,10 +496,10 @@ mod tests {
     fn l9_increments_of_a_pixel_lead_to_its_intensity() {
         let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
         let settings = &mut renderer.settings;
-        (settings.width, settings.height, settings.samples) = (64, 48, 1);
-        settings.shading = Shading::Gouraud;
-        settings.interpolation = vitral_render::Interpolation::Linear;
-        settings.color_space = vitral_render::ColorSpace::Raw;
+        (settings.picture.width, settings.picture.height, settings.picture.samples) = (64, 48, 1);
+        settings.shading.model = Shading::Gouraud;
+        settings.shading.interpolation = vitral_render::Interpolation::Linear;
+        settings.picture.color_space = vitral_render::ColorSpace::Raw;
         let camera = renderer.frame_camera();
         let picture = renderer.render().unwrap().frame.color.unwrap();
         let mut explained = 0;
@@ -521,7 +521,7 @@ mod tests {
             assert!(told.to_string().contains(&format!("Gouraud shading of facet {}", g.facet)));
         }
         assert!(explained >= 3);
-        renderer.settings.shading = Shading::Phong;
+        renderer.settings.shading.model = Shading::Phong;
         assert!(explain(&renderer, &camera, [32, 26], None).unwrap().gouraud.is_none());
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```
 //! let mut renderer = vitral::Renderer::new(vitral::load_builtin("teapot")?)?;
-//! (renderer.settings.width, renderer.settings.height) = (160, 120);
+//! (renderer.settings.picture.width, renderer.settings.picture.height) = (160, 120);
 //! let picture = renderer.render()?.frame;
 //! let png = vitral::picture::encode(&picture, vitral::Channel::Color, vitral::PictureFormat::Png)?;
 //! assert!(png.starts_with(b"\x89PNG"));

@@ -12,8 +12,8 @@ use crate::{Error, Renderer};
 use vitral_frame::{Frame, Plane};
 use vitral_light::{AreaShape, Light, LightKind, Material, Reflectance};
 use vitral_math::{DMat4, DQuat, DVec3};
-use vitral_render::registry::{self, Panels};
-use vitral_render::{Channels, Lines, Rendered, Settings, SettingsError, shadow};
+use vitral_render::catalogue::Panels;
+use vitral_render::{Channels, Lines, Rendered, Settings, SettingsError, Shadows, registry, shadow};
 use vitral_scene::builtin::solids;
 use vitral_scene::{Camera, Faces, Lens, Mesh, Part, Projection, Scene, framing};
 
@@ -31,9 +31,9 @@ type Picture = Plane<[u8; 4]>;
 /// Shadows without panels, a scene without such a light, and whatever ends a picture.
 pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Error> {
     let settings = renderer.settings.clone();
-    let Some(sequence) = registry::shadows(&settings.shadows).and_then(|s| s.panels) else {
-        let choices: Vec<_> = registry::SHADOWS.iter().filter(|s| s.panels.is_some()).map(|s| s.name).collect();
-        let error = SettingsError::Panels { shadows: settings.shadows, choices: choices.join(", ") };
+    let shadows = settings.shadows.algorithm;
+    let Some(sequence) = shadows.panels else {
+        let error = SettingsError::Panels { shadows, choices: Shadows::names(|row| row.panels.is_some()) };
         return Err(vitral_render::Error::from(error).into());
     };
     let lights = renderer.frame_lights(camera);
@@ -58,7 +58,7 @@ fn six(
     let with = renderer.settings.clone();
     let own_lights = renderer.lights.replace(lights.to_vec());
     let intensity = renderer.light_intensity.replace(1.0);
-    let without = Settings { shadows: "none".to_owned(), ..with.clone() };
+    let without = with.clone().with_shadows(Shadows::NONE);
     let made = || {
         let mut shot = |settings: &Settings, camera: &Camera| {
             renderer.settings = settings.clone();
@@ -69,9 +69,9 @@ fn six(
         let rest = match sequence {
             Panels::ImageSpace => {
                 let depth = Channels { depth: true, color: false, ..Channels::default() };
-                let depths = Settings { channels: depth, ..without };
+                let depths = without.with_channels(depth);
                 let cast = Channels { cast_shadow: true, color: false, ..Channels::default() };
-                let mask = shot(&Settings { channels: cast, ..with }, camera)?.frame.cast_shadow.unwrap_or_default();
+                let mask = shot(&with.with_channels(cast), camera)?.frame.cast_shadow.unwrap_or_default();
                 let [light, viewer] = [shot(&texels(&depths), from_light)?, shot(&depths, camera)?].map(grey);
                 let light = enlarged(&light, [viewer.width(), viewer.height()]);
                 let darkened = darkened(&plain, &mask);
@@ -116,10 +116,10 @@ fn grey(rendered: Rendered) -> Picture {
 
 /// Settings for a picture with no more pixels along its longer side than a shadow map has texels.
 fn texels(settings: &Settings) -> Settings {
-    let longer = u64::from(settings.width.max(settings.height));
-    let most = longer.min(u64::from(settings.shadow_map_size));
-    let [width, height] = [settings.width, settings.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
-    Settings { width, height, ..settings.clone() }
+    let longer = u64::from(settings.picture.width.max(settings.picture.height));
+    let most = longer.min(u64::from(settings.shadows.map_size));
+    let [width, height] = [settings.picture.width, settings.picture.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
+    settings.clone().with_size(width, height)
 }
 
 /// The picture in another size, each pixel as the nearest is.
@@ -209,7 +209,7 @@ fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Came
     let tip = DMat4::from_translation(DVec3::Y * -2.0 * size);
     mark(solids::cone(size, 2.0 * size, 24), [0.1, 0.4, 0.9], turned(viewer) * tip);
     let mut whole = Renderer::with_execution(scene, renderer.execution().clone())?;
-    whole.settings = Settings { shadows: "none".to_owned(), lines: Lines::None, ..renderer.settings.clone() };
+    whole.settings = renderer.settings.clone().with_shadows(Shadows::NONE).with_lines(Lines::None);
     whole.lights = Some(lights.to_vec());
     whole.ambient = renderer.ambient;
     // From beside the viewer, so that the cone hides nothing.
@@ -226,7 +226,7 @@ fn lit_scene(renderer: &Renderer, number: usize) -> Result<Renderer, Error> {
     let mut mesh = Mesh { name: "lit".to_owned(), ..Mesh::default() };
     let (mut starts, mut corners) = (vec![0], Vec::new());
     let (session, settings) = (renderer.session(), &renderer.settings);
-    let algorithm = registry::shadow_algorithm(&settings.shadows);
+    let algorithm = registry::shadows(settings.shadows.algorithm);
     let drawn = shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
         if polygon.light == number {
             let first = mesh.positions.len() as u32;
@@ -269,8 +269,8 @@ mod tests {
     fn of(shadows: &str) -> (Frame, [u32; 2]) {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
         let size = [96, 72];
-        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (size[0], size[1], 1);
-        renderer.settings.shadows = shadows.to_owned();
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (size[0], size[1], 1);
+        renderer.settings.shadows.algorithm = shadows.to_owned();
         let before = renderer.settings.clone();
         let camera = renderer.frame_camera();
         let frame = panels(&mut renderer, &camera).unwrap().frame;
@@ -310,9 +310,9 @@ mod tests {
         let size = [96, 72];
         let fresh = |lights: &[Light], shadows: &str| {
             let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-            (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (size[0], size[1], 1);
-            (renderer.settings.shadows, renderer.settings.color_space) = (shadows.to_owned(), ColorSpace::Raw);
-            renderer.settings.illumination = Illumination::Phong;
+            (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (size[0], size[1], 1);
+            (renderer.settings.shadows.algorithm, renderer.settings.picture.color_space) = (shadows.to_owned(), ColorSpace::Raw);
+            renderer.settings.shading.illumination = Illumination::Phong;
             (renderer.lights, renderer.light_intensity) = (Some(lights.to_vec()), Some(1.0));
             renderer
         };
@@ -324,7 +324,7 @@ mod tests {
             |lights: &[Light], shadows: &str| color(fresh(lights, shadows).render_from(&camera).unwrap()).into_data();
         let depths = |from: &Camera| {
             let mut renderer = fresh(&lights, "none");
-            renderer.settings.channels = Channels { depth: true, color: false, ..Channels::default() };
+            renderer.settings.picture.channels = Channels { depth: true, color: false, ..Channels::default() };
             renderer.render_from(from).unwrap().frame.depth.unwrap().into_data()
         };
 
@@ -351,7 +351,7 @@ mod tests {
         let ambient = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..lamp };
         let ambient = picture(&[ambient], "none");
         let mut mask = fresh(&lights, "map");
-        mask.settings.channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+        mask.settings.picture.channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
         let mask = mask.render_from(&camera).unwrap().frame.cast_shadow.unwrap().into_data();
         let (mut shadow, mut brighter) = (0, 0);
         for i in 0..d.len() {
@@ -371,9 +371,9 @@ mod tests {
     #[test]
     fn f25_panels_show_the_size_of_the_map() {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (96, 72, 1);
-        renderer.settings.shadows = "map".to_owned();
-        renderer.settings.shadow_map_size = 16;
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (96, 72, 1);
+        renderer.settings.shadows.algorithm = vitral_render::Shadows::MAP;
+        renderer.settings.shadows.map_size = 16;
         let camera = renderer.frame_camera();
         let coarse = panels(&mut renderer, &camera).unwrap().frame;
         let (fine, size) = of("map");
@@ -404,7 +404,7 @@ mod tests {
         let camera = renderer.frame_camera();
         let error = panels(&mut renderer, &camera).unwrap_err();
         assert!(error.to_string().contains("map, object-precision"), "{error}");
-        renderer.settings.shadows = "map".to_owned();
+        renderer.settings.shadows.algorithm = vitral_render::Shadows::MAP;
         renderer.lights = Some(Vec::new());
         assert_eq!(panels(&mut renderer, &camera).unwrap_err().exit_code(), 2);
     }

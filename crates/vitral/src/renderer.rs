@@ -117,7 +117,7 @@ impl Renderer {
 
     /// Width by height of the picture.
     pub fn aspect(&self) -> f64 {
-        f64::from(self.settings.width.max(1)) / f64::from(self.settings.height.max(1))
+        f64::from(self.settings.picture.width.max(1)) / f64::from(self.settings.picture.height.max(1))
     }
 
     /// The viewer of the next picture: the chosen camera, or the framed one.
@@ -148,7 +148,7 @@ impl Renderer {
             Some(lights) => lights.clone(),
             // A scene that has light from everywhere says what it is lit by.
             None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
-            None if self.world().lights.is_empty() && self.settings.global == Global::Radiosity => self.fixed_lights(),
+            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => self.fixed_lights(),
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),
         };
@@ -165,7 +165,7 @@ impl Renderer {
     fn frame_exposure(&self) -> f32 {
         // Raw colours are made of the numbers of the file.
         let own = self.lights.is_none() && self.light_intensity.is_none();
-        if own && self.settings.color_space != ColorSpace::Raw { self.exposure } else { 1.0 }
+        if own && self.settings.picture.color_space != ColorSpace::Raw { self.exposure } else { 1.0 }
     }
 
     /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
@@ -205,7 +205,7 @@ impl Renderer {
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
         let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;
         let exposure = self.frame_exposure();
-        if exposure != 1.0 && self.settings.lighting {
+        if exposure != 1.0 && self.settings.shading.lighting {
             let (what, change, factor) =
                 if exposure < 1.0 { ("bright", "dimmed", 1.0 / exposure) } else { ("dark", "brightened", exposure) };
             rendered.warnings.push(format!(
@@ -297,7 +297,7 @@ mod tests {
 
     fn small(name: &str) -> Renderer {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
-        (renderer.settings.width, renderer.settings.height) = (48, 36);
+        (renderer.settings.picture.width, renderer.settings.picture.height) = (48, 36);
         renderer
     }
 
@@ -311,7 +311,7 @@ mod tests {
         assert!(renderer.frame_lights(&camera).is_empty(), "no lights were asked for");
         // Radiosity does not depend on the camera, and needs no lamps where surfaces shine.
         let mut fixed = small("teapot");
-        fixed.settings.global = Global::Radiosity;
+        fixed.settings.global.model = Global::Radiosity;
         let (near, far) = (Camera { position: DVec3::ONE, ..camera }, Camera { position: -DVec3::ONE, ..camera });
         assert!(!fixed.frame_lights(&near).is_empty());
         assert_eq!(fixed.frame_lights(&near), fixed.frame_lights(&far));
@@ -322,7 +322,7 @@ mod tests {
         let lamp = scene.add_material(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
         let with_lamp = |scene: &Scene| {
             let mut shining = Renderer::new(scene.clone()).unwrap();
-            shining.settings.global = Global::Radiosity;
+            shining.settings.global.model = Global::Radiosity;
             shining.frame_lights(&near)
         };
         assert_eq!(with_lamp(&scene), fixed.frame_lights(&near), "nothing is made of the material");

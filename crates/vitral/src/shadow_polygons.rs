@@ -2,7 +2,7 @@
 
 use crate::{Error, Renderer};
 use std::fmt::Write;
-use vitral_render::{SettingsError, registry, shadow};
+use vitral_render::{SettingsError, Shadows, registry, shadow};
 
 /// The polygons of the chosen shadow algorithm for the next picture of `renderer`, as OBJ text: a group for each light
 /// and kind of polygon, world space.
@@ -12,18 +12,16 @@ use vitral_render::{SettingsError, registry, shadow};
 pub fn shadow_polygons(renderer: &Renderer) -> Result<String, Error> {
     let settings = &renderer.settings;
     settings.check().map_err(vitral_render::Error::from)?;
-    if registry::shadows(&settings.shadows).is_none_or(|s| s.polygons.is_none()) {
-        let choices = registry::SHADOWS.iter().filter(|s| s.polygons.is_some()).map(|s| s.name);
-        let error = SettingsError::ShadowPolygons {
-            shadows: settings.shadows.clone(),
-            choices: choices.collect::<Vec<_>>().join(", "),
-        };
+    let shadows = settings.shadows.algorithm;
+    if shadows.polygons.is_none() {
+        let choices = Shadows::names(|row| row.polygons.is_some());
+        let error = SettingsError::ShadowPolygons { shadows, choices };
         return Err(vitral_render::Error::from(error).into());
     }
     let camera = renderer.frame_camera();
     let lights = renderer.frame_lights(&camera);
     let (mut text, mut count, mut group) = (String::new(), 0u64, None);
-    let (session, algorithm) = (renderer.session(), registry::shadow_algorithm(&settings.shadows));
+    let (session, algorithm) = (renderer.session(), registry::shadows(shadows));
     let drawn = shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
         // A group is named where it begins.
         let name = (polygon.light, polygon.kind);

@@ -109,7 +109,7 @@ impl State {
             light.check().map_err(|what| (format!("lights[{i}]"), what))?;
         }
         self.viewpoint.check_numbers().map_err(|(field, what)| (format!("viewpoint.{field}"), what))?;
-        let (field, what) = match self.settings.background {
+        let (field, what) = match self.settings.picture.background {
             _ if self.turntable.is_some_and(|views| !(1..=MOST_VIEWS).contains(&views)) => {
                 ("turntable", "a whole number from 1 to 1000000 is required")
             }
@@ -117,9 +117,9 @@ impl State {
                 ("light-intensity", "a finite number of at least 0 is required")
             }
             _ if !positive(&self.ambient) => ("ambient", INTENSITIES),
-            Background::Color { color } if !displayed(&color) => ("settings.background.color", COLOR),
-            Background::Gradient { top, .. } if !displayed(&top) => ("settings.background.top", COLOR),
-            Background::Gradient { bottom, .. } if !displayed(&bottom) => ("settings.background.bottom", COLOR),
+            Background::Color { color } if !displayed(&color) => ("settings.picture.background.color", COLOR),
+            Background::Gradient { top, .. } if !displayed(&top) => ("settings.picture.background.top", COLOR),
+            Background::Gradient { bottom, .. } if !displayed(&bottom) => ("settings.picture.background.bottom", COLOR),
             _ => return Ok(()),
         };
         Err((field.to_owned(), what))
@@ -177,7 +177,7 @@ impl State {
         for other in scenes {
             scene.append(other?);
         }
-        let raw = self.settings.color_space == ColorSpace::Raw;
+        let raw = self.settings.picture.color_space == ColorSpace::Raw;
         for change in &self.materials {
             if raw { change.raw().apply(&mut scene)? } else { change.apply(&mut scene)? }
         }
@@ -259,7 +259,7 @@ mod tests {
         let mut state = State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
         state.viewpoint =
             Viewpoint { view: View::Top, up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
-        state.settings.background = Background::Color { color: [0.25, 0.5, 1.0] };
+        state.settings.picture.background = Background::Color { color: [0.25, 0.5, 1.0] };
         state.lights = Some(vitral_scene::lab::lights());
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
         assert_eq!(State::from_json(&state.to_json(), "s").unwrap(), state);
@@ -308,7 +308,7 @@ mod tests {
             ),
             (
                 r#""settings": {"background": {"type": "color", "color": [0, 2, 0]}}"#,
-                "settings.background.color: r,g,b from 0 to 1 are required",
+                "settings.picture.background.color: r,g,b from 0 to 1 are required",
             ),
         ] {
             let told = tell(&format!("{{{fields}}}"));
@@ -322,12 +322,12 @@ mod tests {
     #[test]
     fn an_overlay_changes_only_what_it_names() {
         let mut state = State { models: vec!["a.obj".into()], ..State::default() };
-        state.settings.shading = Shading::Flat;
+        state.settings.shading.model = Shading::Flat;
         let text =
             r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
         state.overlay(text, "c").unwrap();
-        assert_eq!((state.settings.width, state.settings.height, state.settings.shading), (99, 768, Shading::Flat));
-        assert_eq!((state.settings.background, state.viewpoint.view), (Background::Transparent, View::Left));
+        assert_eq!((state.settings.picture.width, state.settings.picture.height, state.settings.shading.model), (99, 768, Shading::Flat));
+        assert_eq!((state.settings.picture.background, state.viewpoint.view), (Background::Transparent, View::Left));
         assert_eq!(state.models, ["a.obj"]);
         let before = state.clone();
         assert!(state.overlay("{\"models\": 3}", "c").is_err());

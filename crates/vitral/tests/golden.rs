@@ -18,22 +18,22 @@ fn golden(name: &str, scene: Scene, change: impl Fn(&mut Renderer)) {
 fn renderer(scene: &Scene, setting: &Setting, [width, height]: [u32; 2]) -> Renderer {
     let execution = Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
     let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap();
-    (renderer.settings.width, renderer.settings.height) = (width, height);
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (width, height);
     renderer
 }
 
 /// A built-in figure, small, seen by its own camera.
 fn figure(file: &str, name: &str, change: impl Fn(&mut Renderer)) {
     golden(file, builtin(name), |r| {
-        (r.settings.width, r.settings.height) = (160, 120);
+        (r.settings.picture.width, r.settings.picture.height) = (160, 120);
         r.camera = r.world().cameras.first().copied();
         change(r);
     });
 }
 
 fn traced(renderer: &mut Renderer) {
-    renderer.settings.global = Global::RayTrace;
-    renderer.settings.shadows = "ray".to_owned();
+    renderer.settings.global.model = Global::RayTrace;
+    renderer.settings.shadows.algorithm = vitral::render::Shadows::RAY;
 }
 
 fn builtin(name: &str) -> Scene {
@@ -53,9 +53,9 @@ fn teapot() {
 #[test]
 fn teapot_without_anti_aliasing_on_nothing() {
     golden("teapot-plain", builtin("teapot"), |r| {
-        r.settings.samples = 1;
-        r.settings.background = Background::Transparent;
-        r.settings.illumination = Illumination::BlinnPhong;
+        r.settings.picture.samples = 1;
+        r.settings.picture.background = Background::Transparent;
+        r.settings.shading.illumination = Illumination::BlinnPhong;
     });
 }
 
@@ -68,19 +68,19 @@ fn lab_scenes() {
 
 #[test]
 fn shading_models() {
-    golden("sphere-flat", builtin("sphere"), |r| r.settings.shading = Shading::Flat);
-    golden("sphere-gouraud", builtin("sphere"), |r| r.settings.shading = Shading::Gouraud);
+    golden("sphere-flat", builtin("sphere"), |r| r.settings.shading.model = Shading::Flat);
+    golden("sphere-gouraud", builtin("sphere"), |r| r.settings.shading.model = Shading::Gouraud);
 }
 
 #[test]
 fn cook_torrance() {
-    golden("scene0-cook-torrance", builtin("scene0"), |r| r.settings.illumination = Illumination::CookTorrance);
+    golden("scene0-cook-torrance", builtin("scene0"), |r| r.settings.shading.illumination = Illumination::CookTorrance);
 }
 
 #[test]
 fn edges() {
-    golden("scene1-edges", builtin("scene1"), |r| r.settings.lines = Lines::Edges);
-    golden("cubs-hidden-line", builtin("cubs"), |r| r.settings.lines = Lines::WireframeHiddenLine);
+    golden("scene1-edges", builtin("scene1"), |r| r.settings.picture.lines = Lines::Edges);
+    golden("cubs-hidden-line", builtin("cubs"), |r| r.settings.picture.lines = Lines::WireframeHiddenLine);
 }
 
 #[test]
@@ -107,8 +107,8 @@ fn ray_traced_figures() {
 fn p42_everything_at_once() {
     figure("realism", "realism", |r| {
         traced(r);
-        r.settings.transparency = Transparency::Filtered;
-        (r.settings.samples, r.settings.light_samples, r.settings.scatter_samples) = (2, 4, 8);
+        r.settings.transparency.model = Transparency::Filtered;
+        (r.settings.picture.samples, r.settings.shadows.light_samples, r.settings.transparency.scatter_samples) = (2, 4, 8);
     });
 }
 
@@ -116,9 +116,9 @@ fn p42_everything_at_once() {
 fn shadows() {
     for (shadows, scene) in [("map", "scene1"), ("volume", "scene0")] {
         golden(&format!("{scene}-shadows-{shadows}"), builtin(scene), |r| {
-            (r.settings.width, r.settings.height) = (160, 120);
-            r.settings.shadows = shadows.to_owned();
-            r.settings.shadow_map_size = 512;
+            (r.settings.picture.width, r.settings.picture.height) = (160, 120);
+            r.settings.shadows.algorithm = shadows.to_owned();
+            r.settings.shadows.map_size = 512;
         });
     }
 }
@@ -128,8 +128,8 @@ fn f25_panels_of_shadow_maps() {
     let scene = builtin("scene0");
     check_everywhere("scene0-panels-map", Tolerance::EXACT, |setting| {
         let mut renderer = renderer(&scene, setting, [88, 66]);
-        renderer.settings.shadows = "map".to_owned();
-        renderer.settings.shadow_map_size = 256;
+        renderer.settings.shadows.algorithm = vitral::render::Shadows::MAP;
+        renderer.settings.shadows.map_size = 256;
         let camera = renderer.frame_camera();
         panels(&mut renderer, &camera).unwrap().frame.color.unwrap()
     });
@@ -138,7 +138,7 @@ fn f25_panels_of_shadow_maps() {
 #[test]
 fn radiosity() {
     figure("cornell", "cornell", |r| {
-        r.settings.global = Global::Radiosity;
-        (r.settings.patch_size, r.settings.iterations) = (Some(0.3), Some(16));
+        r.settings.global.model = Global::Radiosity;
+        (r.settings.global.patch_size, r.settings.global.iterations) = (Some(0.3), Some(16));
     });
 }

@@ -72,8 +72,8 @@ fn growth(path: &Path, samples: u32) -> f64 {
     let before = MEMORY.current_usage();
     let scene = load(path, &LoadOptions::default(), &execution.workers).unwrap();
     let mut renderer = Renderer::with_execution(scene, execution).unwrap();
-    (renderer.settings.width, renderer.settings.height) = SIZE;
-    renderer.settings.samples = samples;
+    (renderer.settings.picture.width, renderer.settings.picture.height) = SIZE;
+    renderer.settings.picture.samples = samples;
     let rendered = renderer.render().unwrap();
     let grown = MEMORY.peak_usage() - before;
     let facets = rendered.stats.geometry.set_up as usize * size_of::<Setup>();

@@ -15,9 +15,9 @@ fn heard(name: &str, global: Global, shadows: &str, stage: &'static str) -> Vec<
         }
     }));
     let mut renderer = Renderer::with_execution(vitral::load_builtin(name).unwrap(), execution).unwrap();
-    (renderer.settings.width, renderer.settings.height, renderer.settings.samples) = (160, 120, 1);
-    (renderer.settings.global, renderer.settings.shadows) = (global, shadows.to_owned());
-    renderer.settings.patch_size = (global == Global::Radiosity).then_some(200.0);
+    (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (160, 120, 1);
+    (renderer.settings.global.model, renderer.settings.shadows.algorithm) = (global, shadows.to_owned());
+    renderer.settings.global.patch_size = (global == Global::Radiosity).then_some(200.0);
     renderer.render().unwrap();
     heard.lock().unwrap().clone()
 }

@@ -8,6 +8,6 @@ mod background;
 mod encoding;
 mod fade;
 
-pub(crate) use background::{BackgroundKey, BackgroundRows};
+pub(crate) use background::BackgroundRows;
 pub(crate) use encoding::{DecodeTables, composed, encode};
 pub(crate) use fade::Fade;

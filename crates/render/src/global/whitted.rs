@@ -112,8 +112,8 @@ impl<'a> Whitted<'a> {
             surroundings: scene.surroundings(),
             branching: Branching {
                 scene,
-                max_depth: settings.max_depth,
-                strata: Strata::new(settings.scatter_samples.div_ceil(settings.samples)),
+                max_depth: settings.global.max_depth,
+                strata: Strata::new(settings.transparency.scatter_samples.div_ceil(settings.picture.samples)),
             },
             execution,
             least: least_weight(constants),

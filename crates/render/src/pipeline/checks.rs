@@ -29,7 +29,7 @@ pub(super) fn check_order(material: &str, settings: &Settings) -> Result<(), Set
 /// What the user has to know about the picture.
 pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
     let mut warnings = Vec::new();
-    if settings.global == Global::RayTrace && settings.transparency != Transparency::None {
+    if settings.global.model == Global::RayTrace && settings.transparency.model != Transparency::None {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
             let of =
                 if name.is_empty() { "a material without a name".to_owned() } else { format!("material `{name}`") };
@@ -38,21 +38,21 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
             )
         }));
     }
-    if settings.global == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
+    if settings.global.model == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }
-    if settings.global == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
+    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
         let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
         warnings.push(holes.to_owned());
     }
     let picture = &stats.picture;
     let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
-    if settings.channels.color && !shown && !session.world.bounds.is_empty() {
+    if settings.picture.channels.color && !shown && !session.world.bounds.is_empty() {
         warnings.push("nothing is in view".to_owned());
     }
     if stats.picture.lost_layers > 0 {
-        let allowed = settings.layer_memory >> 20;
+        let allowed = settings.transparency.layer_memory >> 20;
         warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
     }
     warnings

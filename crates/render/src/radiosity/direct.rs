@@ -39,7 +39,7 @@ impl<'a> Direct<'a> {
         let here = DMat4::from_translation(-Triangles::center_of(&session.world));
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &here)).enumerate();
         let prepared: Vec<_> = prepared.filter_map(|(i, l)| Some((i, l?))).collect();
-        if prepared.is_empty() || !settings.lighting {
+        if prepared.is_empty() || !settings.shading.lighting {
             return Ok(None);
         }
         let shadows = RayShadows.prepare(session, lights, DVec4::Z, settings, execution)?;

@@ -148,7 +148,7 @@ impl Enclosure {
         let patches = patches(&trees, &elements);
         let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
         let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
-        let tree = Bvh::of(targets.session, execution)?;
+        let tree = Bvh::of(&targets.session, execution)?;
         let emission = own.into_flattened();
         let mut enclosure = Self { trees, elements, patches, emission, direct: Vec::new(), targets, neighbours, tree };
         enclosure.add_direct(session, lights, settings, execution)?;

@@ -75,13 +75,13 @@ impl Hemicube {
             });
             up_to.collect()
         });
-        let settings = Settings { width: side, height: side, samples: 1, ..Settings::default() };
+        let settings = Settings::default().with_size(side, side).with_samples(1);
         Self { settings, sums, diagonal }
     }
 
     /// Pixels along an edge of the top.
     pub fn side(&self) -> u32 {
-        self.settings.width
+        self.settings.picture.width
     }
 
     /// What a point with unit normal sees: leaves of `trees`, by number, and form factors, in the order of leaves. The
@@ -128,7 +128,7 @@ impl Hemicube {
         execution: &Execution,
         seen: &mut Sums,
     ) -> Result<(), Limit> {
-        let side = self.settings.width;
+        let side = self.settings.picture.width;
         let viewport = Viewport { width: side, height: side };
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
         let view = PreparedView::new(&targets.session, camera, &self.settings, viewport, pattern, execution, counters);

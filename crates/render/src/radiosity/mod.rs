@@ -59,7 +59,7 @@ const CONTRAST: f64 = 0.5;
 
 /// What a solution depends on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
+pub struct Key {
     lights: Vec<Light>,
     patch_size: Option<f64>,
     iterations: Option<u64>,
@@ -102,12 +102,12 @@ pub(crate) fn solution(
     }
     let key = Key {
         lights: lights.to_vec(),
-        patch_size: settings.patch_size,
-        iterations: settings.iterations,
-        lighting: settings.lighting,
-        color_space: settings.color_space,
-        transparency: settings.transparency,
-        light_samples: settings.light_samples,
+        patch_size: settings.global.patch_size,
+        iterations: settings.global.iterations,
+        lighting: settings.shading.lighting,
+        color_space: settings.picture.color_space,
+        transparency: settings.transparency.model,
+        light_samples: settings.shadows.light_samples,
     };
     Ok(session.cache.get_or_build(key, || solve(session, lights, settings, execution, counters))?)
 }
@@ -123,8 +123,8 @@ fn solve(
     let start = execution.budget.elapsed();
     let diagonal = session.world.bounds.diagonal();
     let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
-    let longest = settings.patch_size.unwrap_or(diagonal / 16.0);
-    let most = settings.iterations.unwrap_or(u64::MAX);
+    let longest = settings.global.patch_size.unwrap_or(diagonal / 16.0);
+    let most = settings.global.iterations.unwrap_or(u64::MAX);
 
     // Solve roughly, and cut elements where light changes fast.
     let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;

@@ -15,6 +15,7 @@ use super::form_factor::from_point;
 use super::parts::quarters;
 use crate::Execution;
 use crate::raytrace::bvh::Bvh;
+use crate::raytrace::follow::Follow;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::{Counters, Structure};
 use crate::shadow::clearance;

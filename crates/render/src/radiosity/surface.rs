@@ -14,7 +14,7 @@ use super::patch::{Trees, area};
 use crate::display::DecodeTables;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Occluders, facet as facet_of, texel, weights};
-use crate::{ColorSpace, Session, Settings, Transparency};
+use crate::{ColorSpace, Session, Settings, Transparency, TransparencySettings};
 use vitral_light::{Material, Reflectance, TextureRef};
 use vitral_math::lanes::Lanes;
 use vitral_math::{DVec3, Vec3, func};
@@ -49,11 +49,11 @@ pub(super) struct Surfaces<'a> {
 
 impl<'a> Surfaces<'a> {
     pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
-        let linear = Settings { transparency: Transparency::Linear, ..settings.clone() };
+        let linear = Settings { transparency: TransparencySettings { model: Transparency::Linear, ..settings.transparency }, ..settings.clone() };
         Self {
             session,
-            tables: DecodeTables::new(settings.color_space),
-            raw: settings.color_space == ColorSpace::Raw,
+            tables: DecodeTables::new(settings.picture.color_space),
+            raw: settings.picture.color_space == ColorSpace::Raw,
             occluders: Occluders::new(session, &linear),
             default: Material::default(),
             center: Triangles::center_of(&session.world),
@@ -242,7 +242,7 @@ mod tests {
         let white = [[255; 4]; 2];
         let of = |raw, from_srgb| {
             let color_space = if raw { ColorSpace::Raw } else { ColorSpace::default() };
-            looks(white, &Settings { color_space, ..Settings::default() }, |_, mesh, _| {
+            looks(white, &Settings { picture: PictureSettings { color_space, ..PictureSettings::default() }, ..Settings::default() }, |_, mesh, _| {
                 let colors = mesh.positions.iter().map(|p| [p[0] + 0.5, 0.2, 0.2, 1.0]).collect();
                 mesh.colors = Some(Attribute::per_vertex(colors));
                 mesh.colors_from_srgb = from_srgb;

@@ -9,7 +9,6 @@ use crate::shadow::Shadows;
 use crate::transparency::Lay;
 use crate::{
     ColorSpace, DepthCue, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading, Transparency,
-    TransparencyOrder,
 };
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -70,17 +69,17 @@ impl<'a> FrameConstants<'a> {
         execution: &Execution,
     ) -> Self {
         let session = view.session;
-        let raw = settings.color_space == ColorSpace::Raw;
+        let raw = settings.picture.color_space == ColorSpace::Raw;
         let instances =
             (0..session.world.instances.len()).map(|i| InstanceConstants::new(view, i, settings, execution)).collect();
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
         let materials: Vec<_> = materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
-        let follows = match settings.global {
+        let follows = match settings.global.model {
             Global::RayTrace => facets_that_follow(view, &materials),
             _ => Vec::new(),
         };
-        let key = (settings.background, settings.height, raw);
+        let key = (settings.picture.background, settings.picture.height, raw);
         let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
@@ -95,16 +94,16 @@ impl<'a> FrameConstants<'a> {
             radiosity,
             follows,
             ambient,
-            shading: settings.shading,
-            interpolation: settings.interpolation,
+            shading: settings.shading.model,
+            interpolation: settings.shading.interpolation,
             raw,
-            transparency: settings.transparency,
-            kay_exponent: settings.kay_exponent,
-            fade: settings.depth_cue.map(|cue| fade(view, &cue, raw)),
+            transparency: settings.transparency.model,
+            kay_exponent: settings.transparency.kay_exponent,
+            fade: settings.picture.depth_cue.map(|cue| fade(view, &cue, raw)),
             lay: settings.transparency.order.lay,
             middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
             in_passes: settings.transparency.order.draws_passes,
-            surfaces_are_background: settings.lines == crate::Lines::WireframeHiddenLine,
+            surfaces_are_background: settings.picture.lines == crate::Lines::WireframeHiddenLine,
             background,
             faces: session.per_mesh(),
             level: execution.level,

@@ -53,10 +53,10 @@ impl<'a> MaterialConstants<'a> {
         let (cutoff, blend) = match material.alpha_mode {
             AlphaMode::Opaque => (None, false),
             AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
-            AlphaMode::Blend => (None, settings.transparency != Transparency::None),
+            AlphaMode::Blend => (None, settings.transparency.model != Transparency::None),
         };
         Self {
-            model: Model::of_material(material, settings.illumination, settings.lighting),
+            model: Model::of_material(material, settings.shading.illumination, settings.shading.lighting),
             base: texture(material.base_texture),
             specular: texture(material.specular_texture),
             emission: texture(material.emission_texture),
@@ -65,9 +65,9 @@ impl<'a> MaterialConstants<'a> {
             occlusion: texture(material.occlusion_texture),
             normal: texture(material.normal_texture),
             cutoff,
-            soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global != Global::RayTrace,
+            soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global.model != Global::RayTrace,
             blend,
-            follows: settings.global == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
+            follows: settings.global.model == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
             scatters: (blend && material.transmission == Transmission::Translucent)
                 .then(|| scattering_exponent(&material.reflectance)),
             material: material.clone(),

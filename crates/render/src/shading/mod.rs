@@ -61,7 +61,6 @@ pub(crate) use frame_constants::FrameConstants;
 pub(crate) use hits::Hit;
 pub(crate) use points::Points;
 pub(crate) use scattering::Strata;
-pub(crate) use scratch::Scratch;
 pub(crate) use shade::shade_hits;
 pub(crate) use shaded_points::{Bounce, ShadedPoints};
 pub(crate) use tile_rows::TileRows;

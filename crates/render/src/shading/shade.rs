@@ -209,7 +209,7 @@ fn reflect_lights<S: Simd>(
             }
             Shading::Flat => {
                 let k = parameters.coefficients(simd, material, parameters.base);
-                let faces = constants.faces.get_or_build(subject.mesh_index, || flat::FaceTable::new(mesh));
+                let faces = constants.faces.get_or_build(subject.mesh_index, || flat::FaceTable::new(subject.mesh));
                 flat::shade(simd, subject.mesh, faces, subject.instance, slots, surface, &lighting, &k)
             }
             Shading::Gouraud => {

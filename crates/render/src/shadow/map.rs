@@ -74,7 +74,7 @@ impl ShadowAlgorithm for MapShadows {
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let session = view.session;
         let maps = Maps::of(session, lights, settings, execution)?;
-        let (count, size) = (settings.shadow_cascades, settings.shadow_map_size);
+        let (count, size) = (settings.shadows.cascades, settings.shadows.map_size);
         if count < 2 {
             return Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }));
         }

@@ -25,7 +25,6 @@ pub mod scan_line;
 mod sources;
 pub mod volume;
 
-pub(crate) use casters::Casters;
 pub(crate) use facet::{facet, weighted, weights};
 pub(crate) use hash::hash;
 pub(crate) use occluders::{Occluders, texel};
@@ -101,7 +100,7 @@ pub(crate) struct Key {
 
 impl Key {
     fn new(lights: &[Light], settings: &Settings) -> Self {
-        Self { lights: lights.to_vec(), samples: settings.light_samples, transparency: settings.transparency }
+        Self { lights: lights.to_vec(), samples: settings.shadows.light_samples, transparency: settings.transparency.model }
     }
 }
 
@@ -153,7 +152,7 @@ pub(crate) fn prepare<'a>(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Option<Box<dyn Shadows + 'a>>, Limit> {
-    if !settings.lighting && !settings.channels.cast_shadow {
+    if !settings.shading.lighting && !settings.picture.channels.cast_shadow {
         return Ok(None);
     }
     algorithm.map(|a| a.prepare_for(view, lights, settings, execution)).transpose()

@@ -102,7 +102,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
-                let places = Source::new(light, settings.light_samples, casters.triangles().center).places();
+                let places = Source::new(light, settings.shadows.light_samples, casters.triangles().center).places();
                 places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
             };
             let lights: Result<_, Limit> = lights.iter().map(of_light).collect();

@@ -24,7 +24,7 @@ pub(crate) struct Occluders<'a> {
 
 impl<'a> Occluders<'a> {
     pub(crate) fn new(session: &'a Session, settings: &Settings) -> Self {
-        let blend_is_opaque = settings.transparency == Transparency::None;
+        let blend_is_opaque = settings.transparency.model == Transparency::None;
         let opaque = |m: &Material| match m.alpha_mode {
             AlphaMode::Opaque => true,
             AlphaMode::Mask { .. } => false,
@@ -32,8 +32,8 @@ impl<'a> Occluders<'a> {
         };
         let opaque: Vec<bool> = session.scene.materials.iter().map(opaque).collect();
         let all_opaque = opaque.iter().all(|&o| o);
-        let filtered = settings.transparency == Transparency::Filtered;
-        let tables = DecodeTables::new(settings.color_space);
+        let filtered = settings.transparency.model == Transparency::Filtered;
+        let tables = DecodeTables::new(settings.picture.color_space);
         Self { session, opaque, all_opaque, blend_is_opaque, filtered, tables }
     }
 

@@ -53,13 +53,13 @@ impl ShadowAlgorithm for RayShadows {
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let acceleration = settings.acceleration.unwrap_or_default();
         if acceleration.asks_all {
-            let pixels = u64::from(settings.width) * u64::from(settings.height);
+            let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
             let tests = pixels.saturating_mul(lights.len() as u64 * u64::from(session.world.facet_count));
             few_enough(tests, "shadows by rays without a structure")?;
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
-        let sources = lights.iter().map(|l| Source::new(l, settings.light_samples, center)).collect();
+        let sources = lights.iter().map(|l| Source::new(l, settings.shadows.light_samples, center)).collect();
         let (occluders, level) = (Occluders::new(session, settings), execution.level);
         Ok(Box::new(Prepared { structure, occluders, sources, level }))
     }

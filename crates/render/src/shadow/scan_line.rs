@@ -57,8 +57,8 @@ impl ShadowAlgorithm for ScanLineShadows {
         let occluders = Occluders::new(session, settings);
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
-        let lights = lights.iter().map(|l| Source::new(l, settings.light_samples, center).places()).collect();
-        let (transparency, execution) = (settings.transparency, execution.clone());
+        let lights = lights.iter().map(|l| Source::new(l, settings.shadows.light_samples, center).places()).collect();
+        let (transparency, execution) = (settings.transparency.model, execution.clone());
         Ok(Box::new(Prepared { session, transparency, execution, casters, occluders, lights }))
     }
 }

@@ -87,7 +87,7 @@ impl ShadowAlgorithm for VolumeShadows {
         } else {
             (viewer.truncate() + ODD * 1e-4).extend(0.0)
         };
-        let counting = settings.volume_counting.unwrap_or_default();
+        let counting = settings.shadows.volume_counting.unwrap_or_default();
         let around_viewer = volumes.lights.iter().map(|places| {
             let around = |l: &LightVolumes| match counting {
                 VolumeCounting::ZPass => volumes.lit(l).around(viewer),
@@ -117,7 +117,7 @@ impl Volumes {
             session.cache.get_or_build(occluders.key(), || Surface::new(&session.world, &casters, execution))?;
         let triangles = casters.triangles();
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
-            let places = Source::new(light, settings.light_samples, triangles.center).places();
+            let places = Source::new(light, settings.shadows.light_samples, triangles.center).places();
             places.into_iter().map(|place| LightVolumes::new(place, triangles, &surface, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();

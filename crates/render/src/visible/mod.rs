@@ -16,7 +16,6 @@ pub mod weiler_atherton;
 pub mod zbuffer;
 
 pub(crate) use brute_force::few_enough;
-pub(crate) use bsp::Tree as BspTree;
 pub(crate) use facets::nearer;
 pub use peel::{PassLayer, Peel};
 pub(crate) use screen_setups::charged;

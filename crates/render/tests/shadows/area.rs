@@ -35,7 +35,7 @@ fn from_above(scene: &Scene, lights: &[Light], settings: Settings) -> Vec<u8> {
         clip: Some((0.1, 9.0)),
     };
     let raw = vitral_render::ColorSpace::Raw;
-    let settings = Settings { width: 192, height: 192, samples: 1, color_space: raw, ..settings };
+    let settings = Settings { picture: PictureSettings { width: 192, height: 192, samples: 1, color_space: raw, ..settings.picture }, ..settings };
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let shot = Shot { camera, lights, ambient: [0.0; 3] };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
@@ -68,7 +68,7 @@ fn full_light_of_a_shape_is_smooth_and_exact() {
     }
     // Where the whole light is seen, shadows change no bit, however few places are asked.
     for algorithm in names() {
-        let sampled = Settings { light_samples: 4, shadow_map_size: 512, ..settings(algorithm) };
+        let sampled = Settings { shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
         let shadowed = from_above(&scene, &[square()], sampled);
         let same = |i: &usize| i % 192 < 90;
         assert!((0..192 * 192).filter(same).all(|i| plain[i] == shadowed[i]), "{algorithm}");
@@ -86,14 +86,14 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
     let place =
         Place { position: dvec3(0.0, 1.0, 0.0), normal: DVec3::X, facet: u32::MAX, seed: 3, pixel: Some([0.5; 2]) };
     for algorithm in names() {
-        with_shadows(&scene, &[square()], &Settings { light_samples: 16, ..settings(algorithm) }, |arriving| {
+        with_shadows(&scene, &[square()], &Settings { shadows: ShadowSettings { light_samples: 16, ..settings(algorithm).shadows }, ..settings(algorithm) }, |arriving| {
             assert_eq!(arriving(place), 1.0, "{algorithm}");
         });
     }
     // A shade before the nearer part of that half: the far part has the smaller share.
     add(&mut scene, solids::plane(0.4, 4.0, 1, 1), matt(), dvec3(0.2, 2.5, 0.0));
     for algorithm in names() {
-        with_shadows(&scene, &[square()], &Settings { light_samples: 1024, ..settings(algorithm) }, |arriving| {
+        with_shadows(&scene, &[square()], &Settings { shadows: ShadowSettings { light_samples: 1024, ..settings(algorithm).shadows }, ..settings(algorithm) }, |arriving| {
             if algorithm == "map" {
                 return;
             }
@@ -170,7 +170,7 @@ fn odd_area_lights_are_defined() {
 fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
     // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
     let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
-    let settings = Settings { light_samples: samples, ..settings(algorithm) };
+    let settings = Settings { shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows }, ..settings(algorithm) };
     with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
         let at = |x: f64| {
             let parts = (0..32).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));

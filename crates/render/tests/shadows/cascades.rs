@@ -36,7 +36,7 @@ fn near_the_table() -> Camera {
 const SUN: DVec3 = dvec3(-0.7, -1.0, 0.4);
 
 fn with_cascades(count: u32) -> Settings {
-    Settings { shadow_map_size: 1024, shadow_cascades: count, width: 400, height: 300, ..settings("map") }
+    Settings { shadows: ShadowSettings { map_size: 1024, cascades: count, ..settings("map").shadows }, picture: PictureSettings { width: 400, height: 300, ..settings("map").picture }, ..settings("map") }
 }
 
 /// How deep in a cast shadow pixels with a surface are.
@@ -48,7 +48,7 @@ fn mask(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Ve
 fn shadows(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Vec<Option<(f32, f32, u32)>> {
     let channels =
         Channels { color: false, object: true, cast_shadow: true, attached_shadow: true, ..Channels::default() };
-    let settings = Settings { channels, ..settings.clone() };
+    let settings = Settings { picture: PictureSettings { channels, ..settings.picture }, ..settings.clone() };
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
@@ -76,7 +76,7 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
         exponent: 0.0,
     };
     for light in [sun(SUN), light(spot)] {
-        let by_rays = Settings { shadows: "ray".to_owned(), ..with_cascades(1) };
+        let by_rays = Settings { shadows: ShadowSettings { algorithm: vitral_render::Shadows::RAY, ..with_cascades(1).shadows }, ..with_cascades(1) };
         let seen = shadows(&scene, camera, &light, &by_rays);
         let rays: Vec<_> = seen.iter().map(|seen| seen.map(|(cast, ..)| cast)).collect();
         let dark = rays.iter().flatten().filter(|&&cast| cast == 1.0).count();
@@ -108,11 +108,11 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
 fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, places: &[Place]) -> Vec<f32> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let execution = Execution::default();
-    let viewport = Viewport::new(settings.width, settings.height).unwrap();
+    let viewport = Viewport::new(settings.picture.width, settings.picture.height).unwrap();
     let pattern = vitral_raster::SamplePattern::new(1);
     let culled = &mut CullCounters::default();
     let view = PreparedView::new(&session, camera, settings, viewport, pattern, &execution, culled);
-    let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
+    let algorithm = registry::shadows(&settings.shadows.algorithm).unwrap().algorithm.unwrap();
     let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     let places: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
@@ -206,7 +206,7 @@ fn small_scenes_keep_the_map_of_the_whole_scene() {
 fn pictures_with_cascades_do_not_depend_on_threads_instructions_or_sessions() {
     let scene = plain();
     let lights = [sun(SUN)];
-    let settings = Settings { samples: 2, ..with_cascades(3) };
+    let settings = Settings { picture: PictureSettings { samples: 2, ..with_cascades(3).picture }, ..with_cascades(3) };
     let picture = |session: &mut Session, camera: Camera, execution: &Execution| {
         let shot = Shot { camera, lights: &lights, ambient: [0.2; 3] };
         render(session, &shot, &settings, execution).unwrap().frame

@@ -34,7 +34,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 }
 
 fn settings(shadows: &str) -> Settings {
-    Settings { shadows: shadows.to_owned(), width: 160, height: 120, samples: 1, ..Settings::default() }
+    Settings { shadows: ShadowSettings { algorithm: shadows.to_owned(), ..ShadowSettings::default() }, picture: PictureSettings { width: 160, height: 120, samples: 1, ..PictureSettings::default() }, ..Settings::default() }
 }
 
 /// Where shadows are looked at from, where that is not what a test is about.
@@ -58,7 +58,7 @@ fn with_colored_shadows<R>(
     ask: impl FnOnce(&dyn Fn(Place) -> Rgb) -> R,
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
-    let algorithm = registry::shadows(&settings.shadows).unwrap().algorithm.unwrap();
+    let algorithm = registry::shadows(&settings.shadows.algorithm).unwrap().algorithm.unwrap();
     let execution = Execution::default();
     let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
@@ -177,7 +177,7 @@ fn nothing_shades_itself() {
 fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
     let channels =
         Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    let settings = Settings { channels, ..settings("ray") };
+    let settings = Settings { picture: PictureSettings { channels, ..settings("ray").picture }, ..settings("ray") };
     let towards = dvec3(-1.0, 2.0, -0.5).normalize();
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
     let frame = picture(&scene, &[sun(-towards)], &settings, &Execution::default());
@@ -202,14 +202,14 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
     let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
     for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| names().map(move |name| (s, name))) {
-        let settings = Settings { channels: data, shading: shading.0, ..settings(algorithm) };
+        let settings = Settings { picture: PictureSettings { channels: data, ..settings(algorithm).picture }, shading: ShadingSettings { model: shading.0, ..settings(algorithm).shading }, ..settings(algorithm) };
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
         let unlit = picture(&scene, std::slice::from_ref(&dark), &settings, &execution);
         let plain = picture(
             &scene,
             std::slice::from_ref(&light),
-            &Settings { shadows: "none".to_owned(), channels: Channels::default(), ..settings },
+            &Settings { shadows: ShadowSettings { algorithm: vitral_render::Shadows::NONE, ..settings.shadows }, picture: PictureSettings { channels: Channels::default(), ..settings.picture }, ..settings },
             &execution,
         );
         let [shaded_color, unlit, plain] = [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
@@ -246,7 +246,7 @@ fn transparent_things_take_their_part() {
     for algorithm in names() {
         let filtering = settings(algorithm);
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
-        let opaque = Settings { transparency: vitral_render::Transparency::None, ..filtering };
+        let opaque = Settings { transparency: TransparencySettings { model: vitral_render::Transparency::None, ..filtering.transparency }, ..filtering };
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
     }
 }
@@ -261,7 +261,7 @@ fn filtered_glass_colours_the_light_that_passes() {
             (vitral_render::Transparency::Filtered, [0.75, 0.375, 0.0]),
             (vitral_render::Transparency::Linear, [0.75; 3]),
         ] {
-            let settings = Settings { transparency, ..settings(algorithm) };
+            let settings = Settings { transparency: TransparencySettings { model: transparency, ..settings(algorithm).transparency }, ..settings(algorithm) };
             for light in [sun(DVec3::NEG_Y), lamp(dvec3(0.0, 4.0, 0.0))] {
                 let part = with_colored_shadows(&scene, &[light], &settings, |arriving| {
                     arriving(place(dvec3(0.3, 0.0, 0.1), DVec3::Y))
@@ -307,7 +307,7 @@ fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
     };
     let mut session = Session::new(Arc::new(hollow())).unwrap();
     let shot = Shot { camera, lights: &[lamp(dvec3(0.3, 5.0, 0.2))], ambient: [0.0; 3] };
-    let settings = Settings { channels, ..settings("ray") };
+    let settings = Settings { picture: PictureSettings { channels, ..settings("ray").picture }, ..settings("ray") };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
     let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
     let ceiling: Vec<_> = (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
@@ -323,7 +323,7 @@ fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
         let (cutoff, position) = (0.15, dvec3(0.0, 5.0, 0.0));
         let spot = light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
         let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
-        let settings = Settings { channels, shadow_map_size: 512, ..settings(algorithm) };
+        let settings = Settings { picture: PictureSettings { channels, ..settings(algorithm).picture }, shadows: ShadowSettings { map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
         let frame = picture(&scene, &[spot], &settings, &Execution::default());
         frame.cast_shadow.unwrap().data().iter().filter(|&&part| part > 0.5).count() as f64
     };
@@ -348,7 +348,7 @@ fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
     };
     for light in [sun(dvec3(-0.4, -1.0, -0.3)), lamp(dvec3(0.3, 4.0, 1.0))] {
         let moved = light.transformed(&DMat4::from_translation(DVec3::splat(far)));
-        let maps = Settings { shadow_map_size: 512, ..settings("map") };
+        let maps = Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") };
         let lit = |scene: &Scene, light: &Light, at: DVec3| {
             with_shadows(scene, std::slice::from_ref(light), &maps, |arriving| {
                 let places =
@@ -395,7 +395,7 @@ fn pictures_do_not_depend(algorithm: &str) {
     let disc = AreaShape::Disc { center: dvec3(3.0, 7.0, 2.0), normal: dvec3(-3.0, -7.0, -2.0), radius: 0.6 };
     let lights = [sun(dvec3(1.0, -2.0, -1.0)), light(LightKind::Area { shape: disc })];
     let channels = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    let settings = Settings { channels, light_samples: 4, shadow_map_size: 512, samples: 4, ..settings(algorithm) };
+    let settings = Settings { picture: PictureSettings { channels, samples: 4, ..settings(algorithm).picture }, shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
     let one = Execution { workers: Workers::single(), ..Execution::default() };
     let first = picture(&scene, &lights, &settings, &one);
     assert!(first.cast_shadow.as_ref().unwrap().data().iter().any(|&c| c > 0.0));
@@ -432,12 +432,12 @@ fn odd_lights(scene: &Scene, algorithm: &str) {
 fn settings_that_cannot_be_are_refused() {
     let text = |settings: Settings| settings.check().unwrap_err().to_string();
     assert!(text(settings("umbra")).contains("choose none, ray, map"));
-    assert!(text(Settings { light_samples: 0, ..settings("ray") }).contains("1 to 4096"));
-    assert!(text(Settings { shadow_map_size: 9000, ..settings("map") }).contains("16 to 8192"));
-    assert!(text(Settings { shadow_cascades: 9, ..settings("map") }).contains("1 to 8"));
-    assert!(text(Settings { shadow_cascades: 0, ..settings("map") }).contains("1 to 8"));
+    assert!(text(Settings { shadows: ShadowSettings { light_samples: 0, ..settings("ray").shadows }, ..settings("ray") }).contains("1 to 4096"));
+    assert!(text(Settings { shadows: ShadowSettings { map_size: 9000, ..settings("map").shadows }, ..settings("map") }).contains("16 to 8192"));
+    assert!(text(Settings { shadows: ShadowSettings { cascades: 9, ..settings("map").shadows }, ..settings("map") }).contains("1 to 8"));
+    assert!(text(Settings { shadows: ShadowSettings { cascades: 0, ..settings("map").shadows }, ..settings("map") }).contains("1 to 8"));
     let channels = Channels { cast_shadow: true, ..Channels::default() };
-    assert!(text(Settings { channels, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
+    assert!(text(Settings { picture: PictureSettings { channels, ..settings("none").picture }, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
 }
 
 /// The part of pixels with a surface in which another algorithm and rays tell light from shadow alike.
@@ -448,7 +448,7 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
     let mut mask = |settings: &Settings| {
         let channels =
             Channels { color: false, object: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-        let settings = Settings { channels, width: 320, height: 240, ..settings.clone() };
+        let settings = Settings { picture: PictureSettings { channels, width: 320, height: 240, ..settings.picture }, ..settings.clone() };
         let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
     };
@@ -515,7 +515,7 @@ fn f23_maps_agree_with_rays_the_better_the_larger() {
     for name in opaque_scenes() {
         for light in lights_for(name) {
             for from in SIDES {
-                let maps = |size| Settings { shadow_map_size: size, ..settings("map") };
+                let maps = |size| Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
                 let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
                 assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
                 means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
@@ -535,7 +535,7 @@ fn maps_show_no_acne() {
         let towards = light_from(degrees);
         let floor = above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
         for light in [sun(-towards), lamp(towards * 20.0)] {
-            with_shadows(&floor, &[light], &Settings { shadow_map_size: 512, ..settings("map") }, |arriving| {
+            with_shadows(&floor, &[light], &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") }, |arriving| {
                 for i in 0..10_000 {
                     let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
                     assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
@@ -549,7 +549,7 @@ fn maps_show_no_acne() {
     with_shadows(
         &ball,
         &[sun(dvec3(-1.0, -2.0, 0.5))],
-        &Settings { shadow_map_size: 512, ..settings("map") },
+        &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
         |arriving| {
             for (facet, t) in (0..).zip(&mesh.triangles) {
                 let [a, b, c] = t.map(|i| {
@@ -580,7 +580,7 @@ fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
         for i in 0..24 {
             let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.26);
             let towards = dvec3(cos, 1.0, sin);
-            let settings = Settings { shadow_map_size: size, ..settings("map") };
+            let settings = Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
             for light in [sun(-towards), lamp(towards * 6.0)] {
                 let dark = with_shadows(&scene, &[light], &settings, |arriving| {
                     let at = |p: DVec3| arriving(place(p, DVec3::Y)) == 0.0;
@@ -608,7 +608,7 @@ fn what_is_kept_changes_nothing() {
 fn kept_changes_nothing(algorithm: &str) {
     let scene = builtin::scene("scene0").unwrap();
     let lights = [lamp(dvec3(3.0, 6.0, 2.0))];
-    let settings = Settings { shadow_map_size: 256, ..settings(algorithm) };
+    let settings = Settings { shadows: ShadowSettings { map_size: 256, ..settings(algorithm).shadows }, ..settings(algorithm) };
     let mut used = Session::new(Arc::new(scene.clone())).unwrap();
     for (view, lights) in [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])] {
         let camera = camera(&scene, [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view]);
@@ -656,7 +656,7 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
         let texel = diagonal / f64::from(size - 8);
         let places = places_on(&scene);
         let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
-            let settings = Settings { shadow_map_size: size, ..settings(algorithm) };
+            let settings = Settings { shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows }, ..settings(algorithm) };
             with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
         };
         let (rays, maps) = (ask("ray", &places), ask("map", &places));

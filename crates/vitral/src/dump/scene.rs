@@ -100,8 +100,8 @@ pub(super) fn lights_in_view(renderer: &Renderer, camera: &Camera, view: &Prepar
     json!({
         "view-space": in_view.collect::<Vec<_>>(),
         "global-ambient": renderer.frame_ambient(),
-        "illumination": renderer.settings.illumination,
-        "lighting": renderer.settings.lighting,
+        "illumination": renderer.settings.shading.illumination,
+        "lighting": renderer.settings.shading.lighting,
     })
 }
 

@@ -33,13 +33,13 @@ pub(super) fn list(view: &PreparedView<'_>) -> String {
 /// Renders the buffers that `camera` sees, and writes them.
 pub(super) fn write(renderer: &mut Renderer, camera: &Camera, put: &mut Write<'_>) -> Result<Vec<Listed>, Error> {
     let settings = renderer.settings.clone();
-    renderer.settings.samples = 1;
-    renderer.settings.channels = vitral_render::Channels { buffers: true, ..Default::default() };
+    renderer.settings.picture.samples = 1;
+    renderer.settings.picture.channels = vitral_render::Channels { buffers: true, ..Default::default() };
     let rendered = renderer.render_from(camera);
     renderer.settings = settings;
     let mut frame = rendered?.frame;
     let buffers = frame.buffers.take().unwrap_or_default();
-    let raw = renderer.settings.color_space == ColorSpace::Raw;
+    let raw = renderer.settings.picture.color_space == ColorSpace::Raw;
     let TwoBuffers { opaque, depth, layers, intensity, coefficient } = &buffers;
     let most = layers.data().iter().copied().max().unwrap_or(0);
     let mut listed = Vec::new();

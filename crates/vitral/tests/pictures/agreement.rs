@@ -49,7 +49,7 @@ fn brute_force(renderer: &Renderer) -> Vec<(u32, f32)> {
 
 /// Compares the z-buffer with brute force, with and without culling.
 fn agree(renderer: &mut Renderer, what: &str) {
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.channels = all_channels();
     let expected = brute_force(renderer);
     assert!(expected.iter().any(|(id, _)| *id != Frame::BACKGROUND), "{what}: something is seen");
     for cull in [true, false] {
@@ -149,7 +149,7 @@ fn find(
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
-    find_at([renderer.settings.width, renderer.settings.height], renderer, algorithm, samples, execution)
+    find_at([renderer.settings.picture.width, renderer.settings.picture.height], renderer, algorithm, samples, execution)
 }
 
 /// [`find`] in a picture of another size.
@@ -162,7 +162,7 @@ fn find_at(
 ) -> Result<Found, Limit> {
     // The kinds of coherence are the algorithm's own.
     let mut settings = renderer.settings.clone();
-    (settings.width, settings.height) = (width, height);
+    (settings.picture.width, settings.picture.height) = (width, height);
     algorithm.name.clone_into(&mut settings.visibility);
     let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
@@ -189,7 +189,7 @@ fn find_at(
 fn all_agree(renderer: &Renderer, what: &str) {
     for samples in [1, 4] {
         let run = |size, algorithm| find_at(size, renderer, algorithm, samples, renderer.execution()).unwrap();
-        let whole = [renderer.settings.width, renderer.settings.height];
+        let whole = [renderer.settings.picture.width, renderer.settings.picture.height];
         // Asking every facet for every sample is slow: of large scenes it makes a small picture.
         let small = if renderer.world().facet_count > 1000 { SMALL } else { whole };
         let (first, first_small) = (run(whole, &VISIBILITY[0]), run(small, &VISIBILITY[0]));
@@ -273,7 +273,7 @@ fn all_algorithms_agree_on_layers_and_odd_numbers_of_samples() {
 #[test]
 fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
     let mut renderer = exact_builtin("scene0", 150, 101);
-    (renderer.settings.samples, renderer.settings.lines) = (4, vitral::render::Lines::Edges);
+    (renderer.settings.picture.samples, renderer.settings.picture.lines) = (4, vitral::render::Lines::Edges);
     let pictures: Vec<_> = VISIBILITY
         .iter()
         .map(|algorithm| {

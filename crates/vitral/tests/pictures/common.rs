@@ -9,10 +9,10 @@ use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, 
 pub(crate) fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
     let mut renderer = Renderer::new(scene).unwrap();
     let settings = &mut renderer.settings;
-    (settings.width, settings.height, settings.samples) = (width, height, 1);
-    settings.color_space = ColorSpace::Raw;
-    settings.background = Background::Color { color: [0.0; 3] };
-    settings.illumination = Illumination::Phong;
+    (settings.picture.width, settings.picture.height, settings.picture.samples) = (width, height, 1);
+    settings.picture.color_space = ColorSpace::Raw;
+    settings.picture.background = Background::Color { color: [0.0; 3] };
+    settings.shading.illumination = Illumination::Phong;
     renderer
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
     let depths = vitral::scene::depth_range(&camera, &renderer.world().bounds);
     let clip = camera.transform(renderer.aspect(), depths).clip_from_world() * point.extend(1.0);
     let (x, y) = (clip.x / clip.w, clip.y / clip.w);
-    let (w, h) = (f64::from(renderer.settings.width), f64::from(renderer.settings.height));
+    let (w, h) = (f64::from(renderer.settings.picture.width), f64::from(renderer.settings.picture.height));
     DVec2::new((x + 1.0) * 0.5 * w, (1.0 - y) * 0.5 * h)
 }
 
@@ -96,7 +96,7 @@ pub(crate) fn largest_difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> u8 {
 /// The pixel in which a point of the world appears.
 pub(crate) fn pixel(renderer: &Renderer, picture: &[[u8; 4]], point: DVec3) -> [u8; 4] {
     let p = project(renderer, point);
-    picture[p.y as usize * renderer.settings.width as usize + p.x as usize]
+    picture[p.y as usize * renderer.settings.picture.width as usize + p.x as usize]
 }
 
 /// A colour that no light changes.

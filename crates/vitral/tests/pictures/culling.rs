@@ -28,7 +28,7 @@ fn cameras() -> [Camera; 4] {
 fn p10_p14_culling_changes_no_picture() {
     for name in ["cubs", "sphere", "scene0", "scene1", "teapot"] {
         let mut renderer = exact_builtin(name, 160, 120);
-        renderer.settings.samples = 4;
+        renderer.settings.picture.samples = 4;
         for (i, camera) in cameras().into_iter().enumerate() {
             renderer.camera = Some(camera);
             let reference = culled(&mut renderer, false, false).frame;
@@ -61,7 +61,7 @@ fn inner_walls_are_seen_through_a_window() {
     // The wall, raw 0.8, through the pane; without the wall the pane alone would be a tenth of it.
     assert!(culled_away.color.unwrap().at(30, 30)[0] > 190);
     // Without transparency the walls hide each other, and culling pays again.
-    renderer.settings.transparency = vitral::render::Transparency::None;
+    renderer.settings.transparency.model = vitral::render::Transparency::None;
     assert_eq!(culled(&mut renderer, true, true).stats.cull.back_face_culled_instances, 1);
 }
 
@@ -180,7 +180,7 @@ fn p11_windows_that_overlap_only_mean_a_closer_look() {
         let projection = Projection::Parallel { height: 12.0 };
         renderer.camera =
             Some(Camera { position, focal_point: DVec3::new(4.0, 4.0, 0.0), projection, ..on_z(1.0, 0.9) });
-        renderer.settings.channels.surface = true;
+        renderer.settings.picture.channels.surface = true;
         renderer.settings.cull.back_face = false;
         let ids = |r: &mut Renderer, name: &str| {
             name.clone_into(&mut r.settings.visibility);

@@ -29,8 +29,8 @@ fn cut_out_disc((width, height): (u32, u32), samples: u32, rays: bool) -> Vec<f3
     mesh.parts[0].material = Some(material);
     scene.add_mesh(mesh, DMat4::IDENTITY);
     let mut r = exact(scene, width, height);
-    r.settings.samples = samples;
-    r.settings.global = if rays { Global::RayTrace } else { Global::None };
+    r.settings.picture.samples = samples;
+    r.settings.global.model = if rays { Global::RayTrace } else { Global::None };
     r.camera = Some(Camera { position: DVec3::new(1.0, 0.7, 4.0), ..on_z(1.0, 0.55) });
     colors(&mut r).iter().map(|c| f32::from(c[1]) / 255.0).collect()
 }
@@ -69,8 +69,8 @@ fn a_cut_out_whose_opacity_is_its_cutoff_has_no_holes() {
         let mut scene = one(pane.clone(), material.clone());
         scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_y(0.3) * DMat4::from_rotation_x(0.2));
         let mut r = exact(scene, 200, 150);
-        (r.settings.shadows, r.settings.global) = (shadows.into(), global);
-        r.settings.background = Background::Color { color: [1.0, 0.0, 0.0] };
+        (r.settings.shadows.algorithm, r.settings.global.model) = (shadows.into(), global);
+        r.settings.picture.background = Background::Color { color: [1.0, 0.0, 0.0] };
         r.camera = Some(on_z(4.0, 0.4));
         let middle =
             colors(&mut r).chunks(200).skip(50).take(50).flat_map(|row| row[80..120].to_vec()).collect::<Vec<_>>();
@@ -99,8 +99,8 @@ fn channels_show_cut_outs_where_they_are_there() {
         scene.add_mesh(quad(-0.5, 1.5), DMat4::IDENTITY);
         let mut r = exact(scene, 40, 40);
         r.settings.visibility = visibility.into();
-        r.settings.channels = crate::common::all_channels();
-        (r.settings.channels.attached_shadow, r.settings.channels.cast_shadow) = (false, false);
+        r.settings.picture.channels = crate::common::all_channels();
+        (r.settings.picture.channels.attached_shadow, r.settings.picture.channels.cast_shadow) = (false, false);
         r.camera = Some(on_z(4.0, 0.5));
         let frame = r.render().unwrap().frame;
         let (objects, depth, normal) = (frame.object.unwrap(), frame.depth.unwrap(), frame.normal.unwrap());

@@ -8,7 +8,7 @@ use vitral::{Renderer, Shading};
 
 fn figure(name: &str, shading: Shading) -> Renderer {
     let mut renderer = exact_builtin(&format!("defect-{name}"), 280, 210);
-    renderer.settings.shading = shading;
+    renderer.settings.shading.model = shading;
     renderer
 }
 
@@ -16,7 +16,7 @@ fn figure(name: &str, shading: Shading) -> Renderer {
 fn reader<'a>(renderer: &'a Renderer, picture: &'a [[u8; 4]]) -> impl Fn(f64, f64) -> u8 + 'a {
     move |x, y| {
         let p = project(renderer, DVec3::new(x, y, 0.0));
-        picture[p.y as usize * renderer.settings.width as usize + p.x as usize][0]
+        picture[p.y as usize * renderer.settings.picture.width as usize + p.x as usize][0]
     }
 }
 
@@ -25,7 +25,7 @@ fn p27_a_silhouette_of_few_polygons_has_corners_whatever_the_shading() {
     let mut gaps = Vec::new();
     for shading in [Shading::Gouraud, Shading::Phong] {
         let mut renderer = figure("silhouette", shading);
-        renderer.settings.channels = all_channels();
+        renderer.settings.picture.channels = all_channels();
         let objects = renderer.render().unwrap().frame.object.unwrap();
         // How far the ball falls short of its circle, in pixels, in the worst direction.
         let gap = |x: f64| -> f64 {
@@ -51,8 +51,8 @@ fn p27_a_silhouette_of_few_polygons_has_corners_whatever_the_shading() {
 fn p27_linear_interpolation_distorts_large_polygons_and_hardly_small_ones() {
     let picture = |interpolation| {
         let mut renderer = figure("perspective", Shading::Phong);
-        renderer.settings.interpolation = interpolation;
-        renderer.settings.channels = all_channels();
+        renderer.settings.shading.interpolation = interpolation;
+        renderer.settings.picture.channels = all_channels();
         let frame = renderer.render().unwrap().frame;
         (frame.color.unwrap().into_data(), frame.object.unwrap().into_data())
     };

@@ -36,8 +36,8 @@ const CUE: DepthCue = DepthCue { color: None, front: Some(3.0), back: Some(7.0),
 fn cued(scene: Scene, cue: DepthCue) -> Renderer {
     let mut r = exact(scene, 90, 60);
     r.camera = Some(from_origin());
-    r.settings.background = Background::Color { color: [0.0, 0.0, 0.4] };
-    r.settings.depth_cue = Some(cue);
+    r.settings.picture.background = Background::Color { color: [0.0, 0.0, 0.4] };
+    r.settings.picture.depth_cue = Some(cue);
     r
 }
 
@@ -51,7 +51,7 @@ fn p41_what_is_farther_away_fades_by_the_formula() {
     for projection in [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 3.0 }] {
         for shading in [Shading::Phong, Shading::Gouraud, Shading::Flat] {
             let mut r = cued(squares(), CUE);
-            r.settings.shading = shading;
+            r.settings.shading.model = shading;
             r.camera = Some(Camera { projection, ..from_origin() });
             let picture = colors(&mut r);
             // Before the front plane, between the planes, behind the back plane.
@@ -81,7 +81,7 @@ fn p41_open_planes_lie_where_the_scene_begins_and_ends() {
 fn p41_every_algorithm_fades_alike_and_whole_scales_change_nothing() {
     let picture = |name: &str, cue: Option<DepthCue>| {
         let mut r = cued(squares(), CUE);
-        (r.settings.depth_cue, r.settings.visibility) = (cue, name.to_owned());
+        (r.settings.picture.depth_cue, r.settings.visibility) = (cue, name.to_owned());
         colors(&mut r)
     };
     let expected = picture("z-buffer", Some(CUE));
@@ -110,12 +110,12 @@ fn p41_rays_that_go_straight_see_what_layers_show() {
         let cue = DepthCue { color, ..CUE };
         let layers = colors(&mut cued(panes(), cue));
         let mut r = cued(panes(), cue);
-        r.settings.global = Global::RayTrace;
+        r.settings.global.model = Global::RayTrace;
         let plain = {
-            r.settings.depth_cue = None;
+            r.settings.picture.depth_cue = None;
             colors(&mut r)
         };
-        r.settings.depth_cue = Some(cue);
+        r.settings.picture.depth_cue = Some(cue);
         let rays = colors(&mut r);
         assert!(largest_difference(&rays, &layers) <= 1);
         assert!(largest_difference(&rays, &plain) > 50);
@@ -138,11 +138,11 @@ fn p41_mirrors_and_bent_light_fade_with_the_surface_that_turns_it() {
         scene.add_mesh(mesh, DMat4::from_translation(DVec3::new(0.0, 0.0, -4.0)));
         add(&mut scene, 9.0, poster([1.0; 3]), DVec3::new(0.0, 0.0, -7.0));
         let mut r = cued(scene, nothing_left);
-        r.settings.global = Global::RayTrace;
+        r.settings.global.model = Global::RayTrace;
         let picture = colors(&mut r);
         let seen = largest_difference(&picture, &vec![[51, 102, 153, 255]; picture.len()]);
         assert!(seen <= 1, "all is faded: {seen}");
-        r.settings.depth_cue = None;
+        r.settings.picture.depth_cue = None;
         assert!(colors(&mut r)[30 * 90 + 45] != [51, 102, 153, 255]);
     }
 }
@@ -158,7 +158,7 @@ fn p41_lines_and_points_fade_along_their_way() {
     FreePart::extend(&mut mesh.point_parts, 0..1, material);
     scene.add_mesh(mesh, DMat4::IDENTITY);
     let mut r = cued(scene, CUE);
-    (r.settings.width, r.settings.height) = (600, 400);
+    (r.settings.picture.width, r.settings.picture.height) = (600, 400);
     let picture = colors(&mut r);
     let [near, far] = [near, far].map(|p| DVec3::from(p.map(f64::from)));
     for share in [0.1, 0.4, 0.7, 0.95] {
@@ -170,8 +170,8 @@ fn p41_lines_and_points_fade_along_their_way() {
     assert!(largest_difference(&[pixel(&r, &picture, DVec3::new(0.5, -1.0, -5.0))], &[faded(0.625)]) <= 1);
     // Edges of faces, too.
     let mut edges = cued(squares(), CUE);
-    edges.settings.lines = Lines::Wireframe;
-    edges.settings.background = Background::Color { color: [0.0; 3] };
+    edges.settings.picture.lines = Lines::Wireframe;
+    edges.settings.picture.background = Background::Color { color: [0.0; 3] };
     let brightest = |picture: &[[u8; 4]], columns: std::ops::Range<usize>| {
         picture.iter().enumerate().filter(|(i, _)| columns.contains(&(i % 90))).map(|(_, c)| c[0]).max().unwrap()
     };
@@ -190,7 +190,7 @@ fn p41_numbers_without_sense_are_refused() {
         (CUE, Some(Background::Transparent), "colour to fade into"),
     ] {
         let mut r = cued(squares(), cue);
-        r.settings.background = background.unwrap_or(r.settings.background);
+        r.settings.picture.background = background.unwrap_or(r.settings.picture.background);
         let error = r.render().unwrap_err().to_string();
         assert!(error.contains("depth cueing") && error.contains(part), "{error}");
     }

@@ -11,8 +11,8 @@ fn pictures(execution: &Execution) -> Vec<Frame> {
     let mut scene = load_builtin("scene1").unwrap();
     override_material(&mut scene, "teal ball", "opacity", "0.4").unwrap();
     let mut renderer = Renderer::with_execution(scene, execution.clone()).unwrap();
-    (renderer.settings.width, renderer.settings.height) = (150, 101);
-    renderer.settings.channels = all_channels();
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (150, 101);
+    renderer.settings.picture.channels = all_channels();
     renderer.camera = renderer.world().cameras.first().copied();
     let mut frames = Vec::new();
     for (shading, illumination, lines, samples) in [
@@ -21,11 +21,11 @@ fn pictures(execution: &Execution) -> Vec<Frame> {
         (Shading::Flat, Illumination::CookTorrance, Lines::WireframeHiddenLine, 3),
     ] {
         let settings = &mut renderer.settings;
-        (settings.shading, settings.illumination, settings.lines, settings.samples) =
+        (settings.shading.model, settings.shading.illumination, settings.picture.lines, settings.picture.samples) =
             (shading, illumination, lines, samples);
         frames.push(renderer.render().unwrap().frame);
     }
-    renderer.settings.interpolation = Interpolation::Linear;
+    renderer.settings.shading.interpolation = Interpolation::Linear;
     frames.push(renderer.render().unwrap().frame);
     frames
 }
@@ -52,8 +52,8 @@ fn a_used_session_gives_the_pictures_of_a_fresh_one() {
     let mut used = exact_builtin("scene0", 1, 1);
     let prepare = |renderer: &mut Renderer, (width, height, samples, perspective): (u32, u32, u32, bool)| {
         let settings = &mut renderer.settings;
-        (settings.width, settings.height, settings.samples) = (width, height, samples);
-        settings.channels = all_channels();
+        (settings.picture.width, settings.picture.height, settings.picture.samples) = (width, height, samples);
+        settings.picture.channels = all_channels();
         let camera = renderer.world().cameras[0];
         renderer.camera = Some(if perspective { camera } else { camera.orthographic().azimuth(1.0) });
     };
@@ -70,7 +70,7 @@ fn every_number_of_samples_works_and_more_samples_come_closer() {
     let mut renderer = exact_builtin("cubs", 90, 70);
     let pictures: Vec<_> = (1..=16)
         .map(|samples| {
-            renderer.settings.samples = samples;
+            renderer.settings.picture.samples = samples;
             colors(&mut renderer)
         })
         .collect();
@@ -90,7 +90,7 @@ fn several_models_and_instances_are_numbered_in_scene_order() {
     let mut scene = load_builtin("sphere").unwrap();
     scene.append(load_builtin("cubs").unwrap());
     let mut renderer = exact(scene, 60, 60);
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     let objects: std::collections::BTreeSet<u32> = frame.object.unwrap().into_data().into_iter().collect();
     assert!(objects.range(1..9).count() >= 4 && renderer.world().instances.len() == 9);

@@ -49,7 +49,7 @@ impl Eye<'_> {
 
     fn middle(&self) -> DVec2 {
         let settings = &self.renderer.settings;
-        DVec2::new(f64::from(settings.width), f64::from(settings.height)) * 0.5
+        DVec2::new(f64::from(settings.picture.width), f64::from(settings.picture.height)) * 0.5
     }
 
     fn axes(&self) -> [DVec3; 3] {
@@ -91,8 +91,8 @@ impl Eye<'_> {
 fn compare(name: &str, from: DVec3) -> Count {
     let (width, height) = (420i32, 320i32);
     let mut renderer = exact_builtin(name, width as u32, height as u32);
-    renderer.settings.lines = Lines::WireframeHiddenLine;
-    renderer.settings.background = Background::Color { color: [1.0; 3] };
+    renderer.settings.picture.lines = Lines::WireframeHiddenLine;
+    renderer.settings.picture.background = Background::Color { color: [1.0; 3] };
     let bounds = renderer.world().bounds;
     let (view_angle, focal_point) = (0.7f64, bounds.center());
     let camera = Camera {

@@ -32,8 +32,8 @@ fn floor() -> Renderer {
         encoding: Encoding::Linear,
     }));
     let mut renderer = exact(scene, SIDE, SIDE);
-    renderer.settings.lighting = false;
-    renderer.settings.channels = all_channels();
+    renderer.settings.shading.lighting = false;
+    renderer.settings.picture.channels = all_channels();
     renderer.camera = Some(Camera {
         position: DVec3::new(0.7, 1.0, 3.6),
         focal_point: DVec3::new(0.0, 0.0, 0.5),
@@ -62,7 +62,7 @@ fn analytic(renderer: &Renderer, x: u32, y: u32) -> Option<bool> {
 /// Pixels that the analytic answer decides, and how many of them the picture has wrong.
 fn mistakes(interpolation: Interpolation) -> (usize, usize) {
     let mut renderer = floor();
-    renderer.settings.interpolation = interpolation;
+    renderer.settings.shading.interpolation = interpolation;
     let frame = renderer.render().unwrap().frame;
     let (ids, colors) = (frame.surface.unwrap(), frame.color.unwrap());
     let (mut decided, mut wrong) = (0, 0);
@@ -112,9 +112,9 @@ fn f19_shadows_stay_where_they_are() {
                 projection: Projection::Perspective { view_angle: 0.8 },
                 clip: None,
             });
-            renderer.settings.interpolation = interpolation;
-            renderer.settings.shadows = shadows.to_owned();
-            renderer.settings.channels = Channels { cast_shadow: true, ..all_channels() };
+            renderer.settings.shading.interpolation = interpolation;
+            renderer.settings.shadows.algorithm = shadows.to_owned();
+            renderer.settings.picture.channels = Channels { cast_shadow: true, ..all_channels() };
             let frame = renderer.render().unwrap().frame;
             (frame.cast_shadow.unwrap().into_data(), frame.color.unwrap().into_data())
         };
@@ -148,8 +148,8 @@ fn p27_facets_that_reach_behind_the_eye_keep_their_colours() {
         );
         scene.lights.clear();
         let mut renderer = exact(scene, 201, 151);
-        renderer.settings.lighting = false;
-        renderer.settings.interpolation = interpolation;
+        renderer.settings.shading.lighting = false;
+        renderer.settings.shading.interpolation = interpolation;
         renderer.camera =
             Some(Camera { position: DVec3::Y, focal_point: DVec3::new(0.0, 1.0, -1.0), ..on_z(1.0, 1.0) });
         colors(&mut renderer)

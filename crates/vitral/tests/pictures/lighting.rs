@@ -18,7 +18,7 @@ const BLACK: [u8; 4] = [0, 0, 0, 255];
 fn l1_unlit_disc_has_one_colour_and_lighting_gives_it_form() {
     let mut renderer = exact_builtin("sphere", 160, 120);
     let mut shades = |lighting| {
-        renderer.settings.lighting = lighting;
+        renderer.settings.shading.lighting = lighting;
         let colors: HashSet<_> = colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
         colors.len()
     };
@@ -30,8 +30,8 @@ fn l1_unlit_disc_has_one_colour_and_lighting_gives_it_form() {
 fn l7_flat_one_colour_per_face() {
     for name in ["sphere", "cubs", "teapot"] {
         let mut renderer = exact_builtin(name, 200, 150);
-        renderer.settings.shading = Shading::Flat;
-        renderer.settings.channels = all_channels();
+        renderer.settings.shading.model = Shading::Flat;
+        renderer.settings.picture.channels = all_channels();
         let frame = renderer.render().unwrap().frame;
         let mut of_face: BTreeMap<u32, HashSet<[u8; 4]>> = BTreeMap::new();
         for (color, id) in colors_and_ids(&frame).filter(|(_, id)| *id != Frame::BACKGROUND) {
@@ -51,7 +51,7 @@ fn square_with_highlight(shading: Shading) -> Vec<[u8; 4]> {
     scene.lights = vec![Light { kind: LightKind::Point { position: DVec3::new(0.0, 0.0, 3.0) }, ..sun(DVec3::Z, 1.0) }];
     let mut renderer = exact(scene, 101, 101);
     renderer.camera = Some(on_z(4.0, 0.6));
-    renderer.settings.shading = shading;
+    renderer.settings.shading.model = shading;
     colors(&mut renderer)
 }
 
@@ -93,7 +93,7 @@ fn l13_light_contributions_add_up() {
 /// The sphere under LIGHT0 with some fields changed, by one model.
 fn sphere_with(model: Illumination, change: impl Fn(&mut Light)) -> Vec<[u8; 4]> {
     let mut renderer = exact_builtin("sphere", 100, 75);
-    renderer.settings.illumination = model;
+    renderer.settings.shading.illumination = model;
     renderer.light_intensity = Some(0.5);
     let mut lights = lab::lights();
     change(&mut lights[0]);
@@ -218,7 +218,7 @@ fn without_normals(turn: f64, open: bool) -> BTreeMap<u32, HashSet<[u8; 4]>> {
     let mut renderer = exact(scene, 120, 90);
     let camera = renderer.world().cameras[0];
     renderer.camera = Some(Camera { projection: Projection::Parallel { height: 6.0 }, ..camera });
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     // The floor has two materials: tell objects apart by object and material.
     let ids = frame.object.unwrap().into_data().into_iter().zip(frame.material.unwrap().into_data());
@@ -246,8 +246,8 @@ fn l22_exercise_5_2_without_normals_one_colour_per_object() {
 #[test]
 fn p30_self_luminous_objects_have_one_value_each() {
     let mut renderer = exact_builtin("scene1", 120, 90);
-    renderer.settings.illumination = Illumination::Constant;
-    renderer.settings.channels = all_channels();
+    renderer.settings.shading.illumination = Illumination::Constant;
+    renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     let mut of_material: BTreeMap<u32, HashSet<[u8; 4]>> = BTreeMap::new();
     for (material, color) in frame.material.unwrap().data().iter().zip(frame.color.unwrap().data()) {
@@ -260,9 +260,9 @@ fn p30_self_luminous_objects_have_one_value_each() {
 fn p33_lambert_looks_the_same_from_everywhere() {
     // Flat shading illuminates each face at its centre, so that both cameras see the very same points.
     let mut renderer = exact_builtin("sphere", 200, 200);
-    renderer.settings.shading = Shading::Flat;
-    renderer.settings.illumination = Illumination::Lambert;
-    renderer.settings.channels = all_channels();
+    renderer.settings.shading.model = Shading::Flat;
+    renderer.settings.shading.illumination = Illumination::Lambert;
+    renderer.settings.picture.channels = all_channels();
     let mut faces = |position: DVec3, projection| -> BTreeMap<u32, [u8; 4]> {
         renderer.camera = Some(Camera { position, projection, ..on_z(1.0, 0.6) });
         let frame = renderer.render().unwrap().frame;
@@ -282,7 +282,7 @@ fn p33_lambert_looks_the_same_from_everywhere() {
 fn highlight(reflectance: Reflectance, model: Illumination, light: [f32; 3]) -> [f32; 3] {
     let mut renderer: Renderer =
         exact(one(solids::sphere(1.0, 96, 48), Material { reflectance, ..Material::default() }), 200, 200);
-    renderer.settings.illumination = model;
+    renderer.settings.shading.illumination = model;
     renderer.camera = Some(on_z(5.0, 0.5));
     let sun = sun(DVec3::new(0.3, 0.4, 1.0), 1.0);
     renderer.lights = Some(vec![Light { diffuse: light, specular: light, ..sun }]);
@@ -313,7 +313,7 @@ fn walkthroughs_can_be_rendered_and_their_steps_differ() {
         for step in &steps {
             let mut renderer = exact(step.scene.clone(), 60, 45);
             renderer.camera = renderer.world().cameras.first().copied();
-            renderer.settings.lighting = step.lighting;
+            renderer.settings.shading.lighting = step.lighting;
             pictures.insert(colors(&mut renderer));
         }
         assert_eq!(pictures.len(), steps.len(), "L20: every step of {number} shows something else");
@@ -350,7 +350,7 @@ fn an_occlusion_texture_takes_ambient_light_only() {
         (scene.ambient, scene.lights) = ([ambient; 3], suns.to_vec());
         let mut renderer = exact(scene, 33, 33);
         renderer.camera = Some(on_z(4.0, 0.4));
-        renderer.settings.illumination = illumination;
+        renderer.settings.shading.illumination = illumination;
         colors(&mut renderer)[16 * 33 + 16][0]
     };
     // A light that is out keeps the lights of a scene without any away.
@@ -382,8 +382,8 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
             // The lamp is in the plane of no wall: it only must not be forgotten.
             let in_plane = matches!(light.kind, LightKind::Directional { .. });
             let mut renderer = exact(scene.clone(), 400, 300);
-            renderer.settings.illumination = illumination;
-            renderer.settings.shadows = shadows.into();
+            renderer.settings.shading.illumination = illumination;
+            renderer.settings.shadows.algorithm = shadows.into();
             renderer.lights = Some(vec![light.clone()]);
             let camera = on_z(1.0, 0.7);
             let (position, view_up) = (DVec3::new(2.9, -2.9, 3.3), DVec3::new(0.3, 1.0, 0.0));
@@ -406,7 +406,7 @@ fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_a
                 .for_each(|c| *c *= strength);
         }
         let mut renderer = exact(scene, 60, 45);
-        renderer.settings.color_space = ColorSpace::Srgb;
+        renderer.settings.picture.color_space = ColorSpace::Srgb;
         renderer.light_intensity = intensity;
         let rendered = renderer.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings)
@@ -476,8 +476,8 @@ fn a_light_in_the_plane_of_a_facet_leaves_no_specks() {
             projection: Projection::Parallel { height: 3.0 },
             clip: Some((0.01, 20.0)),
         });
-        renderer.settings.shadows = shadows.to_owned();
-        renderer.settings.channels = all_channels();
+        renderer.settings.shadows.algorithm = shadows.to_owned();
+        renderer.settings.picture.channels = all_channels();
         let frame = renderer.render().unwrap().frame;
         let attached = frame.attached_shadow.as_ref().unwrap().data().to_vec();
         let in_plane: Vec<_> = colors_and_ids(&frame).zip(attached).filter(|((_, id), _)| *id == 1).collect();
@@ -504,7 +504,7 @@ fn a_white_texture_changes_not_a_bit() {
         let lamp = LightKind::Point { position: DVec3::new(0.0, 2.0, 3.0) };
         scene.lights.push(Light { kind: lamp, ..Light::default() });
         let mut renderer = exact(scene, 90, 70);
-        (renderer.settings.illumination, renderer.settings.samples) = (illumination, 4);
+        (renderer.settings.shading.illumination, renderer.settings.picture.samples) = (illumination, 4);
         colors(&mut renderer)
     };
     let phong = Reflectance::Phong { ka: [0.1, 0.2, 0.3], kd: [0.7, 0.3, 0.5], ks: [0.9; 3], shininess: 17.0 };

@@ -24,7 +24,7 @@ fn camera(distance: f64, perspective: bool) -> Camera {
 fn light_pixels(mesh: Mesh, lines: Lines, (side, samples): (u32, u32), camera: Camera) -> usize {
     let white = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let mut renderer = exact(one(mesh, Material { reflectance: white, ..Material::default() }), side, side);
-    (renderer.settings.lines, renderer.settings.samples) = (lines, samples);
+    (renderer.settings.picture.lines, renderer.settings.picture.samples) = (lines, samples);
     // What is no edge stays dark.
     renderer.lights = Some(Vec::new());
     renderer.camera = Some(camera);
@@ -64,7 +64,7 @@ fn colored_line(y: f32, z: [f32; 2], colors: [[f32; 4]; 2]) -> Mesh {
 /// The colours of the row of pixels in the middle of a picture.
 fn middle_row(mut renderer: vitral::Renderer, camera: Camera) -> Vec<[u8; 4]> {
     renderer.camera = Some(camera);
-    let (width, height) = (renderer.settings.width as usize, renderer.settings.height as usize);
+    let (width, height) = (renderer.settings.picture.width as usize, renderer.settings.picture.height as usize);
     colors(&mut renderer)[height / 2 * width..][..width].to_vec()
 }
 
@@ -75,7 +75,7 @@ fn colours_go_over_from_one_end_of_a_line_to_the_other() {
         let mut scene = vitral::Scene::default();
         scene.add_mesh(mesh, vitral::math::DMat4::IDENTITY);
         let mut renderer = exact(scene, 81, 81);
-        renderer.settings.interpolation = interpolation;
+        renderer.settings.shading.interpolation = interpolation;
         middle_row(renderer, camera(4.0, perspective))
     };
     // Across the picture of height 3, from pixel 13.5 to 67.5.
@@ -110,8 +110,8 @@ fn lines_of_blended_materials_let_light_through() {
         let mut mesh = colored_line(0.0, [0.0; 2], [[1.0, 1.0, 1.0, alpha]; 2]);
         FreePart::extend(&mut mesh.line_parts, 0..1, Some(0));
         let mut renderer = exact(one(mesh, material(alpha_mode)), 81, 81);
-        renderer.settings.background = vitral::render::Background::Color { color: [0.2, 0.0, 0.0] };
-        renderer.settings.transparency = transparency;
+        renderer.settings.picture.background = vitral::render::Background::Color { color: [0.2, 0.0, 0.0] };
+        renderer.settings.transparency.model = transparency;
         middle_row(renderer, camera(4.0, false))[40]
     };
     use vitral::light::AlphaMode;
@@ -171,8 +171,8 @@ fn slanted_lines_are_as_dark_all_along() {
         let mut scene = vitral::Scene::default();
         scene.add_mesh(mesh.clone(), vitral::math::DMat4::IDENTITY);
         let mut renderer = exact(scene, 90, 90);
-        renderer.settings.samples = samples;
-        renderer.settings.color_space = vitral::render::ColorSpace::Raw;
+        renderer.settings.picture.samples = samples;
+        renderer.settings.picture.color_space = vitral::render::ColorSpace::Raw;
         renderer.camera = Some(camera(4.0, false));
         let picture = colors(&mut renderer);
         let rows = (15..75).map(|y| picture[y * 90..][..90].iter().map(|c| f32::from(c[0]) / 255.0).sum::<f32>());
@@ -196,16 +196,16 @@ fn clouds_of_points_are_no_heap_of_layers() {
     scene.add_mesh(deep, vitral::math::DMat4::IDENTITY);
     let mut pictures = Vec::new();
     for (visibility, order) in [
-        ("z-buffer", TransparencyOrder::ABuffer),
-        ("z-buffer", TransparencyOrder::MultiPass),
-        ("warnock", TransparencyOrder::Sorted),
-        ("bsp", TransparencyOrder::BackToFront),
-        ("ray-cast", TransparencyOrder::ABuffer),
+        ("z-buffer", TransparencyOrder::A_BUFFER),
+        ("z-buffer", TransparencyOrder::MULTI_PASS),
+        ("warnock", TransparencyOrder::SORTED),
+        ("bsp", TransparencyOrder::BACK_TO_FRONT),
+        ("ray-cast", TransparencyOrder::A_BUFFER),
     ] {
         let mut renderer = exact(scene.clone(), 41, 41);
         renderer.settings.visibility = visibility.into();
-        renderer.settings.transparency_order = order;
-        renderer.settings.samples = 4;
+        renderer.settings.transparency.order = order;
+        renderer.settings.picture.samples = 4;
         renderer.camera = Some(camera(6.0, false));
         let rendered = renderer.render().unwrap();
         let picture = rendered.frame.color.unwrap();

@@ -42,7 +42,7 @@ fn shown(scene: &Scene, seen_from: DVec3, lit_from: DVec3) -> f64 {
     renderer.camera = Some(Camera { position: seen_from * 5.0, ..on_z(1.0, 0.3) });
     renderer.lights = Some(vec![sun(lit_from, 1.0)]);
     renderer.ambient = [0.0; 3];
-    renderer.settings.illumination = Illumination::Lambert;
+    renderer.settings.shading.illumination = Illumination::Lambert;
     f64::from(colors(&mut renderer)[4 * 9 + 4][0]) / 255.0
 }
 

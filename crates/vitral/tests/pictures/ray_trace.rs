@@ -36,8 +36,8 @@ fn at(x: f64, y: f64, z: f64) -> DMat4 {
 }
 
 fn traced(mut renderer: Renderer) -> Renderer {
-    renderer.settings.global = Global::RayTrace;
-    renderer.settings.shadows = "ray".to_owned();
+    renderer.settings.global.model = Global::RayTrace;
+    renderer.settings.shadows.algorithm = vitral::render::Shadows::RAY;
     renderer
 }
 
@@ -138,7 +138,7 @@ fn p36_the_id_in_a_mirror_is_that_of_the_virtual_image() {
         r
     };
     let mut virtual_image = scene(false);
-    virtual_image.settings.channels.surface = true;
+    virtual_image.settings.picture.channels.surface = true;
     let ids = virtual_image.render().unwrap().frame.surface.unwrap().into_data();
     let of_ball = virtual_image.world().surface_of_facet(virtual_image.world().instances[1].first_facet);
 
@@ -256,7 +256,7 @@ fn opaque_surfaces_look_as_without_ray_tracing() {
     for name in ["scene0", "scene1", "cubs", "teapot"] {
         for samples in [1, 4] {
             let mut local = exact_builtin(name, 96, 72);
-            (local.settings.shadows, local.settings.samples) = ("ray".to_owned(), samples);
+            (local.settings.shadows.algorithm, local.settings.picture.samples) = ("ray".to_owned(), samples);
             let expected = colors(&mut local);
             assert!(colors(&mut traced(local)) == expected, "{name}, {samples}");
         }
@@ -282,7 +282,7 @@ fn t7_straight_through_any_number_of_panes_is_the_same_as_sorting_them() {
             // Sheets have no inside: their index does not matter.
             let mut sorted = exact(panes(count, 1.5), 40, 30);
             sorted.camera = Some(on_z(9.0, 0.6));
-            sorted.settings.transparency = model;
+            sorted.settings.transparency.model = model;
             let expected = colors(&mut sorted);
             let own = colors(&mut traced(sorted));
             assert!(largest_difference(&own, &expected) <= 1, "{count} panes, {model:?}");
@@ -350,7 +350,7 @@ fn what_glass_touches_is_seen_through_it() {
         let floor = DMat4::from_rotation_y(0.2);
         add(&mut scene, solids::plane(7.0, 7.0, 3, 2), poster([0.2, 0.8, 0.2]), floor);
         let mut r = exact(scene, 120, 90);
-        (r.camera, r.settings.background) = (Some(above()), Background::Color { color: [1.0, 0.0, 1.0] });
+        (r.camera, r.settings.picture.background) = (Some(above()), Background::Color { color: [1.0, 0.0, 1.0] });
         r
     };
     for turn in [0.0, 0.37] {
@@ -399,7 +399,7 @@ fn backgrounds_are_seen_through_glass_as_they_are() {
     for background in [Background::Transparent, gradient] {
         let mut sorted = exact(panes(3, 1.0), 60, 50);
         sorted.camera = Some(on_z(9.0, 0.9));
-        sorted.settings.background = background;
+        sorted.settings.picture.background = background;
         let expected = colors(&mut sorted);
         assert!(largest_difference(&colors(&mut traced(sorted)), &expected) <= 1, "{background:?}");
     }
@@ -416,7 +416,7 @@ fn shadows_of_coloured_glass_have_its_colour() {
     let red = Material { filter: [1.0, 0.25, 0.0], ..glass(0.8, 1.0) };
     add(&mut scene, solids::plane(2.0, 2.0, 1, 1), red, at(0.0, 1.0, 0.0));
     let mut r = traced(exact(scene, 100, 100));
-    r.settings.transparency = Transparency::Filtered;
+    r.settings.transparency.model = Transparency::Filtered;
     r.lights = Some(vec![sun(DVec3::new(1.0, 1.0, 0.0), 1.0)]);
     let eye = Camera { position: DVec3::new(0.0, 6.0, 6.0), focal_point: DVec3::ZERO, ..on_z(6.0, 1.0) };
     r.camera = Some(eye);
@@ -431,7 +431,7 @@ fn shadows_of_coloured_glass_have_its_colour() {
 #[test]
 fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
     let mut r = traced(exact_builtin("mirrors", 80, 60));
-    r.settings.samples = 2;
+    r.settings.picture.samples = 2;
     let expected = colors(&mut r);
     for algorithm in VISIBILITY {
         r.settings.visibility = algorithm.name.to_owned();
@@ -439,7 +439,7 @@ fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
         let different = own.iter().zip(&expected).filter(|(a, b)| a != b).count();
         assert!(different <= 4, "{}: {different}", algorithm.name);
     }
-    r.settings.visibility = "z-buffer".to_owned();
+    r.settings.visibility = vitral::render::Visibility::Z_BUFFER;
     for threads in [1, 2, 5] {
         let mut execution = vitral::execution(threads).unwrap();
         for (_, level) in vitral::math::lanes::available_levels() {
@@ -457,7 +457,7 @@ fn every_shadow_algorithm_serves_what_rays_hit() {
     let scene = || exact_builtin("mirrors", 96, 72);
     let [rays, none] = ["ray", "none"].map(|shadows| {
         let mut r = traced(scene());
-        r.settings.shadows = shadows.to_owned();
+        r.settings.shadows.algorithm = shadows.to_owned();
         colors(&mut r)
     });
     let differing = |a: &[[u8; 4]], b: &[[u8; 4]]| {
@@ -467,7 +467,7 @@ fn every_shadow_algorithm_serves_what_rays_hit() {
     assert!(differing(&rays, &none) > 0.05);
     for shadows in SHADOWS.iter().filter(|s| s.name != "none") {
         let mut r = traced(scene());
-        r.settings.shadows = shadows.name.to_owned();
+        r.settings.shadows.algorithm = shadows.name.to_owned();
         // Maps differ within texels of a shadow's edge.
         let allowed = if shadows.name == "map" { 0.02 } else { 0.001 };
         let differing = differing(&rays, &colors(&mut r));
@@ -481,14 +481,14 @@ fn total_internal_reflection_and_the_most_turns() {
     let mut scene = Scene::default();
     add(&mut scene, solids::cuboid(DVec3::splat(4.0)), glass(1.0, 1.5), DMat4::IDENTITY);
     let mut r = traced(exact(scene, 16, 16));
-    r.settings.background = Background::Color { color: [1.0; 3] };
+    r.settings.picture.background = Background::Color { color: [1.0; 3] };
     r.camera =
         Some(Camera { position: DVec3::new(0.0, 0.0, 1.0), focal_point: DVec3::new(1.0, 1.0, 0.0), ..on_z(1.0, 0.1) });
     let tracing = r.render().unwrap().stats.tracing;
     // The diagonal meets all sides beyond the critical angle of 41.8 degrees: 54.7.
     assert_eq!((tracing.refracted, tracing.stopped_by_depth), (0, 256));
     assert_eq!(tracing.total_reflections, 256 * 9);
-    r.settings.max_depth = 2;
+    r.settings.global.max_depth = 2;
     assert_eq!(r.render().unwrap().stats.tracing.total_reflections, 256 * 3);
     // What is not followed to its end is black, not a hole in the picture.
     assert!(colors(&mut r).iter().all(|p| *p == [0, 0, 0, 255]));
@@ -533,7 +533,7 @@ fn kays_sheets_let_the_same_light_through_with_and_without_rays() {
     scene.materials.iter_mut().for_each(|m| m.alpha_mode = AlphaMode::Blend);
     let camera = Camera { position: DVec3::new(3.0, 2.0, 5.0), ..on_z(1.0, 0.9) };
     let picture = |mut r: Renderer| {
-        r.settings.transparency = Transparency::Kay;
+        r.settings.transparency.model = Transparency::Kay;
         r.camera = Some(camera);
         colors(&mut r)
     };
@@ -550,7 +550,7 @@ fn bad_indices_of_refraction_are_refused() {
     }
     let mut open = traced(exact(panes(1, 1.5), 8, 8));
     assert!(open.render().unwrap().warnings[0].contains("not closed"));
-    open.settings.max_depth = 0;
+    open.settings.global.max_depth = 0;
     assert!(open.render().unwrap_err().to_string().contains("1 to 64"));
 }
 
@@ -607,7 +607,7 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
         cuboid(&mut scene, DVec3::new(3.0, 2.0, 0.1), DVec3::new(0.0, 1.0, -1.5), mirror());
         let mut r = exact(scene, 80, 60);
         r.camera = Some(above());
-        r.settings.transparency = Transparency::Filtered;
+        r.settings.transparency.model = Transparency::Filtered;
         r.lights = Some(vec![sun(DVec3::new(0.3, 1.0, 0.2), 1.0), sun(DVec3::new(-0.5, 0.8, 0.9), 0.5)]);
         r
     };
@@ -624,7 +624,7 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
         for global in [Global::None, Global::RayTrace] {
             let picture = |acceleration| {
                 let mut r = scene();
-                (r.settings.global, r.settings.shadows) = (global, "ray".to_owned());
+                (r.settings.global.model, r.settings.shadows.algorithm) = (global, "ray".to_owned());
                 r.settings.acceleration = acceleration;
                 let rendered = r.render().unwrap();
                 let tests =
@@ -632,11 +632,11 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
                 (rendered.frame, tests, rendered.stats.tracing.triangle_tests)
             };
             let (expected, counters, _) = picture(None);
-            let asked = picture(Some(Acceleration::None)).2;
+            let asked = picture(Some(Acceleration::NONE)).2;
             assert!(global == Global::None || counters.hits > 20, "{name}: {counters:?}");
             let wrong = |structure: &&AccelerationStructure| {
                 let (frame, counted, tests) = picture(Some(structure.value));
-                let saves = structure.value == Acceleration::None || tests < asked || asked == 0;
+                let saves = structure.value == Acceleration::NONE || tests < asked || asked == 0;
                 frame != expected || counted != counters || !saves
             };
             let wrong: Vec<_> = ACCELERATION.iter().filter(wrong).map(|structure| structure.name).collect();

@@ -45,8 +45,8 @@ fn picture(scene: Scene, change: impl FnOnce(&mut Settings)) -> Vec<[u8; 4]> {
     let mut renderer = exact(scene, 112, 84);
     renderer.camera = renderer.world().cameras.first().copied();
     let settings = &mut renderer.settings;
-    settings.shadows = "ray".to_owned();
-    (settings.light_samples, settings.scatter_samples) = (2, 4);
+    settings.shadows.algorithm = vitral::render::Shadows::RAY;
+    (settings.shadows.light_samples, settings.transparency.scatter_samples) = (2, 4);
     change(settings);
     renderer.render().unwrap().frame.color.unwrap().into_data()
 }

@@ -22,8 +22,8 @@ fn zero_lights_leave_ambient_light_alone() {
 #[test]
 fn an_empty_scene_is_all_background() {
     let mut renderer = exact(Scene::default(), 33, 7);
-    renderer.settings.samples = 4;
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.samples = 4;
+    renderer.settings.picture.channels = all_channels();
     let rendered = renderer.render().unwrap();
     let frame = rendered.frame;
     assert!(frame.color.unwrap().data().iter().all(|c| *c == [0, 0, 0, 255]));
@@ -47,7 +47,7 @@ fn a_camera_inside_a_model_sees_it_or_nothing_but_never_fails() {
     let mut scene0 = exact_builtin("scene0", 64, 48);
     for position in [DVec3::new(0.7, 0.8, 1.2), DVec3::new(-1.1, 0.7, -1.1), DVec3::ZERO] {
         scene0.camera = Some(Camera { position, focal_point: DVec3::new(3.0, 0.0, 0.0), ..on_z(1.0, 1.2) });
-        scene0.settings.channels = all_channels();
+        scene0.settings.picture.channels = all_channels();
         let frame = scene0.render().unwrap().frame;
         assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
     }
@@ -80,8 +80,8 @@ fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
     let touched = mesh.triangles.iter().filter(|t| t.iter().any(|i| [0, 6, 24].contains(i))).count() as u64;
     mesh.normals.as_mut().unwrap().values.push([f32::NAN; 3]);
     let mut renderer = exact(Scene::from_mesh(mesh), 80, 60);
-    renderer.settings.samples = 4;
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.samples = 4;
+    renderer.settings.picture.channels = all_channels();
     let rendered = renderer.render().unwrap();
     assert_eq!(rendered.stats.geometry.not_finite, touched);
     assert!(rendered.stats.picture.covered_pixels > 100, "the others are there");
@@ -92,7 +92,7 @@ fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
 #[test]
 fn odd_numbers_everywhere_give_a_picture_all_the_same() {
     let mut renderer = exact_builtin("sphere", 40, 30);
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.channels = all_channels();
     let good = renderer.frame_camera();
     for camera in [
         Camera { position: good.focal_point, ..good },
@@ -116,7 +116,7 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
         scene.nodes[node].transform = NodeTransform::Matrix(DMat4::from_scale(scale));
     }
     let mut renderer = exact(scene, 40, 30);
-    renderer.settings.channels = all_channels();
+    renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     assert!(frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
 }
@@ -124,7 +124,7 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
 /// The error for a resolution and a number of samples.
 fn refusal(width: u32, height: u32, samples: u32) -> Error {
     let mut renderer = exact_builtin("cubs", width, height);
-    renderer.settings.samples = samples;
+    renderer.settings.picture.samples = samples;
     renderer.render().unwrap_err()
 }
 
@@ -189,14 +189,14 @@ fn no_light_leaks_in_where_walls_meet() {
     r.lights = Some(vec![Light { kind, ..Light::default() }]);
     assert!(colors(&mut r).iter().any(|c| c[0] > 50), "without shadows it shines in");
     for shadows in SHADOWS.iter().filter(|s| !["none", "map"].contains(&s.name)) {
-        r.settings.shadows = shadows.name.to_owned();
+        r.settings.shadows.algorithm = shadows.name.to_owned();
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
         assert_eq!(bright, 0, "{}", shadows.name);
     }
     // Maps see no better than a texel: some pixels along the edges have a wall's very edge in their texel.
-    r.settings.shadows = "map".to_owned();
+    r.settings.shadows.algorithm = vitral::render::Shadows::MAP;
     for (size, most) in [(128, 350), (512, 15), (2048, 10)] {
-        r.settings.shadow_map_size = size;
+        r.settings.shadows.map_size = size;
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
         assert!(bright <= most, "{bright} with {size} texels");
     }
@@ -214,7 +214,7 @@ fn shadow_maps_of_transparent_things_keep_to_the_memory_limit() {
         scene.nodes.push(Node { mesh, transform, ..Node::default() });
     }
     let mut renderer = exact(scene, 16, 16);
-    (renderer.settings.shadows, renderer.settings.shadow_map_size) = ("map".into(), 1024);
+    (renderer.settings.shadows.algorithm, renderer.settings.shadows.map_size) = ("map".into(), 1024);
     renderer.lights = Some(vec![sun(DVec3::Y, 1.0)]);
     renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(64 << 20));
     let error = renderer.render().unwrap_err().to_string();

@@ -27,7 +27,7 @@ fn two_triangles() -> Renderer {
     };
     let mut renderer = exact(one(mesh, Material { double_sided: true, ..Material::default() }), 16, 16);
     renderer.camera = Some(Camera { projection: Projection::Parallel { height: 16.0 }, ..on_z(5.0, 1.0) });
-    renderer.settings.visibility = "scan-line".to_owned();
+    renderer.settings.visibility = vitral::render::Visibility::SCAN_LINE;
     renderer
 }
 

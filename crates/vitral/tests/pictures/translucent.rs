@@ -65,7 +65,7 @@ fn checker(scene: &mut Scene, z: f32) {
 fn seen(scene: Scene, samples: u32) -> Renderer {
     let mut renderer = exact(scene, 96, 80);
     renderer.camera = Some(on_z(4.0, 0.5));
-    renderer.settings.samples = samples;
+    renderer.settings.picture.samples = samples;
     renderer
 }
 
@@ -89,7 +89,7 @@ fn variance(renderer: &mut Renderer) -> f64 {
 }
 
 fn traced(mut renderer: Renderer) -> Renderer {
-    renderer.settings.global = Global::RayTrace;
+    renderer.settings.global.model = Global::RayTrace;
     renderer
 }
 
@@ -120,7 +120,7 @@ fn layers_and_rays_blur_alike() {
         checker(&mut pane, -behind);
         add(&mut pane, rectangle([-3.0; 2], [3.0; 2], 0.0), glass(0.8, Transmission::Translucent, exponent));
         let mut renderer = seen(pane, 4);
-        renderer.settings.scatter_samples = 400;
+        renderer.settings.transparency.scatter_samples = 400;
         let [layers, rays] = [colors(&mut renderer), colors(&mut traced(renderer))];
         let apart: u64 = layers.iter().zip(&rays).map(|(a, b)| u64::from(a[0].abs_diff(b[0]))).sum();
         assert!(apart < 4 * layers.len() as u64, "{exponent}, {behind}: {} on the mean", apart / layers.len() as u64);
@@ -182,10 +182,10 @@ fn two_panes_behind_each_other_blur_twice_and_let_the_product_pass() {
 fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
     let picture = |order: TransparencyOrder, visibility: &str| {
         let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 4);
-        (r.settings.transparency_order, r.settings.visibility) = (order, visibility.to_owned());
+        (r.settings.transparency.order, r.settings.visibility) = (order, visibility.to_owned());
         r.render().map(|rendered| rendered.frame.color.unwrap().into_data())
     };
-    let expected = picture(TransparencyOrder::ABuffer, "z-buffer").unwrap();
+    let expected = picture(TransparencyOrder::A_BUFFER, "z-buffer").unwrap();
     for order in ORDERS {
         for algorithm in VISIBILITY.iter().filter(|a| a.makes_list() || !order.needs_list) {
             let own = picture(order.value, algorithm.name);
@@ -201,7 +201,7 @@ fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
         }
     }
     let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 1);
-    (r.settings.transparency_order, r.settings.transparency) = (TransparencyOrder::TwoBuffer, Transparency::None);
+    (r.settings.transparency.order, r.settings.transparency.model) = (TransparencyOrder::TWO_BUFFER, Transparency::None);
     assert!(r.render().is_ok(), "as opaque surfaces they need no order");
 }
 
@@ -214,7 +214,7 @@ fn blur_is_the_same_at_every_level_with_one_and_three_threads() {
                 Execution { workers: Workers::new(threads), level, budget: Budget::default(), observer: None };
             let scene = slab(glass(0.7, Transmission::Translucent, 30.0), 1.0);
             let mut r = Renderer::with_execution(scene, execution).unwrap();
-            (r.settings.width, r.settings.height, r.camera) = (130, 70, Some(on_z(4.0, 0.5)));
+            (r.settings.picture.width, r.settings.picture.height, r.camera) = (130, 70, Some(on_z(4.0, 0.5)));
             let layers = colors(&mut r);
             let pictures = [layers, colors(&mut traced(r))];
             let expected = reference.get_or_insert_with(|| pictures.clone());
@@ -231,7 +231,7 @@ fn t1_light_behind_a_translucent_pane_makes_it_glow() {
         add(&mut scene, rectangle([-3.0; 2], [3.0; 2], 0.0), pane);
         let mut r = seen(scene, 1);
         r.lights = Some(vec![sun(from, 0.8)]);
-        r.settings.transparency = model;
+        r.settings.transparency.model = model;
         colors(&mut r)[40 * 96 + 48]
     };
     let behind = dvec3(0.6, 0.0, -0.8);
@@ -253,7 +253,7 @@ fn the_shadow_of_what_is_behind_falls_on_the_glow() {
         add(&mut scene, rectangle([-3.0, -3.0], [0.0, 3.0], -0.2), plain([0.0; 3]));
         let mut r = seen(scene, 1);
         r.lights = Some(vec![sun(dvec3(0.0, 0.0, -1.0), 0.8)]);
-        shadows.name.clone_into(&mut r.settings.shadows);
+        shadows.name.clone_into(&mut r.settings.shadows.algorithm);
         let picture = colors(&mut r);
         let [left, right] = [20, 76].map(|x| picture[40 * 96 + x][0]);
         assert!(left <= 2 && right.abs_diff(102) <= 2, "{}: {left}, {right}", shadows.name);
@@ -276,18 +276,18 @@ fn parallel_views_blur_too() {
 fn blur_and_passes_stop_at_a_time_limit() {
     let with_limit = |scene: Scene, order| {
         let mut r = seen(scene, 4);
-        r.settings.transparency_order = order;
+        r.settings.transparency.order = order;
         let budget = Budget::new(std::sync::Arc::new(SystemClock::default())).with_time_limit(Some(1e-9));
         r.execution_mut().budget = budget;
         r.render().unwrap_err().exit_code()
     };
     let clear = glass(0.7, Transmission::Transparent, 30.0);
-    assert_eq!(with_limit(slab(clear, 1.0), TransparencyOrder::MultiPass), 7);
+    assert_eq!(with_limit(slab(clear, 1.0), TransparencyOrder::MULTI_PASS), 7);
     let translucent = glass(0.7, Transmission::Translucent, 30.0);
-    assert_eq!(with_limit(slab(translucent, 1.0), TransparencyOrder::ABuffer), 7);
+    assert_eq!(with_limit(slab(translucent, 1.0), TransparencyOrder::A_BUFFER), 7);
     // And at one of memory.
     let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 16);
-    (r.settings.width, r.settings.height) = (800, 600);
+    (r.settings.picture.width, r.settings.picture.height) = (800, 600);
     r.execution_mut().budget = Budget::default().with_memory_limit(Some(80 << 20));
     assert!(r.render().unwrap_err().to_string().contains("behind translucent"));
 }

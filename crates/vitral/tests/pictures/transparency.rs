@@ -58,14 +58,14 @@ fn glasses() -> Vec<(Mesh, Material)> {
 fn renderer(parts: Vec<(Mesh, Material)>, order: TransparencyOrder, samples: u32) -> Renderer {
     let mut renderer = exact(scene_of(parts), 90, 70);
     renderer.camera = Some(on_z(3.0, 0.9));
-    (renderer.settings.transparency_order, renderer.settings.samples) = (order, samples);
+    (renderer.settings.transparency.order, renderer.settings.picture.samples) = (order, samples);
     renderer
 }
 
 #[test]
 fn t10_t11_t12_f6_exact_orders_agree_in_every_algorithm_and_permutation() {
     for samples in [1, 4] {
-        let reference = colors(&mut renderer(glasses(), TransparencyOrder::Sorted, samples));
+        let reference = colors(&mut renderer(glasses(), TransparencyOrder::SORTED, samples));
         for order in ORDERS.iter().filter(|o| o.exact && !o.needs_list) {
             let own = colors(&mut renderer(glasses(), order.value, samples));
             assert!(largest_difference(&own, &reference) <= 1, "{}, {samples}", order.name);
@@ -115,7 +115,7 @@ fn t11_all_permutations_are_bit_equal_in_exact_orders_and_not_in_inexact_ones() 
             }
             let parts = permutation.iter().map(|&part| glasses().swap_remove(part)).collect();
             let mut r = renderer(parts, order.value, 1);
-            (r.settings.width, r.settings.height) = (36, 28);
+            (r.settings.picture.width, r.settings.picture.height) = (36, 28);
             let picture = colors(&mut r);
             if !pictures.contains(&picture) {
                 pictures.push(picture);
@@ -128,9 +128,9 @@ fn t11_all_permutations_are_bit_equal_in_exact_orders_and_not_in_inexact_ones() 
 #[test]
 fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
     for samples in [1, 4] {
-        let reference = colors(&mut renderer(glasses(), TransparencyOrder::Sorted, samples));
+        let reference = colors(&mut renderer(glasses(), TransparencyOrder::SORTED, samples));
         for algorithm in VISIBILITY {
-            let mut r = renderer(glasses(), TransparencyOrder::BackToFront, samples);
+            let mut r = renderer(glasses(), TransparencyOrder::BACK_TO_FRONT, samples);
             algorithm.name.clone_into(&mut r.settings.visibility);
             if !algorithm.makes_list() {
                 let error = r.render().unwrap_err();
@@ -155,7 +155,7 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
                 let mut parts = glasses();
                 parts.rotate_left(turn);
                 parts.swap(0, 3);
-                let mut permuted = renderer(parts, TransparencyOrder::BackToFront, samples);
+                let mut permuted = renderer(parts, TransparencyOrder::BACK_TO_FRONT, samples);
                 algorithm.name.clone_into(&mut permuted.settings.visibility);
                 let apart = apart(&colors(&mut permuted));
                 assert_eq!(apart, 0, "{}, {samples} samples, permutation {turn}", algorithm.name);
@@ -169,10 +169,10 @@ fn t10_lines_take_their_place_among_the_panes_of_a_list() {
     for visibility in ["painter", "bsp"] {
         let picture = |order| {
             let mut r = renderer(glasses(), order, 4);
-            (r.settings.lines, r.settings.visibility) = (Lines::Edges, visibility.to_owned());
+            (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, visibility.to_owned());
             colors(&mut r)
         };
-        let (own, sorted) = (picture(TransparencyOrder::BackToFront), picture(TransparencyOrder::Sorted));
+        let (own, sorted) = (picture(TransparencyOrder::BACK_TO_FRONT), picture(TransparencyOrder::SORTED));
         let apart = own.iter().zip(&sorted).filter(|(a, b)| a != b).count();
         assert!(apart <= 2, "{visibility}: {apart} pixels");
     }
@@ -180,8 +180,8 @@ fn t10_lines_take_their_place_among_the_panes_of_a_list() {
 
 #[test]
 fn rays_take_no_order() {
-    let mut r = renderer(glasses(), TransparencyOrder::Sorted, 1);
-    r.settings.global = Global::RayTrace;
+    let mut r = renderer(glasses(), TransparencyOrder::SORTED, 1);
+    r.settings.global.model = Global::RayTrace;
     let error = r.render().unwrap_err();
     assert!(
         error.to_string().contains("`sorted`") && error.hint().unwrap().contains("--transparency-order"),
@@ -193,7 +193,7 @@ fn rays_take_no_order() {
 fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
     let mut turned = glasses();
     turned.reverse();
-    let exact = colors(&mut renderer(glasses(), TransparencyOrder::ABuffer, 1));
+    let exact = colors(&mut renderer(glasses(), TransparencyOrder::A_BUFFER, 1));
     for order in ORDERS.iter().filter(|o| !o.exact) {
         let first = colors(&mut renderer(glasses(), order.value, 1));
         let other = colors(&mut renderer(turned.clone(), order.value, 1));
@@ -201,15 +201,15 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
         assert!(largest_difference(&first, &exact) > 20, "{}", order.name);
         let panes = || vec![glasses().remove(4), glasses().remove(2)];
         let single = |value| colors(&mut renderer(panes(), value, 4));
-        let difference = largest_difference(&single(order.value), &single(TransparencyOrder::Sorted));
+        let difference = largest_difference(&single(order.value), &single(TransparencyOrder::SORTED));
         assert!(difference <= 1, "{}: one layer is exact", order.name);
     }
 }
 
 /// The two buffers of a scene, and its picture.
 fn two_buffers(parts: Vec<(Mesh, Material)>) -> (TwoBuffers, Vec<[u8; 4]>) {
-    let mut renderer = renderer(parts, TransparencyOrder::TwoBuffer, 1);
-    renderer.settings.channels.buffers = true;
+    let mut renderer = renderer(parts, TransparencyOrder::TWO_BUFFER, 1);
+    renderer.settings.picture.channels.buffers = true;
     // Depths of scenes of other extents are compared.
     renderer.camera = renderer.camera.map(|camera| Camera { clip: Some((1.0, 6.0)), ..camera });
     let frame = renderer.render().unwrap().frame;
@@ -255,8 +255,8 @@ fn f8_one_layer_in_the_second_buffer_is_exact() {
 fn t7_f4_stacks_of_one_to_eight_panes_in_a_picture() {
     for n in 1..=8 {
         let panes = (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)));
-        let mut r = renderer(panes.collect(), TransparencyOrder::ABuffer, 4);
-        r.settings.background = Background::Color { color: [0.6; 3] };
+        let mut r = renderer(panes.collect(), TransparencyOrder::A_BUFFER, 4);
+        r.settings.picture.background = Background::Color { color: [0.6; 3] };
         let expected = (0..n).fold(0.6f32, |behind, i| 0.5 * 0.1 * (i + 1) as f32 + 0.5 * behind);
         let middle = colors(&mut r)[35 * 90 + 45];
         assert!((f32::from(middle[0]) - 255.0 * expected).abs() <= 1.0, "{n}: {middle:?}");
@@ -268,7 +268,7 @@ fn profile(material: Material, model: Transparency) -> Vec<(f64, f64)> {
     let mut renderer = exact(one(solids::sphere(1.0, 256, 128), material), 201, 201);
     let projection = Projection::Parallel { height: 2.01 };
     renderer.camera = Some(Camera { projection, ..on_z(5.0, 1.0) });
-    renderer.settings.transparency = model;
+    renderer.settings.transparency.model = model;
     let row = colors(&mut renderer)[100 * 201..101 * 201].to_vec();
     let place = |i: usize| (i as f64 - 100.0) * 0.01;
     row.iter().enumerate().map(|(i, c)| (place(i), f64::from(c[0]) / 255.0)).filter(|p| p.0.abs() < 0.97).collect()
@@ -292,9 +292,9 @@ fn filtered_glass_tints_what_is_behind() {
     let green = Material { filter: [0.0, 1.0, 0.5], ..glass([0.0; 3], 0.8) };
     let mut r = exact(one(square(0.0, 0.0), green), 20, 20);
     r.camera = Some(on_z(1.0, 0.9));
-    r.settings.background = Background::Color { color: [1.0; 3] };
+    r.settings.picture.background = Background::Color { color: [1.0; 3] };
     assert_eq!(colors(&mut r)[210], [204, 204, 204, 255], "the linear model knows no filter");
-    r.settings.transparency = Transparency::Filtered;
+    r.settings.transparency.model = Transparency::Filtered;
     assert_eq!(colors(&mut r)[210], [0, 204, 102, 255]);
 }
 
@@ -304,9 +304,9 @@ fn f2_highlights_stay_on_clear_filtered_glass() {
     let clear = Material { reflectance: mirror, unlit: false, ..glass([0.0; 3], 1.0) };
     let mut r = exact(one(square(0.0, 0.0), clear), 20, 20);
     (r.camera, r.lights) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]));
-    r.settings.background = Background::Color { color: [0.2; 3] };
+    r.settings.picture.background = Background::Color { color: [0.2; 3] };
     assert_eq!(colors(&mut r)[210][0], 51, "linear: 1 - kt = 0 leaves nothing of the surface");
-    r.settings.transparency = Transparency::Filtered;
+    r.settings.transparency.model = Transparency::Filtered;
     let seen = i32::from(colors(&mut r)[210][0]);
     assert!((seen - 179).abs() <= 2, "0.2 behind and the highlight of 0.5: {seen}");
 }
@@ -317,7 +317,7 @@ fn clear_bodies_of_glass_keep_highlights_and_rim() {
     let clear = Material { reflectance: mirror, unlit: false, glass: true, ..glass([0.0; 3], 1.0) };
     let mut r = exact(one(square(0.0, 0.0), clear), 20, 20);
     (r.camera, r.lights) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]));
-    r.settings.background = Background::Color { color: [0.2; 3] };
+    r.settings.picture.background = Background::Color { color: [0.2; 3] };
     let seen = i32::from(colors(&mut r)[210][0]);
     assert!((seen - 176).abs() <= 2, "0.96 of 0.2 behind and the highlight of 0.5: {seen}");
 
@@ -363,7 +363,7 @@ fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
     let seen = |opacity, metallic, textured, shadows: &str| {
         let mut r = exact(pane(opacity, metallic, textured), 20, 20);
         (r.camera, r.lights, r.ambient) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]), [0.0; 3]);
-        r.settings.shadows = shadows.to_owned();
+        r.settings.shadows.algorithm = shadows.to_owned();
         i32::from(colors(&mut r)[210][0])
     };
     for (opacity, metallic) in [(0.0f32, 0.0f32), (0.4, 0.0), (0.0, 0.6), (0.4, 0.6), (0.2, 1.0)] {
@@ -388,7 +388,7 @@ fn thousands_of_layers_stay_within_their_memory_with_a_warning() {
     let run = |parts: Vec<(Mesh, Material)>, memory: u64| {
         let mut r = exact(scene_of(parts), 24, 24);
         r.camera = Some(on_z(3.0, 0.9));
-        r.settings.layer_memory = memory;
+        r.settings.transparency.layer_memory = memory;
         let rendered = r.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings, rendered.stats.picture.lost_layers)
     };
@@ -425,8 +425,8 @@ fn the_inner_sides_of_bodies_are_lit_as_both_sides_of_sheets_are() {
                 let position = DVec3::new(1.1, 0.9, 2.3);
                 r.camera = Some(Camera { position, ..on_z(2.5, 0.7) });
                 r.lights = Some(vec![sun(DVec3::new(0.4, 0.6, -0.7), 1.0)]);
-                (r.settings.shading, r.settings.global) = (shading, global);
-                r.settings.shadows = shadows.to_owned();
+                (r.settings.shading.model, r.settings.global.model) = (shading, global);
+                r.settings.shadows.algorithm = shadows.to_owned();
                 colors(&mut r)
             };
             assert!(picture(false) == picture(true), "{:?}, {shading:?}, {shadows}, {global:?}", material.alpha_mode);
@@ -440,7 +440,7 @@ fn opacities_outside_their_range_and_coincident_panes_are_harmless() {
         for model in [Transparency::Linear, Transparency::Kay, Transparency::Filtered] {
             let odd = Material { opacity, filter: [f32::NAN, -1.0, 9.0], ..glass([0.5; 3], 0.5) };
             let mut r = exact(scene_of([(square(0.0, 0.0), odd.clone()), (square(0.0, 0.0), odd)]), 16, 16);
-            (r.camera, r.settings.transparency) = (Some(on_z(1.0, 0.9)), model);
+            (r.camera, r.settings.transparency.model) = (Some(on_z(1.0, 0.9)), model);
             assert!(colors(&mut r).iter().all(|c| c[3] == 255), "{model:?} with {opacity}");
         }
     }
@@ -484,10 +484,10 @@ fn t12_passes_over_the_triangles_give_the_picture_of_all_layers_at_once() {
             let picture = |order| {
                 let mut r = renderer(lit_glasses(), order, samples);
                 r.lights = Some(vec![sun(DVec3::new(0.3, 0.4, 0.8), 1.0)]);
-                (r.settings.lines, r.settings.visibility) = (Lines::Edges, algorithm.name.to_owned());
+                (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, algorithm.name.to_owned());
                 colors(&mut r)
             };
-            let same = picture(TransparencyOrder::MultiPass) == picture(TransparencyOrder::ABuffer);
+            let same = picture(TransparencyOrder::MULTI_PASS) == picture(TransparencyOrder::A_BUFFER);
             assert!(same, "{}, {samples} samples", algorithm.name);
         }
     }
@@ -496,21 +496,21 @@ fn t12_passes_over_the_triangles_give_the_picture_of_all_layers_at_once() {
 #[test]
 fn t12_the_picture_after_each_pass_can_be_had() {
     let panes = |n: usize| (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)));
-    let mut r = renderer(panes(5).collect(), TransparencyOrder::MultiPass, 4);
-    r.settings.channels.passes = true;
+    let mut r = renderer(panes(5).collect(), TransparencyOrder::MULTI_PASS, 4);
+    r.settings.picture.channels.passes = true;
     let frame = r.render().unwrap().frame;
     assert_eq!(frame.passes.len(), 6, "what is opaque, and five panes");
     assert_eq!(frame.passes.last(), frame.color.as_ref());
     for (n, pass) in frame.passes.iter().enumerate() {
         // The farthest n panes alone.
-        let expected = colors(&mut renderer(panes(n).collect(), TransparencyOrder::Sorted, 4));
+        let expected = colors(&mut renderer(panes(n).collect(), TransparencyOrder::SORTED, 4));
         let middle = |picture: &[[u8; 4]]| picture[35 * 90 + 45];
         assert_eq!(middle(pass.data()), middle(&expected), "after pass {n}");
     }
     // Without passes it is an error to ask for them.
     for (order, visibility) in [("sorted", "z-buffer"), ("multi-pass", "ray-cast"), ("multi-pass", "brute-force")] {
         let order = ORDERS.iter().find(|o| o.name == order).unwrap();
-        (r.settings.transparency_order, r.settings.visibility) = (order.value, visibility.to_owned());
+        (r.settings.transparency.order, r.settings.visibility) = (order.value, visibility.to_owned());
         assert!(r.render().unwrap_err().to_string().contains("multi-pass"), "{visibility}");
     }
 }
@@ -520,18 +520,18 @@ fn passes_lose_no_layer_and_lists_keep_the_nearest() {
     let panes: Vec<_> = (0..400).map(|i| (square(-0.5 + 0.001 * i as f32, 0.0), glass([0.5; 3], 0.98))).collect();
     let run = |order, visibility: &str, memory: u64| {
         let mut r = exact(scene_of(panes.clone()), 24, 24);
-        (r.camera, r.settings.transparency_order) = (Some(on_z(3.0, 0.9)), order);
-        (r.settings.layer_memory, r.settings.visibility) = (memory, visibility.to_owned());
+        (r.camera, r.settings.transparency.order) = (Some(on_z(3.0, 0.9)), order);
+        (r.settings.transparency.layer_memory, r.settings.visibility) = (memory, visibility.to_owned());
         let rendered = r.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings.len())
     };
     let (small, large) = (1 << 20, 1 << 30);
-    let whole = run(TransparencyOrder::ABuffer, "z-buffer", large);
-    assert_eq!(run(TransparencyOrder::MultiPass, "z-buffer", small), whole, "passes need no memory for layers");
-    let cut = run(TransparencyOrder::ABuffer, "z-buffer", small);
+    let whole = run(TransparencyOrder::A_BUFFER, "z-buffer", large);
+    assert_eq!(run(TransparencyOrder::MULTI_PASS, "z-buffer", small), whole, "passes need no memory for layers");
+    let cut = run(TransparencyOrder::A_BUFFER, "z-buffer", small);
     assert!(cut.1 == 1 && cut.0 != whole.0);
     for visibility in ["painter", "bsp"] {
-        let listed = run(TransparencyOrder::BackToFront, visibility, small);
+        let listed = run(TransparencyOrder::BACK_TO_FRONT, visibility, small);
         assert!(listed.1 == 1 && largest_difference(&listed.0, &cut.0) <= 1, "{visibility}: the nearest stay");
     }
 }
@@ -578,7 +578,7 @@ fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
         }
         let mut r = exact(one(mesh, glass([1.0; 3], 0.0)), 40, 40);
         r.camera = Some(Camera { projection: Projection::Parallel { height: 40.0 }, ..on_z(5.0, 1.0) });
-        (r.settings.samples, r.settings.transparency_order) = (16, TransparencyOrder::ABuffer);
+        (r.settings.picture.samples, r.settings.transparency.order) = (16, TransparencyOrder::A_BUFFER);
         let middle = [20.0 + moved[0], 20.0 - moved[1]];
         let halves = [[cos, -sin], [-cos, sin], [sin, cos], [-sin, -cos]]
             .map(|[a, b]| [a, b, half + a * middle[0] + b * middle[1]]);

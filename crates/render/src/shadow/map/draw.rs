@@ -13,7 +13,7 @@ use crate::shadow::occluders::Occluders;
 use crate::stats::CullCounters;
 use crate::visible::TileSink;
 use crate::visible::zbuffer::{all_batches, resolve_in_passing, tile_place, touching, walk, with_spare};
-use crate::{Background, Execution, Lines, PreparedView, Session, Settings};
+use crate::{Background, Execution, Lines, PreparedView, Session, Settings, Visibility};
 use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
@@ -87,13 +87,9 @@ impl FirstPass<'_> {
 
     /// The settings of the view from the light: nothing but surfaces.
     fn view_settings(&self) -> Settings {
-        Settings {
-            visibility: "z-buffer".to_owned(),
-            acceleration: None,
-            lines: Lines::None,
-            background: Background::Transparent,
-            ..self.settings.clone()
-        }
+        let settings = Settings { acceleration: None, ..self.settings.clone() };
+        let settings = settings.with_visibility(Visibility::Z_BUFFER).with_lines(Lines::None);
+        settings.with_background(Background::Transparent)
     }
 
     /// Keeps the opaque batches for tiles that wait, if any may; the session gets the memory of the others back.

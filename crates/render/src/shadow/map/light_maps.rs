@@ -49,10 +49,10 @@ impl Key {
     pub(super) fn new(lights: &[Light], settings: &Settings) -> Self {
         Self {
             lights: lights.to_vec(),
-            size: settings.shadow_map_size,
-            samples: settings.light_samples,
-            transparency: settings.transparency,
-            color_space: settings.color_space,
+            size: settings.shadows.map_size,
+            samples: settings.shadows.light_samples,
+            transparency: settings.transparency.model,
+            color_space: settings.picture.color_space,
         }
     }
 }
@@ -93,11 +93,11 @@ impl Maps {
 
 impl LightMaps {
     fn new(light: &Light, pass: FirstPass<'_>) -> Result<Self, Limit> {
-        let (world, size) = (&pass.session.world, pass.settings.shadow_map_size);
+        let (world, size) = (&pass.session.world, pass.settings.shadows.map_size);
         if world.bounds.is_empty() {
             return Ok(Self::Unhindered);
         }
-        let source = Source::new(light, pass.settings.light_samples, Triangles::center_of(world));
+        let source = Source::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
         let emitters = source.places();
         match source {
             Source::Unhindered => Ok(Self::Unhindered),
@@ -122,7 +122,7 @@ impl LightMaps {
 
 /// The lens of a spot at a point, if one is wide enough.
 fn spot_lens(light: &Light, at: DVec3, pass: FirstPass<'_>) -> Option<Lens> {
-    let (world, size) = (&pass.session.world, pass.settings.shadow_map_size);
+    let (world, size) = (&pass.session.world, pass.settings.shadows.map_size);
     match light.kind {
         LightKind::Spot { direction, cutoff, .. } => Lens::cone(at, direction, cutoff, world, size),
         _ => None,

@@ -4,7 +4,7 @@ use super::edges::{Side, Surface, turned_all};
 use crate::Execution;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::raytrace::{Probe, Structure};
+use crate::raytrace::{Probe, Structure, Tree};
 use crate::shadow::Drawn;
 use crate::shadow::casters::{Casters, away, box_around, collect, near, wide};
 use crate::shadow::sources::Emitter;

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
     let result = match words.as_slice() {
         ["test"] => test::run(),
         ["check"] => check::run(),
+        ["circles", options @ ..] => check::list_circles(options),
         ["bless"] => bless::run(None),
         ["bless", filter] => bless::run(Some(filter)),
         ["clients"] => clients::run_all(),

@@ -1,7 +1,9 @@
 //! `cargo xtask check`: the floors, the bibliography, and the rules of the house that the compiler does not know.
 
 mod bibliography;
+mod circles;
 mod floors;
+mod functions;
 mod source;
 mod tokens;
 
@@ -33,6 +35,9 @@ pub(crate) fn run() -> Outcome {
     for file in &files {
         let (path, text) = (relative(file).replace('\\', "/"), read(file)?);
         violations.extend(source::check(&path, &text));
+        if path.ends_with(".rs") {
+            violations.extend(functions::check(&path, &text));
+        }
         texts.push((path, text));
     }
 
@@ -66,4 +71,27 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
             files.push(path);
         }
     }
+}
+
+/// Prints the circles of a crate's source files, or of every crate; with `--all`, all arrows between them.
+pub(crate) fn list_circles(options: &[&str]) -> Outcome {
+    let all = options.contains(&"--all");
+    let mut files = Vec::new();
+    collect(&repository().join("crates"), &mut files);
+    let mut crates: std::collections::BTreeMap<String, Vec<(String, String)>> = Default::default();
+    for file in &files {
+        let path = relative(file).replace('\\', "/");
+        if let Some((name, below)) = path.strip_prefix("crates/").and_then(|p| p.split_once("/src/")) {
+            let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
+            crates.entry(name.to_owned()).or_default().push((below.to_owned(), text));
+        }
+    }
+    for (name, files) in &crates {
+        if options.iter().any(|o| !o.starts_with("--")) && !options.contains(&name.as_str()) {
+            continue;
+        }
+        let sources = files.iter().map(|(p, t)| (p.as_str(), t.as_str())).collect();
+        print!("{}", circles::listing(name, &sources, all));
+    }
+    Ok(())
 }

@@ -124,13 +124,15 @@ fn test_attribute(tokens: &[Token<'_>]) -> Option<usize> {
 
 /// Length of an item: up to the brace that closes its first brace, or a semicolon before that.
 fn item_length(tokens: &[Token<'_>]) -> usize {
-    let mut depth = 0;
+    let (mut depth, mut brackets) = (0, 0);
     for (at, token) in tokens.iter().enumerate() {
         match token.text {
+            "(" | "[" => brackets += 1,
+            ")" | "]" => brackets -= 1,
             "{" => depth += 1,
             "}" if depth <= 1 => return at + 1,
             "}" => depth -= 1,
-            ";" if depth == 0 => return at + 1,
+            ";" if depth == 0 && brackets == 0 => return at + 1,
             _ => {}
         }
     }

@@ -1,7 +1,7 @@
 //! Which source file names items of which other.
 
-use super::super::tokens::Token;
 use super::modules::{Binding, Import, Module};
+use crate::check::tokens::Token;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// From a file to a file, with the names that make the arrow.
@@ -19,15 +19,15 @@ enum Target<'a> {
 
 /// The arrows between the files of these modules, of which the first is the root.
 ///
-/// A name counts where it is defined: modules that hand it on are passed. Declarations with a visibility hand on and make
-/// no arrow, naming what they hand on does.
+/// An arrow ends where a name is defined, not at the modules that hand it on. A `use` with a visibility hands names on
+/// and makes no arrow; code that uses such a name does.
 pub(super) fn arrows(modules: &[Module<'_>]) -> Arrows {
     let scope = Scope { modules };
     let mut arrows = Arrows::new();
     for (from, module) in modules.iter().enumerate() {
         let imports = module.imports.iter().filter(|import| !import.public).map(|import| import.path.clone());
         for path in imports.chain(named_paths(&module.code)) {
-            let Some(Target::Item(definer, name)) = scope.resolve(from, &path, &mut BTreeSet::new()) else { continue };
+            let Some(Target::Item(definer, name)) = scope.resolve(from, &path, &mut Open::new()) else { continue };
             let to = &modules[definer].file;
             if *to != module.file {
                 arrows.entry((module.file.clone(), to.clone())).or_default().insert(name.to_owned());
@@ -37,7 +37,7 @@ pub(super) fn arrows(modules: &[Module<'_>]) -> Arrows {
     arrows
 }
 
-/// The paths in code, names on their own among them, unless they are fields, methods, lifetimes or bindings.
+/// The paths in code. A single name is a path unless it is a field, a method, a lifetime or a binding.
 fn named_paths<'a>(code: &[Token<'a>]) -> Vec<Vec<&'a str>> {
     let text = |at: usize| code.get(at).map_or("", |token| token.text);
     let separator = |at: usize| [text(at), text(at + 1)] == [":", ":"];
@@ -68,8 +68,12 @@ fn named_paths<'a>(code: &[Token<'a>]) -> Vec<Vec<&'a str>> {
 }
 
 fn is_name(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+    text != "_" && text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
+
+/// The look-ups that wait for an inner one, so that imports in a circle come to an end: module, name, and whether a
+/// module is wanted.
+type Open<'a> = BTreeSet<(usize, &'a str, bool)>;
 
 /// Looks names up.
 struct Scope<'m, 'a> {
@@ -78,9 +82,7 @@ struct Scope<'m, 'a> {
 
 impl<'a> Scope<'_, 'a> {
     /// Follows a path that stands in module `from`; `None` for a name that no item of the crate has.
-    ///
-    /// `open` holds the look-ups that wait for this one.
-    fn resolve(&self, from: usize, path: &[&'a str], open: &mut BTreeSet<(usize, &'a str)>) -> Option<Target<'a>> {
+    fn resolve(&self, from: usize, path: &[&'a str], open: &mut Open<'a>) -> Option<Target<'a>> {
         let (first, rest) = path.split_first()?;
         let mut target = match *first {
             "" => Target::Outside,
@@ -95,7 +97,7 @@ impl<'a> Scope<'_, 'a> {
                 "super" => Target::Module(self.modules[module].parent),
                 name => match self.look_up(module, name, at + 1 < rest.len(), open) {
                     Some(target) => target,
-                    // A macro defines it, or another crate whose names are all imported.
+                    // A macro defines the name here, or it comes with all names of another crate.
                     None if self.hands_on_others(module) => Target::Outside,
                     None => Target::Item(module, name),
                 },
@@ -105,16 +107,12 @@ impl<'a> Scope<'_, 'a> {
     }
 
     /// What a name means in a module. Modules and items may share a name: `as_module` says which is wanted.
-    fn look_up(
-        &self,
-        module: usize,
-        name: &'a str,
-        as_module: bool,
-        open: &mut BTreeSet<(usize, &'a str)>,
-    ) -> Option<Target<'a>> {
-        if !open.insert((module, name)) {
+    fn look_up(&self, module: usize, name: &'a str, as_module: bool, open: &mut Open<'a>) -> Option<Target<'a>> {
+        if !open.insert((module, name, as_module)) {
             return None;
         }
+
+        // Collect what the module itself calls so.
         let Module { children, items, imports, .. } = &self.modules[module];
         let mut found: Vec<Target<'a>> = Vec::new();
         found.extend(items.contains(name).then_some(Target::Item(module, name)));
@@ -123,7 +121,7 @@ impl<'a> Scope<'_, 'a> {
             found.push(self.resolve(module, &import.path, open).unwrap_or(Target::Outside));
         }
 
-        // Names of its own hide those that a glob brings.
+        // Try globs for other names only: a module's own names hide those that globs bring.
         if found.is_empty() {
             for import in imports.iter().filter(|import| import.binding == Binding::Glob) {
                 if let Some(Target::Module(other)) = self.resolve(module, &import.path, open) {
@@ -131,7 +129,9 @@ impl<'a> Scope<'_, 'a> {
                 }
             }
         }
-        open.remove(&(module, name));
+        open.remove(&(module, name, as_module));
+
+        // Prefer the kind that is wanted.
         let wanted = |target: &&Target<'a>| matches!(target, Target::Module(_)) == as_module;
         found.iter().find(wanted).or(found.first()).copied()
     }
@@ -140,7 +140,7 @@ impl<'a> Scope<'_, 'a> {
     fn hands_on_others(&self, module: usize) -> bool {
         let globs = |import: &&Import<'a>| import.binding == Binding::Glob;
         let outside = |import: &Import<'a>| {
-            matches!(self.resolve(module, &import.path, &mut BTreeSet::new()), None | Some(Target::Outside))
+            matches!(self.resolve(module, &import.path, &mut Open::new()), None | Some(Target::Outside))
         };
         self.modules[module].imports.iter().filter(globs).any(outside)
     }

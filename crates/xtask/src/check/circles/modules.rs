@@ -2,11 +2,11 @@
 //!
 //! Items under `#[cfg(test)]` are left out, and with them the files that only tests have.
 
-use super::super::tokens::{Token, in_tests, tokens};
+use crate::check::tokens::{Token, group_length, tokens, without_tests};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The source files of a crate by their paths below `src`.
-pub(super) type Sources<'a> = BTreeMap<&'a str, &'a str>;
+pub(in crate::check) type Sources<'a> = BTreeMap<&'a str, &'a str>;
 
 /// What a module holds.
 #[derive(Debug, Default)]
@@ -57,9 +57,7 @@ impl<'a> Reader<'_, 'a> {
     /// Reads a file as a module; `folder` is where the files of its children are, with `/` at the end unless empty.
     fn read_file(&mut self, file: String, folder: String, parent: usize) -> usize {
         let text = self.sources.get(file.as_str()).copied().unwrap_or_default();
-        let all = tokens(text);
-        let code: Vec<_> = all.iter().zip(in_tests(&all)).filter(|(_, test)| !test).map(|(token, _)| *token).collect();
-        self.read_module(&code, file, &folder, parent)
+        self.read_module(&without_tests(&tokens(text)), file, &folder, parent)
     }
 
     /// Reads a module from the tokens between its braces, or of its file.
@@ -157,22 +155,6 @@ impl<'a> Item<'a> {
     }
 }
 
-/// Length of the bracketed group at the start, at least 1.
-fn group_length(tokens: &[Token<'_>]) -> usize {
-    let mut depth = 0_usize;
-    for (at, token) in tokens.iter().enumerate() {
-        match token.text {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth == 0 {
-            return at + 1;
-        }
-    }
-    tokens.len().max(1)
-}
-
 /// Sorts the tokens of an item into imports and other code.
 fn read_code<'a>(tokens: &[Token<'a>], module: &mut Module<'a>) {
     let mut at = 0;
@@ -202,7 +184,7 @@ fn read_tree<'a>(
         *at += 1;
         match token.text {
             "{" => {
-                while tokens.get(*at).is_some_and(|token| token.text != "}") {
+                while tokens.get(*at).is_some_and(|token| !matches!(token.text, "}" | ";")) {
                     read_tree(tokens, at, path.clone(), public, imports);
                     *at += usize::from(tokens.get(*at).is_some_and(|token| token.text == ","));
                 }

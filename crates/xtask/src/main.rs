@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | bless | osmesa | clients | sanitize | vectors | compare`.
+//! Developer commands: `cargo xtask test | check | circles | bless | osmesa | clients | sanitize | vectors | compare`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -19,6 +19,8 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask test                  install what the tests need, run all of them, close with the count
 cargo xtask check                 the floors and the rules of the house that the compiler does not know
+cargo xtask circles [CRATE...] [--all]
+                                  which source files import each other, and by which names (all imports)
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
     let result = match words.as_slice() {
         ["test"] => test::run(),
         ["check"] => check::run(),
+        ["circles", options @ ..] => check::list_circles(options),
         ["bless"] => bless::run(None),
         ["bless", filter] => bless::run(Some(filter)),
         ["clients"] => clients::run_all(),

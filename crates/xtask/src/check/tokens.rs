@@ -99,7 +99,7 @@ fn character(text: &str) -> Option<usize> {
     inside.next().filter(|&(_, c)| c == '\'').map(|(at, _)| at + 1)
 }
 
-/// Marks the tokens that belong to items under `#[cfg(test)]`.
+/// Marks the tokens that belong to items that only tests have: those under `#[cfg(test)]`.
 pub(super) fn in_tests(tokens: &[Token<'_>]) -> Vec<bool> {
     let mut marked = vec![false; tokens.len()];
     let mut at = 0;
@@ -115,24 +115,86 @@ pub(super) fn in_tests(tokens: &[Token<'_>]) -> Vec<bool> {
     marked
 }
 
-/// Length of `#[cfg(...)]` with `test` somewhere in it.
-fn test_attribute(tokens: &[Token<'_>]) -> Option<usize> {
-    let starts = ["#", "[", "cfg", "("].iter().zip(tokens).filter(|(a, b)| **a == b.text).count() == 4;
-    let end = tokens.iter().position(|t| t.text == "]").filter(|_| starts)?;
-    tokens[..end].iter().any(|t| t.text == "test").then_some(end + 1)
+/// The tokens of code that is built outside of tests.
+pub(super) fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
+    tokens.iter().zip(in_tests(tokens)).filter(|(_, test)| !test).map(|(token, _)| *token).collect()
 }
 
-/// Length of an item: up to the brace that closes its first brace, or a semicolon before that.
-fn item_length(tokens: &[Token<'_>]) -> usize {
-    let mut depth = 0;
+/// Length of the bracketed group at the start, at least 1.
+pub(super) fn group_length(tokens: &[Token<'_>]) -> usize {
+    let mut depth = 0_usize;
     for (at, token) in tokens.iter().enumerate() {
         match token.text {
-            "{" => depth += 1,
-            "}" if depth <= 1 => return at + 1,
-            "}" => depth -= 1,
-            ";" if depth == 0 => return at + 1,
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
             _ => {}
         }
+        if depth == 0 {
+            return at + 1;
+        }
+    }
+    tokens.len().max(1)
+}
+
+/// Length of a `#[cfg(...)]` that holds in tests alone.
+fn test_attribute(tokens: &[Token<'_>]) -> Option<usize> {
+    let starts = ["#", "[", "cfg", "("].iter().zip(tokens).filter(|(a, b)| **a == b.text).count() == 4;
+    let length = 1 + group_length(tokens.get(1..).filter(|_| starts)?);
+    let predicate = tokens.get(4..length.checked_sub(2)?)?;
+    needs_test(predicate).then_some(length)
+}
+
+/// Whether a predicate of `cfg` cannot hold without `test`: one member of `all` needs it, or every member of `any`.
+fn needs_test(predicate: &[Token<'_>]) -> bool {
+    let [name, rest @ ..] = predicate else { return false };
+    let members = || {
+        let inside = rest.get(1..rest.len().saturating_sub(1)).unwrap_or_default();
+        split_list(inside).into_iter().filter(|member| !member.is_empty())
+    };
+    match name.text {
+        "test" => true,
+        "all" => members().any(needs_test),
+        "any" => members().all(needs_test),
+        _ => false,
+    }
+}
+
+/// Cuts a list at its commas, those inside brackets excepted.
+fn split_list<'t, 'a>(tokens: &'t [Token<'a>]) -> Vec<&'t [Token<'a>]> {
+    let (mut members, mut start, mut at) = (Vec::new(), 0, 0);
+    while at < tokens.len() {
+        if tokens[at].text == "," {
+            members.push(&tokens[start..at]);
+            start = at + 1;
+        }
+        at += group_length(&tokens[at..]);
+    }
+    members.push(&tokens[start..]);
+    members
+}
+
+/// Length of an item or field: up to its braces or a semicolon; for a field, up to its comma.
+fn item_length(tokens: &[Token<'_>]) -> usize {
+    let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
+    let name = match (text(0), text(1)) {
+        ("pub", "(") => 1 + group_length(&tokens[1..]),
+        ("pub", _) => 1,
+        _ => 0,
+    };
+    let is_field = text(name + 1) == ":" && text(name + 2) != ":";
+    let (mut at, mut angles) = (0, 0);
+    while at < tokens.len() {
+        match text(at) {
+            // The braces around the item close.
+            "}" => return at,
+            ";" => return at + 1,
+            "{" => return at + group_length(&tokens[at..]),
+            "<" => angles += 1,
+            ">" if text(at.saturating_sub(1)) != "-" => angles -= 1,
+            "," if is_field && angles == 0 => return at + 1,
+            _ => {}
+        }
+        at += group_length(&tokens[at..]);
     }
     tokens.len()
 }
@@ -178,5 +240,28 @@ mod tests {
         let outside: Vec<_> =
             found.iter().zip(in_tests(&found)).filter(|(_, test)| !test).map(|(t, _)| t.text).collect();
         assert_eq!(outside.join(" "), "fn a ( ) { } fn d ( ) { } f");
+    }
+
+    #[test]
+    fn test_items_end_where_they_end() {
+        let left = |source| {
+            let words: Vec<_> = without_tests(&tokens(source)).iter().map(|t| t.text).collect();
+            words.join(" ")
+        };
+        assert_eq!(left("#[cfg(test)] const A: [u8; 2] = [1; 2]; b"), "b");
+        assert_eq!(left("struct A { #[cfg(test)] pub(crate) log: Vec<(u8, u8)>, b: u8 } c"), "struct A { b : u8 } c");
+        assert_eq!(left("struct A { #[cfg(test)] log: Map<A, B> } c"), "struct A { } c");
+        assert_eq!(left("#[cfg(test)] fn f<A, B>(a: A) -> [B; 2] where A: C, B: D { {} } c"), "c");
+    }
+
+    #[test]
+    fn only_what_needs_tests_is_marked() {
+        let left = |predicate: &str| without_tests(&tokens(&format!("#[cfg({predicate})] fn f() {{}} c"))).len() == 1;
+        for predicate in ["test", "all(unix, test)", "any(test)", "any(test, all(test, x = \"y\"))"] {
+            assert!(left(predicate), "{predicate}");
+        }
+        for predicate in ["any(test, feature = \"x\")", "not(test)", "unix", "all(unix, not(test))"] {
+            assert!(!left(predicate), "{predicate}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The command line as typed: verbs, and the options of all verbs but `render`.
 
+use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::RenderArgs;
 use crate::values;
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -21,20 +22,6 @@ pub(crate) struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub(crate) verb: Verb,
-}
-
-/// The end of every help text.
-pub(crate) const EXIT_CODES: &str = "Exit codes: 0 done, 1 other failure, 2 usage, 3 input missing or malformed, \
-    4 format or feature not supported, 5 cannot write, 6 images differ, 7 a limit was reached, 130 interrupted";
-
-/// The help of MODEL.
-pub(crate) fn model_help() -> String {
-    let names: Vec<_> = vitral::scene::builtin::names().iter().map(|(name, _)| *name).collect();
-    format!(
-        "Model files, `-` for standard input, which may name files in the current folder, or `builtin:NAME`, a scene that needs \
-         no file; `vitral formats` tells what each shows: {}",
-        names.join(", ")
-    )
 }
 
 /// What `vitral` can do.

@@ -2,18 +2,15 @@
 
 use crate::args::BenchArgs;
 use crate::bench_report;
+use crate::bench_rows::{Row, differing, rows};
 use crate::interrupt::{self, INTERRUPTED};
 use crate::report::{self, Failure};
 use crate::values;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::atomic::Ordering;
-use vitral::bench::{Entrant, Measured, Task, measure};
-use vitral::exec::Limit;
+use vitral::bench::{Entrant, Measured};
 use vitral::{Execution, Renderer, State, execution};
-
-/// A row of the table: who, and what it took or the limit it met.
-pub(crate) type Row = (Entrant, Result<Measured, Limit>);
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
@@ -53,36 +50,6 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
         report::print(table(args, &renderer, &rows).as_bytes())?;
     }
     Ok(0)
-}
-
-/// Measures one after the other, and says on standard error where it is.
-pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) -> Result<Vec<Row>, Failure> {
-    let camera = renderer.frame_camera();
-    let task = Task {
-        scene: renderer.scene(),
-        camera: &camera,
-        settings: &renderer.settings,
-        frames: args.frames as usize + 1,
-        time_limit: Some(args.time_limit),
-        memory_limit: args.max_memory,
-    };
-    let mut rows = Vec::new();
-    for (i, entrant) in entrants.iter().enumerate() {
-        if !args.quiet {
-            report::line(&format!("{} of {}: {}", i + 1, entrants.len(), entrant.name()));
-        }
-        let measured = measure(&task, entrant, renderer.execution()).map_err(vitral::Error::from)?;
-        if let Err(limit @ Limit::Cancelled { .. }) = measured {
-            return Err(limit.into());
-        }
-        rows.push((*entrant, measured));
-    }
-    Ok(rows)
-}
-
-/// Samples that differ from what the first row saw, if both saw something.
-pub(crate) fn differing(rows: &[Row], row: &Measured) -> Option<u64> {
-    rows.first().and_then(|(_, first)| first.as_ref().ok()).map(|first| row.seen.differing(&first.seen))
 }
 
 /// The counters of a row that are not 0, by name.

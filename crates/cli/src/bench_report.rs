@@ -5,8 +5,8 @@
 //! scene whose shape does not change with its polygons: eight rings in a heap, each ring cut finer.
 
 use crate::args::BenchArgs;
-use crate::bench_command::{Row, differing, rows};
 use crate::bench_plot::{Curve, exponent, svg};
+use crate::bench_rows::{Row, differing, rows};
 use crate::report::{self, Failure};
 use std::fmt::Write;
 use std::path::Path;

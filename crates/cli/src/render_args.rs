@@ -1,5 +1,6 @@
 //! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
 
+use crate::help::{EXIT_CODES, model_help};
 use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
@@ -12,9 +13,9 @@ use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, Vi
 
 /// Options of `vitral render`.
 #[derive(Args, Debug, Default)]
-#[command(after_help = crate::args::EXIT_CODES)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct RenderArgs {
-    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = crate::args::model_help())]
+    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) output: OutputArgs,

@@ -56,20 +56,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
 }
 
+/// Renders the frames of the plan, and reports about them.
 fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: Instant) -> Result<u8, Failure> {
-    let scene = plan.state.load_scene(&execution.workers)?;
-    let mut warnings = scene.warnings.clone();
-    if !args.report.quiet {
-        report::warnings(&warnings);
-    }
-    execution.budget.check("loading")?;
-    let mut renderer = Renderer::with_execution(scene, execution)?;
-    plan.state.apply(&mut renderer)?;
-    if let Some(file) = &args.output.load_radiosity {
-        let bytes = vitral::read(file, MOST_RADIOSITY_BYTES)?;
-        let loaded = renderer.session().load_radiosity(&bytes);
-        loaded.map_err(|e| Failure::with_code(MALFORMED, format!("{}: {e}", file.display())))?;
-    }
+    let (mut renderer, mut warnings) = load(args, plan, execution)?;
     let load_seconds = start.elapsed().as_secs_f64();
     if args.report.verbose {
         let triangles = renderer.world().facet_count;
@@ -86,23 +75,7 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     if let Some(file) = &args.output.export_shadow_polygons {
         vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes())?;
     }
-    let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
-    renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
-    let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
-        Drawn::default()
-    } else {
-        draw(args, plan, &mut renderer, &cameras)?
-    };
-
-    if let Some(file) = &args.output.save_radiosity
-        && let Some(bytes) = renderer.session().save_radiosity()
-    {
-        vitral::picture::write(file, &bytes)?;
-    }
-    renderer.execution_mut().observer = None;
-    if let Some(file) = tracing {
-        file.finish()?;
-    }
+    let drawn = draw_traced(args, plan, &mut renderer, &cameras)?;
     let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, first, pixel)).transpose()?;
 
     warnings.extend(drawn.warnings);
@@ -125,6 +98,45 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
         report::print(explained.to_string().as_bytes())?;
     }
     Ok(if drawn.different { DIFFERENT } else { 0 })
+}
+
+/// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
+fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
+    let scene = plan.state.load_scene(&execution.workers)?;
+    let warnings = scene.warnings.clone();
+    if !args.report.quiet {
+        report::warnings(&warnings);
+    }
+    execution.budget.check("loading")?;
+    let mut renderer = Renderer::with_execution(scene, execution)?;
+    plan.state.apply(&mut renderer)?;
+    if let Some(file) = &args.output.load_radiosity {
+        let bytes = vitral::read(file, MOST_RADIOSITY_BYTES)?;
+        let loaded = renderer.session().load_radiosity(&bytes);
+        loaded.map_err(|e| Failure::with_code(MALFORMED, format!("{}: {e}", file.display())))?;
+    }
+    Ok((renderer, warnings))
+}
+
+/// Draws the pictures, if any are wanted, with a trace of the steps if one is; saves the solution of radiosity.
+fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
+    let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
+    renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
+    let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
+        Drawn::default()
+    } else {
+        draw(args, plan, renderer, cameras)?
+    };
+    if let Some(file) = &args.output.save_radiosity
+        && let Some(bytes) = renderer.session().save_radiosity()
+    {
+        vitral::picture::write(file, &bytes)?;
+    }
+    renderer.execution_mut().observer = None;
+    if let Some(file) = tracing {
+        file.finish()?;
+    }
+    Ok(drawn)
 }
 
 /// Explains a pixel of the first frame.

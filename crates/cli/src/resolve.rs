@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::frame::Plane;
-use vitral::render::{Background, Channels, ColorSpace, Global, Lines, Transparency, registry};
+use vitral::render::{Background, Channels, ColorSpace, Global, Lines, Settings, Transparency, registry};
 use vitral::{Channel, Normals, State, Viewpoint, default_camera};
 
 /// Largest configuration or state file, in bytes.
@@ -34,25 +34,53 @@ pub(crate) struct Plan {
 /// Resolves the options.
 pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let mut state = State::default();
-    if let Some(config) = config_file(&args.process)? {
-        overlay(&mut state, &config, "--config")?;
+    overlay_files(&mut state, &args.process)?;
+    set_options(&mut state, args)?;
+
+    // Outputs decide which channels are rendered.
+    let outputs = Output::pair(&args.output.output, &args.output.channel)?;
+    let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
+    outputs.iter().for_each(|o| o.channel.request(&mut channels));
+    state.settings.channels = channels;
+
+    // Refuse what does not fit together.
+    check_pictures_are_made(args, &state, &outputs)?;
+    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
+    check_standard_output(args, &outputs)?;
+    check_background_and_pixel(args, &state, &outputs)?;
+
+    let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
+    let frames = frames_of(args, views, &outputs)?;
+    check_files(args, &state, &outputs, &frames)?;
+    let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
+    Ok(Plan { state, outputs, frames, views, reference })
+}
+
+/// Lays the configuration file and the state file over the state.
+fn overlay_files(state: &mut State, args: &ProcessArgs) -> Result<(), Failure> {
+    if let Some(config) = config_file(args)? {
+        overlay(state, &config, "--config")?;
     }
-    if let Some(file) = &args.process.load_state {
-        overlay(&mut state, file, "--load-state")?;
+    if let Some(file) = &args.load_state {
+        overlay(state, file, "--load-state")?;
     }
+    Ok(())
+}
+
+/// Lays the options over the state.
+fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     if !args.models.is_empty() {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }
-    set_picture(&mut state, &args.picture);
-    set_algorithms(&mut state, &args.algorithms)?;
-    let output = &args.output;
-    let files = [("--save-radiosity", &output.save_radiosity), ("--load-radiosity", &output.load_radiosity)];
+    set_picture(state, &args.picture);
+    set_algorithms(state, &args.algorithms)?;
+    let files = [("--save-radiosity", &args.output.save_radiosity), ("--load-radiosity", &args.output.load_radiosity)];
     if let Some((option, _)) = files.iter().find(|(_, file)| file.is_some())
         && state.settings.global.model != Global::Radiosity
     {
         return Err(no_radiosity(option));
     }
-    set_lights(&mut state, &args.light)?;
+    set_lights(state, &args.light)?;
     set_viewpoint(&mut state.viewpoint, &args.camera);
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
@@ -63,6 +91,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
     }
+
     // A figure is seen from its own camera, unless anything is said about the view.
     if let [model] = &state.models[..]
         && (args.camera.view, state.turntable) == (None, None)
@@ -70,12 +99,12 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     {
         state.viewpoint.camera_index = default_camera(model);
     }
+    Ok(())
+}
 
-    // Outputs decide which channels are rendered.
-    let outputs = Output::pair(&args.output.output, &args.output.channel)?;
-    let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
-    outputs.iter().for_each(|o| o.channel.request(&mut channels));
-    state.settings.picture.channels = channels;
+/// Refuses options about pictures that are not made.
+fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
+    let output = &args.output;
     if let Some(file) = args.report.trace.as_ref().filter(|_| outputs.is_empty()) {
         return Err(
             Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
@@ -94,8 +123,11 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     if output.save_radiosity.is_some() && !(drawn && state.settings.picture.channels.color) {
         return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
     }
-    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
-    check_standard_output(args, &outputs)?;
+    Ok(())
+}
+
+/// Refuses a transparent background in a format without transparency, and a pixel outside the picture.
+fn check_background_and_pixel(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
     if let Some(opaque) = outputs.iter().find(|o| args.picture.no_background && !o.keeps_transparency()) {
         let what = format!("--no-background: {} knows no transparency", opaque.format().name());
         return Err(Failure::usage(what).with_hint("write a .png, or give --background-color"));
@@ -105,8 +137,11 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         return Err(Failure::usage(format!("--pixel {x},{y}: the picture has {width}x{height} pixels"))
             .with_hint("they are counted from 0"));
     }
+    Ok(())
+}
 
-    let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
+/// The frames to render of a turntable with this many views; each needs a name of its own.
+fn frames_of(args: &RenderArgs, views: u32, outputs: &[Output]) -> Result<RangeInclusive<u32>, Failure> {
     let frames = args.output.frames.clone().unwrap_or(0..=views - 1);
     if *frames.end() >= views {
         return Err(Failure::usage(format!("--frames {}: the turntable has {views} frames", frames.end()))
@@ -119,9 +154,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
         let name = if one.is_standard() { "standard output" } else { "--output" };
         return Err(Failure::usage(format!("{name} holds one picture, the turntable has {views}")).with_hint(hint));
     }
-    check_files(args, &state, &outputs, &frames)?;
-    let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
-    Ok(Plan { state, outputs, frames, views, reference })
+    Ok(frames)
 }
 
 /// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours of work.
@@ -209,7 +242,15 @@ fn set_picture(state: &mut State, args: &PictureArgs) {
 }
 
 fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure> {
-    let settings = &mut state.settings;
+    set_surfaces(&mut state.settings, args);
+    set_transparency(&mut state.settings, args)?;
+    set_global(&mut state.settings, args)?;
+    set_shadows(&mut state.settings, args)?;
+    set_normals(state, args)
+}
+
+/// Which surfaces are seen, and how they are shaded.
+fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
     if let Some(name) = &args.visibility {
         settings.visibility.clone_from(name);
     }
@@ -218,20 +259,33 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
         settings.coherence.clone_from(kinds);
     }
     settings.cull = args.cull.unwrap_or(settings.cull);
-    settings.shading.illumination = args.illumination.unwrap_or(settings.shading.illumination);
-    settings.shading.model = args.shading.unwrap_or(settings.shading.model);
-    settings.shading.interpolation = args.interpolation.unwrap_or(settings.shading.interpolation);
-    settings.transparency.model = args.transparency.unwrap_or(settings.transparency.model);
-    if args.kay_exponent.is_some() && settings.transparency.model != Transparency::Kay {
+    settings.illumination = args.illumination.unwrap_or(settings.illumination);
+    settings.shading = args.shading.unwrap_or(settings.shading);
+    settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
+    settings.depth_cue = args.depth_cue.or(settings.depth_cue);
+    let lines = [
+        (args.wireframe, Lines::Wireframe),
+        (args.wireframe_hidden_line, Lines::WireframeHiddenLine),
+        (args.edges, Lines::Edges),
+    ];
+    if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
+        settings.lines = chosen;
+    }
+}
+
+fn set_transparency(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
+    settings.transparency = args.transparency.unwrap_or(settings.transparency);
+    if args.kay_exponent.is_some() && settings.transparency != Transparency::Kay {
         return Err(Failure::usage("--kay-exponent: transparency is not Kay's").with_hint("add --transparency kay"));
     }
-    settings.transparency.kay_exponent = args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
-    settings.picture.depth_cue = args.depth_cue.or(settings.picture.depth_cue);
-    settings.transparency.order = args.transparency_order.unwrap_or(settings.transparency.order);
-    settings.transparency.scatter_samples = args.scatter_samples.unwrap_or(settings.transparency.scatter_samples);
-    if let Some(name) = &args.shadows {
-        settings.shadows.algorithm.clone_from(name);
-    }
+    settings.kay_exponent = args.kay_exponent.unwrap_or(settings.kay_exponent);
+    settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
+    settings.scatter_samples = args.scatter_samples.unwrap_or(settings.scatter_samples);
+    Ok(())
+}
+
+/// Global illumination and its parameters.
+fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
     if let Some(global) = args.global {
         // Each model comes with its own shadows, unless others are chosen.
         let row = registry::GLOBALS.iter().find(|row| row.value == global);
@@ -252,9 +306,17 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
             return Err(no_radiosity(option));
         }
     }
-    settings.global.patch_size = args.patch_size.or(settings.global.patch_size);
-    settings.global.iterations = args.iterations.or(settings.global.iterations);
-    if args.light_samples.is_some() && settings.shadows.algorithm == "none" {
+    settings.patch_size = args.patch_size.or(settings.patch_size);
+    settings.iterations = args.iterations.or(settings.iterations);
+    Ok(())
+}
+
+/// The shadow algorithm and its parameters; global illumination may have chosen the algorithm.
+fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
+    if let Some(name) = &args.shadows {
+        settings.shadows.clone_from(name);
+    }
+    if args.light_samples.is_some() && settings.shadows == "none" {
         return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
     }
     settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
@@ -262,17 +324,13 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
     if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows.algorithm != "map") {
         return Err(Failure::usage(format!("{option}: no shadow maps are drawn")).with_hint("add --shadows map"));
     }
-    settings.shadows.map_size = args.shadow_map_size.unwrap_or(settings.shadows.map_size);
-    settings.shadows.cascades = args.shadow_cascades.unwrap_or(settings.shadows.cascades);
-    settings.shadows.volume_counting = args.volume_counting.or(settings.shadows.volume_counting);
-    let lines = [
-        (args.wireframe, Lines::Wireframe),
-        (args.wireframe_hidden_line, Lines::WireframeHiddenLine),
-        (args.edges, Lines::Edges),
-    ];
-    if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
-        settings.picture.lines = chosen;
-    }
+    settings.shadow_map_size = args.shadow_map_size.unwrap_or(settings.shadow_map_size);
+    settings.shadow_cascades = args.shadow_cascades.unwrap_or(settings.shadow_cascades);
+    settings.volume_counting = args.volume_counting.or(settings.volume_counting);
+    Ok(())
+}
+
+fn set_normals(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure> {
     state.load.normals = args.normals.unwrap_or(state.load.normals);
     if args.crease_angle.is_some() && state.load.normals == Normals::None {
         return Err(Failure::usage("--crease-angle: no normals are made with --normals none"));

@@ -3,7 +3,7 @@
 use crate::args::{Cli, ListArgs};
 use crate::report::{self, Failure};
 use clap::CommandFactory;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use vitral::render::transparency::registry as transparency;
 use vitral::render::{Coherence, registry};
@@ -12,103 +12,105 @@ use vitral::{Illumination, Shading};
 /// `vitral algorithms`.
 pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
     if args.json {
-        let visibility: Vec<_> = registry::VISIBILITY
-            .iter()
-            .map(|a| {
-                json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision,
-                    "coherence": a.coherence.iter().map(|kind| kind.name()).collect::<Vec<_>>(), "steps": a.steps.tell()})
-            })
-            .collect();
-        let acceleration: Vec<_> = registry::ACCELERATION
-            .iter()
-            .map(|a| json!({"name": a.name, "description": a.description, "source": a.source}))
-            .collect();
-        let shadows: Vec<_> = registry::SHADOWS
-            .iter()
-            .map(|s| json!({"name": s.name, "description": s.description, "source": s.source}))
-            .collect();
-        let global: Vec<_> = registry::GLOBALS
-            .iter()
-            .map(|g| json!({"name": g.name, "description": g.description, "source": g.source}))
-            .collect();
-        let illumination: Vec<_> =
-            Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()})).collect();
-        let shading: Vec<_> =
-            Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what})).collect();
-        let models: Vec<_> = transparency::MODELS
-            .iter()
-            .map(|m| json!({"name": m.name, "description": m.description, "source": m.source}))
-            .collect();
-        let orders: Vec<_> = transparency::ORDERS
-            .iter()
-            .map(|o| json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact, "needs-list": o.needs_list, "translucent": o.blurs}))
-            .collect();
-        let translucency: Vec<_> = transparency::TRANSLUCENCY
-            .iter()
-            .map(|b| json!({"global": b.global, "description": b.description, "source": b.source}))
-            .collect();
-        let coherence: Vec<_> = Coherence::ALL
-            .iter()
-            .map(|(kind, name)| json!({"name": name, "description": kind.description()}))
-            .collect();
-        let all = json!({"visibility": visibility, "coherence": coherence, "acceleration": acceleration, "shadows": shadows, "global": global, "illumination": illumination,
-            "shading": shading, "transparency": models, "transparency-order": orders,
-            "translucency": translucency});
-        return report::print_json(&all).map(|()| 0);
+        report::print_json(&algorithms_as_json())?;
+    } else {
+        report::print(algorithms_as_text().as_bytes())?;
     }
-    let mut text = String::from("Visible surfaces (--visibility)\n");
-    for a in registry::VISIBILITY {
-        let _ = writeln!(text, "  {:<14} {} ({} precision; {})", a.name, a.description, a.precision, a.source);
-    }
-    text.push_str("\nCoherence that each exploits (--coherence)\n");
-    for a in registry::VISIBILITY {
-        let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
-        let _ = writeln!(text, "  {:<14} {}", a.name, kinds.join(", "));
-    }
-    text.push_str("\nWhat the steps of each look like (--channel steps; docs/steps.md)\n");
-    for a in registry::VISIBILITY {
-        let _ = writeln!(text, "  {:<14} {}", a.name, a.steps.tell());
-    }
-    text.push_str("\nKinds of coherence\n");
-    for (kind, name) in Coherence::ALL {
-        let _ = writeln!(text, "  {name:<14} {}", kind.description());
-    }
-    text.push_str("\nStructures for rays (--acceleration)\n");
-    for a in registry::ACCELERATION {
-        let _ = writeln!(text, "  {:<14} {} ({})", a.name, a.description, a.source);
-    }
-    text.push_str("\nShadows (--shadows)\n");
-    for s in registry::SHADOWS {
-        let _ = writeln!(text, "  {:<14} {} ({})", s.name, s.description, s.source);
-    }
-    text.push_str("\nGlobal illumination (--global)\n");
-    for g in registry::GLOBALS {
-        let _ = writeln!(text, "  {:<14} {} ({})", g.name, g.description, g.source);
-    }
-    text.push_str("\nIllumination (--illumination)\n");
-    for m in Illumination::ALL {
-        let _ = writeln!(text, "  {:<14} {}", m.name(), m.description());
-    }
-    text.push_str("\nShading (--shading)\n");
-    for (_, name, what) in Shading::ALL {
-        let _ = writeln!(text, "  {name:<14} {what}");
-    }
-    text.push_str("\nTransparency (--transparency)\n");
-    for m in transparency::MODELS {
+    Ok(0)
+}
+
+/// The tables of algorithms as one object.
+fn algorithms_as_json() -> Value {
+    let row = |name: &str, description: &str, source: &str| json!({"name": name, "description": description, "source": source});
+    let visibility = registry::VISIBILITY.iter().map(|a| {
+        json!({"name": a.name, "description": a.description, "source": a.source, "precision": a.precision,
+            "coherence": a.coherence.iter().map(|kind| kind.name()).collect::<Vec<_>>(), "steps": a.steps.tell()})
+    });
+    let orders = transparency::ORDERS.iter().map(|o| {
+        json!({"name": o.name, "description": o.description, "source": o.source, "exact": o.exact,
+            "needs-list": o.needs_list, "translucent": o.blurs})
+    });
+    let translucency = transparency::TRANSLUCENCY
+        .iter()
+        .map(|b| json!({"global": b.global, "description": b.description, "source": b.source}));
+    let coherence = Coherence::ALL.iter().map(|(kind, name)| json!({"name": name, "description": kind.description()}));
+    let illumination = Illumination::ALL.iter().map(|m| json!({"name": m.name(), "description": m.description()}));
+    let shading = Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what}));
+    let acceleration = registry::ACCELERATION.iter().map(|a| row(a.name, a.description, a.source));
+    let shadows = registry::SHADOWS.iter().map(|s| row(s.name, s.description, s.source));
+    let global = registry::GLOBALS.iter().map(|g| row(g.name, g.description, g.source));
+    let models = transparency::MODELS.iter().map(|m| row(m.name, m.description, m.source));
+    json!({
+        "visibility": Vec::from_iter(visibility),
+        "coherence": Vec::from_iter(coherence),
+        "acceleration": Vec::from_iter(acceleration),
+        "shadows": Vec::from_iter(shadows),
+        "global": Vec::from_iter(global),
+        "illumination": Vec::from_iter(illumination),
+        "shading": Vec::from_iter(shading),
+        "transparency": Vec::from_iter(models),
+        "transparency-order": Vec::from_iter(orders),
+        "translucency": Vec::from_iter(translucency),
+    })
+}
+
+/// The tables of algorithms as text, a section for each option.
+fn algorithms_as_text() -> String {
+    let mut text = String::new();
+    add_visibility(&mut text);
+
+    // Rays, shadows and light.
+    let sourced = |description: &str, source: &str| format!("{description} ({source})");
+    let rows = registry::ACCELERATION.iter().map(|a| (a.name, sourced(a.description, a.source)));
+    add_section(&mut text, "Structures for rays (--acceleration)", rows);
+    let rows = registry::SHADOWS.iter().map(|s| (s.name, sourced(s.description, s.source)));
+    add_section(&mut text, "Shadows (--shadows)", rows);
+    let rows = registry::GLOBALS.iter().map(|g| (g.name, sourced(g.description, g.source)));
+    add_section(&mut text, "Global illumination (--global)", rows);
+    let rows = Illumination::ALL.iter().map(|m| (m.name(), m.description().to_owned()));
+    add_section(&mut text, "Illumination (--illumination)", rows);
+    let rows = Shading::ALL.iter().map(|(_, name, what)| (*name, (*what).to_owned()));
+    add_section(&mut text, "Shading (--shading)", rows);
+
+    // Transparent and translucent surfaces.
+    let rows = transparency::MODELS.iter().map(|m| {
         let source = if m.source.is_empty() { String::new() } else { format!(" ({})", m.source) };
-        let _ = writeln!(text, "  {:<14} {}{source}", m.name, m.description);
-    }
-    text.push_str("\nOrders of transparency (--transparency-order)\n");
-    for o in transparency::ORDERS {
-        let _ = writeln!(text, "  {:<14} {} ({})", o.name, o.description, o.source);
-    }
+        (m.name, format!("{}{source}", m.description))
+    });
+    add_section(&mut text, "Transparency (--transparency)", rows);
+    let rows = transparency::ORDERS.iter().map(|o| (o.name, sourced(o.description, o.source)));
+    add_section(&mut text, "Orders of transparency (--transparency-order)", rows);
     let blurring: Vec<_> = transparency::ORDERS.iter().filter(|o| o.blurs).map(|o| o.name).collect();
     let _ = writeln!(text, "  Translucent surfaces are shown by {}; the others refuse them.", blurring.join(", "));
-    text.push_str("\nTranslucent surfaces (--material NAME.transmission=translucent), by --global\n");
-    for b in transparency::TRANSLUCENCY {
-        let _ = writeln!(text, "  {:<14} {} ({})", b.global, b.description, b.source);
+    let rows = transparency::TRANSLUCENCY.iter().map(|b| (b.global, sourced(b.description, b.source)));
+    add_section(&mut text, "Translucent surfaces (--material NAME.transmission=translucent), by --global", rows);
+    text
+}
+
+/// Adds the sections about visible-surface algorithms.
+fn add_visibility(text: &mut String) {
+    let all = || registry::VISIBILITY.iter();
+    let rows = all().map(|a| (a.name, format!("{} ({} precision; {})", a.description, a.precision, a.source)));
+    add_section(text, "Visible surfaces (--visibility)", rows);
+    let rows = all().map(|a| {
+        let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
+        (a.name, kinds.join(", "))
+    });
+    add_section(text, "Coherence that each exploits (--coherence)", rows);
+    let rows = all().map(|a| (a.name, a.steps.tell().to_string()));
+    add_section(text, "What the steps of each look like (--channel steps; docs/steps.md)", rows);
+    let rows = Coherence::ALL.iter().map(|(kind, name)| (*name, kind.description().to_string()));
+    add_section(text, "Kinds of coherence", rows);
+}
+
+/// Adds a section: a title, then a name and a text on each line. Sections are a blank line apart.
+fn add_section<'a>(text: &mut String, title: &str, rows: impl Iterator<Item = (&'a str, String)>) {
+    let gap = if text.is_empty() { "" } else { "\n" };
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{gap}{title}");
+    for (name, what) in rows {
+        let _ = writeln!(text, "  {name:<14} {what}");
     }
-    report::print(text.as_bytes()).map(|()| 0)
 }
 
 /// `vitral formats`: file formats and built-in scenes.

@@ -5,11 +5,16 @@
 #![forbid(unsafe_code)]
 
 mod colored;
+mod detect;
 pub mod encode;
 mod error;
+mod file_name;
 mod format;
 pub mod gltf;
 pub mod image;
+mod json_message;
+mod mesh_scene;
+mod models;
 mod mtl;
 pub mod obj;
 pub mod off;
@@ -30,7 +35,7 @@ pub use format::{Format, FormatKind, FormatRow, formats};
 pub use resolve::{NoFiles, ResolveError, Resolver};
 
 use vitral_exec::Workers;
-use vitral_scene::{Axis, Mesh, Scene, normals};
+use vitral_scene::{Scene, normals};
 
 /// Reads a model or scene file of any readable [`Format`], known by its content first, by its extension second.
 ///
@@ -43,50 +48,10 @@ use vitral_scene::{Axis, Mesh, Scene, normals};
 /// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
     let format = Format::detect(bytes, file)?;
-    let mut scene = match format {
-        Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
-        Format::Obj => obj::load(bytes, file, resolver, workers),
-        Format::Stl => stl::load(bytes, file, workers),
-        Format::Ply => ply::load(bytes, file, resolver, workers),
-        Format::Off => off::load(bytes, file, workers),
-        Format::SceneJson => scene_json::load(bytes, file, resolver, workers),
-    }?;
+    if let Some(model) = models::load(format, bytes, file, resolver, workers) {
+        return model;
+    }
+    let mut scene = scene_json::load(bytes, file, resolver, workers)?;
     scene.meshes.iter_mut().for_each(|mesh| normals::make_measurable(mesh, workers));
-    // A scene file says the rest itself.
-    if format == Format::SceneJson {
-        return Ok(scene);
-    }
-    scene.ups = vec![if format == Format::Stl { Axis::PlusZ } else { Axis::PlusY }];
-    // The default material of glTF is opaque, whatever the alpha of `COLOR_0`.
-    let alpha_counts = !matches!(format, Format::Gltf | Format::Glb);
-    colored::give_materials(&mut scene, alpha_counts);
     Ok(scene)
-}
-
-/// The name of a file without folder and extension, for meshes that have no name of their own.
-pub(crate) fn stem(file: &str) -> String {
-    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    name.rsplit_once('.').map_or(name, |(stem, _)| if stem.is_empty() { name } else { stem }).to_owned()
-}
-
-/// Puts a mesh into the scene, and tells what a renderer would stumble over: nothing to show, coordinates that are not
-/// finite (they are kept; whoever draws drops the primitives that touch them).
-pub(crate) fn finish(mesh: Mesh, mut scene: Scene, file: &str) -> Scene {
-    let broken = mesh.positions.iter().filter(|p| !p.iter().all(|c| c.is_finite())).count();
-    if broken > 0 {
-        scene
-            .warnings
-            .push(format!("{file}: {broken} vertices have coordinates that are not finite; what they touch vanishes"));
-    }
-    if mesh.triangles.is_empty() && mesh.lines.is_empty() && mesh.points.is_empty() {
-        scene.warnings.push(nothing_to_show(file));
-        return scene;
-    }
-    scene.add_mesh(mesh, vitral_math::DMat4::IDENTITY);
-    scene
-}
-
-/// The warning of a file without triangles, lines and points.
-pub(crate) fn nothing_to_show(file: &str) -> String {
-    format!("{file}: the file holds nothing to show")
 }

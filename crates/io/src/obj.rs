@@ -28,6 +28,8 @@ mod chunk;
 mod materials;
 mod stitch;
 
+use crate::file_name::stem;
+use crate::mesh_scene::with_mesh;
 use crate::text::{Cursor, cut_at_lines, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
@@ -70,24 +72,15 @@ fn load_in_pieces(
     let pieces = cut_at_lines(&text, piece);
     let mut chunks = workers.map(pieces.len(), |i| Chunk::read(pieces[i]));
 
-    // Gather what was said, and refuse what cannot be read.
-    let (mut warnings, mut lines, mut understood) = (Warnings::default(), 0, false);
-    let mut first_lines = Vec::with_capacity(chunks.len());
-    let mut error = None;
-    for chunk in &mut chunks {
-        first_lines.push(lines);
-        warnings.append(std::mem::take(&mut chunk.warnings), lines);
-        if let Some((line, what)) = chunk.error.take() {
-            error = error.or(Some(Error::malformed(file, Place::Line(line + lines), what)));
-        }
-        lines += chunk.line_count;
-        understood |= chunk.understood;
-    }
+    // Gather what the pieces warn of, and refuse what cannot be read.
+    let mut warnings = Warnings::default();
+    let (first_lines, error) = gather(&mut chunks, file, &mut warnings);
+    let understood = chunks.iter().any(|chunk| chunk.understood);
     if !understood && let Some(line) = chunks.iter().zip(&first_lines).find_map(|(c, l)| Some(c.first_unknown? + l)) {
         return Err(Error::malformed(file, Place::Line(line), "no statement of an OBJ file"));
     }
 
-    // Put the geometry together while the materials are read.
+    // Check all indices; of several errors the earliest in the file is reported.
     let events = materials::Events::new(&chunks, &pieces, &first_lines);
     let mut totals = stitch::Totals::new(&chunks, file)?;
     let text_of = (&pieces[..], &first_lines[..]);
@@ -100,18 +93,36 @@ fn load_in_pieces(
     if stitch::leave_out_bad_attributes(&mut chunks, &totals, text_of, &mut warnings, workers) {
         totals = stitch::Totals::new(&chunks, file)?;
     }
+
+    // Put the geometry together while the materials are read.
     let (mut mesh, library) = workers.join(
         || stitch::stitch(chunks, &totals, &mut warnings, workers),
         || materials::load(&events, file, resolver, workers),
     );
     events.apply(&mut mesh, &library.index);
-    mesh.name = crate::stem(file);
+    mesh.name = stem(file);
     let mut scene = Scene { materials: library.materials, textures: library.textures, ..Scene::default() };
     scene.warnings = warnings.into_messages(file);
     scene.warnings.extend(library.warnings);
-    Ok(crate::finish(mesh, scene, file))
+    Ok(with_mesh(scene, mesh, file))
 }
 
+/// The line before the first one of each piece, and the first error. The warnings of all pieces become one list.
+fn gather(chunks: &mut [Chunk], file: &str, warnings: &mut Warnings) -> (Vec<u64>, Option<Error>) {
+    let mut first_lines = Vec::with_capacity(chunks.len());
+    let (mut lines, mut error) = (0, None);
+    for chunk in chunks {
+        first_lines.push(lines);
+        warnings.append(std::mem::take(&mut chunk.warnings), lines);
+        if let Some((line, what)) = chunk.error.take() {
+            error = error.or(Some(Error::malformed(file, Place::Line(line + lines), what)));
+        }
+        lines += chunk.line_count;
+    }
+    (first_lines, error)
+}
+
+/// The error that is earlier in the file.
 fn earlier(a: Option<Error>, b: Error) -> Error {
     let line = |e: &Error| match e {
         Error::Malformed { place: Place::Line(line), .. } => *line,

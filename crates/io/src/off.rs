@@ -15,6 +15,8 @@
 //! Cost: `O(bytes)`; counts in the file allocate nothing.
 //! Source: \[OFF\].
 
+use crate::file_name::stem;
+use crate::mesh_scene::with_mesh;
 use crate::text::{Cursor, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place};
@@ -100,8 +102,8 @@ pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error>
     }
 
     let scene = Scene { warnings: reader.warnings.into_messages(file), ..Scene::default() };
-    let name = crate::stem(file);
-    Ok(crate::finish(lists.into_mesh(name, header, workers), scene, file))
+    let name = stem(file);
+    Ok(with_mesh(scene, lists.into_mesh(name, header, workers), file))
 }
 
 /// Everything read so far.

@@ -13,6 +13,8 @@
 //! Cost: `O(bytes)`, welding included; records are read where they lie.
 //! Source: \[STL\].
 
+use crate::file_name::stem;
+use crate::mesh_scene::with_mesh;
 use crate::text::{self, Cursor, to_utf8};
 use crate::warnings::Warnings;
 use crate::weld::weld;
@@ -82,8 +84,8 @@ fn binary(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
         warnings.note("", Place::File, || "attribute bits (colours) of the facets are not used".to_owned());
     }
     let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
-    let mesh = Mesh { name: crate::stem(file), positions, triangles, parts, ..Mesh::default() };
-    Ok(crate::finish(mesh, Scene { warnings: warnings.into_messages(file), ..Scene::default() }, file))
+    let mesh = Mesh { name: stem(file), positions, triangles, parts, ..Mesh::default() };
+    Ok(with_mesh(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, file))
 }
 
 fn check_count(triangles: usize, file: &str) -> Result<(), Error> {
@@ -105,8 +107,8 @@ fn ascii(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     let parts = solids.iter().zip(ends);
     let parts = parts.map(|((name, first), end)| Part { name: name.clone(), triangles: *first..end, material: None });
     let parts = parts.filter(|p| !p.triangles.is_empty()).collect();
-    let mesh = Mesh { name: crate::stem(file), positions, triangles, parts, ..Mesh::default() };
-    Ok(crate::finish(mesh, Scene { warnings: warnings.into_messages(file), ..Scene::default() }, file))
+    let mesh = Mesh { name: stem(file), positions, triangles, parts, ..Mesh::default() };
+    Ok(with_mesh(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, file))
 }
 
 /// Reads ASCII STL word by word: line breaks mean nothing but the end of a solid's name, and not even that where a facet

@@ -12,48 +12,24 @@
 
 mod bucket;
 mod fan;
+mod rule;
+
+pub(crate) use rule::Rule;
 
 use crate::buckets::shift_and_count;
-use crate::normals::{DEFAULT_NORMAL, face_corner_list, unit};
-use crate::solidity::{Seen, Skins};
+use crate::directions::{DEFAULT_NORMAL, unit};
+use crate::skins::{Seen, Skins};
 use crate::weld::Weld;
 use crate::{Faces, Mesh, Solids};
 use bucket::{AllFaces, Bucket};
-use fan::Fan;
+use fan::{CELL_THRESHOLD, Fan};
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
 use vitral_exec::{Spare, Workers};
-use vitral_math::func;
 
 /// Vertices or corners that are worked on together, where each is little work.
 const PIECE: usize = 1 << 16;
-/// With more faces at one vertex, they are gathered into cells.
-const MANY: usize = 256;
-
-/// Which faces at a vertex are averaged.
-#[derive(Clone, Copy)]
-pub(crate) enum Rule<'a> {
-    /// Those whose normals are within an angle of each other.
-    Angle {
-        /// Cosine of the angle.
-        whole: f32,
-        /// Cosine of half of it.
-        half: f32,
-    },
-    /// Those with the same number, if it is not 0; one number a face.
-    Groups(&'a [u32]),
-}
-
-impl Rule<'_> {
-    /// Within `angle` radians.
-    pub(crate) fn within(angle: f64) -> Self {
-        // A hair of slack, so that a right angle is not above π/2; it must be less for half the angle.
-        let angle = angle.max(0.0);
-        Self::Angle { whole: (func::cos(angle) - 1e-6) as f32, half: func::cos(0.5 * angle) as f32 }
-    }
-}
-
 /// What was made of the fans.
 pub(crate) struct FanNormals {
     /// The normals: one for each vertex, or as `of_corner` says.
@@ -87,7 +63,7 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
     apart.resize(normals.len(), false);
     bucket.sums(normals);
     for ((normal, apart), &degree) in normals.iter_mut().zip(&mut *apart).zip(&bucket.around.degrees) {
-        let mean = unit(*normal).filter(|_| degree as usize <= MANY);
+        let mean = unit(*normal).filter(|_| degree as usize <= CELL_THRESHOLD);
         *apart = degree > 0 && mean.is_none();
         *normal = mean.unwrap_or(DEFAULT_NORMAL);
     }
@@ -95,99 +71,154 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
     apart.contains(&true)
 }
 
-/// Makes the normals of all corners.
-pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Workers) -> FanNormals {
-    let vertices = mesh.positions.len();
-    let (shift, count) = shift_and_count(vertices);
-    let all = AllFaces::new(mesh, weld, workers);
-    let skins = if matches!(mesh.faces, Faces::Triangles) { Skins::new(mesh, weld) } else { None };
+/// The making of normals, bucket by bucket on all threads.
+struct Maker<'a> {
+    mesh: &'a Mesh,
+    faces: AllFaces<'a>,
+    skins: Option<Skins<'a>>,
+    rule: Rule<'a>,
+    /// For each corner 0 if it takes its vertex's first normal, else one more than the position of a further one in its
+    /// bucket. Made when the first vertex with two normals is found.
+    further_of_corner: OnceLock<Vec<AtomicU32>>,
+}
 
-    // Each vertex has room for one normal; further ones are kept by bucket. For each corner 0 if it takes the first, else one more
-    // than the place of a further one; made when the first vertex with two is found.
-    let mut first = vec![DEFAULT_NORMAL; vertices];
-    let mut further: Vec<Vec<[f32; 3]>> = vec![Vec::new(); count];
-    let which: OnceLock<Vec<AtomicU32>> = OnceLock::new();
-    let spare = Spare::<Scratch>::default();
-    let buckets: Vec<_> = first.chunks_mut(1 << shift).zip(&mut further).enumerate().collect();
-    let make = |b: usize, first: &mut [[f32; 3]], further: &mut Vec<[f32; 3]>, scratch: &mut Scratch| {
+impl Maker<'_> {
+    /// Makes the normals of bucket `b`: the first one of each of its vertices, and further ones.
+    fn make_bucket(&self, b: usize, first: &mut [[f32; 3]], further: &mut Vec<[f32; 3]>, scratch: &mut Scratch) {
         let Scratch { bucket, fan, apart, seen } = scratch;
-        bucket.gather(&all, b, first.len());
-        if let Some(skins) = &skins {
+        bucket.gather(&self.faces, b, first.len());
+        if let Some(skins) = &self.skins {
             skins.look_at(seen, &bucket.around);
         }
-        if !average(bucket, rule, first, apart) {
+
+        // Average all faces of a vertex; most need no more.
+        if !average(bucket, self.rule, first, apart) {
             return;
         }
+
+        // Look closer at the others, corner by corner.
         bucket.sort(apart);
         for (v, first) in first.iter_mut().enumerate().filter(|(v, _)| apart[*v]) {
             let corners = bucket.at(v);
-            fan.make(corners, &bucket.around.faces, &bucket.normals, rule);
+            fan.make(corners, &bucket.around.faces, &bucket.normals, self.rule);
             *first = fan.values[0];
             if fan.values.len() > 1 {
-                let which = which.get_or_init(|| face_corner_list(mesh).iter().map(|_| AtomicU32::new(0)).collect());
+                let of_corner = self.further_of_corner.get_or_init(|| unset_corners(self.mesh));
                 for (c, &slot) in corners.iter().zip(&fan.slots).filter(|(_, slot)| **slot > 0) {
-                    which[c.index as usize].store(further.len() as u32 + slot, Relaxed);
+                    of_corner[c.index as usize].store(further.len() as u32 + slot, Relaxed);
                 }
                 further.extend_from_slice(&fan.values[1..]);
             }
         }
-    };
-    workers.for_each(buckets, |(b, (first, further))| spare.lend(|scratch| make(b, first, further, scratch)));
-    drop(all);
+    }
+}
+
+/// A zero for each corner of a face.
+fn unset_corners(mesh: &Mesh) -> Vec<AtomicU32> {
+    mesh.corner_list().iter().map(|_| AtomicU32::new(0)).collect()
+}
+
+/// Makes the normals of all corners.
+pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Workers) -> FanNormals {
+    let vertices = mesh.positions.len();
+    let (shift, count) = shift_and_count(vertices);
+
+    // Each vertex has room for one normal; further ones are kept by bucket.
+    let mut first = vec![DEFAULT_NORMAL; vertices];
+    let mut further: Vec<Vec<[f32; 3]>> = vec![Vec::new(); count];
+    let faces = AllFaces::new(mesh, weld, workers);
+    let skins = if matches!(mesh.faces, Faces::Triangles) { Skins::new(mesh, weld) } else { None };
+    let maker = Maker { mesh, faces, skins, rule, further_of_corner: OnceLock::new() };
+    let spare = Spare::<Scratch>::default();
+    let buckets: Vec<_> = first.chunks_mut(1 << shift).zip(&mut further).enumerate().collect();
+    workers.for_each(buckets, |(b, (first, further))| {
+        spare.lend(|scratch| maker.make_bucket(b, first, further, scratch));
+    });
+
+    // Answer for the skins of bodies what was seen on the way.
+    let Maker { faces, skins, further_of_corner, .. } = maker;
+    drop(faces);
     let spare = spare.into_inner();
     let solids = skins.map(|skins| skins.solids(spare.iter().map(|scratch| &scratch.seen), workers));
 
-    // One normal a vertex: no indices needed.
-    let Some(which) = which.into_inner() else {
-        if weld.distinct < vertices {
-            let of_representative = std::mem::replace(&mut first, vec![DEFAULT_NORMAL; vertices]);
-            workers.for_each_chunk(&mut first, PIECE, |k, part| {
-                for (normal, &v) in part.iter_mut().zip(&weld.representative[k * PIECE..]) {
-                    *normal = of_representative[v as usize];
-                }
-            });
+    // Number the normals of the corners, unless every vertex has one.
+    match further_of_corner.into_inner() {
+        None => FanNormals { values: spread_to_welded(first, weld, workers), of_corner: None, solids },
+        Some(of_corner) => {
+            let (values, numbers) = drop_welded(first, weld);
+            let of_corner = of_corner.into_iter().map(AtomicU32::into_inner).collect();
+            let (values, of_corner) = number(mesh, weld, Numbered { values, numbers, further, of_corner }, workers);
+            FanNormals { values, of_corner: Some(of_corner), solids }
         }
-        return FanNormals { values: first, of_corner: None, solids };
-    };
-
-    // What was welded to another vertex has no normal of its own. Further normals follow the first ones.
-    let mut own: Vec<u32> = Vec::new();
-    if weld.distinct < vertices {
-        let mut next = 0;
-        let number = |(v, normal): (u32, [f32; 3])| {
-            let is_own = weld.of(v) == v;
-            own.push(next);
-            next += u32::from(is_own);
-            is_own.then_some(normal)
-        };
-        first = (0..).zip(first).filter_map(number).collect();
     }
-    let mut values = first;
-    let before: Vec<u32> = further
+}
+
+/// Gives vertices that are welded to others the normal of these.
+fn spread_to_welded(mut normals: Vec<[f32; 3]>, weld: &Weld, workers: &Workers) -> Vec<[f32; 3]> {
+    if weld.distinct == normals.len() {
+        return normals;
+    }
+    let empty = vec![DEFAULT_NORMAL; normals.len()];
+    let of_representative = std::mem::replace(&mut normals, empty);
+    workers.for_each_chunk(&mut normals, PIECE, |k, part| {
+        for (normal, &v) in part.iter_mut().zip(&weld.representative[k * PIECE..]) {
+            *normal = of_representative[v as usize];
+        }
+    });
+    normals
+}
+
+/// The normals of vertices that are not welded to others, and for each vertex the number of its normal; no numbers if
+/// they are those of the vertices.
+fn drop_welded(normals: Vec<[f32; 3]>, weld: &Weld) -> (Vec<[f32; 3]>, Vec<u32>) {
+    if weld.distinct == normals.len() {
+        return (normals, Vec::new());
+    }
+    let mut numbers = Vec::new();
+    let mut next = 0;
+    let own = |(v, normal): (u32, [f32; 3])| {
+        let is_own = weld.of(v) == v;
+        numbers.push(next);
+        next += u32::from(is_own);
+        is_own.then_some(normal)
+    };
+    let normals = (0..).zip(normals).filter_map(own).collect();
+    (normals, numbers)
+}
+
+/// Normals of which some vertices have several.
+struct Numbered {
+    /// The first normal of each vertex that is not welded to another.
+    values: Vec<[f32; 3]>,
+    /// Where each vertex's is among them; empty if at the vertex's own number.
+    numbers: Vec<u32>,
+    /// The further ones, by bucket.
+    further: Vec<Vec<[f32; 3]>>,
+    /// For each corner 0 for the first, else one more than the position in `further` of its bucket.
+    of_corner: Vec<u32>,
+}
+
+/// Puts further normals behind the first ones; gives all, and for each corner its number among them.
+fn number(mesh: &Mesh, weld: &Weld, normals: Numbered, workers: &Workers) -> (Vec<[f32; 3]>, Vec<u32>) {
+    let Numbered { mut values, numbers, further, mut of_corner } = normals;
+    let (shift, _) = shift_and_count(mesh.positions.len());
+
+    // Where the further normals of each bucket begin.
+    let starts: Vec<u32> = further
         .iter()
         .map(|further| {
             values.extend_from_slice(further);
             (values.len() - further.len()) as u32
         })
         .collect();
-    let list = face_corner_list(mesh);
-    let mut of_corner: Vec<u32> = which.into_iter().map(AtomicU32::into_inner).collect();
+
+    let list = mesh.corner_list();
     workers.for_each_chunk(&mut of_corner, PIECE, |k, part| {
         for (c, index) in part.iter_mut().enumerate() {
             let v = weld.of(list[k * PIECE + c]);
-            let first = own.get(v as usize).copied().unwrap_or(v);
-            *index = index.checked_sub(1).map_or(first, |further| before[(v >> shift) as usize] + further);
+            let first = numbers.get(v as usize).copied().unwrap_or(v);
+            *index = index.checked_sub(1).map_or(first, |further| starts[(v >> shift) as usize] + further);
         }
     });
-    FanNormals { values, of_corner: Some(of_corner), solids }
-}
-
-/// Whether a face's normal is within an angle of another direction; a face without area always is.
-#[inline]
-fn is_near(direction: [f32; 3], normal: [f32; 3], cosine: f32) -> bool {
-    dot(direction, normal) >= cosine || normal == [0.0; 3]
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    (values, of_corner)
 }

@@ -1,4 +1,4 @@
-//! The course's program Lab3D: its two lights, its transforms, its exercises and walkthroughs.
+//! The course's program Lab3D: its two lights, its transforms, its exercises.
 //!
 //! Idea: the program moves the eye with `eyeU` (angles in degrees) and `eyeT`, and all objects together with `allU` and
 //! `allT`. It sets the view transform, then the lights' positions, then the transform of the objects. OpenGL multiplies
@@ -10,8 +10,7 @@
 //! Cost: constant.
 //! Source: the course, notes L (COURSE.md L11-L22). The notes have lost the values of the lights; those here are ours.
 
-use crate::builtin;
-use crate::{Attribute, Camera, Projection, Scene};
+use crate::{Attribute, Camera, Node, NodeTransform, Projection, Scene};
 use std::sync::Arc;
 use vitral_light::{Light, LightKind};
 use vitral_math::{DMat4, DVec3};
@@ -101,8 +100,8 @@ impl LabView {
         let (fixed, moved): (Vec<u32>, Vec<u32>) =
             scene.roots.iter().partition(|&&r| scene.nodes[r as usize].camera.is_some());
         scene.roots = fixed;
-        let transform = crate::NodeTransform::Matrix(self.world_from_model());
-        scene.add_root(crate::Node { name: "all".to_owned(), transform, children: moved, ..crate::Node::default() });
+        let transform = NodeTransform::Matrix(self.world_from_model());
+        scene.add_root(Node { name: "all".to_owned(), transform, children: moved, ..Node::default() });
     }
 }
 
@@ -129,78 +128,11 @@ pub fn exercise_5_2(scene: &mut Scene) {
     }
 }
 
-/// One picture of a walkthrough, independent of the renderer's settings.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// What to look at.
-    pub title: String,
-    /// What is shown.
-    pub scene: Scene,
-    /// Lighting on, or every surface in its plain colour.
-    pub lighting: bool,
-}
-
-/// The scenes of the menu *Exercises*, in its order.
-pub const EXERCISES: [&str; 4] = ["cubs", "sphere", "scene0", "scene1"];
-
-/// The work of chapter 4 of the notes:
-///
-/// * `"4.1"`: each scene under its lights, to compare what is bright with where the lights are;
-/// * `"4.2"`: the sphere under LIGHT0 alone, one component at a time, then with the light at other positions;
-/// * `"4.3"`: each scene lit and unlit.
-pub fn walkthrough(number: &str) -> Option<Vec<Step>> {
-    match number {
-        "4.1" => Some(EXERCISES.iter().filter_map(|name| step(name, "lit by LIGHT0 and LIGHT1", true)).collect()),
-        "4.2" => Some(components().into_iter().chain(positions()).collect()),
-        "4.3" => {
-            let both = |name: &&'static str| [step(name, "lighting on", true), step(name, "lighting off", false)];
-            Some(EXERCISES.iter().flat_map(both).flatten().collect())
-        }
-        _ => None,
-    }
-}
-
-fn step(name: &str, title: &str, lighting: bool) -> Option<Step> {
-    Some(Step { title: format!("{name}: {title}"), scene: builtin::scene(name)?, lighting })
-}
-
-/// The sphere under `light` alone.
-fn sphere_under(light: Light, title: &str) -> Option<Step> {
-    let mut step = step("sphere", title, true)?;
-    step.scene.lights = vec![light];
-    Some(step)
-}
-
-fn components() -> Vec<Step> {
-    let off = [0.0; 3];
-    let light = lights().swap_remove(0);
-    let steps = [
-        ("ambient component alone", Light { diffuse: off, specular: off, ..light.clone() }),
-        ("diffuse component alone", Light { ambient: off, specular: off, ..light.clone() }),
-        ("specular component alone", Light { ambient: off, diffuse: off, ..light.clone() }),
-        ("all components", light),
-    ];
-    steps.into_iter().filter_map(|(title, light)| sphere_under(light, title)).collect()
-}
-
-fn positions() -> Vec<Step> {
-    let steps = [
-        ("light from the left", [-6.0, 2.0, 6.0, 1.0]),
-        ("light from above", [0.0, 9.0, 2.0, 1.0]),
-        ("light from the right", [7.0, 1.0, 3.0, 1.0]),
-        ("light at infinity behind the viewer", [0.0, 0.0, 1.0, 0.0]),
-    ];
-    let placed = |(title, position)| {
-        let light = light_from_gl(position, LIGHT_AMBIENT[0], LIGHT_DIFFUSE[0], LIGHT_SPECULAR[0]);
-        sphere_under(Light { name: "LIGHT0".to_owned(), ..light }, title)
-    };
-    steps.into_iter().filter_map(placed).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::World;
+    use crate::walkthrough::EXERCISES;
+    use crate::{World, builtin};
     use vitral_math::{DVec4, func};
 
     const VIEW: LabView = LabView {
@@ -308,14 +240,5 @@ mod tests {
             let normals = mesh.normals.as_ref().unwrap();
             assert!((0..mesh.triangles.len()).all(|t| normals.at(t, &mesh.triangles) == [[0.0, 0.0, 1.0]; 3]));
         }
-    }
-
-    #[test]
-    fn l20_there_are_three_walkthroughs() {
-        assert_eq!(["4.1", "4.2", "4.3"].map(|n| walkthrough(n).unwrap().len()), [4, 8, 8]);
-        assert!(walkthrough("4.4").is_none());
-        let lit: Vec<bool> = walkthrough("4.3").unwrap().iter().map(|s| s.lighting).collect();
-        assert_eq!(lit, [true, false, true, false, true, false, true, false]);
-        assert!(walkthrough("4.2").unwrap().iter().all(|s| s.scene.lights.len() == 1));
     }
 }

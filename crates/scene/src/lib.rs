@@ -1,6 +1,7 @@
 //! Floor 1: what there is to see. Meshes (model space), nodes and instances (world space), cameras (view and clip space).
 #![forbid(unsafe_code)]
 
+mod axis;
 pub mod bodies;
 mod buckets;
 pub mod builtin;
@@ -8,30 +9,35 @@ mod camera;
 mod camera_moves;
 mod corner_fans;
 mod default_lights;
+mod directions;
 mod disjoint_sets;
 mod edge_table;
 pub mod edges;
 mod exposure;
 pub mod extent;
+mod face_data;
 pub mod framing;
 pub mod lab;
 mod mesh;
 pub mod normals;
 mod scene;
+mod skins;
 mod solidity;
 pub mod spaces;
 mod tangents;
 pub mod topology;
 mod triangle_buckets;
+pub mod walkthrough;
 pub mod weld;
 mod world;
 
+pub use axis::{Axis, AxisError};
 pub use camera::{Camera, Projection, ViewTransform};
 pub use default_lights::default_lights;
 pub use edges::{Edge, EdgeKind};
 pub use exposure::exposure;
 pub use extent::{Extent1, Extent2};
-pub use framing::{Axis, Lens, View, depth_range, frame};
+pub use framing::{Lens, View, depth_range, frame};
 pub use mesh::{Attribute, Corners, Faces, FreePart, Mesh, Part, TRIANGLES_A_RUN};
 pub use scene::{Node, NodeTransform, Scene};
 pub use solidity::{KnownSolidity, Solidity, Solids};

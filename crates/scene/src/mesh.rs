@@ -200,6 +200,22 @@ impl Mesh {
         }
     }
 
+    /// The outlines of all faces, one after the other.
+    pub(crate) fn corner_list(&self) -> &[u32] {
+        match &self.faces {
+            Faces::Triangles => self.triangles.as_flattened(),
+            Faces::Polygons { corners, .. } => corners,
+        }
+    }
+
+    /// Where face `f` begins in [`Self::corner_list`].
+    pub(crate) fn first_corner(&self, f: usize) -> usize {
+        match &self.faces {
+            Faces::Triangles => 3 * f,
+            Faces::Polygons { starts, .. } => starts[f] as usize,
+        }
+    }
+
     /// The position of vertex `i`.
     pub(crate) fn position(&self, i: u32) -> DVec3 {
         DVec3::from_array(self.positions[i as usize].map(f64::from))
@@ -289,33 +305,54 @@ impl Mesh {
     /// # Errors
     /// As [`Self::check`].
     pub fn check_with(&self, workers: &Workers) -> Result<(), String> {
-        const PIECE: usize = 1 << 17;
-        let vertices = self.positions.len();
-        let in_range = |what: &str, indices: &[u32], count: usize| {
-            // The greatest is found many at a time; which one is bad only matters where one is.
-            let greatest = workers.map(indices.len().div_ceil(PIECE), |piece| {
-                let piece = &indices[piece * PIECE..indices.len().min((piece + 1) * PIECE)];
-                piece.iter().fold(0, |greatest, &index| index.max(greatest))
-            });
-            if greatest.into_iter().max().is_none_or(|greatest| (greatest as usize) < count) {
-                return Ok(());
-            }
-            let k = indices.iter().position(|&i| i as usize >= count).unwrap_or_default();
-            Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k]))
-        };
-        in_range("triangle corner", self.triangles.as_flattened(), vertices)?;
-        in_range("line end", self.lines.as_flattened(), vertices)?;
-        in_range("point", &self.points, vertices)?;
-        if let Faces::Polygons { starts, corners } = &self.faces {
-            in_range("face corner", corners, vertices)?;
-            let ordered = starts.first() == Some(&0) && starts.windows(2).all(|w| w[1] >= w[0] + 3);
-            let fits = starts.last().is_some_and(|&last| {
-                last as usize == corners.len() && last as usize == self.triangles.len() + 2 * (starts.len() - 1)
-            });
-            if !ordered || !fits {
-                return Err(format!("mesh `{}`: faces and triangles do not fit", self.name));
-            }
+        self.check_primitives(workers)?;
+        self.check_faces(workers)?;
+        self.check_parts()?;
+        self.check_free_parts("line", &self.line_parts, self.lines.len())?;
+        self.check_free_parts("point", &self.point_parts, self.points.len())?;
+        self.check_attributes(workers)?;
+        if self.smoothing_groups.as_ref().is_some_and(|g| g.len() != self.face_count()) {
+            return Err(format!("mesh `{}`: smoothing groups do not fit the faces", self.name));
         }
+        Ok(())
+    }
+
+    /// Refuses an index that is not below `count`.
+    fn check_indices(&self, what: &str, indices: &[u32], count: usize, workers: &Workers) -> Result<(), String> {
+        const PIECE: usize = 1 << 17;
+        // The greatest is found many at a time; which one is bad only matters where one is.
+        let greatest = workers.map(indices.len().div_ceil(PIECE), |piece| {
+            let piece = &indices[piece * PIECE..indices.len().min((piece + 1) * PIECE)];
+            piece.iter().fold(0, |greatest, &index| index.max(greatest))
+        });
+        if greatest.into_iter().max().is_none_or(|greatest| (greatest as usize) < count) {
+            return Ok(());
+        }
+        let k = indices.iter().position(|&i| i as usize >= count).unwrap_or_default();
+        Err(format!("mesh `{}`: {what} {k}: index {}, there are {count}", self.name, indices[k]))
+    }
+
+    /// That triangles, lines and points are made of vertices.
+    fn check_primitives(&self, workers: &Workers) -> Result<(), String> {
+        let vertices = self.positions.len();
+        self.check_indices("triangle corner", self.triangles.as_flattened(), vertices, workers)?;
+        self.check_indices("line end", self.lines.as_flattened(), vertices, workers)?;
+        self.check_indices("point", &self.points, vertices, workers)
+    }
+
+    /// That faces are polygons with as many triangles as they need.
+    fn check_faces(&self, workers: &Workers) -> Result<(), String> {
+        let Faces::Polygons { starts, corners } = &self.faces else { return Ok(()) };
+        self.check_indices("face corner", corners, self.positions.len(), workers)?;
+        let ordered = starts.first() == Some(&0) && starts.windows(2).all(|w| w[1] >= w[0] + 3);
+        let fits = starts.last().is_some_and(|&last| {
+            last as usize == corners.len() && last as usize == self.triangles.len() + 2 * (starts.len() - 1)
+        });
+        if ordered && fits { Ok(()) } else { Err(format!("mesh `{}`: faces and triangles do not fit", self.name)) }
+    }
+
+    /// That parts cover all triangles without a gap.
+    fn check_parts(&self) -> Result<(), String> {
         let mut next = 0;
         for part in &self.parts {
             if part.triangles.start != next || part.triangles.end < next {
@@ -326,42 +363,46 @@ impl Mesh {
         if next as usize != self.triangles.len() {
             return Err(format!("mesh `{}`: parts end at {next} of {} triangles", self.name, self.triangles.len()));
         }
-        for (what, parts, count) in
-            [("line", &self.line_parts, self.lines.len()), ("point", &self.point_parts, self.points.len())]
-        {
-            let mut next = 0;
-            for part in parts {
-                if part.elements.start != next || part.elements.end < next {
-                    return Err(format!("mesh `{}`: {what} parts leave a gap at {what} {next}", self.name));
-                }
-                next = part.elements.end;
+        Ok(())
+    }
+
+    /// That parts of `count` lines or points follow each other without a gap.
+    fn check_free_parts(&self, what: &str, parts: &[FreePart], count: usize) -> Result<(), String> {
+        let mut next = 0;
+        for part in parts {
+            if part.elements.start != next || part.elements.end < next {
+                return Err(format!("mesh `{}`: {what} parts leave a gap at {what} {next}", self.name));
             }
-            if next as usize > count {
-                return Err(format!("mesh `{}`: {what} parts end at {next} of {count} {what}s", self.name));
-            }
+            next = part.elements.end;
         }
-        let attribute = |what: &str, count: usize, corners: Option<&[Corners]>| match corners {
+        if next as usize > count {
+            return Err(format!("mesh `{}`: {what} parts end at {next} of {count} {what}s", self.name));
+        }
+        Ok(())
+    }
+
+    /// That every corner has its value of each attribute.
+    fn check_attributes(&self, workers: &Workers) -> Result<(), String> {
+        let vertices = self.positions.len();
+        let check = |what: &str, count: usize, corners: Option<&[Corners]>| match corners {
             Some(c) if c.len() != self.triangles.len() => {
                 Err(format!("mesh `{}`: {what} for {} of {} triangles", self.name, c.len(), self.triangles.len()))
             }
-            Some(c) => in_range(what, c.as_flattened(), count),
+            Some(c) => self.check_indices(what, c.as_flattened(), count, workers),
             None if count != vertices => Err(format!("mesh `{}`: {count} {what}s for {vertices} vertices", self.name)),
             None => Ok(()),
         };
         if let Some(n) = &self.normals {
-            attribute("normal", n.values.len(), n.corners.as_deref())?;
+            check("normal", n.values.len(), n.corners.as_deref())?;
         }
         if let Some(t) = &self.tangents {
-            attribute("tangent", t.values.len(), t.corners.as_deref())?;
+            check("tangent", t.values.len(), t.corners.as_deref())?;
         }
         for uv in &self.uvs {
-            attribute("texture coordinate", uv.values.len(), uv.corners.as_deref())?;
+            check("texture coordinate", uv.values.len(), uv.corners.as_deref())?;
         }
         if let Some(c) = &self.colors {
-            attribute("colour", c.values.len(), c.corners.as_deref())?;
-        }
-        if self.smoothing_groups.as_ref().is_some_and(|g| g.len() != self.face_count()) {
-            return Err(format!("mesh `{}`: smoothing groups do not fit the faces", self.name));
+            check("colour", c.values.len(), c.corners.as_deref())?;
         }
         Ok(())
     }

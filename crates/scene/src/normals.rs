@@ -15,25 +15,15 @@
 //! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial normal. Where the
 //! faces of a vertex cancel each other (two sheets back to back, smoothed together), it gets its first face's normal.
 
-mod faces;
-
 use crate::corner_fans::{Rule, fan_normals};
+use crate::directions::{DEFAULT_NORMAL, unit};
+use crate::face_data::{BATCH, FaceData, face_data, outline_normal};
 use crate::weld::Weld;
 use crate::{Attribute, Corners, Faces, KnownSolidity, Mesh, Solids};
-use faces::outline_normal;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::DVec3;
-
-pub(crate) use faces::{FaceData, face_data, measure_triangles};
-
-/// The normal of a vertex without any face that has one.
-pub(crate) const DEFAULT_NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
-/// Sums shorter than this (they are weighted by radians) have cancelled out.
-pub(crate) const CANCELLED: f32 = 1e-5;
-/// Faces or corners that are worked on together.
-const BATCH: usize = 1 << 14;
 
 /// Makes the normals that `mesh` lacks: all, or those that are zero or not finite. Does nothing where none is missing.
 ///
@@ -86,22 +76,6 @@ pub fn face_normals(mesh: &Mesh, workers: &Workers) -> Vec<[f32; 3]> {
     normals
 }
 
-/// The outlines of all faces, one after the other.
-pub(crate) fn face_corner_list(mesh: &Mesh) -> &[u32] {
-    match &mesh.faces {
-        Faces::Triangles => mesh.triangles.as_flattened(),
-        Faces::Polygons { corners, .. } => corners,
-    }
-}
-
-/// Where face `f` begins in [`face_corner_list`].
-fn first_corner(mesh: &Mesh, f: usize) -> usize {
-    match &mesh.faces {
-        Faces::Triangles => 3 * f,
-        Faces::Polygons { starts, .. } => starts[f] as usize,
-    }
-}
-
 fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solids>) {
     let weld = Weld::new(&mesh.positions, workers);
     let rule = match &mesh.smoothing_groups {
@@ -152,7 +126,7 @@ fn smooth(mesh: &Mesh, weld: &Weld, faces: &FaceData, workers: &Workers) -> Vec<
     normals
 }
 
-/// Calls `f(face, place in the corner list, vertex)` for every corner of every face.
+/// Calls `f(face, position in the corner list, vertex)` for every corner of every face.
 #[inline]
 fn for_each_corner(mesh: &Mesh, mut f: impl FnMut(usize, usize, u32)) {
     match &mesh.faces {
@@ -169,12 +143,6 @@ fn for_each_corner(mesh: &Mesh, mut f: impl FnMut(usize, usize, u32)) {
     }
 }
 
-/// `v` with length 1, unless it has cancelled out.
-pub(crate) fn unit(v: [f32; 3]) -> Option<[f32; 3]> {
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    (length > CANCELLED).then(|| v.map(|c| c / length))
-}
-
 /// From the normals at the corners of faces to those at the corners of triangles.
 fn triangle_corners(mesh: &Mesh, of_corner: &[u32], workers: &Workers) -> Vec<Corners> {
     if matches!(mesh.faces, Faces::Triangles) {
@@ -185,7 +153,7 @@ fn triangle_corners(mesh: &Mesh, of_corner: &[u32], workers: &Workers) -> Vec<Co
         let mut sorted = Vec::new();
         for face in batch * BATCH..mesh.face_count().min((batch + 1) * BATCH) {
             let outline = mesh.face_corners(face);
-            let normals = &of_corner[first_corner(mesh, face)..][..outline.len()];
+            let normals = &of_corner[mesh.first_corner(face)..][..outline.len()];
 
             // A polygon's triangles name vertices: look up which corner that is. Long outlines are sorted for it.
             sorted.clear();

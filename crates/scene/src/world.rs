@@ -97,15 +97,16 @@ impl World {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_workers(scene: &Scene, workers: &Workers) -> Result<Self, WorldError> {
+        // Compute the boxes of meshes once, however many instances they have.
         let run_bounds: Vec<Vec<Aabb>> = scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
         let bounds: Vec<Aabb> = scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();
         let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
-        let mut seen = vec![false; scene.nodes.len()];
-        // A stack of our own: a deep graph must not overflow the thread's.
-        let mut cameras: Vec<(u32, Camera)> = Vec::new();
         check_roots(scene)?;
+
+        // Walk with a stack of our own: a deep graph must not overflow the thread's.
+        let mut seen = vec![false; scene.nodes.len()];
+        let mut cameras: Vec<(u32, Camera)> = Vec::new();
         let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
-        let (mut surfaces, mut facets) = (0u64, 0u64);
         while let Some((index, world_from_parent)) = stack.pop() {
             let node = &scene.nodes[index as usize];
             check_references(scene, index, node)?;
@@ -114,25 +115,8 @@ impl World {
             }
             let world_from_node = world_from_parent * node.transform.matrix();
             if let Some(m) = node.mesh {
-                let mesh = &scene.meshes[m as usize];
-                let model_bounds = bounds[m as usize];
-                let bounds = model_bounds.transformed(&world_from_node);
-                world.bounds = world.bounds.union(&bounds);
-                world.instances.push(Instance {
-                    mesh: Arc::clone(mesh),
-                    mesh_index: m,
-                    node: index,
-                    world_from_model: world_from_node,
-                    model_bounds,
-                    bounds,
-                    first_surface: surfaces as u32,
-                    first_facet: facets as u32,
-                });
-                surfaces += mesh.face_count() as u64;
-                facets += mesh.triangles.len() as u64;
-                if facets >= u64::from(u32::MAX) {
-                    return Err(WorldError::TooManyFacets);
-                }
+                let (mesh, model_bounds) = (&scene.meshes[m as usize], bounds[m as usize]);
+                world.add_instance(index, m, mesh, model_bounds, world_from_node)?;
             }
             if let Some(light) = &node.light {
                 world.lights.push(light.transformed(&world_from_node));
@@ -142,10 +126,43 @@ impl World {
             }
             stack.extend(node.children.iter().rev().map(|&c| (c, world_from_node)));
         }
+
+        // Put the cameras in the order of the scene's list.
         cameras.sort_by_key(|&(c, _)| c);
         world.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
-        (world.surface_count, world.facet_count) = (surfaces as u32, facets as u32);
         Ok(world)
+    }
+
+    /// Adds mesh number `mesh_index` at a node, and numbers its surfaces and facets.
+    fn add_instance(
+        &mut self,
+        node: u32,
+        mesh_index: u32,
+        mesh: &Arc<Mesh>,
+        model_bounds: Aabb,
+        world_from_model: DMat4,
+    ) -> Result<(), WorldError> {
+        let bounds = model_bounds.transformed(&world_from_model);
+        self.bounds = self.bounds.union(&bounds);
+        self.instances.push(Instance {
+            mesh: Arc::clone(mesh),
+            mesh_index,
+            node,
+            world_from_model,
+            model_bounds,
+            bounds,
+            first_surface: self.surface_count,
+            first_facet: self.facet_count,
+        });
+
+        // A face has at least one triangle, so that surfaces cannot outnumber facets.
+        let facets = u64::from(self.facet_count) + mesh.triangles.len() as u64;
+        if facets >= u64::from(u32::MAX) {
+            return Err(WorldError::TooManyFacets);
+        }
+        self.facet_count = facets as u32;
+        self.surface_count += mesh.face_count() as u32;
+        Ok(())
     }
 
     /// The instance that facet `facet` belongs to, as an index.

@@ -3,7 +3,7 @@
 //! `cargo run --release -p vitral --example 07_lab_scenes [FOLDER]`
 
 use std::path::{Path, PathBuf};
-use vitral::scene::lab;
+use vitral::scene::{lab, walkthrough};
 use vitral::{Channel, Error, Renderer, Scene, load_builtin, picture};
 
 /// Renders a scene through its own camera and writes it.
@@ -23,7 +23,7 @@ fn main() -> Result<(), Error> {
     let path = |name: &str| folder.join(format!("07_{name}.png"));
 
     // The menu Exercises, each scene under LIGHT0 and LIGHT1.
-    for name in lab::EXERCISES {
+    for name in walkthrough::EXERCISES {
         draw(load_builtin(name)?, true, &path(name))?;
     }
 
@@ -39,7 +39,7 @@ fn main() -> Result<(), Error> {
 
     // The walkthroughs of chapter 4, step by step.
     for number in ["4.1", "4.2", "4.3"] {
-        for (i, step) in lab::walkthrough(number).into_iter().flatten().enumerate() {
+        for (i, step) in walkthrough::walkthrough(number).into_iter().flatten().enumerate() {
             println!("{number}.{}: {}", i + 1, step.title);
             let name = format!("walkthrough_{}_{}", number.replace('.', "_"), i + 1);
             draw(step.scene, step.lighting, &path(&name))?;

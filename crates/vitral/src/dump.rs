@@ -22,25 +22,18 @@
 mod edge_table;
 mod facets;
 mod scene;
+mod stage;
 mod two_buffer;
 
 use crate::picture::{self, EncodeOptions};
 use crate::{Channel, Error, Frame, PictureFormat, Renderer};
 use serde_json::Value;
+use stage::{Listed, Write, prepare};
 use std::path::Path;
-use vitral_raster::{SamplePattern, Viewport};
+use vitral_raster::Viewport;
 use vitral_render::stats::CullCounters;
-use vitral_render::{ColorSpace, PreparedView, Settings, Shot, TransparencyOrder, illuminate_corners};
+use vitral_render::{ColorSpace, Rendered, Settings, Shot, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
-
-/// A file that the index lists.
-struct Listed {
-    name: String,
-    what: String,
-}
-
-/// Takes a file: its name and bytes.
-type Write<'a> = dyn FnMut(&str, &[u8]) -> Result<(), Error> + 'a;
 
 /// Renders what `camera` sees and hands each stage's result to `write`, by file name.
 ///
@@ -52,67 +45,110 @@ pub fn dump(
     mut write: impl FnMut(&str, &[u8]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
-    let mut put = |name: &str, value: &Value| write(name, format!("{value:#}\n").as_bytes());
-    put("1-scene.json", &scene::scene_graph(renderer.scene()))?;
-    put("2-world.json", &scene::world(renderer))?;
-    let lights = renderer.frame_lights(camera);
-    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
-    let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
-    let of_buffers = renderer.settings.transparency.order == TransparencyOrder::TWO_BUFFER;
     let (mut of_samples, mut of_picture) = (Vec::new(), Vec::new());
-    let cull_counters = {
-        let mut counters = CullCounters::default();
-        let view = prepare(renderer, camera, viewport, &mut counters);
-        put("3-cull.json", &scene::culled(&view, &counters))?;
-        put("4-lights.json", &scene::lights_in_view(renderer, camera, &view))?;
-        put("5-view.json", &scene::view_matrices(&view))?;
-        write("4-illuminated.csv", facets::illuminated(&corners).as_bytes())?;
-        write("5-view.csv", facets::in_view(&corners).as_bytes())?;
-        write("6-clip.csv", facets::clipped(&view).as_bytes())?;
-        write("7-project.csv", facets::projected(&view).as_bytes())?;
-        if of_buffers {
-            let (name, what) = ("9-transparent.csv".to_owned(), "the list of transparent surfaces".to_owned());
-            write(&name, two_buffer::list(&view).as_bytes())?;
-            of_picture.push(Listed { name, what });
-        }
-        counters
-    };
-    if renderer.settings.visibility.has_edge_table {
+
+    // Stages 1 to 7: geometry.
+    write_scene(renderer, &mut write)?;
+    let cull = write_geometry(renderer, camera, viewport, &mut write, &mut of_picture)?;
+
+    // Stage 8 of scan lines, as text.
+    if renderer.settings.visibility == "scan-line" {
         let (name, what) = ("8-edge-table.txt".to_owned(), "polygon table, edge table, active edges, spans".to_owned());
         write(&name, edge_table::edge_tables(renderer, camera, viewport)?.as_bytes())?;
         of_samples.push(Listed { name, what });
     }
 
-    // The same picture again, with the planes of the visible surface.
+    // Stages 8 and 9: samples and the picture.
+    let rendered = render_planes(renderer, camera)?;
+    debug_assert_eq!(rendered.stats.cull.triangles, cull.triangles);
+    write_picture(renderer, &rendered.frame, &mut write, &mut of_picture)?;
+    if has_list(&renderer.settings) {
+        of_picture.extend(two_buffer::write(renderer, camera, &mut write)?);
+    }
+    write("index.md", index(&renderer.settings, &of_samples, &of_picture).as_bytes())
+}
+
+/// Writes a value as indented JSON.
+fn write_json(write: &mut Write<'_>, name: &str, value: &Value) -> Result<(), Error> {
+    write(name, format!("{value:#}\n").as_bytes())
+}
+
+/// Stages 1 and 2: the scene graph and the world.
+fn write_scene(renderer: &Renderer, write: &mut Write<'_>) -> Result<(), Error> {
+    write_json(write, "1-scene.json", &scene::scene_graph(renderer.scene()))?;
+    write_json(write, "2-world.json", &scene::world(renderer))
+}
+
+/// Stages 3 to 7: culling, illumination, view transform, clipping, projection; and the list of transparent surfaces of the
+/// two-buffer order. Gives the counters of culling.
+fn write_geometry(
+    renderer: &Renderer,
+    camera: &Camera,
+    viewport: Viewport,
+    write: &mut Write<'_>,
+    listed: &mut Vec<Listed>,
+) -> Result<CullCounters, Error> {
+    let lights = renderer.frame_lights(camera);
+    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
+    let mut counters = CullCounters::default();
+    let view = prepare(renderer, camera, viewport, &mut counters);
+    write_json(write, "3-cull.json", &scene::culled(&view, &counters))?;
+    write_json(write, "4-lights.json", &scene::lights_in_view(renderer, camera, &view))?;
+    write_json(write, "5-view.json", &scene::view_matrices(&view))?;
+    write("4-illuminated.csv", facets::illuminated(&corners).as_bytes())?;
+    write("5-view.csv", facets::in_view(&corners).as_bytes())?;
+    write("6-clip.csv", facets::clipped(&view).as_bytes())?;
+    write("7-project.csv", facets::projected(&view).as_bytes())?;
+    if has_list(&renderer.settings) {
+        let (name, what) = ("9-transparent.csv".to_owned(), "the list of transparent surfaces".to_owned());
+        write(&name, two_buffer::list(&view).as_bytes())?;
+        listed.push(Listed { name, what });
+    }
+    Ok(counters)
+}
+
+/// Renders the picture with the planes of the visible surface, and what each pass left.
+fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Error> {
     let in_passes = has_passes(&renderer.settings);
     let wanted = renderer.settings.picture.channels;
     let channels = &mut renderer.settings.picture.channels;
     [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
     let rendered = renderer.render_from(camera);
-    renderer.settings.picture.channels = wanted;
-    let rendered = rendered?;
-    debug_assert_eq!(rendered.stats.cull.triangles, cull_counters.triangles);
-    let options = EncodeOptions { srgb: renderer.settings.picture.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
+    renderer.settings.channels = wanted;
+    rendered
+}
+
+/// Stages 8 and 9: the planes of a frame, and the picture after each pass.
+fn write_picture(
+    renderer: &Renderer,
+    frame: &Frame,
+    write: &mut Write<'_>,
+    listed: &mut Vec<Listed>,
+) -> Result<(), Error> {
+    let options = EncodeOptions { srgb: renderer.settings.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
     for (name, channel) in [
         ("8-surface.npy", Channel::Id),
         ("8-surface.png", Channel::Id),
         ("8-depth.npy", Channel::Depth),
         ("9-framebuffer.png", Channel::Color),
     ] {
-        write(name, &picture::encode_with(&rendered.frame, channel, PictureFormat::from_path(name)?, &options)?)?;
+        write(name, &picture::encode_with(frame, channel, PictureFormat::from_path(name)?, &options)?)?;
     }
-    for (number, pass) in rendered.frame.passes.iter().enumerate() {
+    for (number, pass) in frame.passes.iter().enumerate() {
         let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
         let png = picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &options)?;
         let (name, what) = (format!("9-pass-{number:02}.png"), format!("after pass {number}"));
         write(&name, &png)?;
-        of_picture.push(Listed { name, what });
+        listed.push(Listed { name, what });
     }
-    if of_buffers {
-        of_picture.extend(two_buffer::write(renderer, camera, &mut write)?);
-    }
-    write("index.md", index(&renderer.settings, &of_samples, &of_picture).as_bytes())
+    Ok(())
+}
+
+/// Whether transparent surfaces are kept in a list and a buffer of their own.
+fn has_list(settings: &Settings) -> bool {
+    settings.transparency_order == TransparencyOrder::TwoBuffer
 }
 
 /// Whether the picture is made in passes.
@@ -130,16 +166,6 @@ pub fn dump_to_folder(renderer: &mut Renderer, camera: &Camera, folder: impl AsR
     let folder = folder.as_ref();
     std::fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
     dump(renderer, camera, |name, bytes| picture::write(folder.join(name), bytes))
-}
-
-fn prepare<'a>(
-    renderer: &'a Renderer,
-    camera: &Camera,
-    viewport: Viewport,
-    counters: &mut CullCounters,
-) -> PreparedView<'a> {
-    let pattern = SamplePattern::new(1);
-    PreparedView::new(renderer.session(), camera, &renderer.settings, viewport, pattern, renderer.execution(), counters)
 }
 
 fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> String {

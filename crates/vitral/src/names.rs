@@ -36,7 +36,7 @@ pub fn view(name: &str) -> Result<View, Error> {
 /// # Errors
 /// [`Error::Usage`] for any other name.
 pub fn axis(name: &str) -> Result<Axis, Error> {
-    name.parse().map_err(|e: vitral_scene::framing::AxisError| Error::usage(e.to_string(), ""))
+    name.parse().map_err(|e: vitral_scene::AxisError| Error::usage(e.to_string(), ""))
 }
 
 /// Names of colours that everybody knows, with their bytes: the sixteen of HTML 4 and orange.

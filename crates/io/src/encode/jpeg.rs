@@ -2,7 +2,7 @@
 //!
 //! Source: \[JPEG\]; the coder is the `image` crate's.
 
-use super::{check_sides, over_white};
+use super::pixels::{check_sides, over_white};
 use crate::Error;
 use image::codecs::jpeg::JpegEncoder;
 use vitral_frame::Plane;

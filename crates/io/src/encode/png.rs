@@ -7,7 +7,7 @@
 //!
 //! Source: \[PNG\].
 
-use super::check_sides;
+use super::pixels::check_sides;
 use crate::Error;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
 use vitral_frame::Plane;

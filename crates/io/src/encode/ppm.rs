@@ -5,7 +5,7 @@
 //!
 //! Source: \[PPM\].
 
-use super::{check_sides, over_white};
+use super::pixels::{check_sides, over_white};
 use crate::image::check_size;
 use crate::{Error, Place};
 use vitral_frame::Plane;

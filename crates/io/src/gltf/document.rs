@@ -8,8 +8,9 @@
 //! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
 //! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
 
-use super::{instances, untidy};
-use crate::format::extension_of;
+use super::untidy;
+use crate::file_name::extension;
+use crate::json_message::plain_message;
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 use serde_json::{Map, Value};
@@ -17,10 +18,13 @@ use serde_json::{Map, Value};
 /// WebP pictures, which a texture names beside those that any reader knows.
 pub(crate) const WEBP: &str = "EXT_texture_webp";
 
+/// Many copies of one mesh in a node.
+pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
 /// Extensions that change what is read; a file may require them.
 const SUPPORTED: [&str; 11] = [
     WEBP,
-    instances::NAME,
+    INSTANCING,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -59,7 +63,7 @@ pub(crate) struct Document<'a> {
 /// Reads and checks glTF JSON or a GLB container.
 pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Error> {
     let (text, binary) = if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
-    if extension_of(file) == "glb" && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
+    if extension(file) == "glb" && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
         return Err(Error::malformed(file, Place::Byte(0), "a GLB begins with `glTF`"));
     }
     let root = parse_json(text, file)?;
@@ -153,16 +157,6 @@ fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
         let place = if path == "." { Place::File } else { Place::Json(path) };
         Error::malformed(file, place, plain_message(e.inner()))
     })
-}
-
-/// The message without the position, which [`Place`] gives, and without names of Rust's types.
-pub(crate) fn plain_message(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    let text = text.split(" at line ").next().unwrap_or_default();
-    match text.split_once(", expected struct ") {
-        Some((found, _)) => format!("{found}, expected an object"),
-        None => text.to_owned(),
-    }
 }
 
 /// Refuses required extensions that are not read; names those that a picture can do without.

@@ -4,17 +4,15 @@
 //! Source: EXT_mesh_gpu_instancing.
 
 use super::accessor::{Integers, Source};
+use super::budget::unfolded_bytes;
+use super::document::INSTANCING;
 use super::node::Tree;
-use super::{BYTES_PER_BYTE, FREE_BYTES};
 use crate::Error;
 use gltf::json::accessor::ComponentType;
 use gltf::json::validation::Checked;
 use serde_json::Value;
 use vitral_math::{DQuat, DVec3, DVec4};
 use vitral_scene::{Node, NodeTransform, Scene};
-
-/// The name in files.
-pub(crate) const NAME: &str = "EXT_mesh_gpu_instancing";
 
 /// What places a copy in its node; other attributes are not read.
 const ATTRIBUTES: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
@@ -29,10 +27,10 @@ pub(crate) fn spread(
     scene: &mut Scene,
     warnings: &mut Vec<String>,
 ) -> Result<(), Error> {
-    let most = (FREE_BYTES + BYTES_PER_BYTE * source.buffers.total()) / size_of::<Node>() as u64;
+    let most = unfolded_bytes(source) / size_of::<Node>() as u64;
     let mut total = 0;
     for (number, &n) in tree.shown.iter().enumerate() {
-        let path = format!("nodes[{n}].extensions.{NAME}");
+        let path = format!("nodes[{n}].extensions.{INSTANCING}");
         let Some((accessors, count)) = find(source, n, &path)? else { continue };
         if source.root.nodes[n].skin.is_some() {
             warnings.push(format!("{}: {path}: a skinned mesh is shown once", source.file));
@@ -55,7 +53,9 @@ pub(crate) fn spread(
 /// The accessors that place a node's copies, and how many these are. `None`: there are no copies.
 fn find(source: &Source<'_>, node: usize, path: &str) -> Result<Option<(Accessors, usize)>, Error> {
     let extensions = source.root.nodes[node].extensions.as_ref();
-    let Some(attributes) = extensions.and_then(|e| e.others.get(NAME)?.get("attributes")) else { return Ok(None) };
+    let Some(attributes) = extensions.and_then(|e| e.others.get(INSTANCING)?.get("attributes")) else {
+        return Ok(None);
+    };
     let mut accessors = [None; 3];
     let mut counted: Option<(&str, usize)> = None;
     for (accessor, name) in accessors.iter_mut().zip(ATTRIBUTES) {

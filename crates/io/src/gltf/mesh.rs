@@ -11,12 +11,12 @@
 //! Departs from it: a mesh wholly without normals keeps none (the renderer makes them with a crease angle, not flat).
 
 use super::accessor::{Integers, Source};
+use super::block::Block;
 use super::deform;
 use super::document::material_index;
 use super::geometry::{Attributes, Outline};
 use super::normals;
 use crate::Error;
-use std::ops::Range;
 use vitral_math::DMat4;
 use vitral_scene::{Attribute, Faces, FreePart, Mesh, Part};
 
@@ -27,19 +27,6 @@ pub(crate) struct Pose {
     /// Morph weights, empty if all are zero.
     pub(crate) weights: Vec<f32>,
     pub(crate) skin: Option<usize>,
-}
-
-/// Vertices that some primitives share.
-pub(crate) struct Block {
-    pub(crate) attributes: Attributes,
-    /// The vertices that are used, of those in the accessors.
-    pub(crate) range: Range<usize>,
-    /// Number of the first one in the mesh.
-    pub(crate) base: u32,
-    /// JSON path of the first primitive that uses it.
-    path: String,
-    /// Whether it has triangles, so that normals matter.
-    pub(crate) has_surface: bool,
 }
 
 /// A mesh whose indices have been read.

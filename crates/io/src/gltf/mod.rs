@@ -9,6 +9,8 @@
 //! Source: [glTF 2.0], and the extensions named in `document.rs`.
 
 mod accessor;
+mod block;
+mod budget;
 mod buffers;
 mod deform;
 mod document;
@@ -22,8 +24,7 @@ mod specular_glossiness;
 mod texture;
 mod untidy;
 
-pub(crate) use document::plain_message;
-
+use crate::mesh_scene::{is_blank, nothing_to_show};
 use crate::{Error, Place, Resolver};
 use accessor::Source;
 use buffers::Buffers;
@@ -33,11 +34,6 @@ use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::DMat4;
 use vitral_scene::{Node, Scene};
-
-/// Bytes that any file may unfold into.
-const FREE_BYTES: u64 = 64 << 20;
-/// Bytes that a file may unfold into for each of its own.
-const BYTES_PER_BYTE: u64 = 64;
 
 /// Reads a glTF or GLB file. `file` is its name, for messages.
 ///
@@ -73,9 +69,9 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     add_nodes(&source, &tree, &poses, &mut scene, &mut warnings);
     instances::spread(&source, &tree, &mut scene, &mut warnings)?;
     // A scene without nodes was told before.
-    let is_blank = scene.meshes.iter().all(|m| m.triangles.is_empty() && m.lines.is_empty() && m.points.is_empty());
+    let is_blank = scene.meshes.iter().all(|m| is_blank(m));
     if is_blank && !tree.shown.is_empty() {
-        warnings.push(crate::nothing_to_show(file));
+        warnings.push(nothing_to_show(file));
     }
     scene.warnings = warnings;
     Ok(scene)
@@ -100,7 +96,7 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
     used.dedup();
 
     // Refuse what would unfold beyond measure: first by the indices, then by the vertices that they use.
-    let limit = FREE_BYTES + BYTES_PER_BYTE * source.buffers.total();
+    let limit = budget::unfolded_bytes(source);
     let check = |bytes: u64| {
         let what = format!("the meshes unfold into more than {limit} bytes");
         if bytes > limit { Err(Error::malformed(source.file, Place::File, what)) } else { Ok(()) }

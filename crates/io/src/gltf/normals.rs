@@ -6,7 +6,7 @@
 //!
 //! Cost: linear in vertices and triangles. Source: [glTF 2.0], section 3.7.2.1.
 
-use super::mesh::Block;
+use super::block::Block;
 use vitral_math::Vec3;
 use vitral_scene::{Attribute, Corners, Mesh};
 

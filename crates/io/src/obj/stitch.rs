@@ -1,6 +1,6 @@
 //! Puts the pieces of an OBJ file together: bases for the indices, one array of each kind, triangles.
 
-use super::chunk::{Chunk, NONE, unpack};
+use super::chunk::{Chunk, FaceList, NONE, unpack};
 use crate::triangulate::triangulate;
 use crate::warnings::Warnings;
 use crate::{Error, Place};
@@ -159,6 +159,16 @@ struct Job<'a> {
     outline: Option<(&'a mut [u32], &'a mut [u32])>,
 }
 
+/// What the faces of all pieces become.
+struct FaceArrays {
+    triangles: Vec<Corners>,
+    faces: Faces,
+    uv_corners: Option<Vec<Corners>>,
+    normal_corners: Option<Vec<Corners>>,
+    /// Normals of faces that have none.
+    flat_normals: Vec<[f32; 3]>,
+}
+
 /// Makes the mesh. All indices must have been checked.
 pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Mesh {
     let sum = totals.sum();
@@ -166,23 +176,59 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
     let positions = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.positions)), sum.v, workers);
     let mut uvs = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.uvs)), sum.vt, workers);
     let mut normals = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.normals)), sum.vn, workers);
+    let (lines, points) = free_elements(&chunks, totals);
+    let FaceArrays { triangles, faces, uv_corners, normal_corners, flat_normals } =
+        fill_faces(chunks, totals, &positions, workers);
+
+    // Faces without texture coordinates take (0, 0).
+    if uv_corners.is_some() {
+        uvs.push([0.0; 2]);
+    }
+    normals.extend(flat_normals);
+
+    // A file of vertices alone is a point cloud, whose normals go with its vertices.
+    let no_elements = sum.faces == 0 && lines.is_empty() && points.is_empty();
+    let cloud_normals = no_elements && sum.vn == sum.v && sum.v > 0;
+    Mesh {
+        triangles,
+        faces,
+        uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
+        normals: (totals.has_normals || cloud_normals)
+            .then_some(Attribute { values: normals, corners: normal_corners }),
+        colors: colors.map(Attribute::per_vertex),
+        colors_from_srgb: totals.has_colors,
+        lines,
+        points: if no_elements { (0..sum.v as u32).collect() } else { points },
+        positions,
+        ..Mesh::default()
+    }
+}
+
+/// The free lines and points of all pieces.
+fn free_elements(chunks: &[Chunk], totals: &Totals) -> (Vec<[u32; 2]>, Vec<u32>) {
     let (mut lines, mut points) = (Vec::new(), Vec::new());
     for (chunk, base) in chunks.iter().zip(&totals.bases) {
         let vertex = |packed: u32| unpack(packed, base.v as u32) as u32;
         lines.extend(chunk.lines.iter().map(|(ends, _)| ends.map(vertex)));
         points.extend(chunk.points.iter().map(|&(p, _)| vertex(p)));
     }
+    (lines, points)
+}
 
-    // Deal the arrays to be filled to the pieces, and let each fill its own.
+/// Cuts the faces of all pieces into triangles, each piece into its own part of the arrays.
+fn fill_faces(chunks: Vec<Chunk>, totals: &Totals, positions: &[[f32; 3]], workers: &Workers) -> FaceArrays {
+    let sum = totals.sum();
     let has_uv_corners = totals.has_uvs && !totals.uvs_like_positions;
     let has_normal_corners = totals.has_normals && !totals.normals_like_positions;
+    let is_mixed = !totals.all_triangles;
     let mut triangles = vec![[0u32; 3]; sum.triangles];
     let mut uv_corners = has_uv_corners.then(|| vec![[0u32; 3]; sum.triangles]);
     let mut normal_corners = has_normal_corners.then(|| vec![[0u32; 3]; sum.triangles]);
-    let is_mixed = !totals.all_triangles;
     let mut starts = if is_mixed { vec![0u32; sum.faces + 1] } else { Vec::new() };
     let mut corners = if is_mixed { vec![0u32; sum.corners] } else { Vec::new() };
     let mut flat_normals = vec![[0.0f32; 3]; if has_normal_corners { sum.bare } else { 0 }];
+
+    // Deal the arrays to the pieces, and let each fill its own part.
     {
         let mut triangles = triangles.as_mut_slice();
         let mut uv_corners = uv_corners.as_deref_mut();
@@ -202,29 +248,10 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
                 base,
             }
         });
-        workers.for_each(jobs.collect(), |job| job.fill(&positions, sum));
+        workers.for_each(jobs.collect(), |job| job.fill(positions, sum));
     }
-
-    // Faces without texture coordinates take (0, 0).
-    if has_uv_corners {
-        uvs.push([0.0; 2]);
-    }
-    normals.extend(flat_normals);
-    let no_elements = sum.faces == 0 && lines.is_empty() && points.is_empty();
-    let cloud_normals = no_elements && sum.vn == sum.v && sum.v > 0;
-    Mesh {
-        triangles,
-        faces: if is_mixed { Faces::Polygons { starts, corners } } else { Faces::Triangles },
-        uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
-        normals: (totals.has_normals || cloud_normals)
-            .then_some(Attribute { values: normals, corners: normal_corners }),
-        colors: colors.map(Attribute::per_vertex),
-        colors_from_srgb: totals.has_colors,
-        lines,
-        points: if no_elements { (0..sum.v as u32).collect() } else { points },
-        positions,
-        ..Mesh::default()
-    }
+    let faces = if is_mixed { Faces::Polygons { starts, corners } } else { Faces::Triangles };
+    FaceArrays { triangles, faces, uv_corners, normal_corners, flat_normals }
 }
 
 /// Takes the first `count` elements off a slice.
@@ -272,23 +299,33 @@ fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings,
 }
 
 impl Job<'_> {
+    /// Cuts the piece's faces into triangles.
     fn fill(mut self, positions: &[[f32; 3]], sum: Counts) {
         let faces = std::mem::take(&mut self.chunk.faces);
-        let vertex = |corner: usize| unpack(faces.v[corner], self.base.v as u32) as u32;
-
         // The common case: triangles, all with the same attributes.
         if faces.sizes.is_empty() && self.outline.is_none() && self.normal_corners.is_none() {
-            for (t, out) in self.triangles.iter_mut().enumerate() {
-                *out = [vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)];
-            }
-            if let Some(out) = self.uv_corners {
-                for (t, out) in out.iter_mut().enumerate() {
-                    *out = [0, 1, 2].map(|k| texture(&faces.vt, 3 * t + k, self.base.vt, sum.vt));
-                }
-            }
-            return;
+            self.fill_triangles(&faces, sum);
+        } else {
+            self.fill_polygons(&faces, positions, sum);
         }
+    }
 
+    /// Copies faces that are triangles and have no normals of their own.
+    fn fill_triangles(self, faces: &FaceList, sum: Counts) {
+        let vertex = |corner: usize| unpack(faces.v[corner], self.base.v as u32) as u32;
+        for (t, out) in self.triangles.iter_mut().enumerate() {
+            *out = [vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)];
+        }
+        if let Some(out) = self.uv_corners {
+            for (t, out) in out.iter_mut().enumerate() {
+                *out = [0, 1, 2].map(|k| texture(&faces.vt, 3 * t + k, self.base.vt, sum.vt));
+            }
+        }
+    }
+
+    /// Cuts faces of any number of corners.
+    fn fill_polygons(mut self, faces: &FaceList, positions: &[[f32; 3]], sum: Counts) {
+        let vertex = |corner: usize| unpack(faces.v[corner], self.base.v as u32) as u32;
         let (mut corner, mut triangle, mut bare) = (0, 0, 0);
         let (mut polygon, mut cut) = (Vec::new(), Vec::new());
         for f in 0..faces.count {
@@ -308,6 +345,8 @@ impl Job<'_> {
             if flat {
                 self.flat_normals[bare] = crate::triangulate::polygon_normal(positions, &polygon);
             }
+
+            // Write the triangles, with the attributes of their corners.
             for local in &cut {
                 self.triangles[triangle] = local.map(|k| polygon[k as usize]);
                 if let Some(out) = &mut self.uv_corners {

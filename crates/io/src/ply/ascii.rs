@@ -1,8 +1,9 @@
 //! The data of a text PLY file: one line an element. An element whose line ends too early goes on on the next, with a
 //! warning.
 
+use super::content::{Content, Reading, Row};
 use super::header::{Element, Kind, Property, Type};
-use super::{Content, Layout, Reading, Role, Row, Target, slot};
+use super::layout::{Layout, Role};
 use crate::text::{Cursor, is_blank, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place};
@@ -75,18 +76,12 @@ fn read_row(
     row: &mut Row,
     warnings: &mut Warnings,
 ) -> Result<(), String> {
-    row.slots = [0.0; slot::COUNT];
-    row.slots[slot::COLOR + 3] = 1.0;
-    row.corners.clear();
-    row.corner_uvs.clear();
+    row.clear();
     for (property, &target) in element.properties.iter().zip(&layout.targets) {
         match property.kind {
             Kind::Scalar(kind) => {
                 let value = next_number(cursor, kind, property, warnings)?;
-                if let Target::Slot(slot) = target {
-                    let is_color = (slot::COLOR..slot::UV).contains(&slot);
-                    row.slots[slot] = if is_color { value / kind.full_scale() } else { value };
-                }
+                row.store(target, value, kind);
             }
             Kind::List { item, .. } => {
                 cursor.skip_blanks();
@@ -102,11 +97,7 @@ fn read_row(
                 };
                 for _ in 0..count {
                     let value = next_number(cursor, item, property, warnings)?;
-                    match target {
-                        Target::Corners => row.corners.push(whole(value)?),
-                        Target::CornerUvs => row.corner_uvs.push(value as f32),
-                        Target::Slot(_) | Target::Nothing => {}
-                    }
+                    row.store_item(target, value)?;
                 }
             }
         }
@@ -167,10 +158,4 @@ fn number(cursor: &mut Cursor, kind: Type) -> Option<f64> {
         }
     }
     cursor.float().map(f64::from)
-}
-
-/// A list item as an index.
-pub(super) fn whole(value: f64) -> Result<i64, String> {
-    let index = value as i64;
-    if index as f64 == value { Ok(index) } else { Err(format!("{value} is not an index")) }
 }

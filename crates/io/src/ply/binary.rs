@@ -5,9 +5,9 @@
 //! rows are read as if all had the first one's length: if each row, at its place, has that length, the guess was right.
 //! Else, and for everything unusual, rows are read one after the other.
 
-use super::ascii::whole;
+use super::content::{Content, Reading, Row};
 use super::header::{Element, Encoding, Kind, Type};
-use super::{Content, Layout, Reading, Role, Row, Target, slot};
+use super::layout::{Layout, Role, Target, slot};
 use crate::{Error, Place};
 use std::sync::atomic::{AtomicBool, Ordering};
 use vitral_exec::Workers;
@@ -21,22 +21,24 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, w
     let big = reading.header.encoding == Encoding::BigEndian;
     let mut at = reading.header.data;
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
+        let rows = Rows { bytes, at, element, layout, big };
         at = match element.stride() {
             // Elements without properties have no data, however many there are.
             Some(0) => at,
             Some(stride) => {
                 let end = end_of_rows(bytes, at, element, stride, reading.file)?;
-                let rows = Rows { bytes: &bytes[at..end], stride, element, layout, big };
                 match layout.role {
-                    Role::Vertex => rows.vertices(content, workers),
-                    Role::Edge => _ = read_rows(bytes, at, element, layout, big, reading, content)?,
+                    Role::Vertex => {
+                        FixedRows { bytes: &bytes[at..end], stride, element, layout, big }.vertices(content, workers)
+                    }
+                    Role::Edge => _ = rows.read(reading, content)?,
                     Role::Face | Role::Strips | Role::Incomplete | Role::Unknown => {}
                 }
                 end
             }
-            None => match read_uniform(bytes, at, element, layout, big, reading, content, workers)? {
+            None => match rows.read_uniform(content, workers) {
                 Some(end) => end,
-                None => read_rows(bytes, at, element, layout, big, reading, content)?,
+                None => rows.read(reading, content)?,
             },
         };
     }
@@ -87,7 +89,7 @@ fn scalar(bytes: &[u8], kind: Type, big: bool) -> f64 {
 }
 
 /// Rows of a fixed size.
-struct Rows<'a> {
+struct FixedRows<'a> {
     bytes: &'a [u8],
     stride: usize,
     element: &'a Element,
@@ -98,7 +100,7 @@ struct Rows<'a> {
 /// Where a slot's value lies in a row.
 type Field = (usize, Type);
 
-impl Rows<'_> {
+impl FixedRows<'_> {
     /// The field that goes to `slot`.
     fn field(&self, slot: usize) -> Option<Field> {
         let mut offset = 0;
@@ -178,57 +180,132 @@ impl Rows<'_> {
     }
 }
 
-/// Reads faces as if all had as many corners as the first. `None`: they have not, or the element is of another kind.
-fn read_uniform(
-    bytes: &[u8],
+/// The rows of one element, from byte `at` of the file on.
+#[derive(Clone, Copy)]
+struct Rows<'a> {
+    bytes: &'a [u8],
     at: usize,
-    element: &Element,
-    layout: &Layout,
+    element: &'a Element,
+    layout: &'a Layout,
     big: bool,
-    reading: &Reading,
-    content: &mut Content,
-    workers: &Workers,
-) -> Result<Option<usize>, Error> {
-    let Some(shape) = Shape::of(&bytes[at..], element, layout, big) else { return Ok(None) };
-    let Some(size) = element.count.checked_mul(shape.stride as u64) else { return Ok(None) };
-    let is_new = content.triangles.is_empty() && content.sizes.is_empty();
-    let is_plain = content.face_colors.is_none() && content.corner_uvs.is_none() && content.images.is_none();
-    if size > (bytes.len() - at) as u64 || !is_new || !is_plain {
-        return Ok(None);
-    }
-    let rows = &bytes[at..at + size as usize];
-    let count = element.count as usize;
+}
 
-    // Decode, watching the lengths and the largest index.
-    let ok = AtomicBool::new(true);
-    let limit = content.vertex_count as u32;
-    let decode = |block: usize, out: &mut [u32]| {
-        let rows = rows[block * BLOCK * shape.stride..].chunks_exact(shape.stride);
-        let (uniform, largest) = shape.decode(rows, out, big);
-        if !uniform || largest >= limit {
-            ok.store(false, Ordering::Relaxed);
+impl Rows<'_> {
+    /// Reads faces as if all had as many corners as the first, and gives where they end. `None`: they have not, or the
+    /// element is of another kind.
+    fn read_uniform(&self, content: &mut Content, workers: &Workers) -> Option<usize> {
+        let shape = Shape::of(self)?;
+        let size = self.element.count.checked_mul(shape.stride as u64)?;
+        let is_new = content.triangles.is_empty() && content.sizes.is_empty();
+        let is_plain = content.face_colors.is_none() && content.corner_uvs.is_none() && content.images.is_none();
+        if size > (self.bytes.len() - self.at) as u64 || !is_new || !is_plain {
+            return None;
         }
-    };
-    let (mut triangles, mut corners) = (Vec::new(), Vec::new());
-    if shape.corners == 3 {
-        triangles = vec![[0u32; 3]; count];
-        workers.for_each_chunk(&mut triangles, BLOCK, |block, out| decode(block, out.as_flattened_mut()));
-    } else {
-        corners = vec![0u32; count * shape.corners];
-        workers.for_each_chunk(&mut corners, BLOCK * shape.corners, decode);
+        let end = self.at + size as usize;
+        let (rows, count) = (&self.bytes[self.at..end], self.element.count as usize);
+
+        // Decode, watching the lengths and the largest index.
+        let ok = AtomicBool::new(true);
+        let limit = content.vertex_count as u32;
+        let decode = |block: usize, out: &mut [u32]| {
+            let rows = rows[block * BLOCK * shape.stride..].chunks_exact(shape.stride);
+            let (uniform, largest) = shape.decode(rows, out, self.big);
+            if !uniform || largest >= limit {
+                ok.store(false, Ordering::Relaxed);
+            }
+        };
+        let (mut triangles, mut corners) = (Vec::new(), Vec::new());
+        if shape.corners == 3 {
+            triangles = vec![[0u32; 3]; count];
+            workers.for_each_chunk(&mut triangles, BLOCK, |block, out| decode(block, out.as_flattened_mut()));
+        } else {
+            corners = vec![0u32; count * shape.corners];
+            workers.for_each_chunk(&mut corners, BLOCK * shape.corners, decode);
+        }
+
+        // A wrong index is reported by the reader of single rows, which knows its place.
+        if !ok.into_inner() {
+            return None;
+        }
+        if shape.corners == 3 {
+            content.triangles = triangles;
+        } else {
+            content.sizes = vec![shape.corners as u32; count];
+            content.corners = corners;
+        }
+        Some(end)
     }
-    // A wrong index is told by the reader of single rows, which knows its place.
-    if !ok.into_inner() {
-        return Ok(None);
+
+    /// Reads elements one after the other; gives the end of the last.
+    fn read(&self, reading: &mut Reading, content: &mut Content) -> Result<usize, Error> {
+        let mut row = Row::default();
+        let mut at = self.at;
+        for n in 0..self.element.count {
+            let start = at;
+            let place = || Place::Byte(start as u64);
+            let malformed = |place: Place, what: String| Error::malformed(reading.file, place, what);
+            let wrong = |what: String| malformed(place(), format!("element {n} of `{}`: {what}", self.element.name));
+            self.read_row(&mut at, &mut row).map_err(|flaw| match flaw {
+                Flaw::Wrong(what) => wrong(what),
+                Flaw::Truncated => {
+                    let name = &self.element.name;
+                    let what = format!(
+                        "the file ends here: {} elements `{name}` are announced, {n} are there",
+                        self.element.count
+                    );
+                    malformed(Place::Byte(self.bytes.len() as u64), what)
+                }
+            })?;
+            content.push(self.layout.role, &row, place, reading.warnings).map_err(wrong)?;
+        }
+        Ok(at)
     }
-    if shape.corners == 3 {
-        content.triangles = triangles;
-    } else {
-        content.sizes = vec![shape.corners as u32; count];
-        content.corners = corners;
+
+    /// Reads the element at `at` into `row`, and moves `at` behind it.
+    #[inline]
+    fn read_row(&self, at: &mut usize, row: &mut Row) -> Result<(), Flaw> {
+        row.clear();
+        for (property, &target) in self.element.properties.iter().zip(&self.layout.targets) {
+            match property.kind {
+                Kind::Scalar(kind) => row.store(target, self.take(at, kind)?, kind),
+                Kind::List { count, item } => {
+                    // Check that the list fits into the file before anything is stored.
+                    let length = self.take(at, count)?;
+                    let size = length * item.size() as f64;
+                    if length < 0.0 {
+                        return Err(Flaw::Wrong(format!("a list has {length} items")));
+                    }
+                    if size > (self.bytes.len() - *at) as f64 {
+                        return Err(Flaw::Truncated);
+                    }
+                    if matches!(target, Target::Slot(_) | Target::Nothing) {
+                        *at += size as usize;
+                        continue;
+                    }
+                    for _ in 0..length as usize {
+                        row.store_item(target, self.take(at, item)?).map_err(Flaw::Wrong)?;
+                    }
+                }
+            }
+        }
+        Ok(())
     }
-    debug_assert!(!reading.file.is_empty() || rows.len() == size as usize);
-    Ok(Some(at + size as usize))
+
+    /// The value at `at`, which moves behind it.
+    #[inline]
+    fn take(&self, at: &mut usize, kind: Type) -> Result<f64, Flaw> {
+        let value = self.bytes.get(*at..*at + kind.size()).map(|b| scalar(b, kind, self.big));
+        *at += kind.size();
+        value.ok_or(Flaw::Truncated)
+    }
+}
+
+/// What is wrong with an element.
+enum Flaw {
+    /// The file ends within it.
+    Truncated,
+    /// A value cannot be what it stands for.
+    Wrong(String),
 }
 
 /// The row of a face whose list has a known length.
@@ -242,7 +319,9 @@ struct Shape {
 
 impl Shape {
     /// The shape of the first row: scalars and one list, of corners with 32-bit indices, at least three of them.
-    fn of(bytes: &[u8], element: &Element, layout: &Layout, big: bool) -> Option<Self> {
+    fn of(rows: &Rows) -> Option<Self> {
+        let Rows { bytes, at, element, layout, big } = *rows;
+        let bytes = &bytes[at..];
         if layout.role != Role::Face || element.count == 0 {
             return None;
         }
@@ -292,82 +371,4 @@ impl Shape {
         }
         (uniform, largest)
     }
-}
-
-/// Reads elements one after the other; gives the end of the last.
-fn read_rows(
-    bytes: &[u8],
-    mut at: usize,
-    element: &Element,
-    layout: &Layout,
-    big: bool,
-    reading: &mut Reading,
-    content: &mut Content,
-) -> Result<usize, Error> {
-    let mut row = Row::default();
-    for n in 0..element.count {
-        let start = at;
-        row.slots = [0.0; slot::COUNT];
-        row.slots[slot::COLOR + 3] = 1.0;
-        row.corners.clear();
-        row.corner_uvs.clear();
-        let place = || Place::Byte(start as u64);
-        let wrong = |what: String| {
-            Error::malformed(reading.file, place(), format!("element {n} of `{}`: {what}", element.name))
-        };
-        let ended = || {
-            let what = format!(
-                "the file ends here: {} elements `{}` are announced, {n} are there",
-                element.count, element.name
-            );
-            Error::malformed(reading.file, Place::Byte(bytes.len() as u64), what)
-        };
-        let take = |at: &mut usize, kind: Type| {
-            let value = bytes.get(*at..*at + kind.size()).map(|b| scalar(b, kind, big));
-            *at += kind.size();
-            value.ok_or_else(ended)
-        };
-        for (property, &target) in element.properties.iter().zip(&layout.targets) {
-            match property.kind {
-                Kind::Scalar(kind) => {
-                    let value = take(&mut at, kind)?;
-                    if let Target::Slot(slot) = target {
-                        let is_color = (slot::COLOR..slot::UV).contains(&slot);
-                        row.slots[slot] = if is_color { value / kind.full_scale() } else { value };
-                    }
-                }
-                Kind::List { count, item } => {
-                    let length = take(&mut at, count)?;
-                    let size = length * item.size() as f64;
-                    if length < 0.0 {
-                        return Err(wrong(format!("a list has {length} items")));
-                    }
-                    if size > (bytes.len() - at) as f64 {
-                        return Err(ended());
-                    }
-                    match target {
-                        Target::Corners => {
-                            for _ in 0..length as usize {
-                                row.corners.push(whole(take(&mut at, item)?).map_err(wrong)?);
-                            }
-                        }
-                        Target::CornerUvs => {
-                            for _ in 0..length as usize {
-                                row.corner_uvs.push(take(&mut at, item)? as f32);
-                            }
-                        }
-                        Target::Slot(_) | Target::Nothing => at += size as usize,
-                    }
-                }
-            }
-        }
-        content.push(layout.role, &row, place, reading.warnings).map_err(|what| {
-            Error::malformed(
-                reading.file,
-                Place::Byte(start as u64),
-                format!("element {n} of `{}`: {what}", element.name),
-            )
-        })?;
-    }
-    Ok(at)
 }

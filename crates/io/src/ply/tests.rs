@@ -1,6 +1,8 @@
 use super::*;
 use crate::{NoFiles, ResolveError};
 use proptest::prelude::*;
+use vitral_math::color::linear_from_srgb;
+use vitral_scene::{Faces, Mesh};
 
 fn read(bytes: &[u8]) -> Result<Scene, Error> {
     let scene = load(bytes, "t.ply", &NoFiles, &Workers::single())?;

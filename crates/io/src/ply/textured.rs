@@ -1,6 +1,7 @@
 //! The images that comments of a PLY file name, as materials of runs of faces.
 
 use crate::Resolver;
+use crate::file_name::stem;
 use crate::textures::{Requests, Usage};
 use vitral_exec::Workers;
 use vitral_light::{Material, Reflectance, TextureRef};
@@ -38,7 +39,7 @@ pub(super) fn add(
             let white = Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
             let base_texture = Some(TextureRef::new(texture));
             Some(scene.add_material(Material {
-                name: crate::stem(name),
+                name: stem(name),
                 reflectance: white,
                 base_texture,
                 ..Material::default()

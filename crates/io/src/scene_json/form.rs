@@ -1,6 +1,7 @@
 //! The types of the scene file, field by field as in `docs/scene-format.md`. Numbers that do not fit their type are
 //! refused by the parser, so whatever is read is finite, but for coordinates given as `null`.
 
+use crate::json_message::plain_message;
 use crate::{Error, Place};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -9,6 +10,9 @@ use std::marker::PhantomData;
 use vitral_frame::Encoding;
 use vitral_light::{Light, Material};
 use vitral_scene::Camera;
+
+/// The version of the form, the value of the root key `vitral-scene`.
+pub const VERSION: u32 = 1;
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -211,7 +215,7 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     // A list would be taken for the fields in order.
     if text.trim_ascii_start().first() == Some(&b'[') {
-        let what = format!("column 1: a scene file is an object, `{{ \"vitral-scene\": {}, ... }}`", super::VERSION);
+        let what = format!("column 1: a scene file is an object, `{{ \"vitral-scene\": {}, ... }}`", VERSION);
         return Err(Error::malformed(file, Place::Line(1), what));
     }
     let form: SceneForm = match serde_json::from_slice(text) {
@@ -224,19 +228,19 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
                 // Where the text breaks off there is no key yet.
                 let path = path.trim_end_matches('?').trim_end_matches('.');
                 let path = if path.is_empty() { String::new() } else { format!("{path}: ") };
-                let what = format!("column {}: {path}{}", inner.column(), crate::gltf::plain_message(inner));
+                let what = format!("column {}: {path}{}", inner.column(), plain_message(inner));
                 Error::malformed(file, Place::Line(inner.line() as u64), what)
             });
             let form = parsed?;
             deserializer.end().map_err(|e| {
-                let what = format!("column {}: {}", e.column(), crate::gltf::plain_message(&e));
+                let what = format!("column {}: {}", e.column(), plain_message(&e));
                 Error::malformed(file, Place::Line(e.line() as u64), what)
             })?;
             form
         }
     };
-    if form.vitral_scene != super::VERSION {
-        let what = format!("version {} of the scene file; version {} is read", form.vitral_scene, super::VERSION);
+    if form.vitral_scene != VERSION {
+        let what = format!("version {} of the scene file; version {} is read", form.vitral_scene, VERSION);
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
     Ok(form)

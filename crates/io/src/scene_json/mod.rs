@@ -13,15 +13,13 @@ mod read;
 mod reference;
 mod write;
 
+pub use form::VERSION;
 pub use write::write;
 
 use crate::{Error, Resolver};
 use reference::Origin;
 use vitral_exec::Workers;
 use vitral_scene::Scene;
-
-/// The version of the form, the value of the root key `vitral-scene`.
-pub const VERSION: u32 = 1;
 
 /// Reads a scene file. `file` is its name, for messages; `resolver` gives the models and images that it names, relative
 /// to its folder.

@@ -5,7 +5,7 @@
 
 use super::form::{self, MeshForm, NodeForm, TextureForm};
 use super::mesh;
-use super::reference::Origin;
+use super::reference::{Origin, Reference};
 use crate::uri::{self, Target};
 use crate::{Error, Place, image};
 use std::ops::Range;
@@ -196,7 +196,7 @@ fn add_meshes(
             (Some(_), None) | (None, Some(_)) if inline => {
                 return Err(report.at(path, "a reference has no arrays of its own"));
             }
-            (Some(file), None) => origin.model(file, report.file, &Place::Json(path))?,
+            (Some(file), None) => referenced(origin, file, report.file, &Place::Json(path))?,
             (None, Some(name)) => origin.builtin(name, report.file, Place::Json(path))?,
             (None, None) => {
                 let mesh = mesh::from_form(form, origin.workers).map_err(|what| report.at(path, what))?;
@@ -208,6 +208,17 @@ fn add_meshes(
         entries.push(Entry::Model(Model { scene: model, material: form.material, placed: None }));
     }
     Ok(entries)
+}
+
+/// The scene of the model or scene file `path`, which `file` names at `place`.
+fn referenced(origin: &Origin<'_>, path: &str, file: &str, place: &Place) -> Result<Arc<Scene>, Error> {
+    match origin.model(path, file, place)? {
+        Reference::Scene(scene) => Ok(scene),
+        Reference::SceneFile { bytes, path, origin } => {
+            let scene = read(&bytes, &path, &origin)?;
+            Ok(origin.keep(path, scene))
+        }
+    }
 }
 
 /// Adds the nodes; gives those that show a model, with its entry.

@@ -3,10 +3,10 @@
 //! A file is read once, however often it is named. Paths are relative to the folder of the file that names them. A
 //! scene file may name scene files, 8 deep, but none that is being read already.
 
-use super::read;
-use crate::{Error, Format, Place, ResolveError, Resolver};
+use crate::{Error, Format, Place, ResolveError, Resolver, models};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_scene::{Scene, builtin};
@@ -21,16 +21,29 @@ type Known = RefCell<BTreeMap<String, Arc<Scene>>>;
 pub(super) struct Origin<'a> {
     resolver: &'a dyn Resolver,
     pub(super) workers: &'a Workers,
-    known: std::rc::Rc<Known>,
+    known: Rc<Known>,
     /// Paths of the scene files that are being read, the root first.
     chain: Vec<String>,
+}
+
+/// What a model file turned out to be.
+pub(super) enum Reference<'a> {
+    /// A scene: that of a model, or of a scene file that was read at an earlier mention.
+    Scene(Arc<Scene>),
+    /// A scene file that is still to be read.
+    SceneFile {
+        bytes: Vec<u8>,
+        /// From the root file's folder.
+        path: String,
+        origin: Origin<'a>,
+    },
 }
 
 impl<'a> Origin<'a> {
     /// The file that the user named.
     pub(super) fn root(file: &str, resolver: &'a dyn Resolver, workers: &'a Workers) -> Self {
         let name = file.rsplit(['/', '\\']).next().unwrap_or(file).to_owned();
-        Self { resolver, workers, known: std::rc::Rc::default(), chain: vec![name] }
+        Self { resolver, workers, known: Rc::default(), chain: vec![name] }
     }
 
     /// The path from the root file's folder to what the current file calls `path`.
@@ -44,11 +57,11 @@ impl<'a> Origin<'a> {
         self.resolver.read(&self.locate(path))
     }
 
-    /// The scene in the model file `path`, which `file` names at `place`.
-    pub(super) fn model(&self, path: &str, file: &str, place: &Place) -> Result<Arc<Scene>, Error> {
+    /// The model file `path`, which `file` names at `place`: its scene, or the scene file in it, which is still to be read.
+    pub(super) fn model(&self, path: &str, file: &str, place: &Place) -> Result<Reference<'a>, Error> {
         let full = self.locate(path);
         if let Some(scene) = self.known.borrow().get(&full) {
-            return Ok(Arc::clone(scene));
+            return Ok(Reference::Scene(Arc::clone(scene)));
         }
         let missing = |why: String| Error::Missing {
             file: format!("{file}: {}", place.to_string().trim_end_matches(": ")),
@@ -59,22 +72,24 @@ impl<'a> Origin<'a> {
             return Err(missing("it refers back to itself".to_owned()));
         }
         let bytes = self.resolver.read(&full).map_err(|e| missing(e.to_string()))?;
-        let scene = if Format::detect(&bytes, &full)? == Format::SceneJson {
-            if self.chain.len() >= MAX_DEPTH {
-                return Err(missing(format!("scene files are read {MAX_DEPTH} deep")));
+        let folder = full.rfind('/').map_or("", |slash| &full[..slash]);
+        let below = Below { inner: self.resolver, folder };
+        match models::load(Format::detect(&bytes, &full)?, &bytes, &full, &below, self.workers) {
+            Some(scene) => Ok(Reference::Scene(self.keep(full, scene?))),
+            None if self.chain.len() >= MAX_DEPTH => Err(missing(format!("scene files are read {MAX_DEPTH} deep"))),
+            None => {
+                let chain = self.chain.iter().chain([&full]).cloned().collect();
+                let (resolver, workers, known) = (self.resolver, self.workers, Rc::clone(&self.known));
+                Ok(Reference::SceneFile { bytes, origin: Self { resolver, workers, known, chain }, path: full })
             }
-            let mut chain = self.chain.clone();
-            chain.push(full.clone());
-            let (resolver, workers) = (self.resolver, self.workers);
-            read::read(&bytes, &full, &Self { resolver, workers, known: std::rc::Rc::clone(&self.known), chain })?
-        } else {
-            let folder = full.rfind('/').map_or("", |slash| &full[..slash]);
-            let below = Below { inner: self.resolver, folder };
-            crate::load(&bytes, &full, &below, self.workers)?
-        };
+        }
+    }
+
+    /// Keeps the scene of the file at `path` for all that name it.
+    pub(super) fn keep(&self, path: String, scene: Scene) -> Arc<Scene> {
         let scene = Arc::new(scene);
-        self.known.borrow_mut().insert(full, Arc::clone(&scene));
-        Ok(scene)
+        self.known.borrow_mut().insert(path, Arc::clone(&scene));
+        scene
     }
 
     /// A built-in scene.
@@ -85,9 +100,8 @@ impl<'a> Origin<'a> {
         }
         let names = || builtin::names().iter().map(|n| n.0).collect::<Vec<_>>().join(", ");
         let unknown = || Error::malformed(file, place, format!("no built-in scene `{name}`; there are {}", names()));
-        let scene = Arc::new(builtin::scene(name).ok_or_else(unknown)?);
-        self.known.borrow_mut().insert(key, Arc::clone(&scene));
-        Ok(scene)
+        let scene = builtin::scene(name).ok_or_else(unknown)?;
+        Ok(self.keep(key, scene))
     }
 }
 

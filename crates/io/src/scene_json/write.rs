@@ -1,6 +1,6 @@
 //! A scene written down. One entry a line, so that files can be compared line by line.
 
-use super::form::{NodeForm, TextureForm};
+use super::form::{NodeForm, TextureForm, VERSION};
 use super::mesh::to_form;
 use super::read::read;
 use super::reference::Origin;
@@ -26,7 +26,7 @@ use vitral_scene::{Node, NodeTransform, Scene};
 /// finite and is not, or for values out of their range.
 pub fn write(scene: &Scene) -> Result<String, Error> {
     let textures = scene.textures.iter().map(|t| texture(t)).collect::<Result<Vec<_>, _>>()?;
-    let mut out = format!("{{\n\"vitral-scene\": {}", super::VERSION);
+    let mut out = format!("{{\n\"vitral-scene\": {}", VERSION);
     section(&mut out, "meshes", scene.meshes.iter().map(|m| to_form(m)))?;
     section(&mut out, "materials", scene.materials.iter())?;
     section(&mut out, "textures", textures.iter())?;

@@ -4,9 +4,9 @@
 //! beforehand, all of them would go through main memory twice. Of other faces each corner is dealt, and they are measured
 //! beforehand: a large one may lie in many buckets.
 
-use super::is_near;
 use crate::buckets::{Buckets, Source, shift_and_count};
-use crate::normals::{FaceData, face_corner_list, face_data, measure_triangles};
+use crate::directions::is_near;
+use crate::face_data::{FaceData, face_data, measure_triangles};
 use crate::triangle_buckets::{Around, TriangleBuckets};
 use crate::weld::Weld;
 use crate::{Faces, Mesh};
@@ -43,7 +43,7 @@ impl<'a> AllFaces<'a> {
             faces.flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect::<Vec<_>>()
         });
         let (shift, count) = shift_and_count(mesh.positions.len());
-        let corners = face_corner_list(mesh);
+        let corners = mesh.corner_list();
         let polygons = Polygons { weld, shift, corners, data: face_data(mesh, workers), of_corner: pieces.concat() };
         let dealt = Buckets::deal(&polygons, count, workers);
         Self::Polygons(polygons, dealt)

@@ -1,8 +1,11 @@
 //! The normals at one vertex, made from the faces round it.
 
 use super::bucket::Corner;
-use super::{MANY, Rule, dot, is_near};
-use crate::normals::{DEFAULT_NORMAL, unit};
+use super::rule::Rule;
+use crate::directions::{DEFAULT_NORMAL, dot, is_near, unit};
+
+/// With more faces at one vertex, they are gathered into cells.
+pub(super) const CELL_THRESHOLD: usize = 256;
 
 /// Faces that are treated as one: a face, or a cell of directions.
 #[derive(Clone, Copy)]
@@ -43,7 +46,7 @@ impl Fan {
                 self.keyed.extend(group.zip(0..));
                 self.by_group(&mut values);
             }
-            Rule::Angle { whole, half } if corners.len() > MANY => {
+            Rule::Angle { whole, half } if corners.len() > CELL_THRESHOLD => {
                 self.keyed.clear();
                 self.keyed.extend(self.members.iter().map(|m| cell(m.direction)).zip(0..));
                 let cells = self.merge_cells();
@@ -78,7 +81,7 @@ impl Fan {
     /// One normal for each group (`keyed` holds the groups), one for each face without a group.
     fn by_group(&mut self, values: &mut Vec<[f32; 3]>) {
         self.keyed.sort_unstable();
-        let few = self.keyed.len() <= MANY;
+        let few = self.keyed.len() <= CELL_THRESHOLD;
         self.slots.clear();
         self.slots.resize(self.keyed.len(), 0);
         for group in self.keyed.chunk_by(|a, b| a.0 == b.0 && a.0 != 0) {

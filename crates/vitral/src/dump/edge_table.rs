@@ -1,6 +1,6 @@
 //! The tables of the scan-line algorithm, as text: one sample a pixel, band by band.
 
-use super::prepare;
+use super::stage::prepare;
 use crate::{Error, Renderer};
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};

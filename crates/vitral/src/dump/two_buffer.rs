@@ -1,6 +1,6 @@
 //! The buffers of the two-buffer order of transparency, one sample a pixel.
 
-use super::{Listed, Write};
+use super::stage::{Listed, Write};
 use crate::picture::{self, Channel, EncodeOptions, PictureFormat};
 use crate::{Error, Frame, Renderer};
 use std::fmt::Write as _;

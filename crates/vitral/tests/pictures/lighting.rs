@@ -309,7 +309,7 @@ fn p35_the_highlight_on_an_apple_has_the_colour_of_the_light() {
 fn walkthroughs_can_be_rendered_and_their_steps_differ() {
     for number in ["4.1", "4.2", "4.3"] {
         let mut pictures = HashSet::new();
-        let steps = lab::walkthrough(number).unwrap();
+        let steps = vitral_scene::walkthrough::walkthrough(number).unwrap();
         for step in &steps {
             let mut renderer = exact(step.scene.clone(), 60, 45);
             renderer.camera = renderer.world().cameras.first().copied();

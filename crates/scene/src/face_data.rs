@@ -8,7 +8,6 @@
 //! Cost: `O(corners)`.
 //! Source: Newell's normal after [Sutherland, Sproull & Schumacker 1974]; arc tangent: [Abramowitz & Stegun 1964], 4.4.49.
 
-use super::{BATCH, face_corner_list, first_corner};
 use crate::Mesh;
 use std::f64::consts::{FRAC_PI_2, PI};
 use vitral_exec::Workers;
@@ -16,6 +15,8 @@ use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F64x8, LANES, Level, Simd, dispatch};
 
+/// Faces or corners that are worked on together.
+pub(crate) const BATCH: usize = 1 << 14;
 /// Normals before they are made unit must be longer than this times the largest squared distance between corners.
 const MOST_SLENDER: f64 = 1e-7;
 
@@ -31,14 +32,14 @@ pub(crate) struct FaceData {
 pub(crate) fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
     let faces = mesh.face_count();
     let mut normals = vec![[0.0; 3]; faces];
-    let mut weights = vec![0.0; face_corner_list(mesh).len()];
+    let mut weights = vec![0.0; mesh.corner_list().len()];
 
     // Cut both arrays at the same faces, so that each batch writes to its own piece of both.
     let mut batches = Vec::new();
     let mut rest = weights.as_mut_slice();
     for (batch, normals) in normals.chunks_mut(BATCH).enumerate() {
         let first = batch * BATCH;
-        let corners = first_corner(mesh, first + normals.len()) - first_corner(mesh, first);
+        let corners = mesh.first_corner(first + normals.len()) - mesh.first_corner(first);
         let (weights, after) = rest.split_at_mut(corners);
         rest = after;
         batches.push((first, normals, weights));
@@ -232,7 +233,7 @@ impl Angles {
 }
 
 /// Newell's normal as a fan of cross products from the first corner, unit; zero without area or with bad coordinates.
-pub(super) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
+pub(crate) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
     let origin = mesh.position(outline[0]);
     let (mut sum, mut longest) = (DVec3::ZERO, 0.0f64);
     let mut previous = mesh.position(outline[1]) - origin;
@@ -343,7 +344,7 @@ mod tests {
             let normal = data.normals[face];
             assert!((0..3).all(|k| (normal[k] - expected[k]).abs() < 1e-6), "face {face}: {normal:?}");
             let angle = if face == 21 { 0.0 } else { PI * (1.0 - 2.0 / n as f64) };
-            for weight in &data.weights[first_corner(&mesh, face)..first_corner(&mesh, face + 1)] {
+            for weight in &data.weights[mesh.first_corner(face)..mesh.first_corner(face + 1)] {
                 assert!((f64::from(*weight) - angle).abs() < 1e-6, "face {face}: {weight}");
             }
         }

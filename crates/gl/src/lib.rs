@@ -16,6 +16,7 @@ pub mod enums;
 pub mod memory;
 pub mod objects;
 mod pixels;
+mod primitive;
 pub mod state;
 mod tnl;
 pub mod vertex;

@@ -14,6 +14,7 @@ mod api;
 mod context;
 pub mod enums;
 pub mod memory;
+mod names;
 pub mod objects;
 mod pixels;
 mod primitive;

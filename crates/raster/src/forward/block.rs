@@ -159,15 +159,17 @@ pub(crate) fn depths<S: Simd>(
             let count = pattern.len().min(samples).min(SAMPLES);
             let (index, surface) = (block.index(), Surface::new(setup, place, count, scale));
             let before = if block.is_aligned() { tile.surface(index).copied() } else { None };
+
+            // A surface that is drawn over itself is equal to what is stored, at every sample.
             if before == Some(surface) {
-                // Equal to what is stored, at every sample.
                 if !holds(rule.func, 0.0, 0.0) {
                     *masks = [0; SAMPLES];
                 }
                 return false;
             }
-            let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
+
             // Where nothing was drawn yet, the depths of the whole triangle mostly tell.
+            let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
             if let Some(empty) = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned()) {
                 let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
                 if verdict(rule.func, all, [empty; 2]) == Verdict::AllPass {
@@ -176,6 +178,8 @@ pub(crate) fn depths<S: Simd>(
                     return true;
                 }
             }
+
+            // Compare the range of the block's depths with that of what is stored.
             let together = pattern.len() != samples && all_alike(masks, samples);
             let slopes = surface.slopes(simd);
             let test = Test::new(&surface, &slopes, rule.write);
@@ -189,6 +193,8 @@ pub(crate) fn depths<S: Simd>(
             if verdict == Verdict::AllPass && !rule.write {
                 return true;
             }
+
+            // Store a block that is covered and passes as a whole: as its plane, if it is one of the tile's blocks.
             if verdict == Verdict::AllPass && full {
                 ranges.set(index, new);
                 if block.is_aligned() {
@@ -199,26 +205,44 @@ pub(crate) fn depths<S: Simd>(
                 }
                 return true;
             }
+
+            // Write out the depths of a block that was stored as its plane.
             if let Some(before) = before {
                 let alike = before.places == 1;
                 let values = tile.replace(touched, alike, samples);
                 let slopes = before.slopes(simd);
                 fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(&before, &slopes, true));
             }
+
+            // Test sample by sample.
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
-            let (count, values) = tile.open(touched, together, samples);
+            let opened = tile.open(touched, together, samples);
             let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
-            let mut changed = 0;
-            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-                let place = (block, plane, &slopes[s % SAMPLES]);
-                changed |= pass_rows(simd, place, &test, passing, &mut masks[s]);
-            }
+            let (count, changed) = pass_samples(simd, block, opened, &test, passing, masks);
             agree(masks, count, samples);
-            changed != 0
+            changed
         },
     )
+}
+
+/// Tests the samples of the first `count` planes; gives that count, and whether depths may have changed.
+#[inline(always)]
+fn pass_samples<S: Simd>(
+    simd: S,
+    block: &Block,
+    (count, values): (usize, &mut [f32]),
+    test: &Test<'_, S>,
+    passing: Passing,
+    masks: &mut [u64; SAMPLES],
+) -> (usize, bool) {
+    let mut changed = 0;
+    for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
+        let place = (block, plane, &test.slopes[s % SAMPLES]);
+        changed |= pass_rows(simd, place, test, passing, &mut masks[s]);
+    }
+    (count, changed != 0)
 }
 
 /// Whether all samples have the same mask.
@@ -471,19 +495,12 @@ pub(crate) fn colors<S: Simd>(
         || {
             let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
-                let values = tile.replace(block.touched(), true, samples);
-                let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
-                for row in 0..BLOCK {
-                    let new = match words {
-                        Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
-                        Words::Each(words) => U32x8::from_slice(simd, &words[BLOCK * row..BLOCK * (row + 1)]),
-                    };
-                    new.store_slice(&mut plane[row * TILE..row * TILE + LANES]);
-                }
+                replace_block(simd, block, tile.replace(block.touched(), true, samples), words);
                 return;
             }
+
+            // Move a block that would reach beyond the tile up, so that its words become the last rows.
             let (count, values) = tile.open(block.touched(), together, samples);
-            // What would reach beyond the tile becomes the last rows of a block that does not.
             let below = block.y.saturating_sub(TILE - BLOCK);
             let mut copy;
             let words = match words {
@@ -498,6 +515,8 @@ pub(crate) fn colors<S: Simd>(
                     &copy
                 }
             };
+
+            // Mix the words with what is there, sample by sample.
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
@@ -516,6 +535,19 @@ pub(crate) fn colors<S: Simd>(
             }
         },
     );
+}
+
+/// Writes colours to all pixels of a block.
+#[inline(always)]
+fn replace_block<S: Simd>(simd: S, block: &Block, values: &mut [u32], words: &Words<'_>) {
+    let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
+    for row in 0..BLOCK {
+        let new = match words {
+            Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
+            Words::Each(words) => U32x8::from_slice(simd, &words[BLOCK * row..BLOCK * (row + 1)]),
+        };
+        new.store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+    }
 }
 
 /// Writes colours to the pixels of `mask` with all that a draw's state may have: seldom factors, logical operations, masks.

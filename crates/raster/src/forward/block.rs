@@ -10,6 +10,7 @@ use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
+use super::plane::PlaneTile;
 use super::state::{Compare, FragmentState, StencilFace, StencilOp};
 use super::surface::Surface;
 use super::wide::{bits_of, every, mask_of, max, min, select, splat};
@@ -170,13 +171,11 @@ pub(crate) fn depths<S: Simd>(
 
             // Where nothing was drawn yet, the depths of the whole triangle mostly tell.
             let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
-            if let Some(empty) = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned()) {
-                let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
-                if verdict(rule.func, all, [empty; 2]) == Verdict::AllPass {
-                    ranges.forget(touched);
-                    tile.set_surface(index, surface);
-                    return true;
-                }
+            let empty = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned());
+            if empty.is_some_and(|empty| whole_passes(setup, scale, rule.func, empty)) {
+                ranges.forget(touched);
+                tile.set_surface(index, surface);
+                return true;
             }
 
             // Compare the range of the block's depths with that of what is stored.
@@ -200,34 +199,47 @@ pub(crate) fn depths<S: Simd>(
                 if block.is_aligned() {
                     tile.set_surface(index, surface);
                 } else {
-                    let count = if together { 1 } else { samples };
-                    fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                    write_out(simd, tile, block, (together, samples), &test);
                 }
                 return true;
             }
 
-            // Write out the depths of a block that was stored as its plane.
+            // Test sample by sample what is stored, or was stored as a plane.
             if let Some(before) = before {
-                let alike = before.places == 1;
-                let values = tile.replace(touched, alike, samples);
                 let slopes = before.slopes(simd);
-                fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(&before, &slopes, true));
+                write_out(simd, tile, block, (before.places == 1, samples), &Test::new(&before, &slopes, true));
             }
-
-            // Test sample by sample.
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
             let opened = tile.open(touched, together, samples);
             let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
-            let (count, changed) = pass_samples(simd, block, opened, &test, passing, masks);
-            agree(masks, count, samples);
-            changed
+            pass_samples(simd, block, opened, &test, passing, masks, samples)
         },
     )
 }
 
-/// Tests the samples of the first `count` planes; gives that count, and whether depths may have changed.
+/// Writes the depths of a surface to all samples of a block; `together`: they are the same at all samples of a pixel.
+#[inline(always)]
+fn write_out<S: Simd>(
+    simd: S,
+    tile: &mut PlaneTile<f32>,
+    block: &Block,
+    (together, samples): (bool, usize),
+    test: &Test<'_, S>,
+) {
+    let values = tile.replace(block.touched(), together, samples);
+    fill(simd, block, values, if together { 1 } else { samples }, test);
+}
+
+/// Whether a triangle passes wherever it lies, against a block that holds `empty` everywhere.
+#[inline(always)]
+fn whole_passes(setup: &Setup, scale: f32, func: Compare, empty: f32) -> bool {
+    let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
+    verdict(func, all, [empty; 2]) == Verdict::AllPass
+}
+
+/// Tests the samples of the first `count` planes, which stand for all `samples`; gives whether depths may have changed.
 #[inline(always)]
 fn pass_samples<S: Simd>(
     simd: S,
@@ -236,13 +248,15 @@ fn pass_samples<S: Simd>(
     test: &Test<'_, S>,
     passing: Passing,
     masks: &mut [u64; SAMPLES],
-) -> (usize, bool) {
+    samples: usize,
+) -> bool {
     let mut changed = 0;
     for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
         let place = (block, plane, &test.slopes[s % SAMPLES]);
         changed |= pass_rows(simd, place, test, passing, &mut masks[s]);
     }
-    (count, changed != 0)
+    agree(masks, count, samples);
+    changed != 0
 }
 
 /// Whether all samples have the same mask.

@@ -7,8 +7,8 @@
 //! whoever may be part of a process that forks has [`hold_for_fork`] called before it, and after it [`forked`] and, in the child,
 //! [`born_of_fork`].
 
-#[cfg(feature = "threads")]
-use crate::Workers;
+#[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
+use crate::placement::Placement;
 #[cfg(feature = "threads")]
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
@@ -36,7 +36,7 @@ pub(crate) fn is_started() -> bool {
 /// What [`Workers::start`](crate::Workers::start) has started. To drop it is not to stop it.
 pub struct Started {
     #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
-    workers: Workers,
+    placement: Arc<Placement>,
     outcome: Arc<Outcome>,
 }
 
@@ -54,11 +54,13 @@ impl std::fmt::Debug for Started {
 }
 
 impl Started {
+    /// Starts `f` on a thread of its own; gives `f` back if there is none, or while the process is about to fork.
     #[cfg(feature = "threads")]
-    pub(crate) fn new<F>(workers: &Workers, f: F) -> Result<Self, F>
+    pub(crate) fn new<F>(f: F, #[cfg(all(target_os = "linux", not(miri)))] placement: Arc<Placement>) -> Result<Self, F>
     where
         F: FnOnce() + Send + 'static,
     {
+        // Count the work, unless the process is about to fork.
         GOING_ON.fetch_add(1, SeqCst);
         let give_back = |f| {
             GOING_ON.fetch_sub(1, SeqCst);
@@ -67,15 +69,14 @@ impl Started {
         if FORKING.load(SeqCst) != 0 {
             return give_back(f);
         }
+
+        // Let a thread take the work. If there is none, the work must come back.
         let outcome = Arc::new(Outcome::default());
-        #[cfg(not(all(target_os = "linux", not(miri))))]
-        let _ = workers;
         let started = Self {
             #[cfg(all(target_os = "linux", not(miri)))]
-            workers: workers.clone(),
+            placement,
             outcome: Arc::clone(&outcome),
         };
-        // If there is no thread for it, it must come back.
         let work = Arc::new(Mutex::new(Some(f)));
         let taken = Arc::clone(&work);
         let run = move || {
@@ -105,7 +106,7 @@ impl Started {
     pub fn wait(self) {
         let mut done = lock(&self.outcome.done);
         #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
-        let _lent = done.is_none().then(|| self.workers.lend());
+        let _lent = done.is_none().then(|| self.placement.lend());
         while done.is_none() {
             done = self.outcome.told.wait(done).unwrap_or_else(PoisonError::into_inner);
         }
@@ -143,6 +144,7 @@ pub fn born_of_fork() {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Workers;
     use std::sync::mpsc::channel;
 
     /// Held by tests that start something, since what they hold up is held up for the whole process.

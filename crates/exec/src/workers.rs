@@ -2,7 +2,7 @@
 
 use crate::Started;
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
-use crate::placement::{Lent, Placement};
+use crate::placement::Placement;
 #[cfg(feature = "threads")]
 use std::sync::Arc;
 use std::sync::{Mutex, PoisonError};
@@ -142,7 +142,11 @@ impl Workers {
         if self.pool.is_some() {
             #[cfg(all(target_os = "linux", not(miri)))]
             self.pool.iter().for_each(|pool| self.make_way(pool));
-            return Started::new(self, f);
+            return Started::new(
+                f,
+                #[cfg(all(target_os = "linux", not(miri)))]
+                Arc::clone(&self.placement),
+            );
         }
         Err(f)
     }
@@ -153,12 +157,6 @@ impl Workers {
         if pool.current_thread_index().is_none() && !crate::started::is_started() {
             self.placement.make_way();
         }
-    }
-
-    /// Lets a worker have the processor of the calling thread, which waits as long as what is returned lives.
-    #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
-    pub(crate) fn lend(&self) -> Option<Lent<'_>> {
-        self.placement.lend()
     }
 
     /// Runs both, at the same time where there are threads.

@@ -1,12 +1,10 @@
 //! Objects that contexts may share.
 
+pub use crate::names::Names;
 use crate::pixels::{RenderbufferHandle, SamplerHandle, TextureHandle};
 pub use crate::vertices::{Buffer, BufferHandle, List, ListNames};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Names in use and their objects. `None`: the name was generated but nothing has been bound to it.
-pub type Names<T> = std::collections::BTreeMap<u32, Option<T>>;
 
 /// The object store of one or more contexts.
 #[derive(Debug, Default)]

@@ -7,20 +7,11 @@
 //! `count` is a multiple of 2, 3 or 4 for `LINES`, `TRIANGLES`, `QUADS`, even for `QUAD_STRIP`, and large enough for at
 //! least one element.
 
+pub use crate::primitive::Primitive;
+use crate::primitive::{complete, is_independent};
 use crate::state::{MAX_TEXTURE_UNITS, MaterialFace, State};
-pub use crate::tnl::AssembledCell;
+pub use crate::tnl::TriangulationCell;
 use vitral_math::Mat4;
-
-/// What a run of vertices is assembled into; `mode` is `POINTS` ... `POLYGON`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Primitive {
-    /// `POINTS` ... `POLYGON`.
-    pub mode: u32,
-    /// First index (or first vertex, without indices).
-    pub first: u32,
-    /// Indices (or vertices).
-    pub count: u32,
-}
 
 /// Whether a batch is drawn at once or comes out of a display list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,8 +66,8 @@ pub struct VertexBatch {
     pub indices: Option<Vec<u32>>,
     /// What is drawn, in order.
     pub primitives: Vec<Primitive>,
-    /// The triangles of filled polygons, found when first drawn.
-    pub assembled: AssembledCell,
+    /// The triangles of filled polygons, made when they are first drawn.
+    pub triangulation: TriangulationCell,
 }
 
 impl VertexBatch {
@@ -131,40 +122,10 @@ impl VertexBatch {
     }
 }
 
-/// Whether elements of this mode share no vertices, so that runs of them can be joined.
-pub(crate) fn is_independent(mode: u32) -> bool {
-    use crate::enums::{LINES, POINTS, QUADS, TRIANGLES};
-    matches!(mode, POINTS | LINES | TRIANGLES | QUADS)
-}
-
-/// How many of `count` vertices form complete elements.
-fn complete(mode: u32, count: u32) -> u32 {
-    use crate::enums::{LINE_LOOP, LINE_STRIP, LINES, POINTS, QUAD_STRIP, QUADS, TRIANGLES};
-    let (least, step) = match mode {
-        POINTS => (1, 1),
-        LINES => (2, 2),
-        LINE_LOOP | LINE_STRIP => (2, 1),
-        TRIANGLES => (3, 3),
-        QUADS => (4, 4),
-        QUAD_STRIP => (4, 2),
-        _ => (3, 1),
-    };
-    if count < least { 0 } else { count - count % step }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::enums;
-
-    #[test]
-    fn incomplete_elements_are_cut() {
-        assert_eq!(complete(enums::TRIANGLES, 8), 6);
-        assert_eq!(complete(enums::QUAD_STRIP, 7), 6);
-        assert_eq!(complete(enums::QUAD_STRIP, 3), 0);
-        assert_eq!(complete(enums::POLYGON, 2), 0);
-        assert_eq!(complete(enums::LINE_STRIP, 5), 5);
-    }
 
     #[test]
     fn neighbours_of_independent_modes_join() {

@@ -4,7 +4,7 @@ use crate::attributes::{Attributes, tokens};
 use crate::current::{call, current, replace};
 use crate::environment::{say, tell};
 use crate::handle::{Handle, Machine};
-use crate::procedures::{self, Procedure, procedures};
+use crate::procedure::{Procedure, procedures};
 use std::ffi::{CStr, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
@@ -14,8 +14,8 @@ use vitral_gl::state::MAX_TEXTURE_SIZE;
 /// The functions of this file.
 pub(crate) static PROCEDURES: &[Procedure] = procedures! {
     OSMesaColorClamp OSMesaCreateContext OSMesaCreateContextAttribs OSMesaCreateContextExt OSMesaDestroyContext
-    OSMesaGetColorBuffer OSMesaGetCurrentContext OSMesaGetDepthBuffer OSMesaGetIntegerv OSMesaGetProcAddress
-    OSMesaMakeCurrent OSMesaPixelStore OSMesaPostprocess
+    OSMesaGetColorBuffer OSMesaGetCurrentContext OSMesaGetDepthBuffer OSMesaGetIntegerv OSMesaMakeCurrent
+    OSMesaPixelStore OSMesaPostprocess
 };
 
 /// The longest list of attributes that is read: no list has more than one of each kind.
@@ -289,18 +289,6 @@ pub(crate) unsafe extern "C" fn OSMesaGetColorBuffer(
         put(buffer, ptr::with_exposed_provenance_mut(found.as_ref().map_or(0, |info| info.address)));
     }
     u8::from(found.is_some())
-}
-
-/// # Safety
-/// `name` is null, or a text that ends with a 0.
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn OSMesaGetProcAddress(name: *const c_char) -> *const () {
-    if name.is_null() {
-        return ptr::null();
-    }
-    // SAFETY: not null, and the client promises the rest.
-    let name = unsafe { CStr::from_ptr(name) };
-    procedures::address(name.to_bytes())
 }
 
 /// Whether colours of fragments are clamped even on their way to buffers of floats.

@@ -3,11 +3,11 @@
 
 use crate::api::{
     OSMesaCreateContextAttribs, OSMesaCreateContextExt, OSMesaDestroyContext, OSMesaGetColorBuffer,
-    OSMesaGetCurrentContext, OSMesaGetDepthBuffer, OSMesaGetIntegerv, OSMesaGetProcAddress, OSMesaMakeCurrent,
-    OSMesaPixelStore,
+    OSMesaGetCurrentContext, OSMesaGetDepthBuffer, OSMesaGetIntegerv, OSMesaMakeCurrent, OSMesaPixelStore,
 };
 use crate::entry_points::*;
 use crate::handle::Handle;
+use crate::procedures::OSMesaGetProcAddress;
 use std::ffi::c_void;
 use std::ptr;
 use vitral_gl::enums as gl;

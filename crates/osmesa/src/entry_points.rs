@@ -4,7 +4,7 @@
 
 use crate::current::{call, call_unless};
 use crate::memory::Argument;
-use crate::procedures::{Procedure, procedures};
+use crate::procedure::{Procedure, procedures};
 
 /// Exports each name as a C function that calls the method of the current context, and makes the table of them. What waits to be
 /// drawn is drawn before, unless the method is in brackets: such calls leave it waiting, and some are done by another method

@@ -16,5 +16,6 @@ mod handle;
 mod memory;
 mod messages;
 mod pool;
+mod procedure;
 mod procedures;
 mod unsupported;

@@ -1,41 +1,39 @@
 //! `OSMesaGetProcAddress`: every exported function by its name.
 
+use crate::procedure::{Procedure, procedures};
 use crate::{api, entry_points, unsupported};
+use std::ffi::{CStr, c_char};
+use std::ptr;
 use std::sync::LazyLock;
 
-/// An exported function.
-#[derive(Clone, Copy)]
-pub(crate) struct Procedure {
-    pub(crate) name: &'static str,
-    pub(crate) address: *const (),
-}
-
-// SAFETY: the addresses of functions never change and are only handed out.
-unsafe impl Send for Procedure {}
-// SAFETY: as above.
-unsafe impl Sync for Procedure {}
-
-/// A table of the functions of these names.
-macro_rules! procedures {
-    ($($name:ident)+) => {
-        &[$($crate::procedures::Procedure { name: stringify!($name), address: $name as *const () }),+]
-    };
-}
-pub(crate) use procedures;
+/// The function of this file.
+static OWN: &[Procedure] = procedures! { OSMesaGetProcAddress };
 
 /// The functions of all tables, in the order of their names.
 static PROCEDURES: LazyLock<Vec<Procedure>> = LazyLock::new(|| {
-    let mut all = [api::PROCEDURES, entry_points::PROCEDURES, unsupported::PROCEDURES].concat();
+    let mut all = [api::PROCEDURES, entry_points::PROCEDURES, unsupported::PROCEDURES, OWN].concat();
     // The tables are nearly in order, which a stable sort makes use of.
     all.sort_by_key(|procedure| procedure.name);
     all
 });
 
+/// # Safety
+/// `name` is null, or a text that ends with a 0.
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn OSMesaGetProcAddress(name: *const c_char) -> *const () {
+    if name.is_null() {
+        return ptr::null();
+    }
+    // SAFETY: not null, and the client promises the rest.
+    let name = unsafe { CStr::from_ptr(name) };
+    address(name.to_bytes())
+}
+
 /// The address of the function of this name, null if there is none.
-pub(crate) fn address(name: &[u8]) -> *const () {
+fn address(name: &[u8]) -> *const () {
     match PROCEDURES.binary_search_by(|procedure| procedure.name.as_bytes().cmp(name)) {
         Ok(at) => PROCEDURES[at].address,
-        Err(_) => std::ptr::null(),
+        Err(_) => ptr::null(),
     }
 }
 

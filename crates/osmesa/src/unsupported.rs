@@ -3,7 +3,7 @@
 #![allow(non_snake_case)]
 
 use crate::current::call;
-use crate::procedures::{Procedure, procedures};
+use crate::procedure::{Procedure, procedures};
 use vitral_gl::enums::INVALID_OPERATION;
 
 /// What a call of such a function does.

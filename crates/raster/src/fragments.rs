@@ -3,30 +3,12 @@
 //! A triangle is walked sample by sample; its masks and depths wait in rows of eight pixels until it is done. Then the bits
 //! of a pixel are put together: of a mesh finer than a few pixels, that is a fourth of the entries.
 
+use crate::layers::Fragment;
 use crate::samples::MOST_SAMPLES;
 use crate::sink::{Met, Row, first_sample};
 use crate::{LayerList, RowPlane, RowSink, SamplePattern, Setup, TILE, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
-
-/// A facet in a pixel, in front of the nearest opaque one at each sample that it covers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fragment {
-    /// The facet.
-    pub facet: u32,
-    /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
-    pub start: u32,
-    /// The farthest of them.
-    pub far: f32,
-    /// The nearest of them.
-    pub near: f32,
-    /// `y * TILE + x` within the tile.
-    pub pixel: u16,
-    /// The samples that it covers, one bit each; not 0.
-    pub mask: u16,
-    /// How many they are.
-    pub count: u16,
-}
 
 /// Collects every facet that is not hidden by the tile's opaque samples, fragment by fragment.
 #[derive(Debug)]

@@ -11,14 +11,44 @@
 //!
 //! Cost: constant an entry; at the limit a sort, after which at least half the list is free.
 
-use crate::{Fragment, Layer, TILE_PIXELS};
+use crate::TILE_PIXELS;
+
+/// A facet seen at a sample, in front of the nearest opaque one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// `sample * TILE_PIXELS + y * TILE + x` within the tile.
+    pub at: u32,
+    /// Depth, 1 near.
+    pub depth: f32,
+    /// The facet.
+    pub facet: u32,
+}
+
+/// A facet in a pixel, in front of the nearest opaque one at each sample that it covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fragment {
+    /// The facet.
+    pub facet: u32,
+    /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
+    pub start: u32,
+    /// The farthest of them.
+    pub far: f32,
+    /// The nearest of them.
+    pub near: f32,
+    /// `y * TILE + x` within the tile.
+    pub pixel: u16,
+    /// The samples that it covers, one bit each; not 0.
+    pub mask: u16,
+    /// How many they are.
+    pub count: u16,
+}
 
 /// A list of layers with a limit.
 #[derive(Clone, Debug)]
 pub struct LayerList {
     list: Vec<Layer>,
     limit: usize,
-    /// LayerList of each sample that stay when the limit is reached.
+    /// Layers of each sample that stay when the limit is reached.
     kept: usize,
     lost: u64,
     /// Entries come from back to front, and stay in their order.

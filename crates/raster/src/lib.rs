@@ -22,23 +22,25 @@ pub mod geometry;
 mod kernel;
 mod layers;
 mod samples;
+mod screen;
 mod setup;
 mod sink;
 #[cfg(test)]
 mod testing;
 mod tile;
 
-pub use fragments::{Fragment, FragmentSink};
-pub use geometry::{BackFaces, Batch, Draw, GeometryCounters, ScreenVertex, TileLists, Unsorted};
+pub use fragments::FragmentSink;
+pub use geometry::{BackFaces, Batch, Draw, GeometryCounters, TileLists, Unsorted};
 pub use kernel::block::{Block, BlockSink, InBlocks, RowSink};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::plane::RowPlane;
 pub use kernel::transform::transform;
 pub use kernel::traverse::{Window, traverse, traverse_block, traverse_by_rows, traverse_window};
-pub use layers::LayerList;
+pub use layers::{Fragment, Layer, LayerList};
 pub use samples::SamplePattern;
+pub use screen::ScreenVertex;
 pub use setup::{CornerPosition, Setup, snap};
-pub use sink::{Layer, LayerSink, NEAR_TIE, PriorityCounts, PrioritySink, VisibilitySink};
+pub use sink::{LayerSink, NEAR_TIE, PriorityCounts, PrioritySink, VisibilitySink};
 pub use tile::{Tile, TileGrid, Viewport};
 
 /// Pixels along a tile's side.

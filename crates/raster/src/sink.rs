@@ -2,7 +2,7 @@
 
 use crate::kernel::block::{Block, RowSink};
 use crate::kernel::plane::RowPlane;
-use crate::{BLOCK, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use crate::{BLOCK, Layer, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 
@@ -233,17 +233,6 @@ impl<S: Simd, const FRONT_FIRST: bool> RowSink<S> for PrioritySink<'_, FRONT_FIR
         let written = std::mem::take(&mut self.written);
         self.note(simd, &block_of(at), written);
     }
-}
-
-/// A facet seen at a sample, in front of the nearest opaque one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layer {
-    /// `sample * TILE_PIXELS + y * TILE + x` within the tile.
-    pub at: u32,
-    /// Depth, 1 near.
-    pub depth: f32,
-    /// The facet.
-    pub facet: u32,
 }
 
 /// Collects every facet that is not hidden by the tile's opaque samples.

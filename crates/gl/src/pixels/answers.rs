@@ -87,8 +87,9 @@ impl Context {
 
     /// The bits of the draw framebuffer.
     pub(crate) fn framebuffer_bits(&mut self) -> FramebufferBits {
-        let bits =
-            |surface: &Option<super::target::Surface>| surface.as_ref().map_or(Bits::default(), |s| s.format.bits());
+        let bits = |surface: &Option<super::attachments::Surface>| {
+            surface.as_ref().map_or(Bits::default(), |s| s.format.bits())
+        };
         let unsigned = i32::cast_unsigned;
         let object = self.framebuffers.object(self.framebuffers.draw).is_some();
         // Framebuffer 0 has its colours even while nothing is drawn to them.

@@ -1,12 +1,12 @@
 //! `BlitFramebuffer`.
 
 use super::Failure;
+use super::attachments::Surfaces;
 use super::copy_plane::{
     Axis, Job, average_colors, average_words, converted, copy, first_sample, kept, resolved, scale_linear,
     scale_nearest,
 };
 use super::image::{Shared, lock};
-use super::target::Surfaces;
 use super::texels::{color_from_word, word_from_color};
 use crate::Context;
 use crate::enums::*;

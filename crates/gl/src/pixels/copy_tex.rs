@@ -1,10 +1,10 @@
 //! `CopyTexImage` and `CopyTexSubImage`: from the read framebuffer to a texture.
 
 use super::Failure;
+use super::attachments::Surfaces;
 use super::image::lock;
 use super::internal_format::InternalFormat;
 use super::read_pixels::{Rectangle, inside, read_colors, read_depths, read_stencils, read_words};
-use super::target::Surfaces;
 use super::tex_image::ImageArguments;
 use super::tex_sub_image::BoxArguments;
 use super::texels::{self, TexelData};

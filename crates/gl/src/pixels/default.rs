@@ -3,13 +3,13 @@
 //!
 //! The client's buffer is touched in the calls alone that are documented to do so; it may be gone at any other time.
 
+use super::attachments::{Surface, Surfaces};
 use super::decode;
 use super::encode;
 use super::format::PixelFormat;
 use super::image::{Shared, lock, new_color_plane};
 use super::internal_format::{InternalFormat, Storage};
 use super::store::MAX_IMAGE_BYTES;
-use super::target::{Surface, Surfaces};
 use super::texels::{color_from_word, word_from_color};
 use crate::Context;
 use crate::enums::*;

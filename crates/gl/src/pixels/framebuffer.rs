@@ -1,6 +1,7 @@
-//! Framebuffer objects: names, bindings, attachments.
+//! Framebuffer objects: names, bindings, and the calls that attach images.
 
 use super::Failure;
+use super::attachments::{Attached, DEPTH_POINT, FramebufferObject, STENCIL_POINT};
 use super::image::lock;
 use super::names;
 use super::renderbuffer::RenderbufferHandle;
@@ -8,56 +9,9 @@ use super::target::Resolved;
 use super::texture::{ImageTarget, TextureHandle, slot};
 use crate::Context;
 use crate::enums::*;
-use crate::objects::Names;
-use crate::state::{MAX_3D_TEXTURE_SIZE, MAX_COLOR_ATTACHMENTS};
+use crate::names::Names;
+use crate::state::MAX_3D_TEXTURE_SIZE;
 use std::sync::Arc;
-
-/// Index of the depth attachment; colours come first.
-pub(crate) const DEPTH_POINT: usize = MAX_COLOR_ATTACHMENTS;
-/// Index of the stencil attachment.
-pub(crate) const STENCIL_POINT: usize = MAX_COLOR_ATTACHMENTS + 1;
-
-/// What is attached to an attachment point.
-#[derive(Clone, Debug)]
-pub(crate) enum Attached {
-    Renderbuffer(RenderbufferHandle),
-    Texture { texture: TextureHandle, face: usize, level: usize, layer: usize },
-}
-
-impl Attached {
-    /// Whether both are the same image.
-    pub(crate) fn same(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Renderbuffer(a), Self::Renderbuffer(b)) => Arc::ptr_eq(a, b),
-            (
-                Self::Texture { texture, face, level, layer },
-                Self::Texture { texture: t, face: f, level: l, layer: y },
-            ) => Arc::ptr_eq(texture, t) && (face, level, layer) == (f, l, y),
-            _ => false,
-        }
-    }
-}
-
-/// A framebuffer object.
-#[derive(Clone, Debug)]
-pub(crate) struct FramebufferObject {
-    /// Colours, depth, stencil.
-    pub attachments: [Option<Attached>; MAX_COLOR_ATTACHMENTS + 2],
-    /// `COLOR_ATTACHMENTn` or `NONE`.
-    pub draw_buffer: u32,
-    /// `COLOR_ATTACHMENTn` or `NONE`.
-    pub read_buffer: u32,
-}
-
-impl Default for FramebufferObject {
-    fn default() -> Self {
-        Self {
-            attachments: std::array::from_fn(|_| None),
-            draw_buffer: COLOR_ATTACHMENT0,
-            read_buffer: COLOR_ATTACHMENT0,
-        }
-    }
-}
 
 /// Framebuffer objects and what is bound.
 #[derive(Debug, Default)]

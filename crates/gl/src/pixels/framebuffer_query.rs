@@ -1,7 +1,7 @@
 //! `GetFramebufferAttachmentParameteriv`.
 
 use super::Failure;
-use super::framebuffer::{Attached, DEPTH_POINT, STENCIL_POINT};
+use super::attachments::{Attached, DEPTH_POINT, STENCIL_POINT};
 use super::image::lock;
 use super::internal_format::{Bits, Storage};
 use super::texture::slot;

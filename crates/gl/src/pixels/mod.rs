@@ -7,6 +7,7 @@
 
 mod accum;
 mod answers;
+mod attachments;
 mod binding;
 mod bitmap;
 mod blit;

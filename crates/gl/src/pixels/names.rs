@@ -1,6 +1,6 @@
 //! Names of objects.
 
-use crate::objects::Names;
+use crate::names::Names;
 
 /// More names than this are not generated or read at once.
 pub(crate) const MAX_NAMES: usize = 1 << 22;

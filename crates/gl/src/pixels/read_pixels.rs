@@ -1,12 +1,12 @@
 //! `ReadPixels`: whole rows from the planes to the client.
 
 use super::PIXELS_A_JOB;
+use super::attachments::Surfaces;
 use super::encode;
 use super::format::{Content, PixelFormat};
 use super::image::lock;
 use super::internal_format::InternalFormat;
 use super::store::{MAX_IMAGE_BYTES, Region, write_region};
-use super::target::Surfaces;
 use super::texels::color_from_word;
 use super::transfer::{Transfer, clamp_colors, clamp_unit};
 use crate::Context;

@@ -1,45 +1,12 @@
-//! Points, lines and outlined polygons, and whatever is mixed with them: in the order of their primitives.
+//! Points, lines and outlined polygons, and filled ones mixed with them, emitted in the order of their primitives.
 
-use super::assembled::{PieceVertices, add_filled};
 use super::geometry::DrawGeometry;
+use super::piece::PieceVertices;
+use super::triangulate::add_filled;
 use crate::enums as gl;
-use crate::vertex::Primitive;
+use crate::primitive::Primitive;
 use vitral_math::lanes::Level;
 use vitral_raster::forward::{Assembler, ForwardScreen, PrimitiveState, Primitives};
-
-/// About how many vertices a part has.
-const PART: u32 = 1024;
-
-/// Cuts primitives into parts of about equal size. Fans, loops and polygons stay whole, and so do strips of lines if a stipple
-/// runs along them.
-pub(super) fn parts(primitives: &[Primitive], stippled: bool) -> Vec<Vec<Primitive>> {
-    let (mut parts, mut weight) = (Vec::new(), u32::MAX);
-    for primitive in primitives {
-        // Vertices from one place where it may be cut to the next, and how many both sides share.
-        let (element, shared) = match primitive.mode {
-            gl::POINTS => (1, 0),
-            gl::LINES => (2, 0),
-            gl::TRIANGLES => (3, 0),
-            gl::QUADS => (4, 0),
-            gl::LINE_STRIP if !stippled => (1, 1),
-            gl::TRIANGLE_STRIP | gl::QUAD_STRIP => (2, 2),
-            _ => (primitive.count, 0),
-        };
-        let most = (PART / element).max(1) * element;
-        for start in (0..primitive.count - shared).step_by(most as usize) {
-            let count = (most + shared).min(primitive.count - start);
-            if weight.saturating_add(count) > PART {
-                parts.push(Vec::new());
-                weight = 0;
-            }
-            weight += count;
-            if let Some(part) = parts.last_mut() {
-                part.push(Primitive { mode: primitive.mode, first: primitive.first + start, count });
-            }
-        }
-    }
-    parts
-}
 
 impl DrawGeometry {
     /// Emits some primitives, one after the other.
@@ -52,7 +19,8 @@ impl DrawGeometry {
         out: &mut Primitives,
     ) {
         let indices = || primitives.iter().flat_map(|p| p.first..p.first + p.count);
-        let own = PieceVertices::of(|| indices().map(|i| self.batch.vertex(i) as u32), 4 * indices().count() + 64);
+        let own =
+            PieceVertices::from_numbers(|| indices().map(|i| self.batch.vertex(i) as u32), 4 * indices().count() + 64);
         self.emit_vertices(level, &own, state, screen, out, &|assembler| {
             self.emit_primitives(level, primitives, &own, assembler);
         });
@@ -145,41 +113,6 @@ impl DrawGeometry {
                 polygon(&c, c[2], false);
             }),
             _ => {}
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_hold_all_elements_once() {
-        let all = [
-            (gl::LINE_STRIP, 3000),
-            (gl::TRIANGLE_STRIP, 2501),
-            (gl::QUADS, 8),
-            (gl::LINE_LOOP, 2000),
-            (gl::POINTS, 1),
-        ];
-        let mut first = 5;
-        let primitives = all.map(|(mode, count)| {
-            first += count;
-            Primitive { mode, first: first - count, count }
-        });
-        // Elements by their last vertex; loops and quads here have none but that of the whole.
-        let elements = |p: &Primitive| match p.mode {
-            gl::LINE_STRIP => (p.first + 1..p.first + p.count).collect(),
-            gl::TRIANGLE_STRIP => (p.first + 2..p.first + p.count).collect(),
-            _ => vec![p.first + p.count - 1],
-        };
-        for stippled in [false, true] {
-            let parts = parts(&primitives, stippled);
-            assert_eq!(parts.len(), if stippled { 6 } else { 8 });
-            let found: Vec<u32> = parts.iter().flatten().flat_map(elements).collect();
-            assert_eq!(found, primitives.iter().flat_map(elements).collect::<Vec<_>>());
-            let strips = parts.iter().flatten().filter(|p| p.mode == gl::TRIANGLE_STRIP);
-            assert!(strips.clone().count() == 3 && strips.clone().all(|p| (p.first - primitives[1].first) % 2 == 0));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a piece's vertices were given with besides their attributes: parts of them with one modelview matrix, and materials.
 
-use super::assembled::PieceVertices;
+use super::piece::PieceVertices;
 use super::snapshot::{Transform, VertexSnapshot};
 use super::vertices::LaneFaces;
 use crate::vertex::VertexBatch;

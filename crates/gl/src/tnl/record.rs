@@ -207,9 +207,9 @@ impl Context {
         let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Sent::Now && batch.is_small();
-        let assembled = (!small).then(|| batch.assembled.get(&batch));
+        let triangulation = (!small).then(|| batch.triangulation.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
-        let flat = assembled.as_ref().is_some_and(|assembled| assembled.grid.is_some());
+        let flat = triangulation.as_ref().is_some_and(|triangulation| triangulation.grid.is_some());
         let grid = flat && self.draws_grids(&snapshot, &primitive, fragment);
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
@@ -229,7 +229,7 @@ impl Context {
             fade: multisample.then_some(s.points.fade_threshold),
         };
         let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
-        Some(DrawGeometry { assembled, batch, grid, first_diagonal, snapshot, primitive, layout, points })
+        Some(DrawGeometry { triangulation, batch, grid, first_diagonal, snapshot, primitive, layout, points })
     }
 
     /// Whether everything that varies on a flat grid is linear, but the colours of one side.

@@ -6,7 +6,7 @@
 use super::client;
 use super::names::generate;
 use crate::memory::ClientMemory;
-use crate::objects::Names;
+use crate::names::Names;
 use crate::{Context, enums};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

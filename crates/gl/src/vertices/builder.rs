@@ -10,8 +10,9 @@
 //! long is drawn while more is given; for that, long primitives whose elements share no vertices are cut.
 
 use super::attribute::{CARRIED, COLOR};
+use crate::primitive::is_independent;
 use crate::state::Current;
-use crate::vertex::{Given, Sent, VertexBatch, is_independent};
+use crate::vertex::{Given, Sent, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;

@@ -284,8 +284,8 @@ unit_coordinates! {
 mod tests {
     use super::super::tests::context;
     use crate::enums;
+    use crate::primitive::Primitive;
     use crate::state::MaterialFace;
-    use crate::vertex::Primitive;
 
     #[test]
     fn an_attribute_that_comes_late_is_filled_in_before() {

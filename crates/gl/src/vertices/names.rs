@@ -1,7 +1,7 @@
 //! Generating and reading names of objects.
 
 use super::client;
-use crate::objects::Names;
+use crate::names::Names;
 use crate::{Context, enums};
 
 /// How many names may be generated at once.

@@ -19,7 +19,7 @@ use super::environment::UNITS;
 use super::hard_line::HardLine;
 use super::project::WindowTransform;
 use super::shade::Layout;
-use crate::geometry::{Screen, ScreenVertex, covered_pixels, flag};
+use crate::screen::{Screen, ScreenVertex, covered_pixels, flag};
 use crate::setup::{CornerPosition, DepthPlane, Setup};
 use crate::{Batch, GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
 use std::mem::take;
@@ -36,6 +36,26 @@ pub enum FacetKind {
     Point,
     /// A line or a point that is nothing of this: its fragments are those of a polygon without stipple.
     Plain,
+}
+
+/// What the facets of a primitive share.
+#[derive(Clone, Copy, Debug)]
+struct FacetAttributes {
+    /// Slot of the vertex whose colours flat shading takes.
+    provoking: u32,
+    kind: FacetKind,
+    /// A back-facing polygon.
+    back: bool,
+    /// See [`Facet::shape`].
+    shape: u32,
+}
+
+impl FacetAttributes {
+    /// A filled polygon's.
+    #[inline(always)]
+    fn polygon(provoking: u32, back: bool) -> Self {
+        Self { provoking, kind: FacetKind::Polygon, back, shape: NONE }
+    }
 }
 
 /// A triangle of a primitive, by the number in its setup.
@@ -336,7 +356,7 @@ impl<'a> Assembler<'a> {
         let plane = self.plane(positions, area, 2);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
-        self.push(positions, area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
+        self.push(positions, area, &plane, pixels, slots, FacetAttributes::polygon(provoking, back));
     }
 
     /// The flags any of which puts a primitive out of view if all its vertices have it.
@@ -391,6 +411,7 @@ impl<'a> Assembler<'a> {
         slope * factor + step * units
     }
 
+    /// Adds a facet and its setup, with the slots of its corners, where it may cover these pixels.
     #[inline(always)]
     fn push(
         &mut self,
@@ -399,26 +420,16 @@ impl<'a> Assembler<'a> {
         plane: &DepthPlane,
         pixels: [u32; 4],
         corners: [u32; 3],
-        provoking: u32,
-        kind: FacetKind,
-        back: bool,
-        shape: u32,
+        attributes: FacetAttributes,
     ) {
-        let facet = self.push_facet(area, corners, provoking, kind, back, shape);
+        let facet = self.push_facet(area, corners, attributes);
         self.out.batch.push(Setup::with_plane(positions, area, plane, facet), pixels, self.screen);
     }
 
     /// Adds a facet, and gives what its setup has to name.
     #[inline(always)]
-    fn push_facet(
-        &mut self,
-        area: i64,
-        [a, b, c]: [u32; 3],
-        provoking: u32,
-        kind: FacetKind,
-        back: bool,
-        shape: u32,
-    ) -> u32 {
+    fn push_facet(&mut self, area: i64, [a, b, c]: [u32; 3], attributes: FacetAttributes) -> u32 {
+        let FacetAttributes { provoking, kind, back, shape } = attributes;
         let (draw, grid) = (self.state.draw, self.state.grid);
         if self.out.pending {
             return draw;
@@ -468,7 +479,8 @@ impl<'a> Assembler<'a> {
             if area > 0 { ([0, 1, 2], boundary) } else { ([0, 2, 1], [boundary[2], boundary[1], boundary[0]]) };
         let (x, y) = (order.map(|k| own[k].x), order.map(|k| own[k].y));
         self.out.shapes.push(Shape::Polygon { x, y, boundary });
-        self.push(wide, area, plane, pixels, slots, provoking, FacetKind::Polygon, back, shape);
+        let attributes = FacetAttributes { shape, ..FacetAttributes::polygon(provoking, back) };
+        self.push(wide, area, plane, pixels, slots, attributes);
     }
 
     /// Makes records for the vertices that primitives use. `shade` gets up to eight of them, and their records to fill; those

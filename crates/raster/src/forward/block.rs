@@ -10,6 +10,7 @@ use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::pass::places;
+use super::plane::PlaneTile;
 use super::state::{Compare, FragmentState, StencilFace, StencilOp};
 use super::surface::Surface;
 use super::wide::{bits_of, every, mask_of, max, min, select, splat};
@@ -159,23 +160,25 @@ pub(crate) fn depths<S: Simd>(
             let count = pattern.len().min(samples).min(SAMPLES);
             let (index, surface) = (block.index(), Surface::new(setup, place, count, scale));
             let before = if block.is_aligned() { tile.surface(index).copied() } else { None };
+
+            // A surface that is drawn over itself is equal to what is stored, at every sample.
             if before == Some(surface) {
-                // Equal to what is stored, at every sample.
                 if !holds(rule.func, 0.0, 0.0) {
                     *masks = [0; SAMPLES];
                 }
                 return false;
             }
-            let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
+
             // Where nothing was drawn yet, the depths of the whole triangle mostly tell.
-            if let Some(empty) = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned()) {
-                let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
-                if verdict(rule.func, all, [empty; 2]) == Verdict::AllPass {
-                    ranges.forget(touched);
-                    tile.set_surface(index, surface);
-                    return true;
-                }
+            let (touched, full) = (block.touched(), (0..samples).all(|s| masks[s] == u64::MAX));
+            let empty = tile.cleared(touched).filter(|_| full && rule.write && block.is_aligned());
+            if empty.is_some_and(|empty| whole_passes(setup, scale, rule.func, empty)) {
+                ranges.forget(touched);
+                tile.set_surface(index, surface);
+                return true;
             }
+
+            // Compare the range of the block's depths with that of what is stored.
             let together = pattern.len() != samples && all_alike(masks, samples);
             let slopes = surface.slopes(simd);
             let test = Test::new(&surface, &slopes, rule.write);
@@ -189,36 +192,71 @@ pub(crate) fn depths<S: Simd>(
             if verdict == Verdict::AllPass && !rule.write {
                 return true;
             }
+
+            // Store a block that is covered and passes as a whole: as its plane, if it is one of the tile's blocks.
             if verdict == Verdict::AllPass && full {
                 ranges.set(index, new);
                 if block.is_aligned() {
                     tile.set_surface(index, surface);
                 } else {
-                    let count = if together { 1 } else { samples };
-                    fill(simd, block, tile.replace(touched, together, samples), count, &test);
+                    write_out(simd, tile, block, (together, samples), &test);
                 }
                 return true;
             }
+
+            // Test sample by sample what is stored, or was stored as a plane.
             if let Some(before) = before {
-                let alike = before.places == 1;
-                let values = tile.replace(touched, alike, samples);
                 let slopes = before.slopes(simd);
-                fill(simd, block, values, if alike { 1 } else { samples }, &Test::new(&before, &slopes, true));
+                write_out(simd, tile, block, (before.places == 1, samples), &Test::new(&before, &slopes, true));
             }
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
-            let (count, values) = tile.open(touched, together, samples);
+            let opened = tile.open(touched, together, samples);
             let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
-            let mut changed = 0;
-            for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
-                let place = (block, plane, &slopes[s % SAMPLES]);
-                changed |= pass_rows(simd, place, &test, passing, &mut masks[s]);
-            }
-            agree(masks, count, samples);
-            changed != 0
+            pass_samples(simd, block, opened, &test, passing, masks, samples)
         },
     )
+}
+
+/// Writes the depths of a surface to all samples of a block; `together`: they are the same at all samples of a pixel.
+#[inline(always)]
+fn write_out<S: Simd>(
+    simd: S,
+    tile: &mut PlaneTile<f32>,
+    block: &Block,
+    (together, samples): (bool, usize),
+    test: &Test<'_, S>,
+) {
+    let values = tile.replace(block.touched(), together, samples);
+    fill(simd, block, values, if together { 1 } else { samples }, test);
+}
+
+/// Whether a triangle passes wherever it lies, against a block that holds `empty` everywhere.
+#[inline(always)]
+fn whole_passes(setup: &Setup, scale: f32, func: Compare, empty: f32) -> bool {
+    let all = [setup.z_min, setup.z_max].map(|depth| stored(depth, scale));
+    verdict(func, all, [empty; 2]) == Verdict::AllPass
+}
+
+/// Tests the samples of the first `count` planes, which stand for all `samples`; gives whether depths may have changed.
+#[inline(always)]
+fn pass_samples<S: Simd>(
+    simd: S,
+    block: &Block,
+    (count, values): (usize, &mut [f32]),
+    test: &Test<'_, S>,
+    passing: Passing,
+    masks: &mut [u64; SAMPLES],
+    samples: usize,
+) -> bool {
+    let mut changed = 0;
+    for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
+        let place = (block, plane, &test.slopes[s % SAMPLES]);
+        changed |= pass_rows(simd, place, test, passing, &mut masks[s]);
+    }
+    agree(masks, count, samples);
+    changed != 0
 }
 
 /// Whether all samples have the same mask.
@@ -471,19 +509,12 @@ pub(crate) fn colors<S: Simd>(
         || {
             let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
-                let values = tile.replace(block.touched(), true, samples);
-                let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
-                for row in 0..BLOCK {
-                    let new = match words {
-                        Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
-                        Words::Each(words) => U32x8::from_slice(simd, &words[BLOCK * row..BLOCK * (row + 1)]),
-                    };
-                    new.store_slice(&mut plane[row * TILE..row * TILE + LANES]);
-                }
+                replace_block(simd, block, tile.replace(block.touched(), true, samples), words);
                 return;
             }
+
+            // Move a block that would reach beyond the tile up, so that its words become the last rows.
             let (count, values) = tile.open(block.touched(), together, samples);
-            // What would reach beyond the tile becomes the last rows of a block that does not.
             let below = block.y.saturating_sub(TILE - BLOCK);
             let mut copy;
             let words = match words {
@@ -498,6 +529,8 @@ pub(crate) fn colors<S: Simd>(
                     &copy
                 }
             };
+
+            // Mix the words with what is there, sample by sample.
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
@@ -516,6 +549,19 @@ pub(crate) fn colors<S: Simd>(
             }
         },
     );
+}
+
+/// Writes colours to all pixels of a block.
+#[inline(always)]
+fn replace_block<S: Simd>(simd: S, block: &Block, values: &mut [u32], words: &Words<'_>) {
+    let plane = &mut values[block.y * TILE + block.x..][..7 * TILE + LANES];
+    for row in 0..BLOCK {
+        let new = match words {
+            Words::One(word) => <U32x8<S> as SimdBase<S>>::splat(simd, *word),
+            Words::Each(words) => U32x8::from_slice(simd, &words[BLOCK * row..BLOCK * (row + 1)]),
+        };
+        new.store_slice(&mut plane[row * TILE..row * TILE + LANES]);
+    }
 }
 
 /// Writes colours to the pixels of `mask` with all that a draw's state may have: seldom factors, logical operations, masks.

@@ -91,7 +91,7 @@ impl Boxes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Screen;
+    use crate::screen::Screen;
     use crate::setup::CornerPosition;
     use crate::testing::{box_of, triangles};
     use crate::{Batch, SUBPIXEL, SamplePattern, Setup, TileLists, Viewport};

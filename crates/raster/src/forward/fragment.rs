@@ -186,6 +186,48 @@ pub(crate) struct Row {
     pub at: usize,
 }
 
+/// What a facet has in the eight pixels of a row.
+pub(crate) struct RowFragments<'a, S: Simd> {
+    pub row: Row,
+    /// Of a back-facing polygon.
+    pub back: bool,
+    /// The pixels whose sample is covered, for each sample.
+    pub bits: [u32; SAMPLES],
+    pub depths: &'a Depths<S>,
+    pub color: Rgba<S>,
+}
+
+/// Leaves out of `bits` the pixels that fail the alpha test, and the samples that multisampling does not cover.
+#[inline(always)]
+fn mask_coverage<S: Simd>(
+    simd: S,
+    state: &FragmentState,
+    ops: &FragmentOps,
+    samples: usize,
+    bits: &mut [u32; SAMPLES],
+    color: &mut Rgba<S>,
+) {
+    if let Some(test) = state.alpha_test {
+        let passed = bits_of(alpha_test(simd, test, color[3]));
+        for s in 0..samples {
+            bits[s] &= passed;
+        }
+    }
+    if samples > 1 && state.multisample {
+        for s in 0..samples {
+            if state.alpha_to_coverage {
+                bits[s] &= alpha_coverage(simd, color[3], s, samples);
+            }
+            if ops.coverage >> s & 1 == 0 {
+                bits[s] = 0;
+            }
+        }
+        if state.alpha_to_one {
+            color[3] = splat(simd, 1.0);
+        }
+    }
+}
+
 impl TilePlanes<'_> {
     /// Which of the covered samples would pass the depth test, if that can be told before stencil and alpha test.
     #[inline(always)]
@@ -226,37 +268,20 @@ impl TilePlanes<'_> {
         simd: S,
         state: &FragmentState,
         ops: &FragmentOps,
-        row: Row,
-        back: bool,
+        fragments: RowFragments<'_, S>,
         settled: bool,
-        mut bits: [u32; SAMPLES],
-        depths: &Depths<S>,
-        mut color: Rgba<S>,
     ) {
+        let RowFragments { row, back, mut bits, depths, mut color } = fragments;
         let samples = self.samples;
-        if let Some(test) = state.alpha_test {
-            let passed = bits_of(alpha_test(simd, test, color[3]));
-            for s in 0..samples {
-                bits[s] &= passed;
-            }
-        }
-        if samples > 1 && state.multisample {
-            for s in 0..samples {
-                if state.alpha_to_coverage {
-                    bits[s] &= alpha_coverage(simd, color[3], s, samples);
-                }
-                if ops.coverage >> s & 1 == 0 {
-                    bits[s] = 0;
-                }
-            }
-            if state.alpha_to_one {
-                color[3] = splat(simd, 1.0);
-            }
-        }
+
+        // Drop what fails the alpha test and what multisample coverage leaves out.
+        mask_coverage(simd, state, ops, samples, &mut bits, &mut color);
         let any = bits[0] | bits[1] | bits[2] | bits[3];
         if any == 0 {
             return;
         }
+
+        // Test stencil and depth, or write the depths if the tests have been made.
         let mut passed = bits;
         let mut count = 0;
         if settled {
@@ -271,6 +296,8 @@ impl TilePlanes<'_> {
                 count += u64::from(passed[s].count_ones());
             }
         }
+
+        // Count what passes for a query, and blend its colours.
         if let Some(query) = &state.query {
             query.fetch_add(count, Ordering::Relaxed);
         }

@@ -67,7 +67,8 @@ impl HardLine {
             return;
         }
         let (length, rise) = (i64::from(to[along] - from[along]), i64::from(to[across] - from[across]));
-        // The centre of pixel j is not below the edge where j >= (distance * rise) / whole.
+
+        // Follow the edge in whole numbers: pixel j's centre is not below it where j >= (distance * rise) / whole.
         let whole = length * i64::from(SUBPIXEL);
         let distance = i64::from(start * SUBPIXEL + HALF - from[along]);
         let edge = distance * rise + i64::from(from[across] - HALF) * length;
@@ -78,30 +79,16 @@ impl HardLine {
         let step = rise * i64::from(SUBPIXEL);
         let (step, step_rest) = (step.div_euclid(whole) as i32, step.rem_euclid(whole));
 
+        // Gather up to eight steps whose pixels fit into a box, and hand them out.
         let [low, high] = [part[across], part[across + 2]];
         // Covered pixels of up to eight steps: the first of each, and one past the last.
         let mut spans = [[0i32; 2]; BLOCK];
         let (mut count, mut begin, mut reach) = (0, start, [i32::MAX, i32::MIN]);
         let mut hand_out = |spans: &[[i32; 2]], begin: i32, lowest: i32| {
             let within = |v: i32| v.min((TILE - BLOCK) as i32);
-            let (begin_box, across_box) = (within(begin), within(lowest));
-            let mut mask = 0u64;
-            for (i, [from, to]) in spans.iter().enumerate() {
-                let at = (begin - begin_box) as u32 + i as u32;
-                let (from, to) = ((from - across_box) as u32, (to - across_box) as u32);
-                let pixels = (1u64 << to) - (1u64 << from);
-                if along == 1 {
-                    mask |= pixels << (8 * at);
-                } else {
-                    // A column: its bits are eight apart.
-                    for row in from..to {
-                        mask |= 1 << (8 * row + at);
-                    }
-                }
-            }
             let mut corner = [0; 2];
-            (corner[along], corner[across]) = (begin_box as usize, across_box as usize);
-            box_of(corner, mask);
+            (corner[along], corner[across]) = (within(begin), within(lowest));
+            box_of(corner.map(|v| v as usize), box_mask(spans, begin, corner, along));
         };
         for at in start..end {
             let span = [first.max(low), (first + self.width).min(high)];
@@ -131,6 +118,27 @@ impl HardLine {
             hand_out(&spans[..count], begin, reach[0]);
         }
     }
+}
+
+/// The pixels of some steps along an axis, from `begin` on, in the box of 8x8 pixels at `corner`; each step has a span of pixels
+/// along the other axis.
+#[inline(always)]
+fn box_mask(spans: &[[i32; 2]], begin: i32, corner: [i32; 2], along: usize) -> u64 {
+    let mut mask = 0u64;
+    for (i, [from, to]) in spans.iter().enumerate() {
+        let at = (begin - corner[along]) as u32 + i as u32;
+        let (from, to) = ((from - corner[1 - along]) as u32, (to - corner[1 - along]) as u32);
+        let pixels = (1u64 << to) - (1u64 << from);
+        if along == 1 {
+            mask |= pixels << (8 * at);
+        } else {
+            // The bits of a column are eight apart.
+            for row in from..to {
+                mask |= 1 << (8 * row + at);
+            }
+        }
+    }
+    mask
 }
 
 #[cfg(test)]

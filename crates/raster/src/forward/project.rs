@@ -1,7 +1,7 @@
 //! Clip space to window space, eight vertices at a time or one.
 
-use crate::geometry::{ScreenVertex, flag};
 use crate::kernel::transform::{bit, whole};
+use crate::screen::{ScreenVertex, flag};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{GUARD_BAND, SUBPIXEL};
 use vitral_math::lanes::prelude::*;

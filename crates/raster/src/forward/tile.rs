@@ -4,7 +4,9 @@ use super::assemble::{Extent, FacetKind};
 use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
-use super::fragment::{ColorTile, Depths, FragmentOps, Row, SAMPLES, TilePlanes, columns, keeps, stored_depth};
+use super::fragment::{
+    ColorTile, Depths, FragmentOps, Row, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
+};
 use super::fragment_ops::packed::unpack;
 use super::hard_line::HardLine;
 use super::pass::{Clear, DrawContext, ImageColors, ImageFragments, Item, facet_of, intersection};
@@ -277,7 +279,8 @@ impl<'a> TileRun<'a> {
         let depth = stored_depth(simd, F32x8::from_slice(simd, &depth), scale);
         let color = image_color(simd, image, state, bits, at);
         let bits = [bits; SAMPLES];
-        self.planes.fragments(simd, state, ops, row, false, false, bits, &[depth; SAMPLES], color);
+        let fragments = RowFragments { row, back: false, bits, depths: &[depth; SAMPLES], color };
+        self.planes.fragments(simd, state, ops, fragments, false);
     }
 }
 
@@ -561,9 +564,8 @@ impl ForwardSink<'_, '_, '_> {
             }
         }
         if active != 0 {
-            let back = self.shader.facet.back;
-            let settled = state.stencil.is_none();
-            self.run.planes.fragments(simd, state, &self.draw.ops, at, back, settled, bits, &depths, color);
+            let fragments = RowFragments { row: at, back: self.shader.facet.back, bits, depths: &depths, color };
+            self.run.planes.fragments(simd, state, &self.draw.ops, fragments, state.stencil.is_none());
         }
     }
 }

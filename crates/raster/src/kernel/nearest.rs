@@ -161,6 +161,8 @@ impl NearestDepths {
     #[inline(always)]
     fn wide<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, window: &Range<usize>) {
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
+
+        // Find the blocks that the facet is not behind.
         let nearest = self.nearest_of(setup);
         let columns = (0xff << (x0 / BLOCK)) & (0xff >> (BLOCKS - 1 - x1 / BLOCK));
         let mut seen = [0u32; BLOCKS];
@@ -178,9 +180,10 @@ impl NearestDepths {
             self.slender(simd, setup, place, (&edges, &constants));
             return;
         }
+
+        // Walk those that it touches.
         let extremes = Extremes::new(simd, &edges, &constants.map(|c| [c]), 1);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        let zero = I32x8::splat(simd, 0);
         let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
         for top in (y0 & !(BLOCK - 1)..=y1).step_by(BLOCK) {
             if seen[top / BLOCK] == 0 {
@@ -200,25 +203,14 @@ impl NearestDepths {
                         self.keep(simd, y * TILE + left, plane.row(y), CLIPPED.then_some(beside));
                     }
                 } else {
-                    // The rows in which no edge has all eight pixels on its outer side.
-                    let (mut e, mut most) = (across, zero);
+                    let at = constants_at(&edges, &constants, left);
+                    let Some(rows) = reached_rows(simd, &edges, &at, top, &rows) else { continue };
+                    let mut e = [across[0] + at[0], across[1] + at[1], across[2] + at[2]];
                     for i in 0..3 {
-                        let Edge { a, b } = edges[i];
-                        let constant = constants[i] + a * left as i32;
-                        e[i] += constant;
-                        most |= lane * b + (constant + b * top as i32 + (a * (BLOCK as i32 - 1)).max(0));
+                        e[i] += edges[i].b * rows.start as i32;
                     }
-                    let reached = most.simd_ge(zero).to_bitmask() as u32;
-                    if reached == 0 {
-                        continue;
-                    }
-                    let first = rows.start.max(top + reached.trailing_zeros() as usize);
-                    let end = rows.end.min(top + 32 - reached.leading_zeros() as usize);
-                    for i in 0..3 {
-                        e[i] += edges[i].b * first as i32;
-                    }
-                    for y in first..end {
-                        let mut outside = (e[0] | e[1] | e[2]).simd_lt(zero);
+                    for y in rows {
+                        let mut outside = (e[0] | e[1] | e[2]).simd_lt(I32x8::splat(simd, 0));
                         if CLIPPED {
                             outside |= beside;
                         }
@@ -281,6 +273,36 @@ impl NearestDepths {
 fn beside<S: Simd>(simd: S, left: usize, range: &Range<usize>) -> Mask8<S> {
     let column = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) + left as i32;
     column.simd_lt(I32x8::splat(simd, range.start as i32)) | column.simd_ge(I32x8::splat(simd, range.end as i32))
+}
+
+/// The constants of edge functions for pixels counted from column `left`.
+#[inline(always)]
+fn constants_at(edges: &[Edge; 3], constants: &[i32; 3], left: usize) -> [i32; 3] {
+    let at = |i: usize| constants[i] + edges[i].a * left as i32;
+    [at(0), at(1), at(2)]
+}
+
+/// Which of a block's rows, the first of them at `top`, have no edge with all eight pixels on its outer side: from the first such
+/// row to the last. `constants` are for the block's first column.
+#[inline(always)]
+fn reached_rows<S: Simd>(
+    simd: S,
+    edges: &[Edge; 3],
+    constants: &[i32; 3],
+    top: usize,
+    rows: &Range<usize>,
+) -> Option<Range<usize>> {
+    let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let zero = I32x8::splat(simd, 0);
+    let mut most = zero;
+    for i in 0..3 {
+        let Edge { a, b } = edges[i];
+        most |= lane * b + (constants[i] + b * top as i32 + (a * (BLOCK as i32 - 1)).max(0));
+    }
+    let reached = most.simd_ge(zero).to_bitmask() as u32;
+    let first = rows.start.max(top + reached.trailing_zeros() as usize);
+    let end = rows.end.min(top + 32 - reached.leading_zeros() as usize);
+    (reached != 0).then_some(first..end)
 }
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
-//! Triangles eight at a time: which of them are seen, and their depth planes.
+//! Culling before setup, eight triangles at a time: which of them are seen, and their depth planes.
 //!
 //! Dropped are those outside the view volume, those that face away, and those that cover no sample. Of small boxes the samples
-//! are tested themselves: of a fine mesh, many triangles lie between them, and one that is dropped here is not set up, not sorted into
-//! a tile and not walked. Triangles that clipping must cut and those that extend over more than a tile are left to the caller.
+//! are tested themselves: many triangles of a fine mesh lie between them, and one that is dropped here is neither set up nor sorted
+//! into a tile nor walked. Triangles that clipping must cut and those that extend over more than a tile are left to the caller.
 //!
-//! In:   corners on the screen. Out: [`Eight`], the same bits as [`DepthPlane::new`] and [`Setup::covers`](crate::Setup::covers).
+//! In:   corners on the screen. Out: [`CullResult8`], the same bits as [`DepthPlane::new`] and [`Setup::covers`](crate::Setup::covers).
 //! Cost: constant for eight triangles; a few operations for each sample of a small box.
 
 use super::traverse::{SMALL, biases};
-use crate::geometry::{Screen, flag};
+use crate::SUBPIXEL;
+use crate::screen::{Screen, ScreenVertex, flag};
 use crate::setup::{CornerPosition, DepthPlane};
-use crate::{SUBPIXEL, ScreenVertex};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
 
@@ -31,7 +31,7 @@ pub(crate) struct Sieve {
 }
 
 /// What is known of eight triangles. Sets are bits.
-pub(crate) struct Eight {
+pub(crate) struct CullResult8 {
     /// Twice the areas, in 1/65536 square pixels.
     pub area: [i32; LANES],
     /// The pixels they may cover: x0, y0, x1, y1.
@@ -54,7 +54,7 @@ pub(crate) struct Eight {
     pub seen: u32,
 }
 
-impl Eight {
+impl CullResult8 {
     /// The depth plane of a triangle, whose first corner this is.
     #[inline(always)]
     pub(crate) fn plane(&self, lane: usize, first: CornerPosition) -> DepthPlane {
@@ -85,13 +85,17 @@ pub(crate) fn sift<S: Simd>(
     sieve: &Sieve,
     vertices: &[ScreenVertex],
     triangles: &[[u32; 3]; LANES],
-) -> Eight {
+) -> CullResult8 {
     simd.vectorize(
         #[inline(always)]
         || sift_inlined(simd, screen, sieve, vertices, triangles),
     )
 }
 
+/// A corner of eight triangles: x and y in 1/256 pixel, the bits of the depth, and the flags.
+type Corner8<S> = [I32x8<S>; 4];
+
+/// [`sift`], for a caller that has entered the level's instruction set.
 #[inline(always)]
 fn sift_inlined<S: Simd>(
     simd: S,
@@ -99,7 +103,7 @@ fn sift_inlined<S: Simd>(
     sieve: &Sieve,
     vertices: &[ScreenVertex],
     triangles: &[[u32; 3]; LANES],
-) -> Eight {
+) -> CullResult8 {
     let corner = lanes::inlined(
         #[inline(always)]
         |k: usize| {
@@ -110,13 +114,68 @@ fn sift_inlined<S: Simd>(
             )
         },
     );
-    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let corners = [corner(0), corner(1), corner(2)];
+
+    // Find the triangles inside the view, and among them those that are neither cut nor large.
+    let [finite, inside, regular] = classify(simd, sieve, &corners);
+    let (low, high) = bounds(&corners);
+    let limit = I32x8::splat(simd, SMALL);
+    let regular = regular & (high[0] - low[0]).simd_lt(limit) & (high[1] - low[1]).simd_lt(limit);
+    let ours = inside & regular;
+
+    // Drop those that have no area or face the wrong way, and those whose box holds no sample.
+    let edges = Edges8::new(&corners);
+    let degenerate = ours & edges.area.simd_eq(I32x8::splat(simd, 0));
+    let shown = shown(simd, sieve.culls, edges.area);
+    let (pixels, holds) = pixels(simd, screen, sieve.clip, &low, &high);
+    let mut seen = ours & shown & holds;
+
+    // Test the samples of small boxes themselves.
+    if let Some(side) = tested_side(screen.pattern().len()) {
+        let most = I32x8::splat(simd, (side - 1) as i32);
+        let narrow = (pixels[2] - pixels[0]).simd_le(most) & (pixels[3] - pixels[1]).simd_le(most);
+        if (seen & narrow).any_true() {
+            let first = [pixels[0] << 8, pixels[1] << 8];
+            seen &= !narrow | cover(simd, screen, side, first, edges.area, corners);
+        }
+    }
+
+    let [dz_dx, dz_dy, z_min, z_max] = depth_planes(simd, &corners, &edges);
+    let bits = lanes::inlined(
+        #[inline(always)]
+        |mask: Mask8<S>| mask.to_bitmask() as u32 & 0xff,
+    );
+    CullResult8 {
+        area: edges.area.to_array(),
+        pixels: [pixels[0].to_array(), pixels[1].to_array(), pixels[2].to_array(), pixels[3].to_array()],
+        dz_dx: dz_dx.to_array(),
+        dz_dy: dz_dy.to_array(),
+        z_min: z_min.to_array(),
+        z_max: z_max.to_array(),
+        not_finite: bits(!finite),
+        outside: bits(finite & !inside),
+        others: bits(inside & !regular),
+        degenerate: bits(degenerate),
+        culled: bits(ours & !(shown | degenerate)),
+        seen: bits(seen),
+    }
+}
+
+/// Which triangles have finite corners, which of these are not outside one of the sieve's planes, and which have no corner
+/// where they must be cut.
+#[inline(always)]
+fn classify<S: Simd>(simd: S, sieve: &Sieve, [a, b, c]: &[Corner8<S>; 3]) -> [Mask8<S>; 3] {
     let zero = I32x8::splat(simd, 0);
     let (any, all) = (a[3] | b[3] | c[3], a[3] & b[3] & c[3]);
     let finite = (any & flag::NOT_FINITE.cast_signed()).simd_eq(zero);
     let inside = (all & sieve.outside.cast_signed()).simd_eq(zero) & finite;
     let regular = (any & sieve.cut.cast_signed()).simd_eq(zero);
+    [finite, inside, regular]
+}
 
+/// The lowest and the highest x and y.
+#[inline(always)]
+fn bounds<S: Simd>([a, b, c]: &[Corner8<S>; 3]) -> ([I32x8<S>; 2], [I32x8<S>; 2]) {
     let low = lanes::inlined(
         #[inline(always)]
         |k: usize| a[k].min(b[k]).min(c[k]),
@@ -125,68 +184,62 @@ fn sift_inlined<S: Simd>(
         #[inline(always)]
         |k: usize| a[k].max(b[k]).max(c[k]),
     );
-    let (low, high) = ([low(0), low(1)], [high(0), high(1)]);
-    let limit = I32x8::splat(simd, SMALL);
-    let small = (high[0] - low[0]).simd_lt(limit) & (high[1] - low[1]).simd_lt(limit);
-    let ours = inside & regular & small;
+    ([low(0), low(1)], [high(0), high(1)])
+}
 
-    let (dx1, dy1) = (b[0] - a[0], b[1] - a[1]);
-    let (dx2, dy2) = (c[0] - a[0], c[1] - a[1]);
-    let area = dx1 * dy2 - dx2 * dy1;
+/// The edges of eight triangles that start at the first corner, and what they span.
+struct Edges8<S: Simd> {
+    dx1: I32x8<S>,
+    dy1: I32x8<S>,
+    dx2: I32x8<S>,
+    dy2: I32x8<S>,
+    /// Twice the areas.
+    area: I32x8<S>,
+}
+
+impl<S: Simd> Edges8<S> {
+    /// The edges between these corners.
+    #[inline(always)]
+    fn new([a, b, c]: &[Corner8<S>; 3]) -> Self {
+        let (dx1, dy1) = (b[0] - a[0], b[1] - a[1]);
+        let (dx2, dy2) = (c[0] - a[0], c[1] - a[1]);
+        Self { dx1, dy1, dx2, dy2, area: dx1 * dy2 - dx2 * dy1 }
+    }
+}
+
+/// Which triangles have an area, and not of the sign that is culled.
+#[inline(always)]
+fn shown<S: Simd>(simd: S, culls: [u32; 2], area: I32x8<S>) -> Mask8<S> {
+    let zero = I32x8::splat(simd, 0);
     let mut shown = !area.simd_eq(zero);
     let kept = lanes::inlined(
         #[inline(always)]
         |dropped: u32| Mask8::from_bitmask(simd, u64::from(!dropped & 0xff)),
     );
-    if sieve.culls[1] != 0 {
-        shown &= area.simd_lt(zero) | kept(sieve.culls[1]);
+    if culls[1] != 0 {
+        shown &= area.simd_lt(zero) | kept(culls[1]);
     }
-    if sieve.culls[0] != 0 {
-        shown &= area.simd_gt(zero) | kept(sieve.culls[0]);
+    if culls[0] != 0 {
+        shown &= area.simd_gt(zero) | kept(culls[0]);
     }
-    let (pixels, holds) = pixels(simd, screen, sieve.clip, &low, &high);
-    let mut seen = ours & shown & holds;
-    if let Some(side) = tested_side(screen.pattern().len()) {
-        let side = (side - 1) as i32;
-        let narrow = (pixels[2] - pixels[0]).simd_le(I32x8::splat(simd, side))
-            & (pixels[3] - pixels[1]).simd_le(I32x8::splat(simd, side));
-        if (seen & narrow).any_true() {
-            let first = [pixels[0] << 8, pixels[1] << 8];
-            seen &= !narrow | cover(simd, screen, side as usize + 1, first, area, [a, b, c]);
-        }
-    }
+    shown
+}
 
-    // The operations of `DepthPlane::new`, in their order.
+/// The depth planes' slopes along x and y, least and greatest depths: the operations of [`DepthPlane::new`], in their order.
+#[inline(always)]
+fn depth_planes<S: Simd>(simd: S, [a, b, c]: &[Corner8<S>; 3], edges: &Edges8<S>) -> [F32x8<S>; 4] {
     let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) = (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
     let (dz1, dz2) = (z1 - z0, z2 - z0);
     let real = lanes::inlined(
         #[inline(always)]
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
-    let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / real(area);
-    let dz_dx = (dz1 * real(dy2) - dz2 * real(dy1)) * scale;
-    let dz_dy = (dz2 * real(dx1) - dz1 * real(dx2)) * scale;
+    let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / real(edges.area);
+    let dz_dx = (dz1 * real(edges.dy2) - dz2 * real(edges.dy1)) * scale;
+    let dz_dy = (dz2 * real(edges.dx1) - dz1 * real(edges.dx2)) * scale;
     let z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
     let z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
-    let bits = lanes::inlined(
-        #[inline(always)]
-        |mask: Mask8<S>| mask.to_bitmask() as u32 & 0xff,
-    );
-    let degenerate = ours & area.simd_eq(zero);
-    Eight {
-        area: area.to_array(),
-        pixels: [pixels[0].to_array(), pixels[1].to_array(), pixels[2].to_array(), pixels[3].to_array()],
-        dz_dx: dz_dx.to_array(),
-        dz_dy: dz_dy.to_array(),
-        z_min: z_min.to_array(),
-        z_max: z_max.to_array(),
-        not_finite: bits(!finite),
-        outside: bits(finite & !inside),
-        others: bits(inside & !(regular & small)),
-        degenerate: bits(degenerate),
-        culled: bits(ours & !(shown | degenerate)),
-        seen: bits(seen),
-    }
+    [dz_dx, dz_dy, z_min, z_max]
 }
 
 /// The side, in pixels, of boxes whose samples are tested themselves.
@@ -196,7 +249,7 @@ fn tested_side(samples: usize) -> Option<usize> {
 }
 
 /// The pixels that eight boxes may cover within `clip`, x0, y0, x1, y1 inclusive, and which of them hold any; as
-/// [`crate::geometry::covered_pixels`].
+/// [`crate::screen::covered_pixels`].
 #[inline(always)]
 fn pixels<S: Simd>(
     simd: S,
@@ -231,8 +284,9 @@ fn cover<S: Simd>(
     side: usize,
     first: [I32x8<S>; 2],
     area: I32x8<S>,
-    [a, b, c]: [[I32x8<S>; 4]; 3],
+    [a, b, c]: [Corner8<S>; 3],
 ) -> Mask8<S> {
+    // Turn all triangles the same way round.
     let zero = I32x8::splat(simd, 0);
     let clockwise = area.simd_gt(zero);
     let select = lanes::inlined(
@@ -240,7 +294,8 @@ fn cover<S: Simd>(
         |k: usize| [clockwise.select(b[k], c[k]), clockwise.select(c[k], b[k])],
     );
     let ([bx, cx], [by, cy]) = (select(0), select(1));
-    // Corners as seen from the first pixel, so that products stay below 2^29.
+
+    // Set up edge functions, with corners as seen from the first pixel, so that products stay below 2^29.
     let x = [a[0] - first[0], bx - first[0], cx - first[0]];
     let y = [a[1] - first[1], by - first[1], cy - first[1]];
     let (mut right, mut down, mut at_pixel) = ([zero; 3], [zero; 3], [zero; 3]);
@@ -250,6 +305,8 @@ fn cover<S: Simd>(
         at_pixel[i] = dy * x[i] - dx * y[i] + biases(simd, dx, dy);
         (right[i], down[i]) = (dy, dx);
     }
+
+    // Step through the pixels for each sample; a triangle that is outside of some edge everywhere covers nothing.
     let [xs, ys] = screen.pattern().axes();
     let mut outside = I32x8::splat(simd, -1);
     for s in 0..screen.pattern().len() {

@@ -1,6 +1,6 @@
 //! Vertices to the screen, eight at a time: clip position, outcode, division, viewport, snap.
 
-use crate::geometry::{ScreenVertex, ViewportTransform, flag};
+use crate::screen::{ScreenVertex, ViewportTransform, flag};
 use vitral_math::Mat4;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, I32x8, LANES, Level, Mask8, Simd, U32x8, dispatch};

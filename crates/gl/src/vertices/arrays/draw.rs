@@ -384,7 +384,7 @@ fn compact(indices: &mut [u32]) -> Vec<Run> {
 mod tests {
     use super::super::super::tests::{BASE, context};
     use super::*;
-    use crate::vertex::Primitive;
+    use crate::primitive::Primitive;
 
     fn with_square() -> Context {
         let mut c = context();

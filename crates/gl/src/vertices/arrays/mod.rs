@@ -11,7 +11,8 @@ mod repeats;
 use super::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::Context;
 use crate::enums::BUFFER;
-use crate::objects::{BufferHandle, Names};
+use crate::names::Names;
+use crate::objects::BufferHandle;
 use crate::state::{ArrayPointer, ClientState};
 
 /// Positions, beside the attributes.

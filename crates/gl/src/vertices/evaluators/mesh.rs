@@ -174,7 +174,7 @@ coords! {
 mod tests {
     use super::super::super::tests::{BASE, context};
     use super::*;
-    use crate::vertex::Primitive;
+    use crate::primitive::Primitive;
 
     fn with_line() -> Context {
         let mut c = context();

@@ -3,7 +3,8 @@
 use super::clip::View;
 use super::{Feedback, FeedbackVertex, Vertex, is_culled};
 use crate::enums;
-use crate::vertex::{Primitive, VertexBatch};
+use crate::primitive::Primitive;
+use crate::vertex::VertexBatch;
 
 /// Tells all primitives of a batch.
 pub(super) fn feed(batch: &VertexBatch, processed: &[Vertex], view: &View, to: &mut Feedback) {

@@ -1,7 +1,7 @@
 //! Triangles that reach beyond the view volume or a plane of the user: cut there, with vertices that are weighted sums of their
 //! corners.
 
-use super::{Assembler, FacetKind, NONE};
+use super::{Assembler, FacetAttributes, NONE};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{SUBPIXEL, Setup};
 
@@ -93,7 +93,7 @@ impl Assembler<'_> {
                 let edges = [i == 1 && polygon[0].boundary, polygon[i].boundary, last && polygon[i + 1].boundary];
                 self.push_smooth(fan(i), area, &plane, edges, slots, provoking, back);
             } else if let Some(pixels) = self.pixels(&fan(i)) {
-                self.push(fan(i), area, &plane, pixels, slots, provoking, FacetKind::Polygon, back, NONE);
+                self.push(fan(i), area, &plane, pixels, slots, FacetAttributes::polygon(provoking, back));
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Filled triangles eight at a time. Those that clipping must cut, and those that extend over more than a tile, go one by one; all
 //! come in their order, with the results of [`Assembler::triangle`].
 
-use super::{Assembler, CUT, FacetKind, NONE};
+use super::{Assembler, CUT, FacetAttributes};
 use crate::ScreenVertex;
-use crate::kernel::sift::{Eight, Sieve, sift};
+use crate::kernel::sift::{CullResult8, Sieve, sift};
 use crate::setup::CornerPosition;
 use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
 
@@ -38,7 +38,7 @@ impl Assembler<'_> {
 
     /// Adds a triangle that was found to be seen.
     #[inline(always)]
-    fn add_seen(&mut self, eight: &Eight, lane: usize, corners: [u32; 3]) {
+    fn add_seen(&mut self, eight: &CullResult8, lane: usize, corners: [u32; 3]) {
         let position = lanes::inlined(
             #[inline(always)]
             |k: usize| {
@@ -52,6 +52,6 @@ impl Assembler<'_> {
         let pixels = eight.pixels(lane);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let back = self.is_back(area);
-        self.push(positions, area, &plane, pixels, slots, slots[2], FacetKind::Polygon, back, NONE);
+        self.push(positions, area, &plane, pixels, slots, FacetAttributes::polygon(slots[2], back));
     }
 }

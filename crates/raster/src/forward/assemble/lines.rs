@@ -15,6 +15,13 @@ pub(super) struct Stroke {
     pub offset: f32,
 }
 
+impl Stroke {
+    /// Those of its facets.
+    fn attributes(self, kind: FacetKind, shape: u32) -> FacetAttributes {
+        FacetAttributes { provoking: self.provoking, kind, back: self.back, shape }
+    }
+}
+
 impl Assembler<'_> {
     /// A line; `stipple` counts the fragments before it, which comes back with its own added.
     pub fn line(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: u32) -> u32 {
@@ -205,7 +212,7 @@ impl Assembler<'_> {
         let over = [at(near, near), at(far, near), at(near, far)];
         let area = Setup::doubled_area(over[0], over[1], over[2]);
         let plane = self.stroke_plane(plane, stroke.offset);
-        self.push(over, area, &plane, pixels, [slot; 3], stroke.provoking, kind, stroke.back, shape);
+        self.push(over, area, &plane, pixels, [slot; 3], stroke.attributes(kind, shape));
     }
 
     /// A line with hard borders: one facet for its plane.
@@ -230,7 +237,7 @@ impl Assembler<'_> {
         let extent = [corner(low), corner(high), corner([low[0], high[1]])];
         let Some(pixels) = self.stroke_pixels(&extent).filter(|_| area != 0) else { return };
         let plane = self.stroke_plane(*plane, stroke.offset);
-        let facet = self.push_facet(area, [from, to, to], stroke.provoking, kind, stroke.back, shape);
+        let facet = self.push_facet(area, [from, to, to], stroke.attributes(kind, shape));
         let setup = Setup::with_plane(triangle, area, &plane, facet);
         self.out.batch.push_where(setup, pixels, self.screen, |tx, ty| line.touches([tx, ty]));
     }
@@ -259,17 +266,17 @@ impl Assembler<'_> {
         quad: [[f32; 2]; 4],
         plane: DepthPlane,
         slots: [u32; 4],
-        Stroke { provoking, back, offset }: Stroke,
+        stroke: Stroke,
         kind: FacetKind,
         shape: u32,
     ) {
-        let plane = self.stroke_plane(plane, offset);
+        let plane = self.stroke_plane(plane, stroke.offset);
         let corner = |i: usize| CornerPosition { x: snapped(quad[i][0]), y: snapped(quad[i][1]), z: plane.z };
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
             let Some(pixels) = self.stroke_pixels(&positions).filter(|_| area != 0) else { continue };
-            self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], provoking, kind, back, shape);
+            self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], stroke.attributes(kind, shape));
         }
     }
 }

@@ -239,6 +239,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
     /// Brings together the pixels of `shown`, with their colours and places in textures.
     #[inline(always)]
     fn interpolate(&self, simd: S, eight: &TinyEight, tile: [u32; 2], shown: &[u64; LANES], pixels: &mut FacetPixels) {
+        // Find the slopes of coordinates whose level of detail depends on them.
         let mut slopes = [None; MOST_UNITS];
         for (i, (_, common)) in self.draw.plain.iter().enumerate() {
             if let Common::Flat(packed) = common
@@ -257,6 +258,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         );
         let (halves, none) = ([word(0), word(1)], I32x8::splat(simd, 0));
         let lane = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+
+        // Interpolate at each place of the boxes where some facet shows.
         for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
             let weights = self.weights(simd, eight, place, tile);
             let mut numbers = [splat(simd, 0.0); NUMBERS];
@@ -271,22 +274,13 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             keep(0, saturate_rgba(value(&weights, &self.values.color)));
             for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
                 let i = i % MOST_UNITS;
-                let coordinates = &self.values.coordinates[i];
-                let at = value(&weights, coordinates);
-                let where_to = match common {
-                    Common::Flat(_) => self.place(simd, &weights, unit, coordinates, at, &slopes[i]),
-                    Common::Cube(packed) => self.place_on_cube(simd, &weights, (unit, packed), coordinates, at),
-                    Common::Shadow(packed) => {
-                        let [x, y, reference] = packed.place(simd, at);
-                        [x, y, reference, reference]
-                    }
-                };
-                keep(4 + 4 * i, where_to);
+                keep(4 + 4 * i, self.texel_position(simd, &weights, (unit, common), i, &slopes[i]));
             }
             if self.draw.state.fog.is_some() {
                 numbers[FOG] = self.fog_coordinate(&weights);
             }
-            // The bit of the place becomes the sign.
+
+            // Append the numbers of the facets that show there: the bit of the place becomes the sign.
             let shows = (halves[place / 32 % 2] << (31 - place as u32 % 32)).simd_lt(none);
             let append = lanes::inlined(
                 #[inline(always)]
@@ -303,7 +297,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             count += bits_of(shows).count_ones() as usize;
         }
         pixels.count = count;
-        // Lanes without a pixel of their own repeat the last one's.
+
+        // Repeat the last pixel in the lanes that no pixel fills.
         if count > 0 {
             for k in 0..NUMBERS {
                 let last = pixels.numbers[k][count - 1];
@@ -397,6 +392,28 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             },
         );
         [[slope(0, 0), slope(0, 1)], [slope(1, 0), slope(1, 1)]]
+    }
+
+    /// Where unit `i`'s texture is looked up: coordinates, and the level of detail or the reference of a shadow map.
+    #[inline(always)]
+    fn texel_position(
+        &self,
+        simd: S,
+        weights: &Weights<S>,
+        (unit, common): (&Unit, &Common<'_>),
+        i: usize,
+        slopes: &Option<[[[F32x8<S>; 2]; 2]; 2]>,
+    ) -> Rgba<S> {
+        let coordinates = &self.values.coordinates[i];
+        let at = value(weights, coordinates);
+        match common {
+            Common::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
+            Common::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
+            Common::Shadow(packed) => {
+                let [x, y, reference] = packed.place(simd, at);
+                [x, y, reference, reference]
+            }
+        }
     }
 
     /// Coordinates of a texture of two dimensions, and the level of detail.

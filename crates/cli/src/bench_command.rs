@@ -99,7 +99,7 @@ fn as_json(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> Value {
     let row = |(entrant, row): &Row| {
         let mut value = json!({
             "algorithm": entrant.algorithm.name,
-            "acceleration": entrant.acceleration.map(|(name, _)| name),
+            "acceleration": entrant.acceleration.map(|structure| structure.name),
             "precision": entrant.algorithm.precision,
         });
         match row {

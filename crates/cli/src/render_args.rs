@@ -7,7 +7,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::math::DVec3;
 use vitral::render::{
-    Acceleration, ColorSpace, Culling, DepthCue, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+    Acceleration, ColorSpace, Culling, DepthCue, Global, Interpolation, Shadows, Transparency, TransparencyOrder,
+    Visibility, VolumeCounting,
 };
 use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, View};
 
@@ -101,7 +102,7 @@ pub(crate) struct PictureArgs {
 pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
     #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
-    pub(crate) visibility: Option<String>,
+    pub(crate) visibility: Option<Visibility>,
     /// What finds the triangles near a ray: of --visibility ray-cast, --shadows ray, --global ray-trace [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
@@ -135,7 +136,7 @@ pub(crate) struct AlgorithmArgs {
     pub(crate) scatter_samples: Option<u32>,
     /// How shadows are found [default: none; with --global: ray]
     #[arg(long, value_name = "NAME", value_parser = choices::shadows())]
-    pub(crate) shadows: Option<String>,
+    pub(crate) shadows: Option<Shadows>,
     /// Places on each area light that are asked for its shadows, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=4096u32), allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,

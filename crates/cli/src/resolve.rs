@@ -41,7 +41,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let outputs = Output::pair(&args.output.output, &args.output.channel)?;
     let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
     outputs.iter().for_each(|o| o.channel.request(&mut channels));
-    state.settings.channels = channels;
+    state.settings.picture.channels = channels;
 
     // Refuse what does not fit together.
     check_pictures_are_made(args, &state, &outputs)?;
@@ -251,36 +251,34 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
 
 /// Which surfaces are seen, and how they are shaded.
 fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
-    if let Some(name) = &args.visibility {
-        settings.visibility.clone_from(name);
-    }
+    settings.visibility = args.visibility.unwrap_or(settings.visibility);
     settings.acceleration = args.acceleration.or(settings.acceleration);
     if let Some(values::CoherenceList(kinds)) = &args.coherence {
         settings.coherence.clone_from(kinds);
     }
     settings.cull = args.cull.unwrap_or(settings.cull);
-    settings.illumination = args.illumination.unwrap_or(settings.illumination);
-    settings.shading = args.shading.unwrap_or(settings.shading);
-    settings.interpolation = args.interpolation.unwrap_or(settings.interpolation);
-    settings.depth_cue = args.depth_cue.or(settings.depth_cue);
+    settings.shading.illumination = args.illumination.unwrap_or(settings.shading.illumination);
+    settings.shading.model = args.shading.unwrap_or(settings.shading.model);
+    settings.shading.interpolation = args.interpolation.unwrap_or(settings.shading.interpolation);
+    settings.picture.depth_cue = args.depth_cue.or(settings.picture.depth_cue);
     let lines = [
         (args.wireframe, Lines::Wireframe),
         (args.wireframe_hidden_line, Lines::WireframeHiddenLine),
         (args.edges, Lines::Edges),
     ];
     if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
-        settings.lines = chosen;
+        settings.picture.lines = chosen;
     }
 }
 
 fn set_transparency(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
-    settings.transparency = args.transparency.unwrap_or(settings.transparency);
-    if args.kay_exponent.is_some() && settings.transparency != Transparency::Kay {
+    settings.transparency.model = args.transparency.unwrap_or(settings.transparency.model);
+    if args.kay_exponent.is_some() && settings.transparency.model != Transparency::Kay {
         return Err(Failure::usage("--kay-exponent: transparency is not Kay's").with_hint("add --transparency kay"));
     }
-    settings.kay_exponent = args.kay_exponent.unwrap_or(settings.kay_exponent);
-    settings.transparency_order = args.transparency_order.unwrap_or(settings.transparency_order);
-    settings.scatter_samples = args.scatter_samples.unwrap_or(settings.scatter_samples);
+    settings.transparency.kay_exponent = args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
+    settings.transparency.order = args.transparency_order.unwrap_or(settings.transparency.order);
+    settings.transparency.scatter_samples = args.scatter_samples.unwrap_or(settings.transparency.scatter_samples);
     Ok(())
 }
 
@@ -290,7 +288,7 @@ fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failu
         // Each model comes with its own shadows, unless others are chosen.
         let row = registry::GLOBALS.iter().find(|row| row.value == global);
         if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global.model) {
-            row.shadows.clone_into(&mut settings.shadows.algorithm);
+            settings.shadows.algorithm = row.shadows;
         }
         settings.global.model = global;
     }
@@ -306,27 +304,27 @@ fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failu
             return Err(no_radiosity(option));
         }
     }
-    settings.patch_size = args.patch_size.or(settings.patch_size);
-    settings.iterations = args.iterations.or(settings.iterations);
+    settings.global.patch_size = args.patch_size.or(settings.global.patch_size);
+    settings.global.iterations = args.iterations.or(settings.global.iterations);
     Ok(())
 }
 
 /// The shadow algorithm and its parameters; global illumination may have chosen the algorithm.
 fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
-    if let Some(name) = &args.shadows {
-        settings.shadows.clone_from(name);
-    }
-    if args.light_samples.is_some() && settings.shadows == "none" {
+    settings.shadows.algorithm = args.shadows.unwrap_or(settings.shadows.algorithm);
+    if args.light_samples.is_some() && settings.shadows.algorithm.is_none {
         return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
     }
     settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
     let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
-    if let Some((option, _)) = of_maps.iter().find(|(_, given)| given.is_some() && settings.shadows.algorithm != "map") {
+    if let Some((option, _)) =
+        of_maps.iter().find(|(_, given)| given.is_some() && !settings.shadows.algorithm.draws_maps)
+    {
         return Err(Failure::usage(format!("{option}: no shadow maps are drawn")).with_hint("add --shadows map"));
     }
-    settings.shadow_map_size = args.shadow_map_size.unwrap_or(settings.shadow_map_size);
-    settings.shadow_cascades = args.shadow_cascades.unwrap_or(settings.shadow_cascades);
-    settings.volume_counting = args.volume_counting.or(settings.volume_counting);
+    settings.shadows.map_size = args.shadow_map_size.unwrap_or(settings.shadows.map_size);
+    settings.shadows.cascades = args.shadow_cascades.unwrap_or(settings.shadows.cascades);
+    settings.shadows.volume_counting = args.volume_counting.or(settings.shadows.volume_counting);
     Ok(())
 }
 

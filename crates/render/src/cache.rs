@@ -77,11 +77,7 @@ impl Cache {
     ///
     /// # Errors
     /// That of `build`; nothing is cached then.
-    pub fn get_or_build<T: Cached, E>(
-        &self,
-        key: T::Key,
-        build: impl FnOnce() -> Result<T, E>,
-    ) -> Result<Arc<T>, E> {
+    pub fn get_or_build<T: Cached, E>(&self, key: T::Key, build: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
         let slot = self.slot::<T>();
         let mut slot = lock::<T>(&slot);
         if let Some((known, value)) = &*slot

@@ -48,11 +48,6 @@ impl<T: Row> Choice<T> {
         T::rows().map(Self)
     }
 
-    /// The choice of `row`.
-    pub const fn of(row: &'static T) -> Self {
-        Self(row)
-    }
-
     /// The row.
     pub fn row(self) -> &'static T {
         self.0
@@ -158,6 +153,13 @@ macro_rules! table {
         $crate::choice::table! { @rows $(#[$about])* $table: $row; $($(#[$doc])* $name = $value;)* }
         $crate::choice::table! { @choices $table: $info, $kind; |row| &row.info; $($(#[$doc])* $name = &$row::$name.info;)* }
 
+        impl $row {
+            /// The choice of this row.
+            pub fn choice(&'static self) -> $crate::choice::Choice<$info> {
+                $crate::choice::Choice(&self.info)
+            }
+        }
+
         impl std::ops::Deref for $row {
             type Target = $info;
 
@@ -172,6 +174,13 @@ macro_rules! table {
     ) => {
         $crate::choice::table! { @rows $(#[$about])* $table: $row; $($(#[$doc])* $name = $value;)* }
         $crate::choice::table! { @choices $table: $row, $kind; |row| row; $($(#[$doc])* $name = &$row::$name;)* }
+
+        impl $row {
+            /// The choice of this row.
+            pub fn choice(&'static self) -> $crate::choice::Choice<Self> {
+                $crate::choice::Choice(self)
+            }
+        }
     };
     (@rows $(#[$about:meta])* $table:ident: $row:ident; $($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
         $(#[$about])*
@@ -240,7 +249,6 @@ pub(crate) use named;
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::{Acceleration, Shadows, Visibility};
 
     #[test]

@@ -32,9 +32,9 @@ pub use cache::{Cache, Cached, PerMesh, Reuse};
 pub use catalogue::{Acceleration, Shadows, Visibility};
 pub use choice::{Choice, UnknownName};
 pub use coherence::{Coherence, CoherenceSet};
+pub use execution::Execution;
 pub use pipeline::{Rendered, Shot, illuminate_corners, render};
 pub use prepare::PreparedView;
-pub use execution::Execution;
 pub use session::Session;
 pub use settings::{
     Background, Channels, ColorSpace, Culling, DepthCue, Global, GlobalSettings, Interpolation, Lines, PictureSettings,

@@ -311,7 +311,13 @@ impl<'a> FrameContext<'a> {
 
     /// The chosen shadow algorithm, ready for the lights; `None` without shadows.
     fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn Shadows + 'v>>, Limit> {
-        shadow::prepare(registry::shadows(self.settings.shadows.algorithm), view, self.shot.lights, self.settings, self.execution)
+        shadow::prepare(
+            registry::shadows(self.settings.shadows.algorithm),
+            view,
+            self.shot.lights,
+            self.settings,
+            self.execution,
+        )
     }
 
     /// What stays the same for all points of the frame.

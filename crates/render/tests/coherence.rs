@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_render::registry::VISIBILITY;
-use vitral_render::{Acceleration, Channels, Coherence, Execution, Rendered, Session, Settings, Shot, render};
+use vitral_render::{
+    Acceleration, Channels, Coherence, Execution, PictureSettings, Rendered, Session, Settings, Shot, render,
+};
 use vitral_scene::builtin::solids;
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, framing};
 
@@ -61,7 +63,17 @@ fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
     for algorithm in VISIBILITY {
         let structures = [Acceleration::BVH, Acceleration::OCTREE, Acceleration::BSP, Acceleration::GRID].map(Some);
         for acceleration in if algorithm.casts_rays { structures.to_vec() } else { vec![None] } {
-            let mut settings = Settings { picture: PictureSettings { width: 64, height: 48, channels: Channels { depth: true, surface: true, ..Channels::default() }, ..PictureSettings::default() }, visibility: algorithm.name.to_owned(), acceleration, ..Settings::default() };
+            let mut settings = Settings {
+                picture: PictureSettings {
+                    width: 64,
+                    height: 48,
+                    channels: Channels { depth: true, surface: true, ..Channels::default() },
+                    ..PictureSettings::default()
+                },
+                visibility: algorithm.choice(),
+                acceleration,
+                ..Settings::default()
+            };
             let mut session = Session::new(Arc::clone(&scene)).unwrap();
             shown(&mut session, &settings, 0.0);
             let all = shown(&mut session, &settings, 0.5);
@@ -90,7 +102,11 @@ fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
 #[test]
 fn a_turntable_reuses_what_its_first_picture_found_out() {
     for name in ["z-buffer", "bsp", "ray-cast"] {
-        let mut settings = Settings { picture: PictureSettings { width: 32, height: 24, ..PictureSettings::default() }, visibility: name.to_owned(), ..Settings::default() };
+        let mut settings = Settings {
+            picture: PictureSettings { width: 32, height: 24, ..PictureSettings::default() },
+            visibility: name.parse().unwrap(),
+            ..Settings::default()
+        };
         let turn = |settings: &Settings| {
             let mut session = Session::new(scene()).unwrap();
             (0..4).map(|i| shown(&mut session, settings, f64::from(i))).collect::<Vec<_>>()
@@ -112,7 +128,7 @@ fn a_kind_that_an_algorithm_does_not_exploit_is_refused() {
     for algorithm in VISIBILITY {
         for (kind, label) in Coherence::ALL {
             let settings =
-                Settings { visibility: algorithm.name.to_owned(), coherence: Some(vec![kind]), ..Settings::default() };
+                Settings { visibility: algorithm.choice(), coherence: Some(vec![kind]), ..Settings::default() };
             match settings.check() {
                 Ok(_) => assert!(algorithm.coherence.contains(&kind), "{}: {label}", algorithm.name),
                 Err(e) => {

@@ -10,7 +10,10 @@ use vitral_render::radiosity::hemicube::Hemicube;
 use vitral_render::radiosity::patch::Trees;
 use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progressive};
 use vitral_render::raytrace::triangles::Triangles;
-use vitral_render::{Background, ColorSpace, Execution, Global, Session, Settings, Shot, render};
+use vitral_render::{
+    Background, ColorSpace, Execution, Global, GlobalSettings, PictureSettings, Session, Settings, ShadowSettings,
+    Shadows, Shot, render,
+};
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Attribute, Camera, Mesh, Projection, Scene};
 
@@ -342,7 +345,17 @@ fn look_in(scene: &Scene) -> (Session, Camera) {
 }
 
 fn settings() -> Settings {
-    Settings { picture: PictureSettings { width: 64, height: 64, samples: 1, background: Background::Color { color: [0.0; 3] }, ..PictureSettings::default() }, global: GlobalSettings { model: Global::Radiosity, patch_size: Some(0.21), ..GlobalSettings::default() }, ..Settings::default() }
+    Settings {
+        picture: PictureSettings {
+            width: 64,
+            height: 64,
+            samples: 1,
+            background: Background::Color { color: [0.0; 3] },
+            ..PictureSettings::default()
+        },
+        global: GlobalSettings { model: Global::Radiosity, patch_size: Some(0.21), ..GlobalSettings::default() },
+        ..Settings::default()
+    }
 }
 
 #[test]
@@ -404,7 +417,11 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
         projection: Projection::Perspective { view_angle: 0.8 },
         clip: None,
     };
-    let settings = Settings { picture: PictureSettings { width: 8, height: 8, ..settings().picture }, global: GlobalSettings { patch_size: Some(0.8), ..settings().global }, ..settings() };
+    let settings = Settings {
+        picture: PictureSettings { width: 8, height: 8, ..settings().picture },
+        global: GlobalSettings { patch_size: Some(0.8), ..settings().global },
+        ..settings()
+    };
     let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
     let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
     let red = [255, 0, 0, 255];
@@ -431,7 +448,11 @@ fn glass_in_radiosity_is_warned_about_once() {
     let execution = Execution::default();
     let warnings = |scene: &Scene| {
         let (mut session, camera) = look_in(scene);
-        let settings = Settings { picture: PictureSettings { width: 8, height: 8, ..settings().picture }, global: GlobalSettings { patch_size: Some(2.0), iterations: Some(1), ..settings().global }, ..settings() };
+        let settings = Settings {
+            picture: PictureSettings { width: 8, height: 8, ..settings().picture },
+            global: GlobalSettings { patch_size: Some(2.0), iterations: Some(1), ..settings().global },
+            ..settings()
+        };
         let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &execution).unwrap().warnings
     };
@@ -473,8 +494,12 @@ fn what_lamps_light_lights_the_rest() {
         clip: None,
     };
     let mut session = Session::new(Arc::new(scene)).unwrap();
-    let settings =
-        Settings { picture: PictureSettings { color_space: ColorSpace::Raw, ..settings().picture }, global: GlobalSettings { patch_size: Some(0.5), ..settings().global }, shadows: ShadowSettings { algorithm: vitral_render::Shadows::RAY, ..settings().shadows }, ..settings() };
+    let settings = Settings {
+        picture: PictureSettings { color_space: ColorSpace::Raw, ..settings().picture },
+        global: GlobalSettings { patch_size: Some(0.5), ..settings().global },
+        shadows: ShadowSettings { algorithm: Shadows::RAY, ..settings().shadows },
+        ..settings()
+    };
     let shot = Shot { camera, lights: &lights, ambient: [0.0; 3] };
     let lit = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     let [r, g, b, _] = lit.frame.color.unwrap().data()[32 * 64 + 32];

@@ -5,10 +5,14 @@ use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::{LayerList, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
+use vitral_render::raytrace::bsp::Bsp;
+use vitral_render::raytrace::bvh::Bvh;
+use vitral_render::raytrace::grid::Grid;
+use vitral_render::raytrace::octree::Octree;
 use vitral_render::stats::{CullCounters, VisibilityCounters};
 use vitral_render::trace::{Observer, Passed, Step};
 use vitral_render::visible::TileSink;
-use vitral_render::{Acceleration, Execution, PreparedView, Session, Settings, registry};
+use vitral_render::{Acceleration, Execution, PictureSettings, PreparedView, Session, Settings, registry};
 use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
 
 const SIZE: [u32; 2] = [68, 66];
@@ -58,8 +62,13 @@ const RAYS: [Choice; 8] = [
 ];
 
 fn settings([width, height]: [u32; 2], samples: usize, (visibility, acceleration): Choice) -> Settings {
-    let visibility = visibility.to_owned();
-    Settings { picture: PictureSettings { width, height, samples: samples as u32, ..PictureSettings::default() }, visibility, acceleration, ..Settings::default() }
+    let visibility = visibility.parse().unwrap();
+    Settings {
+        picture: PictureSettings { width, height, samples: samples as u32, ..PictureSettings::default() },
+        visibility,
+        acceleration,
+        ..Settings::default()
+    }
 }
 
 fn resolve(
@@ -74,7 +83,7 @@ fn resolve(
     let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
     let sink = Collect { size: [settings.picture.width, settings.picture.height], tiles: Mutex::default() };
-    let algorithm = registry::visibility(&settings.visibility).unwrap().algorithm;
+    let algorithm = registry::visibility(settings.visibility);
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
     let mut tiles = sink.tiles.into_inner().unwrap();
     tiles.sort_by_key(|t| t.0);
@@ -242,10 +251,10 @@ fn structures_are_built_once_and_save_work() {
     let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
     let execution = Execution::default();
     let camera = camera_of(&session);
-    assert!(Arc::ptr_eq(&session.bvh(&execution).unwrap(), &session.bvh(&execution).unwrap()));
-    assert!(Arc::ptr_eq(&session.octree(&execution).unwrap(), &session.octree(&execution).unwrap()));
-    assert!(Arc::ptr_eq(&session.partition(&execution).unwrap(), &session.partition(&execution).unwrap()));
-    assert!(Arc::ptr_eq(&session.uniform_grid(&execution).unwrap(), &session.uniform_grid(&execution).unwrap()));
+    assert!(Arc::ptr_eq(&Bvh::of(&session, &execution).unwrap(), &Bvh::of(&session, &execution).unwrap()));
+    assert!(Arc::ptr_eq(&Octree::of(&session, &execution).unwrap(), &Octree::of(&session, &execution).unwrap()));
+    assert!(Arc::ptr_eq(&Bsp::of(&session, &execution).unwrap(), &Bsp::of(&session, &execution).unwrap()));
+    assert!(Arc::ptr_eq(&Grid::of(&session, &execution).unwrap(), &Grid::of(&session, &execution).unwrap()));
     let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
     let all = count(("ray-cast", Some(Acceleration::NONE)));
     for choice in &RAYS[..4] {

@@ -39,7 +39,7 @@ fn measure(arguments: &Arguments) -> Result<(), Error> {
     let mut ways: Vec<_> = wanted.map(|(name, shadows, most)| (Way::new(name, most), shadows)).collect();
     for round in 0..arguments.rounds {
         for (way, (shadows, cascades, moves)) in &mut ways {
-            (*shadows).clone_into(&mut renderer.settings.shadows.algorithm);
+            renderer.settings.shadows.algorithm = shadows.parse().expect("a registered name");
             renderer.settings.shadows.cascades = *cascades;
             renderer.lights = Some(vec![sun(0.0)]);
             way.turn(&mut renderer, |renderer, frame| {

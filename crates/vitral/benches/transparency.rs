@@ -29,9 +29,9 @@ fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
     ways[0].1.settings.transparency.model = Transparency::None;
     for order in ORDERS {
         let mut renderer = renderer()?;
-        renderer.settings.transparency.order = order.value;
+        renderer.settings.transparency.order = order.choice();
         let visibility = if order.needs_list { "bsp" } else { "z-buffer" };
-        visibility.clone_into(&mut renderer.settings.visibility);
+        renderer.settings.visibility = visibility.parse().expect("a registered name");
         let most = (order.name == ORDERS[0].name).then_some(MOST);
         ways.push((Way::new(order.name, most), renderer));
     }

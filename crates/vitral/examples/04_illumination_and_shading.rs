@@ -27,7 +27,7 @@ fn main() -> Result<(), Error> {
     let (columns, rows) = (Illumination::ALL.len() as u32, Shading::ALL.len() as u32);
     let mut sheet = Plane::filled(SIDE * columns, SIDE * rows, [0u8; 4]);
     let width = sheet.width() as usize;
-    for (row, (shading, name, meaning)) in Shading::ALL.into_iter().enumerate() {
+    for (row, &(shading, name, meaning)) in Shading::ALL.iter().enumerate() {
         println!("row {}: {name}, {meaning}", row + 1);
         for (column, illumination) in Illumination::ALL.into_iter().enumerate() {
             (renderer.settings.shading.model, renderer.settings.shading.illumination) = (shading, illumination);

@@ -12,7 +12,7 @@ fn main() -> Result<(), Error> {
     let mut renderer = Renderer::new(load_builtin("scene0")?)?;
     renderer.camera = renderer.world().cameras.first().copied();
     // Cast shadows are a channel only where an algorithm looks for them.
-    renderer.settings.shadows.algorithm = "ray".into();
+    renderer.settings.shadows.algorithm = vitral::Shadows::RAY;
     for (channel, ..) in Channel::ALL {
         channel.request(&mut renderer.settings.picture.channels);
     }

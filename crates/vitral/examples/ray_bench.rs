@@ -14,10 +14,12 @@ use vitral::exec::{Budget, Workers};
 use vitral::math::{DVec3, Vec3};
 use vitral::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::render::raytrace::intersect::Ray;
-use vitral::render::raytrace::{Counters, Structure, bsp::Bsp, bvh::Bvh, grid::Grid, octree::Octree};
+use vitral::render::raytrace::{
+    Counters, Structure, Tree, bsp::Bsp, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles,
+};
 use vitral::render::stats::{CullCounters, VisibilityCounters};
 use vitral::render::visible::TileSink;
-use vitral::render::{Acceleration, PreparedView, Transparency, registry};
+use vitral::render::{Acceleration, PreparedView, Transparency, Visibility, registry};
 use vitral::{LoadOptions, Renderer, execution, load};
 
 type Failure = Box<dyn std::error::Error>;
@@ -33,7 +35,7 @@ fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
     let mut renderer = Renderer::with_execution(scene, execution)?;
     let settings = &mut renderer.settings;
     (settings.picture.width, settings.picture.height, settings.picture.samples) = (WIDTH, HEIGHT, 1);
-    settings.visibility = vitral::render::Visibility::RAY_CAST;
+    settings.visibility = Visibility::RAY_CAST;
     // The same triangles for everyone: none is left out because it is turned away, none is passed through.
     settings.transparency.model = Transparency::None;
     (settings.cull.frustum, settings.cull.back_face) = (false, false);
@@ -72,7 +74,7 @@ fn rays(view: &PreparedView<'_>, center: DVec3) -> Vec<[Vec3; 2]> {
 
 fn prepare(model: &str, file: &str) -> Result<(), Failure> {
     let renderer = renderer(model, 0)?;
-    let triangles = renderer.session().triangles(renderer.execution())?;
+    let triangles = Triangles::of(renderer.session(), renderer.execution())?;
     let rays = rays(&prepared(&renderer, Acceleration::BVH), triangles.center);
     let mut bytes = Vec::new();
     bytes.extend((triangles.count() as u32).to_le_bytes());
@@ -112,7 +114,7 @@ fn picture(
     rounds: usize,
 ) -> Result<(Vec<f64>, VisibilityCounters, Vec<u32>), Failure> {
     let view = prepared(renderer, acceleration);
-    let algorithm = registry::visibility(&renderer.settings.visibility).expect("ray-cast is registered").algorithm;
+    let algorithm = registry::visibility(renderer.settings.visibility);
     let mut grid = TileGrid::new(view.viewport, 1);
     let (times, counters) = timed(rounds, || {
         let sink = Finished(Mutex::new(0));
@@ -143,7 +145,7 @@ fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> 
 fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<(), Failure> {
     let renderer = renderer(model, threads)?;
     let (workers, budget) = (&renderer.execution().workers, Budget::default());
-    let triangles = renderer.session().triangles(renderer.execution())?;
+    let triangles = Triangles::of(renderer.session(), renderer.execution())?;
     let (bvh_ms, bvh) = timed(rounds, || {
         let bvh = Bvh::build(&triangles, workers, &budget)?;
         bvh.widen(workers);
@@ -194,7 +196,7 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
 fn check(model: &str, count: usize) -> Result<(), Failure> {
     let renderer = renderer(model, 0)?;
     let (workers, budget) = (&renderer.execution().workers, Budget::default());
-    let triangles = renderer.session().triangles(renderer.execution())?;
+    let triangles = Triangles::of(renderer.session(), renderer.execution())?;
     let mut state = 1u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -12,7 +12,7 @@ use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::Nowhere;
-use vitral_render::{Acceleration, Channels, Choice, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
+use vitral_render::{Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
 use vitral_scene::{Camera, Scene};
 
 /// An algorithm of the registry, and for rays the structure.
@@ -37,11 +37,8 @@ impl Entrant {
 
     /// These settings with the algorithm. It decides about opaque surfaces, since not every one has all orders of transparent ones.
     pub(crate) fn settings(&self, settings: &Settings) -> Settings {
-        let mut settings = Settings {
-            visibility: Choice::of(&self.algorithm.info),
-            acceleration: self.acceleration,
-            ..settings.clone()
-        };
+        let mut settings =
+            Settings { visibility: self.algorithm.choice(), acceleration: self.acceleration, ..settings.clone() };
         settings.transparency.order = TransparencyOrder::default();
         settings.picture.channels = Channels { passes: false, buffers: false, ..settings.picture.channels };
         settings
@@ -178,7 +175,8 @@ mod tests {
     #[test]
     fn p25_every_algorithm_is_measured_and_agrees() {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (48, 36, 1);
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+            (48, 36, 1);
         let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
         let (scene, settings) = (renderer.scene(), &renderer.settings);
         let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };

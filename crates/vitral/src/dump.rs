@@ -52,7 +52,7 @@ pub fn dump(
     let cull = write_geometry(renderer, camera, viewport, &mut write, &mut of_picture)?;
 
     // Stage 8 of scan lines, as text.
-    if renderer.settings.visibility == "scan-line" {
+    if renderer.settings.visibility.has_edge_table {
         let (name, what) = ("8-edge-table.txt".to_owned(), "polygon table, edge table, active edges, spans".to_owned());
         write(&name, edge_table::edge_tables(renderer, camera, viewport)?.as_bytes())?;
         of_samples.push(Listed { name, what });
@@ -116,7 +116,7 @@ fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, E
     [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
     let rendered = renderer.render_from(camera);
-    renderer.settings.channels = wanted;
+    renderer.settings.picture.channels = wanted;
     rendered
 }
 
@@ -127,7 +127,8 @@ fn write_picture(
     write: &mut Write<'_>,
     listed: &mut Vec<Listed>,
 ) -> Result<(), Error> {
-    let options = EncodeOptions { srgb: renderer.settings.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
+    let options =
+        EncodeOptions { srgb: renderer.settings.picture.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
     for (name, channel) in [
         ("8-surface.npy", Channel::Id),
         ("8-surface.png", Channel::Id),
@@ -148,7 +149,7 @@ fn write_picture(
 
 /// Whether transparent surfaces are kept in a list and a buffer of their own.
 fn has_list(settings: &Settings) -> bool {
-    settings.transparency_order == TransparencyOrder::TwoBuffer
+    settings.transparency.order == TransparencyOrder::TWO_BUFFER
 }
 
 /// Whether the picture is made in passes.
@@ -220,7 +221,8 @@ mod tests {
 
     fn small(name: &str) -> Renderer {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (64, 48, 1);
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+            (64, 48, 1);
         renderer
     }
 

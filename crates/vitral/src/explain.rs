@@ -212,7 +212,8 @@ pub fn explain(
 ) -> Result<Explanation, Error> {
     let settings = &renderer.settings;
     if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
-        let size = format!("the picture has {} x {} pixels, counted from 0", settings.picture.width, settings.picture.height);
+        let size =
+            format!("the picture has {} x {} pixels, counted from 0", settings.picture.width, settings.picture.height);
         return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
     }
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.

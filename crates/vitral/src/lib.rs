@@ -58,5 +58,10 @@ pub use viewpoint::Viewpoint;
 pub use vitral_exec::{Budget, Workers};
 pub use vitral_frame::Frame;
 pub use vitral_light::{Illumination, Light, Material};
-pub use vitral_render::{Execution, Rendered, Settings, Shading, Stats};
+pub use vitral_render::{
+    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Execution, Global,
+    GlobalSettings, Interpolation, Lines, PictureSettings, Rendered, Settings, SettingsError, Shading, ShadingSettings,
+    ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder, TransparencySettings, UnknownName, Visibility,
+    VolumeCounting,
+};
 pub use vitral_scene::{Axis, Camera, Lens, Mesh, Node, Projection, Scene, View};

@@ -118,7 +118,8 @@ fn grey(rendered: Rendered) -> Picture {
 fn texels(settings: &Settings) -> Settings {
     let longer = u64::from(settings.picture.width.max(settings.picture.height));
     let most = longer.min(u64::from(settings.shadows.map_size));
-    let [width, height] = [settings.picture.width, settings.picture.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
+    let [width, height] =
+        [settings.picture.width, settings.picture.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
     settings.clone().with_size(width, height)
 }
 
@@ -269,8 +270,9 @@ mod tests {
     fn of(shadows: &str) -> (Frame, [u32; 2]) {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
         let size = [96, 72];
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (size[0], size[1], 1);
-        renderer.settings.shadows.algorithm = shadows.to_owned();
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+            (size[0], size[1], 1);
+        renderer.settings.shadows.algorithm = shadows.parse().unwrap();
         let before = renderer.settings.clone();
         let camera = renderer.frame_camera();
         let frame = panels(&mut renderer, &camera).unwrap().frame;
@@ -310,8 +312,10 @@ mod tests {
         let size = [96, 72];
         let fresh = |lights: &[Light], shadows: &str| {
             let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-            (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (size[0], size[1], 1);
-            (renderer.settings.shadows.algorithm, renderer.settings.picture.color_space) = (shadows.to_owned(), ColorSpace::Raw);
+            (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+                (size[0], size[1], 1);
+            (renderer.settings.shadows.algorithm, renderer.settings.picture.color_space) =
+                (shadows.parse().unwrap(), ColorSpace::Raw);
             renderer.settings.shading.illumination = Illumination::Phong;
             (renderer.lights, renderer.light_intensity) = (Some(lights.to_vec()), Some(1.0));
             renderer
@@ -371,8 +375,9 @@ mod tests {
     #[test]
     fn f25_panels_show_the_size_of_the_map() {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (96, 72, 1);
-        renderer.settings.shadows.algorithm = vitral_render::Shadows::MAP;
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+            (96, 72, 1);
+        renderer.settings.shadows.algorithm = Shadows::MAP;
         renderer.settings.shadows.map_size = 16;
         let camera = renderer.frame_camera();
         let coarse = panels(&mut renderer, &camera).unwrap().frame;
@@ -404,7 +409,7 @@ mod tests {
         let camera = renderer.frame_camera();
         let error = panels(&mut renderer, &camera).unwrap_err();
         assert!(error.to_string().contains("map, object-precision"), "{error}");
-        renderer.settings.shadows.algorithm = vitral_render::Shadows::MAP;
+        renderer.settings.shadows.algorithm = Shadows::MAP;
         renderer.lights = Some(Vec::new());
         assert_eq!(panels(&mut renderer, &camera).unwrap_err().exit_code(), 2);
     }

@@ -148,7 +148,9 @@ impl Renderer {
             Some(lights) => lights.clone(),
             // A scene that has light from everywhere says what it is lit by.
             None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
-            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => self.fixed_lights(),
+            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => {
+                self.fixed_lights()
+            }
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),
         };

@@ -326,7 +326,10 @@ mod tests {
         let text =
             r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
         state.overlay(text, "c").unwrap();
-        assert_eq!((state.settings.picture.width, state.settings.picture.height, state.settings.shading.model), (99, 768, Shading::Flat));
+        assert_eq!(
+            (state.settings.picture.width, state.settings.picture.height, state.settings.shading.model),
+            (99, 768, Shading::Flat)
+        );
         assert_eq!((state.settings.picture.background, state.viewpoint.view), (Background::Transparent, View::Left));
         assert_eq!(state.models, ["a.obj"]);
         let before = state.clone();

@@ -1,6 +1,6 @@
 //! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and thread count.
 
-use vitral::render::{Background, Global, Lines, Transparency};
+use vitral::render::{Background, Global, Lines, Shadows, Transparency};
 use vitral::{Execution, Illumination, LoadOptions, Renderer, Scene, Shading, Workers, panels};
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
@@ -33,7 +33,7 @@ fn figure(file: &str, name: &str, change: impl Fn(&mut Renderer)) {
 
 fn traced(renderer: &mut Renderer) {
     renderer.settings.global.model = Global::RayTrace;
-    renderer.settings.shadows.algorithm = vitral::render::Shadows::RAY;
+    renderer.settings.shadows.algorithm = Shadows::RAY;
 }
 
 fn builtin(name: &str) -> Scene {
@@ -108,7 +108,8 @@ fn p42_everything_at_once() {
     figure("realism", "realism", |r| {
         traced(r);
         r.settings.transparency.model = Transparency::Filtered;
-        (r.settings.picture.samples, r.settings.shadows.light_samples, r.settings.transparency.scatter_samples) = (2, 4, 8);
+        (r.settings.picture.samples, r.settings.shadows.light_samples, r.settings.transparency.scatter_samples) =
+            (2, 4, 8);
     });
 }
 
@@ -117,7 +118,7 @@ fn shadows() {
     for (shadows, scene) in [("map", "scene1"), ("volume", "scene0")] {
         golden(&format!("{scene}-shadows-{shadows}"), builtin(scene), |r| {
             (r.settings.picture.width, r.settings.picture.height) = (160, 120);
-            r.settings.shadows.algorithm = shadows.to_owned();
+            r.settings.shadows.algorithm = shadows.parse().unwrap();
             r.settings.shadows.map_size = 512;
         });
     }
@@ -128,7 +129,7 @@ fn f25_panels_of_shadow_maps() {
     let scene = builtin("scene0");
     check_everywhere("scene0-panels-map", Tolerance::EXACT, |setting| {
         let mut renderer = renderer(&scene, setting, [88, 66]);
-        renderer.settings.shadows.algorithm = vitral::render::Shadows::MAP;
+        renderer.settings.shadows.algorithm = Shadows::MAP;
         renderer.settings.shadows.map_size = 256;
         let camera = renderer.frame_camera();
         panels(&mut renderer, &camera).unwrap().frame.color.unwrap()

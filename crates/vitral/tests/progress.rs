@@ -15,8 +15,9 @@ fn heard(name: &str, global: Global, shadows: &str, stage: &'static str) -> Vec<
         }
     }));
     let mut renderer = Renderer::with_execution(vitral::load_builtin(name).unwrap(), execution).unwrap();
-    (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (160, 120, 1);
-    (renderer.settings.global.model, renderer.settings.shadows.algorithm) = (global, shadows.to_owned());
+    (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+        (160, 120, 1);
+    (renderer.settings.global.model, renderer.settings.shadows.algorithm) = (global, shadows.parse().unwrap());
     renderer.settings.global.patch_size = (global == Global::Radiosity).then_some(200.0);
     renderer.render().unwrap();
     heard.lock().unwrap().clone()

@@ -13,8 +13,8 @@
 
 use crate::raytrace::Visitor;
 use crate::raytrace::beam::Beam;
-use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::intersect::Ray;
+use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::clearance;
 use std::ops::Range;

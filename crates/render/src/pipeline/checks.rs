@@ -1,8 +1,8 @@
 //! What a scene must not ask for together with the settings, and what the user has to know about a picture.
 
+use crate::TransparencyOrder;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
-use crate::TransparencyOrder;
 use crate::{Error, Global, Session, Settings, SettingsError, Stats, Transparency};
 use vitral_exec::Workers;
 use vitral_scene::Scene;

@@ -49,7 +49,10 @@ pub(super) struct Surfaces<'a> {
 
 impl<'a> Surfaces<'a> {
     pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
-        let linear = Settings { transparency: TransparencySettings { model: Transparency::Linear, ..settings.transparency }, ..settings.clone() };
+        let linear = Settings {
+            transparency: TransparencySettings { model: Transparency::Linear, ..settings.transparency },
+            ..settings.clone()
+        };
         Self {
             session,
             tables: DecodeTables::new(settings.picture.color_space),
@@ -242,11 +245,15 @@ mod tests {
         let white = [[255; 4]; 2];
         let of = |raw, from_srgb| {
             let color_space = if raw { ColorSpace::Raw } else { ColorSpace::default() };
-            looks(white, &Settings { picture: PictureSettings { color_space, ..PictureSettings::default() }, ..Settings::default() }, |_, mesh, _| {
-                let colors = mesh.positions.iter().map(|p| [p[0] + 0.5, 0.2, 0.2, 1.0]).collect();
-                mesh.colors = Some(Attribute::per_vertex(colors));
-                mesh.colors_from_srgb = from_srgb;
-            })
+            looks(
+                white,
+                &Settings::default().with_color_space(color_space),
+                |_, mesh, _| {
+                    let colors = mesh.positions.iter().map(|p| [p[0] + 0.5, 0.2, 0.2, 1.0]).collect();
+                    mesh.colors = Some(Attribute::per_vertex(colors));
+                    mesh.colors_from_srgb = from_srgb;
+                },
+            )
         };
         for (middle, surface) in of(false, true) {
             assert!(close(surface.reflectance, [0.9 * (middle.x + 0.5), 0.18, 0.18]), "{:?}", surface.reflectance);

@@ -234,13 +234,7 @@ impl Bvh {
 
 impl Follow for Bvh {
     #[inline(always)]
-    fn follow<S: Simd>(
-        &self,
-        simd: S,
-        rays: &[Ray],
-        visitor: &mut impl packet::Visitor,
-        counters: &mut Counters,
-    ) {
+    fn follow<S: Simd>(&self, simd: S, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
         simd.vectorize(
             #[inline(always)]
             || self.descend_together(simd, rays, visitor, counters),

@@ -58,12 +58,7 @@ pub(crate) trait StructureUser {
 }
 
 /// Shows a packet's visitor what each ray of it meets.
-fn one_by_one<T: Structure>(
-    structure: &T,
-    rays: &[Ray],
-    visitor: &mut impl packet::Visitor,
-    counters: &mut Counters,
-) {
+fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
     let triangles = structure.triangles();
     let mut hit = Vec::new();
     for (lane, ray) in rays.iter().enumerate() {

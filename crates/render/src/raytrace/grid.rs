@@ -15,7 +15,7 @@
 //!         parameter of a wall is computed anew, not by adding, so that rounding does not grow along the way.
 
 use super::beam::Beam;
-use super::follow::{Follow};
+use super::follow::Follow;
 use super::triangles::{Triangles, bounds_of};
 use super::{Structure, Visitor, space_step};
 use crate::trace::{Passed, Step};

@@ -196,6 +196,9 @@ pub(super) fn closest_hits<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raytrace::bvh::Bvh;
+    use crate::raytrace::follow::Follow;
+    use crate::raytrace::{Counters, Structure};
     use vitral_exec::{Budget, Workers};
     use vitral_math::lanes::{available_levels, dispatch};
     use vitral_math::vec3;

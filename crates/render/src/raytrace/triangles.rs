@@ -11,7 +11,7 @@
 //! Source: [Appel 1968].
 
 use super::beam::Beam;
-use super::follow::{Follow};
+use super::follow::Follow;
 use super::{Structure, Visitor};
 use crate::trace::{Passed, Step};
 use crate::{Cached, Execution, Session};

@@ -59,9 +59,9 @@ impl Volumes {
     pub fn of(session: &Session, shape: Shape, execution: &Execution) -> Result<Arc<Self>, Limit> {
         let triangles = Triangles::of(session, execution)?;
         let first_facets = session.world.instances.iter().map(|instance| instance.first_facet);
-        session.cache.get_or_build(shape, || {
-            Self::build(&triangles, first_facets, shape, &execution.workers, &execution.budget)
-        })
+        session
+            .cache
+            .get_or_build(shape, || Self::build(&triangles, first_facets, shape, &execution.workers, &execution.budget))
     }
 
     /// Bytes needed while volumes are built: an object's corners in double precision.

@@ -127,4 +127,3 @@ pub enum SettingsError {
         choices: String,
     },
 }
-

@@ -182,4 +182,3 @@ impl Channels {
         self.attached_shadow || self.cast_shadow
     }
 }
-

@@ -100,7 +100,11 @@ pub(crate) struct Key {
 
 impl Key {
     fn new(lights: &[Light], settings: &Settings) -> Self {
-        Self { lights: lights.to_vec(), samples: settings.shadows.light_samples, transparency: settings.transparency.model }
+        Self {
+            lights: lights.to_vec(),
+            samples: settings.shadows.light_samples,
+            transparency: settings.transparency.model,
+        }
     }
 }
 

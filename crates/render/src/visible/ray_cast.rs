@@ -97,7 +97,6 @@ impl StructureUser for (Job<'_>, &mut TileGrid) {
 }
 
 impl Job<'_> {
-
     /// Sets up what is on the screen and lets `look` fill each tile.
     fn run<T: Structure>(
         &self,

@@ -35,7 +35,10 @@ fn from_above(scene: &Scene, lights: &[Light], settings: Settings) -> Vec<u8> {
         clip: Some((0.1, 9.0)),
     };
     let raw = vitral_render::ColorSpace::Raw;
-    let settings = Settings { picture: PictureSettings { width: 192, height: 192, samples: 1, color_space: raw, ..settings.picture }, ..settings };
+    let settings = Settings {
+        picture: PictureSettings { width: 192, height: 192, samples: 1, color_space: raw, ..settings.picture },
+        ..settings
+    };
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let shot = Shot { camera, lights, ambient: [0.0; 3] };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
@@ -68,7 +71,10 @@ fn full_light_of_a_shape_is_smooth_and_exact() {
     }
     // Where the whole light is seen, shadows change no bit, however few places are asked.
     for algorithm in names() {
-        let sampled = Settings { shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
+        let sampled = Settings {
+            shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows },
+            ..settings(algorithm)
+        };
         let shadowed = from_above(&scene, &[square()], sampled);
         let same = |i: &usize| i % 192 < 90;
         assert!((0..192 * 192).filter(same).all(|i| plain[i] == shadowed[i]), "{algorithm}");
@@ -86,32 +92,48 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
     let place =
         Place { position: dvec3(0.0, 1.0, 0.0), normal: DVec3::X, facet: u32::MAX, seed: 3, pixel: Some([0.5; 2]) };
     for algorithm in names() {
-        with_shadows(&scene, &[square()], &Settings { shadows: ShadowSettings { light_samples: 16, ..settings(algorithm).shadows }, ..settings(algorithm) }, |arriving| {
-            assert_eq!(arriving(place), 1.0, "{algorithm}");
-        });
+        with_shadows(
+            &scene,
+            &[square()],
+            &Settings {
+                shadows: ShadowSettings { light_samples: 16, ..settings(algorithm).shadows },
+                ..settings(algorithm)
+            },
+            |arriving| {
+                assert_eq!(arriving(place), 1.0, "{algorithm}");
+            },
+        );
     }
     // A shade before the nearer part of that half: the far part has the smaller share.
     add(&mut scene, solids::plane(0.4, 4.0, 1, 1), matt(), dvec3(0.2, 2.5, 0.0));
     for algorithm in names() {
-        with_shadows(&scene, &[square()], &Settings { shadows: ShadowSettings { light_samples: 1024, ..settings(algorithm).shadows }, ..settings(algorithm) }, |arriving| {
-            if algorithm == "map" {
-                return;
-            }
-            let found = arriving(place);
-            // From above the shade, tan = 0.4 / 1.5, to the light's border: ∫ x / (x² + y² + 4)² by strips.
-            let share = |from: f64, to: f64| -> f64 {
-                let strips = (0..400).flat_map(|i| (0..400).map(move |k| (i, k)));
-                let at = strips.map(|(i, k)| {
-                    let x = from + (to - from) * (f64::from(i) + 0.5) / 400.0;
-                    let z = 1.6 * (f64::from(k) + 0.5) / 400.0 - 0.8;
-                    x / ((x * x + z * z + 4.0) * (x * x + z * z + 4.0))
-                });
-                at.sum::<f64>() * (to - from)
-            };
-            let hidden = 0.4 / 1.5 * 2.0;
-            let wanted = share(hidden, 0.8) / share(0.0, 0.8);
-            assert!((f64::from(found) - wanted).abs() < 0.03, "{algorithm}: {found}, {wanted}");
-        });
+        with_shadows(
+            &scene,
+            &[square()],
+            &Settings {
+                shadows: ShadowSettings { light_samples: 1024, ..settings(algorithm).shadows },
+                ..settings(algorithm)
+            },
+            |arriving| {
+                if algorithm == "map" {
+                    return;
+                }
+                let found = arriving(place);
+                // From above the shade, tan = 0.4 / 1.5, to the light's border: ∫ x / (x² + y² + 4)² by strips.
+                let share = |from: f64, to: f64| -> f64 {
+                    let strips = (0..400).flat_map(|i| (0..400).map(move |k| (i, k)));
+                    let at = strips.map(|(i, k)| {
+                        let x = from + (to - from) * (f64::from(i) + 0.5) / 400.0;
+                        let z = 1.6 * (f64::from(k) + 0.5) / 400.0 - 0.8;
+                        x / ((x * x + z * z + 4.0) * (x * x + z * z + 4.0))
+                    });
+                    at.sum::<f64>() * (to - from)
+                };
+                let hidden = 0.4 / 1.5 * 2.0;
+                let wanted = share(hidden, 0.8) / share(0.0, 0.8);
+                assert!((f64::from(found) - wanted).abs() < 0.03, "{algorithm}: {found}, {wanted}");
+            },
+        );
     }
 }
 
@@ -170,7 +192,10 @@ fn odd_area_lights_are_defined() {
 fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
     // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
     let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
-    let settings = Settings { shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows }, ..settings(algorithm) };
+    let settings = Settings {
+        shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows },
+        ..settings(algorithm)
+    };
     with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
         let at = |x: f64| {
             let parts = (0..32).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));

@@ -36,7 +36,11 @@ fn near_the_table() -> Camera {
 const SUN: DVec3 = dvec3(-0.7, -1.0, 0.4);
 
 fn with_cascades(count: u32) -> Settings {
-    Settings { shadows: ShadowSettings { map_size: 1024, cascades: count, ..settings("map").shadows }, picture: PictureSettings { width: 400, height: 300, ..settings("map").picture }, ..settings("map") }
+    Settings {
+        shadows: ShadowSettings { map_size: 1024, cascades: count, ..settings("map").shadows },
+        picture: PictureSettings { width: 400, height: 300, ..settings("map").picture },
+        ..settings("map")
+    }
 }
 
 /// How deep in a cast shadow pixels with a surface are.
@@ -76,7 +80,10 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
         exponent: 0.0,
     };
     for light in [sun(SUN), light(spot)] {
-        let by_rays = Settings { shadows: ShadowSettings { algorithm: vitral_render::Shadows::RAY, ..with_cascades(1).shadows }, ..with_cascades(1) };
+        let by_rays = Settings {
+            shadows: ShadowSettings { algorithm: Shadows::RAY, ..with_cascades(1).shadows },
+            ..with_cascades(1)
+        };
         let seen = shadows(&scene, camera, &light, &by_rays);
         let rays: Vec<_> = seen.iter().map(|seen| seen.map(|(cast, ..)| cast)).collect();
         let dark = rays.iter().flatten().filter(|&&cast| cast == 1.0).count();
@@ -112,7 +119,7 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let pattern = vitral_raster::SamplePattern::new(1);
     let culled = &mut CullCounters::default();
     let view = PreparedView::new(&session, camera, settings, viewport, pattern, &execution, culled);
-    let algorithm = registry::shadows(&settings.shadows.algorithm).unwrap().algorithm.unwrap();
+    let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     let places: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();

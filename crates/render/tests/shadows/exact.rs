@@ -14,13 +14,16 @@ fn agrees_with_rays(other: &Settings, least: f64) {
             }
         }
     }
-    println!("{}: {mean}", other.shadows);
+    println!("{}: {mean}", other.shadows.algorithm);
 }
 
 #[test]
 fn f26_volumes_agree_with_rays() {
     agrees_with_rays(&settings("volume"), 0.999);
-    let from_viewer = Settings { shadows: ShadowSettings { volume_counting: Some(VolumeCounting::ZPass), ..settings("volume").shadows }, ..settings("volume") };
+    let from_viewer = Settings {
+        shadows: ShadowSettings { volume_counting: Some(VolumeCounting::ZPass), ..settings("volume").shadows },
+        ..settings("volume")
+    };
     agrees_with_rays(&from_viewer, 0.999);
 }
 
@@ -40,7 +43,7 @@ const EXACT: [&str; 3] = ["volume", "scan-line", "object-precision"];
 /// What an algorithm says about places, all asked at once, as seen by a viewer.
 fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, places: &[Place]) -> Vec<f32> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
-    let algorithm = registry::shadows(&settings.shadows.algorithm).unwrap().algorithm.unwrap();
+    let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let lights = std::slice::from_ref(light);
     let execution = Execution::default();
     let ready = algorithm.prepare(&session, lights, viewer.extend(1.0), settings, &execution).unwrap();
@@ -104,7 +107,10 @@ fn f26_nothing_pops_when_the_viewer_walks_into_a_shadow() {
     let places = places_on(&scene);
     let rays = ask_all(&scene, &light, &settings("ray"), DVec3::ZERO, &places);
     for counting in [VolumeCounting::ZFail, VolumeCounting::ZPass] {
-        let settings = Settings { shadows: ShadowSettings { volume_counting: Some(counting), ..settings("volume").shadows }, ..settings("volume") };
+        let settings = Settings {
+            shadows: ShadowSettings { volume_counting: Some(counting), ..settings("volume").shadows },
+            ..settings("volume")
+        };
         // Along the floor through the shadow's border, through the box, up to the light and beyond.
         let walk = (0..40).map(|i| dvec3(4.0 - f64::from(i) * 0.2, 0.3, 0.1));
         let climb = (0..20).map(|i| dvec3(2.0, 5.0, 1.0) * (f64::from(i) * 0.1));
@@ -138,7 +144,13 @@ fn f26_pictures_from_within_a_shadow_are_those_of_rays() {
             };
             let rays = mask(settings("ray"));
             for counting in [VolumeCounting::ZFail, VolumeCounting::ZPass] {
-                assert!(rays == mask(Settings { shadows: ShadowSettings { volume_counting: Some(counting), ..settings("volume").shadows }, ..settings("volume") }), "{position}");
+                assert!(
+                    rays == mask(Settings {
+                        shadows: ShadowSettings { volume_counting: Some(counting), ..settings("volume").shadows },
+                        ..settings("volume")
+                    }),
+                    "{position}"
+                );
             }
         }
     }
@@ -152,7 +164,7 @@ fn drawn(scene: &Scene, light: &Light, settings: &Settings) -> Vec<(&'static str
         all.push((polygon.kind, polygon.corners.to_vec()));
         0
     };
-    let algorithm = registry::shadow_algorithm(&settings.shadows.algorithm);
+    let algorithm = registry::shadows(settings.shadows.algorithm);
     shadow::draw(algorithm, &session, lights, settings, &Execution::default(), &mut take).unwrap();
     all
 }
@@ -263,7 +275,7 @@ fn two_viewers_share(shadows: &str) {
         after.push((polygon.kind, polygon.corners.to_vec()));
         0
     };
-    let algorithm = registry::shadow_algorithm(&settings.shadows.algorithm);
+    let algorithm = registry::shadows(settings.shadows.algorithm);
     shadow::draw(algorithm, &session, lights, &settings, &Execution::default(), &mut take).unwrap();
     assert!(!after.is_empty() && after == alone);
 }
@@ -289,7 +301,7 @@ fn limits_hold_while_shadows_are_made_ready() {
     for algorithm in ["map", "volume", "object-precision"] {
         let ready = |budget: Budget| {
             let execution = Execution { budget, ..Execution::default() };
-            let algorithm_ = registry::shadows(algorithm).unwrap().algorithm.unwrap();
+            let algorithm_ = registry::shadows(algorithm.parse().unwrap()).unwrap();
             algorithm_.prepare(&session, &lights, VIEWER, &settings(algorithm), &execution).map(|_| ())
         };
         let little = ready(Budget::default().with_memory_limit(Some(20_000)));

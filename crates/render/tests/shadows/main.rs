@@ -11,8 +11,11 @@ use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
-use vitral_render::shadow::{self, Drawn, Parts, Place, Places, Shadows};
-use vitral_render::{Channels, Execution, Session, Settings, Shading, Shot, VolumeCounting, registry, render};
+use vitral_render::shadow::{self, Drawn, Parts, Place, Places};
+use vitral_render::{
+    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadingSettings, ShadowSettings, Shadows, Shot,
+    TransparencySettings, VolumeCounting, registry, render,
+};
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Camera, Mesh, Part, Projection, Scene};
 
@@ -34,7 +37,11 @@ fn names() -> impl Iterator<Item = &'static str> {
 }
 
 fn settings(shadows: &str) -> Settings {
-    Settings { shadows: ShadowSettings { algorithm: shadows.to_owned(), ..ShadowSettings::default() }, picture: PictureSettings { width: 160, height: 120, samples: 1, ..PictureSettings::default() }, ..Settings::default() }
+    Settings {
+        shadows: ShadowSettings { algorithm: shadows.parse().unwrap(), ..ShadowSettings::default() },
+        picture: PictureSettings { width: 160, height: 120, samples: 1, ..PictureSettings::default() },
+        ..Settings::default()
+    }
 }
 
 /// Where shadows are looked at from, where that is not what a test is about.
@@ -58,9 +65,9 @@ fn with_colored_shadows<R>(
     ask: impl FnOnce(&dyn Fn(Place) -> Rgb) -> R,
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
-    let algorithm = registry::shadows(&settings.shadows.algorithm).unwrap().algorithm.unwrap();
+    let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let execution = Execution::default();
-    let ready: Box<dyn Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
+    let ready: Box<dyn shadow::Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
@@ -202,14 +209,22 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
     let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
     for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| names().map(move |name| (s, name))) {
-        let settings = Settings { picture: PictureSettings { channels: data, ..settings(algorithm).picture }, shading: ShadingSettings { model: shading.0, ..settings(algorithm).shading }, ..settings(algorithm) };
+        let settings = Settings {
+            picture: PictureSettings { channels: data, ..settings(algorithm).picture },
+            shading: ShadingSettings { model: shading.0, ..settings(algorithm).shading },
+            ..settings(algorithm)
+        };
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
         let unlit = picture(&scene, std::slice::from_ref(&dark), &settings, &execution);
         let plain = picture(
             &scene,
             std::slice::from_ref(&light),
-            &Settings { shadows: ShadowSettings { algorithm: vitral_render::Shadows::NONE, ..settings.shadows }, picture: PictureSettings { channels: Channels::default(), ..settings.picture }, ..settings },
+            &Settings {
+                shadows: ShadowSettings { algorithm: Shadows::NONE, ..settings.shadows },
+                picture: PictureSettings { channels: Channels::default(), ..settings.picture },
+                ..settings
+            },
             &execution,
         );
         let [shaded_color, unlit, plain] = [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
@@ -246,7 +261,10 @@ fn transparent_things_take_their_part() {
     for algorithm in names() {
         let filtering = settings(algorithm);
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
-        let opaque = Settings { transparency: TransparencySettings { model: vitral_render::Transparency::None, ..filtering.transparency }, ..filtering };
+        let opaque = Settings {
+            transparency: TransparencySettings { model: vitral_render::Transparency::None, ..filtering.transparency },
+            ..filtering
+        };
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
     }
 }
@@ -261,7 +279,10 @@ fn filtered_glass_colours_the_light_that_passes() {
             (vitral_render::Transparency::Filtered, [0.75, 0.375, 0.0]),
             (vitral_render::Transparency::Linear, [0.75; 3]),
         ] {
-            let settings = Settings { transparency: TransparencySettings { model: transparency, ..settings(algorithm).transparency }, ..settings(algorithm) };
+            let settings = Settings {
+                transparency: TransparencySettings { model: transparency, ..settings(algorithm).transparency },
+                ..settings(algorithm)
+            };
             for light in [sun(DVec3::NEG_Y), lamp(dvec3(0.0, 4.0, 0.0))] {
                 let part = with_colored_shadows(&scene, &[light], &settings, |arriving| {
                     arriving(place(dvec3(0.3, 0.0, 0.1), DVec3::Y))
@@ -323,7 +344,11 @@ fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
         let (cutoff, position) = (0.15, dvec3(0.0, 5.0, 0.0));
         let spot = light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
         let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
-        let settings = Settings { picture: PictureSettings { channels, ..settings(algorithm).picture }, shadows: ShadowSettings { map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
+        let settings = Settings {
+            picture: PictureSettings { channels, ..settings(algorithm).picture },
+            shadows: ShadowSettings { map_size: 512, ..settings(algorithm).shadows },
+            ..settings(algorithm)
+        };
         let frame = picture(&scene, &[spot], &settings, &Execution::default());
         frame.cast_shadow.unwrap().data().iter().filter(|&&part| part > 0.5).count() as f64
     };
@@ -395,7 +420,11 @@ fn pictures_do_not_depend(algorithm: &str) {
     let disc = AreaShape::Disc { center: dvec3(3.0, 7.0, 2.0), normal: dvec3(-3.0, -7.0, -2.0), radius: 0.6 };
     let lights = [sun(dvec3(1.0, -2.0, -1.0)), light(LightKind::Area { shape: disc })];
     let channels = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    let settings = Settings { picture: PictureSettings { channels, samples: 4, ..settings(algorithm).picture }, shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows }, ..settings(algorithm) };
+    let settings = Settings {
+        picture: PictureSettings { channels, samples: 4, ..settings(algorithm).picture },
+        shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows },
+        ..settings(algorithm)
+    };
     let one = Execution { workers: Workers::single(), ..Execution::default() };
     let first = picture(&scene, &lights, &settings, &one);
     assert!(first.cast_shadow.as_ref().unwrap().data().iter().any(|&c| c > 0.0));
@@ -404,7 +433,7 @@ fn pictures_do_not_depend(algorithm: &str) {
         assert!(first == picture(&scene, &lights, &settings, &Execution { level, ..many.clone() }), "{name}");
     }
     for algorithm in registry::VISIBILITY.iter().filter(|a| a.name != "brute-force") {
-        let settings = Settings { visibility: algorithm.name.to_owned(), ..settings.clone() };
+        let settings = Settings { visibility: algorithm.choice(), ..settings.clone() };
         assert!(first == picture(&scene, &lights, &settings, &many), "{}", algorithm.name);
     }
 }
@@ -432,12 +461,27 @@ fn odd_lights(scene: &Scene, algorithm: &str) {
 fn settings_that_cannot_be_are_refused() {
     let text = |settings: Settings| settings.check().unwrap_err().to_string();
     assert!(text(settings("umbra")).contains("choose none, ray, map"));
-    assert!(text(Settings { shadows: ShadowSettings { light_samples: 0, ..settings("ray").shadows }, ..settings("ray") }).contains("1 to 4096"));
-    assert!(text(Settings { shadows: ShadowSettings { map_size: 9000, ..settings("map").shadows }, ..settings("map") }).contains("16 to 8192"));
-    assert!(text(Settings { shadows: ShadowSettings { cascades: 9, ..settings("map").shadows }, ..settings("map") }).contains("1 to 8"));
-    assert!(text(Settings { shadows: ShadowSettings { cascades: 0, ..settings("map").shadows }, ..settings("map") }).contains("1 to 8"));
+    assert!(
+        text(Settings { shadows: ShadowSettings { light_samples: 0, ..settings("ray").shadows }, ..settings("ray") })
+            .contains("1 to 4096")
+    );
+    assert!(
+        text(Settings { shadows: ShadowSettings { map_size: 9000, ..settings("map").shadows }, ..settings("map") })
+            .contains("16 to 8192")
+    );
+    assert!(
+        text(Settings { shadows: ShadowSettings { cascades: 9, ..settings("map").shadows }, ..settings("map") })
+            .contains("1 to 8")
+    );
+    assert!(
+        text(Settings { shadows: ShadowSettings { cascades: 0, ..settings("map").shadows }, ..settings("map") })
+            .contains("1 to 8")
+    );
     let channels = Channels { cast_shadow: true, ..Channels::default() };
-    assert!(text(Settings { picture: PictureSettings { channels, ..settings("none").picture }, ..settings("none") }).contains("needs a shadow algorithm: choose ray"));
+    assert!(
+        text(Settings { picture: PictureSettings { channels, ..settings("none").picture }, ..settings("none") })
+            .contains("needs a shadow algorithm: choose ray")
+    );
 }
 
 /// The part of pixels with a surface in which another algorithm and rays tell light from shadow alike.
@@ -448,7 +492,10 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
     let mut mask = |settings: &Settings| {
         let channels =
             Channels { color: false, object: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-        let settings = Settings { picture: PictureSettings { channels, width: 320, height: 240, ..settings.picture }, ..settings.clone() };
+        let settings = Settings {
+            picture: PictureSettings { channels, width: 320, height: 240, ..settings.picture },
+            ..settings.clone()
+        };
         let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
     };
@@ -459,7 +506,7 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
     assert!(seen.iter().any(|&i| rays.data()[i] == 1.0), "{name}: something is in shadow");
     let [rays, shadows] = [&rays, &other].map(|mask| mask.data().iter().map(|&c| c >= 0.5).collect::<Vec<_>>());
     let different: Vec<_> = seen.iter().filter(|&&i| rays[i] != shadows[i]).collect();
-    if other_settings.shadows != "map" {
+    if !other_settings.shadows.algorithm.draws_maps {
         // Texels may be larger, but these differ no more than 1.5 pixels from an edge of a shadow, cast or attached.
         let dark = |i: usize| rays.get(i).map(|&cast| cast || attached.data()[i] > 0.0);
         for &&i in &different {
@@ -515,7 +562,10 @@ fn f23_maps_agree_with_rays_the_better_the_larger() {
     for name in opaque_scenes() {
         for light in lights_for(name) {
             for from in SIDES {
-                let maps = |size| Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
+                let maps = |size| Settings {
+                    shadows: ShadowSettings { map_size: size, ..settings("map").shadows },
+                    ..settings("map")
+                };
                 let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
                 assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
                 means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
@@ -535,12 +585,17 @@ fn maps_show_no_acne() {
         let towards = light_from(degrees);
         let floor = above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
         for light in [sun(-towards), lamp(towards * 20.0)] {
-            with_shadows(&floor, &[light], &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") }, |arriving| {
-                for i in 0..10_000 {
-                    let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
-                    assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
-                }
-            });
+            with_shadows(
+                &floor,
+                &[light],
+                &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
+                |arriving| {
+                    for i in 0..10_000 {
+                        let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
+                        assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
+                    }
+                },
+            );
         }
     }
     // A ball throws no shadow on its lit half.
@@ -580,7 +635,8 @@ fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
         for i in 0..24 {
             let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.26);
             let towards = dvec3(cos, 1.0, sin);
-            let settings = Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
+            let settings =
+                Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
             for light in [sun(-towards), lamp(towards * 6.0)] {
                 let dark = with_shadows(&scene, &[light], &settings, |arriving| {
                     let at = |p: DVec3| arriving(place(p, DVec3::Y)) == 0.0;
@@ -608,7 +664,8 @@ fn what_is_kept_changes_nothing() {
 fn kept_changes_nothing(algorithm: &str) {
     let scene = builtin::scene("scene0").unwrap();
     let lights = [lamp(dvec3(3.0, 6.0, 2.0))];
-    let settings = Settings { shadows: ShadowSettings { map_size: 256, ..settings(algorithm).shadows }, ..settings(algorithm) };
+    let settings =
+        Settings { shadows: ShadowSettings { map_size: 256, ..settings(algorithm).shadows }, ..settings(algorithm) };
     let mut used = Session::new(Arc::new(scene.clone())).unwrap();
     for (view, lights) in [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])] {
         let camera = camera(&scene, [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view]);
@@ -656,7 +713,10 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
         let texel = diagonal / f64::from(size - 8);
         let places = places_on(&scene);
         let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
-            let settings = Settings { shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows }, ..settings(algorithm) };
+            let settings = Settings {
+                shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows },
+                ..settings(algorithm)
+            };
             with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
         };
         let (rays, maps) = (ask("ray", &places), ask("map", &places));

@@ -55,7 +55,8 @@ impl Arguments {
     /// Renders the model, or what was made of it.
     pub(crate) fn renderer(&self, scene: Scene) -> Result<Renderer, Error> {
         let mut renderer = Renderer::with_execution(scene, threads()?)?;
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) = (1024, 768, 4);
+        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
+            (1024, 768, 4);
         Ok(renderer)
     }
 

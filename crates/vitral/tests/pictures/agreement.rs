@@ -145,25 +145,31 @@ impl TileSink for Keep {
 /// Runs one algorithm on a renderer's scene and camera.
 fn find(
     renderer: &Renderer,
-    algorithm: &VisibilityAlgorithm,
+    algorithm: &'static VisibilityAlgorithm,
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
-    find_at([renderer.settings.picture.width, renderer.settings.picture.height], renderer, algorithm, samples, execution)
+    find_at(
+        [renderer.settings.picture.width, renderer.settings.picture.height],
+        renderer,
+        algorithm,
+        samples,
+        execution,
+    )
 }
 
 /// [`find`] in a picture of another size.
 fn find_at(
     [width, height]: [u32; 2],
     renderer: &Renderer,
-    algorithm: &VisibilityAlgorithm,
+    algorithm: &'static VisibilityAlgorithm,
     samples: usize,
     execution: &Execution,
 ) -> Result<Found, Limit> {
     // The kinds of coherence are the algorithm's own.
     let mut settings = renderer.settings.clone();
     (settings.picture.width, settings.picture.height) = (width, height);
-    algorithm.name.clone_into(&mut settings.visibility);
+    settings.visibility = algorithm.choice();
     let viewport = settings.check().unwrap();
     let pattern = SamplePattern::new(samples);
     let (camera, counters) = (renderer.frame_camera(), &mut CullCounters::default());
@@ -277,7 +283,7 @@ fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
     let pictures: Vec<_> = VISIBILITY
         .iter()
         .map(|algorithm| {
-            algorithm.name.clone_into(&mut renderer.settings.visibility);
+            renderer.settings.visibility = algorithm.choice();
             renderer.render().unwrap().frame
         })
         .collect();
@@ -309,7 +315,7 @@ fn p7_without_a_kind_of_coherence_every_sample_of_the_traps_is_the_same() {
             for (camera, from) in cameras(DVec3::ZERO, 2.2).into_iter().skip(2).take(2) {
                 renderer.camera = Some(camera);
                 let mut run = |coherence, samples| {
-                    renderer.settings.visibility = algorithm.name.to_owned();
+                    renderer.settings.visibility = algorithm.choice();
                     renderer.settings.coherence = coherence;
                     find(&renderer, algorithm, samples, renderer.execution()).unwrap()
                 };
@@ -338,7 +344,7 @@ fn p7_without_a_kind_of_coherence_every_sample_of_the_traps_is_the_same() {
 fn p7_p19_p20_counters_tell_the_work_and_what_coherence_saved() {
     let renderer = exact_builtin("teapot", WIDTH, HEIGHT);
     let counters = |name: &str| {
-        let algorithm = vitral::render::registry::visibility(name).unwrap();
+        let algorithm = VISIBILITY.iter().find(|row| row.name == name).unwrap();
         find(&renderer, algorithm, 1, renderer.execution()).unwrap().counters
     };
     let scan = counters("scan-line");
@@ -372,7 +378,7 @@ fn eyes(count: usize, middle: DVec3, size: f64) -> impl Iterator<Item = Camera> 
 
 #[test]
 fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
-    let bsp = vitral::render::registry::visibility("bsp").unwrap();
+    let bsp = &VisibilityAlgorithm::BSP;
     let mut scenes = traps::all();
     scenes.retain(|(name, _)| ["cyclic triple", "three interpenetrating", "T-junctions"].contains(name));
     scenes.push(("scene1", load_builtin("scene1").unwrap()));
@@ -407,7 +413,7 @@ fn p22_one_bsp_tree_is_right_for_a_hundred_eyes() {
 
 #[test]
 fn p21_the_painters_list_alone_is_right_but_for_near_ties() {
-    let painter = vitral::render::registry::visibility("painter").unwrap();
+    let painter = &VisibilityAlgorithm::PAINTER;
     for (name, scene) in traps::all() {
         let mut renderer = exact(scene, WIDTH, HEIGHT);
         for camera in eyes(12, DVec3::ZERO, 3.0) {

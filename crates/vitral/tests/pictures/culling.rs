@@ -183,7 +183,7 @@ fn p11_windows_that_overlap_only_mean_a_closer_look() {
         renderer.settings.picture.channels.surface = true;
         renderer.settings.cull.back_face = false;
         let ids = |r: &mut Renderer, name: &str| {
-            name.clone_into(&mut r.settings.visibility);
+            r.settings.visibility = name.parse().unwrap();
             let rendered = r.render().unwrap();
             (rendered.frame.surface.unwrap(), rendered.stats.visibility)
         };

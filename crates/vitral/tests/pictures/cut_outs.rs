@@ -69,7 +69,7 @@ fn a_cut_out_whose_opacity_is_its_cutoff_has_no_holes() {
         let mut scene = one(pane.clone(), material.clone());
         scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_y(0.3) * DMat4::from_rotation_x(0.2));
         let mut r = exact(scene, 200, 150);
-        (r.settings.shadows.algorithm, r.settings.global.model) = (shadows.into(), global);
+        (r.settings.shadows.algorithm, r.settings.global.model) = (shadows.parse().unwrap(), global);
         r.settings.picture.background = Background::Color { color: [1.0, 0.0, 0.0] };
         r.camera = Some(on_z(4.0, 0.4));
         let middle =
@@ -98,7 +98,7 @@ fn channels_show_cut_outs_where_they_are_there() {
             one(pane.clone(), Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() });
         scene.add_mesh(quad(-0.5, 1.5), DMat4::IDENTITY);
         let mut r = exact(scene, 40, 40);
-        r.settings.visibility = visibility.into();
+        r.settings.visibility = visibility.parse().unwrap();
         r.settings.picture.channels = crate::common::all_channels();
         (r.settings.picture.channels.attached_shadow, r.settings.picture.channels.cast_shadow) = (false, false);
         r.camera = Some(on_z(4.0, 0.5));

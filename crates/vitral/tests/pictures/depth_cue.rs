@@ -81,7 +81,7 @@ fn p41_open_planes_lie_where_the_scene_begins_and_ends() {
 fn p41_every_algorithm_fades_alike_and_whole_scales_change_nothing() {
     let picture = |name: &str, cue: Option<DepthCue>| {
         let mut r = cued(squares(), CUE);
-        (r.settings.picture.depth_cue, r.settings.visibility) = (cue, name.to_owned());
+        (r.settings.picture.depth_cue, r.settings.visibility) = (cue, name.parse().unwrap());
         colors(&mut r)
     };
     let expected = picture("z-buffer", Some(CUE));

@@ -106,7 +106,7 @@ fn compare(name: &str, from: DVec3) -> Count {
     let picture = colors(&mut renderer);
     let is_line = |x: i32, y: i32| picture[(y * width + x) as usize][0] < 128;
 
-    let tree = renderer.session().bvh(renderer.execution()).unwrap();
+    let tree = Bvh::of(renderer.session(), renderer.execution()).unwrap();
     let focal = f64::from(height) * 0.5 / vitral::math::func::tan(view_angle * 0.5);
     let eye = Eye { tree: &tree, renderer: &renderer, camera, focal };
     let mut places: Vec<(i32, i32, Seen)> = Vec::new();

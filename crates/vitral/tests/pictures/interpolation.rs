@@ -113,7 +113,7 @@ fn f19_shadows_stay_where_they_are() {
                 clip: None,
             });
             renderer.settings.shading.interpolation = interpolation;
-            renderer.settings.shadows.algorithm = shadows.to_owned();
+            renderer.settings.shadows.algorithm = shadows.parse().unwrap();
             renderer.settings.picture.channels = Channels { cast_shadow: true, ..all_channels() };
             let frame = renderer.render().unwrap().frame;
             (frame.cast_shadow.unwrap().into_data(), frame.color.unwrap().into_data())

@@ -383,7 +383,7 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
             let in_plane = matches!(light.kind, LightKind::Directional { .. });
             let mut renderer = exact(scene.clone(), 400, 300);
             renderer.settings.shading.illumination = illumination;
-            renderer.settings.shadows.algorithm = shadows.into();
+            renderer.settings.shadows.algorithm = shadows.parse().unwrap();
             renderer.lights = Some(vec![light.clone()]);
             let camera = on_z(1.0, 0.7);
             let (position, view_up) = (DVec3::new(2.9, -2.9, 3.3), DVec3::new(0.3, 1.0, 0.0));
@@ -476,7 +476,7 @@ fn a_light_in_the_plane_of_a_facet_leaves_no_specks() {
             projection: Projection::Parallel { height: 3.0 },
             clip: Some((0.01, 20.0)),
         });
-        renderer.settings.shadows.algorithm = shadows.to_owned();
+        renderer.settings.shadows.algorithm = shadows.parse().unwrap();
         renderer.settings.picture.channels = all_channels();
         let frame = renderer.render().unwrap().frame;
         let attached = frame.attached_shadow.as_ref().unwrap().data().to_vec();

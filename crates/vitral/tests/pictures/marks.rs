@@ -203,7 +203,7 @@ fn clouds_of_points_are_no_heap_of_layers() {
         ("ray-cast", TransparencyOrder::A_BUFFER),
     ] {
         let mut renderer = exact(scene.clone(), 41, 41);
-        renderer.settings.visibility = visibility.into();
+        renderer.settings.visibility = visibility.parse().unwrap();
         renderer.settings.transparency.order = order;
         renderer.settings.picture.samples = 4;
         renderer.camera = Some(camera(6.0, false));

@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex};
 use vitral::explain::explain;
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::{ACCELERATION, AccelerationStructure, SHADOWS, VISIBILITY};
+use vitral::render::registry::{ACCELERATION, SHADOWS, VISIBILITY};
 use vitral::render::stats::TracingCounters;
 use vitral::render::trace::{Observer, Step, Way};
-use vitral::render::{Acceleration, Background, Global, Transparency};
+use vitral::render::{Acceleration, Background, Global, Shadows, Transparency, Visibility};
 use vitral::scene::Part;
 use vitral::scene::builtin::solids;
 use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
@@ -37,7 +37,7 @@ fn at(x: f64, y: f64, z: f64) -> DMat4 {
 
 fn traced(mut renderer: Renderer) -> Renderer {
     renderer.settings.global.model = Global::RayTrace;
-    renderer.settings.shadows.algorithm = vitral::render::Shadows::RAY;
+    renderer.settings.shadows.algorithm = Shadows::RAY;
     renderer
 }
 
@@ -256,7 +256,7 @@ fn opaque_surfaces_look_as_without_ray_tracing() {
     for name in ["scene0", "scene1", "cubs", "teapot"] {
         for samples in [1, 4] {
             let mut local = exact_builtin(name, 96, 72);
-            (local.settings.shadows.algorithm, local.settings.picture.samples) = ("ray".to_owned(), samples);
+            (local.settings.shadows.algorithm, local.settings.picture.samples) = ("ray".parse().unwrap(), samples);
             let expected = colors(&mut local);
             assert!(colors(&mut traced(local)) == expected, "{name}, {samples}");
         }
@@ -434,12 +434,12 @@ fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
     r.settings.picture.samples = 2;
     let expected = colors(&mut r);
     for algorithm in VISIBILITY {
-        r.settings.visibility = algorithm.name.to_owned();
+        r.settings.visibility = algorithm.choice();
         let own = colors(&mut r);
         let different = own.iter().zip(&expected).filter(|(a, b)| a != b).count();
         assert!(different <= 4, "{}: {different}", algorithm.name);
     }
-    r.settings.visibility = vitral::render::Visibility::Z_BUFFER;
+    r.settings.visibility = Visibility::Z_BUFFER;
     for threads in [1, 2, 5] {
         let mut execution = vitral::execution(threads).unwrap();
         for (_, level) in vitral::math::lanes::available_levels() {
@@ -457,7 +457,7 @@ fn every_shadow_algorithm_serves_what_rays_hit() {
     let scene = || exact_builtin("mirrors", 96, 72);
     let [rays, none] = ["ray", "none"].map(|shadows| {
         let mut r = traced(scene());
-        r.settings.shadows.algorithm = shadows.to_owned();
+        r.settings.shadows.algorithm = shadows.parse().unwrap();
         colors(&mut r)
     });
     let differing = |a: &[[u8; 4]], b: &[[u8; 4]]| {
@@ -467,7 +467,7 @@ fn every_shadow_algorithm_serves_what_rays_hit() {
     assert!(differing(&rays, &none) > 0.05);
     for shadows in SHADOWS.iter().filter(|s| s.name != "none") {
         let mut r = traced(scene());
-        r.settings.shadows.algorithm = shadows.name.to_owned();
+        r.settings.shadows.algorithm = shadows.name.parse().unwrap();
         // Maps differ within texels of a shadow's edge.
         let allowed = if shadows.name == "map" { 0.02 } else { 0.001 };
         let differing = differing(&rays, &colors(&mut r));
@@ -624,7 +624,7 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
         for global in [Global::None, Global::RayTrace] {
             let picture = |acceleration| {
                 let mut r = scene();
-                (r.settings.global.model, r.settings.shadows.algorithm) = (global, "ray".to_owned());
+                (r.settings.global.model, r.settings.shadows.algorithm) = (global, "ray".parse().unwrap());
                 r.settings.acceleration = acceleration;
                 let rendered = r.render().unwrap();
                 let tests =
@@ -634,12 +634,12 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
             let (expected, counters, _) = picture(None);
             let asked = picture(Some(Acceleration::NONE)).2;
             assert!(global == Global::None || counters.hits > 20, "{name}: {counters:?}");
-            let wrong = |structure: &&AccelerationStructure| {
-                let (frame, counted, tests) = picture(Some(structure.value));
-                let saves = structure.value == Acceleration::NONE || tests < asked || asked == 0;
+            let wrong = |structure: &Acceleration| {
+                let (frame, counted, tests) = picture(Some(*structure));
+                let saves = structure.asks_all || tests < asked || asked == 0;
                 frame != expected || counted != counters || !saves
             };
-            let wrong: Vec<_> = ACCELERATION.iter().filter(wrong).map(|structure| structure.name).collect();
+            let wrong: Vec<_> = Acceleration::all().filter(wrong).map(|structure| structure.name).collect();
             assert!(wrong.is_empty(), "{name}, {global:?}: {wrong:?}");
         }
     }

@@ -4,7 +4,7 @@ use crate::common::exact;
 use std::collections::{BTreeMap, HashSet};
 use vitral::light::{AlphaMode, LightKind, Transmission};
 use vitral::render::{Global, Transparency};
-use vitral::{Material, Scene, Settings, load_builtin};
+use vitral::{Material, Scene, Settings, Shadows, load_builtin};
 
 fn scene() -> Scene {
     load_builtin("realism").unwrap()
@@ -45,7 +45,7 @@ fn picture(scene: Scene, change: impl FnOnce(&mut Settings)) -> Vec<[u8; 4]> {
     let mut renderer = exact(scene, 112, 84);
     renderer.camera = renderer.world().cameras.first().copied();
     let settings = &mut renderer.settings;
-    settings.shadows.algorithm = vitral::render::Shadows::RAY;
+    settings.shadows.algorithm = Shadows::RAY;
     (settings.shadows.light_samples, settings.transparency.scatter_samples) = (2, 4);
     change(settings);
     renderer.render().unwrap().frame.color.unwrap().into_data()
@@ -59,7 +59,7 @@ fn differing(a: &[[u8; 4]], b: &[[u8; 4]]) -> usize {
 
 #[test]
 fn p42_whatever_is_switched_off_was_seen() {
-    let traced = |s: &mut Settings| s.global = Global::RayTrace;
+    let traced = |s: &mut Settings| s.global.model = Global::RayTrace;
     let (all, local) = (picture(scene(), traced), picture(scene(), |_| {}));
     let without = |change: &dyn Fn(&mut Scene)| {
         let mut scene = scene();
@@ -68,20 +68,22 @@ fn p42_whatever_is_switched_off_was_seen() {
     };
     let mut seen = vec![
         ("global", differing(&all, &local)),
-        ("shadows", differing(&local, &picture(scene(), |s| "none".clone_into(&mut s.shadows)))),
+        ("shadows", differing(&local, &picture(scene(), |s| s.shadows.algorithm = Shadows::NONE))),
         (
             "shadow maps",
             differing(
-                &picture(scene(), |s| "map".clone_into(&mut s.shadows)),
-                &picture(scene(), |s| "none".clone_into(&mut s.shadows)),
+                &picture(scene(), |s| s.shadows.algorithm = Shadows::MAP),
+                &picture(scene(), |s| s.shadows.algorithm = Shadows::NONE),
             ),
         ),
-        ("transparency", differing(&local, &picture(scene(), |s| s.transparency = Transparency::None))),
+        ("transparency", differing(&local, &picture(scene(), |s| s.transparency.model = Transparency::None))),
         (
             "colours of glass",
             differing(
                 &all,
-                &picture(scene(), |s| (s.global, s.transparency) = (Global::RayTrace, Transparency::Filtered)),
+                &picture(scene(), |s| {
+                    (s.global.model, s.transparency.model) = (Global::RayTrace, Transparency::Filtered)
+                }),
             ),
         ),
         ("mirror", without(&|s| material(s, "mirror").mirror = false)),

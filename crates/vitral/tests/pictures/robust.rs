@@ -8,7 +8,9 @@ use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::SHADOWS;
 use vitral::scene::builtin::solids;
 use vitral::scene::{Faces, Node, NodeTransform};
-use vitral::{Camera, Error, Frame, Material, Renderer, Scene, SystemClock, Viewpoint, load_builtin};
+use vitral::{
+    Camera, Error, Frame, Material, Renderer, Scene, Shadows, SystemClock, Viewpoint, Visibility, load_builtin,
+};
 
 #[test]
 fn zero_lights_leave_ambient_light_alone() {
@@ -136,9 +138,8 @@ fn sizes_that_cannot_be_are_errors() {
         assert!(error.to_string().contains(&format!("resolution {width}x{height}")), "{error}");
     }
     assert!(refusal(8, 8, 17).to_string().contains("17 samples"));
-    let mut renderer = exact_builtin("cubs", 8, 8);
-    renderer.settings.visibility = "magic".to_owned();
-    assert!(renderer.render().unwrap_err().to_string().contains("choose z-buffer"));
+    let unknown = "magic".parse::<Visibility>().unwrap_err();
+    assert!(unknown.to_string().contains("choose z-buffer"), "{unknown}");
 }
 
 #[test]
@@ -189,12 +190,12 @@ fn no_light_leaks_in_where_walls_meet() {
     r.lights = Some(vec![Light { kind, ..Light::default() }]);
     assert!(colors(&mut r).iter().any(|c| c[0] > 50), "without shadows it shines in");
     for shadows in SHADOWS.iter().filter(|s| !["none", "map"].contains(&s.name)) {
-        r.settings.shadows.algorithm = shadows.name.to_owned();
+        r.settings.shadows.algorithm = shadows.name.parse().unwrap();
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
         assert_eq!(bright, 0, "{}", shadows.name);
     }
     // Maps see no better than a texel: some pixels along the edges have a wall's very edge in their texel.
-    r.settings.shadows.algorithm = vitral::render::Shadows::MAP;
+    r.settings.shadows.algorithm = Shadows::MAP;
     for (size, most) in [(128, 350), (512, 15), (2048, 10)] {
         r.settings.shadows.map_size = size;
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
@@ -214,7 +215,7 @@ fn shadow_maps_of_transparent_things_keep_to_the_memory_limit() {
         scene.nodes.push(Node { mesh, transform, ..Node::default() });
     }
     let mut renderer = exact(scene, 16, 16);
-    (renderer.settings.shadows.algorithm, renderer.settings.shadows.map_size) = ("map".into(), 1024);
+    (renderer.settings.shadows.algorithm, renderer.settings.shadows.map_size) = (Shadows::MAP, 1024);
     renderer.lights = Some(vec![sun(DVec3::Y, 1.0)]);
     renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(64 << 20));
     let error = renderer.render().unwrap_err().to_string();

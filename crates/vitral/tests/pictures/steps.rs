@@ -4,7 +4,7 @@ use crate::common::{exact, on_z, one};
 use std::sync::{Arc, Mutex};
 use vitral::render::trace::{Observer, SpanVerdict, Step};
 use vitral::scene::Part;
-use vitral::{Camera, Material, Mesh, Projection, Renderer};
+use vitral::{Camera, Material, Mesh, Projection, Renderer, Visibility};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -27,7 +27,7 @@ fn two_triangles() -> Renderer {
     };
     let mut renderer = exact(one(mesh, Material { double_sided: true, ..Material::default() }), 16, 16);
     renderer.camera = Some(Camera { projection: Projection::Parallel { height: 16.0 }, ..on_z(5.0, 1.0) });
-    renderer.settings.visibility = vitral::render::Visibility::SCAN_LINE;
+    renderer.settings.visibility = Visibility::SCAN_LINE;
     renderer
 }
 

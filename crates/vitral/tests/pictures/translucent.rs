@@ -182,13 +182,13 @@ fn two_panes_behind_each_other_blur_twice_and_let_the_product_pass() {
 fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
     let picture = |order: TransparencyOrder, visibility: &str| {
         let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 4);
-        (r.settings.transparency.order, r.settings.visibility) = (order, visibility.to_owned());
+        (r.settings.transparency.order, r.settings.visibility) = (order, visibility.parse().unwrap());
         r.render().map(|rendered| rendered.frame.color.unwrap().into_data())
     };
     let expected = picture(TransparencyOrder::A_BUFFER, "z-buffer").unwrap();
     for order in ORDERS {
         for algorithm in VISIBILITY.iter().filter(|a| a.makes_list() || !order.needs_list) {
-            let own = picture(order.value, algorithm.name);
+            let own = picture(order.choice(), algorithm.name);
             if order.blurs {
                 let same = own.unwrap().iter().zip(&expected).all(|(a, b)| (0..4).all(|k| a[k].abs_diff(b[k]) <= 1));
                 assert!(same, "{} with {}", algorithm.name, order.name);
@@ -201,7 +201,8 @@ fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
         }
     }
     let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 1);
-    (r.settings.transparency.order, r.settings.transparency.model) = (TransparencyOrder::TWO_BUFFER, Transparency::None);
+    (r.settings.transparency.order, r.settings.transparency.model) =
+        (TransparencyOrder::TWO_BUFFER, Transparency::None);
     assert!(r.render().is_ok(), "as opaque surfaces they need no order");
 }
 
@@ -253,7 +254,7 @@ fn the_shadow_of_what_is_behind_falls_on_the_glow() {
         add(&mut scene, rectangle([-3.0, -3.0], [0.0, 3.0], -0.2), plain([0.0; 3]));
         let mut r = seen(scene, 1);
         r.lights = Some(vec![sun(dvec3(0.0, 0.0, -1.0), 0.8)]);
-        shadows.name.clone_into(&mut r.settings.shadows.algorithm);
+        r.settings.shadows.algorithm = shadows.choice();
         let picture = colors(&mut r);
         let [left, right] = [20, 76].map(|x| picture[40 * 96 + x][0]);
         assert!(left <= 2 && right.abs_diff(102) <= 2, "{}: {left}, {right}", shadows.name);

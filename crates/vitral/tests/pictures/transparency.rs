@@ -67,21 +67,21 @@ fn t10_t11_t12_f6_exact_orders_agree_in_every_algorithm_and_permutation() {
     for samples in [1, 4] {
         let reference = colors(&mut renderer(glasses(), TransparencyOrder::SORTED, samples));
         for order in ORDERS.iter().filter(|o| o.exact && !o.needs_list) {
-            let own = colors(&mut renderer(glasses(), order.value, samples));
+            let own = colors(&mut renderer(glasses(), order.choice(), samples));
             assert!(largest_difference(&own, &reference) <= 1, "{}, {samples}", order.name);
             for turn in 0..5 {
                 let mut parts = glasses();
                 parts.rotate_left(turn);
                 parts.swap(0, 3);
-                let mut permuted = renderer(parts, order.value, samples);
+                let mut permuted = renderer(parts, order.choice(), samples);
                 assert!(colors(&mut permuted) == own, "{}, {samples} samples, permutation {turn}", order.name);
             }
         }
         for algorithm in VISIBILITY {
             for order in ORDERS.iter().filter(|o| !o.needs_list) {
-                let mut r = renderer(glasses(), order.value, samples);
+                let mut r = renderer(glasses(), order.choice(), samples);
                 let expected = colors(&mut r);
-                algorithm.name.clone_into(&mut r.settings.visibility);
+                r.settings.visibility = algorithm.choice();
                 assert!(colors(&mut r) == expected, "{} with {}, {samples}", algorithm.name, order.name);
             }
         }
@@ -114,7 +114,7 @@ fn t11_all_permutations_are_bit_equal_in_exact_orders_and_not_in_inexact_ones() 
                 break;
             }
             let parts = permutation.iter().map(|&part| glasses().swap_remove(part)).collect();
-            let mut r = renderer(parts, order.value, 1);
+            let mut r = renderer(parts, order.choice(), 1);
             (r.settings.picture.width, r.settings.picture.height) = (36, 28);
             let picture = colors(&mut r);
             if !pictures.contains(&picture) {
@@ -131,7 +131,7 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
         let reference = colors(&mut renderer(glasses(), TransparencyOrder::SORTED, samples));
         for algorithm in VISIBILITY {
             let mut r = renderer(glasses(), TransparencyOrder::BACK_TO_FRONT, samples);
-            algorithm.name.clone_into(&mut r.settings.visibility);
+            r.settings.visibility = algorithm.choice();
             if !algorithm.makes_list() {
                 let error = r.render().unwrap_err();
                 assert!(error.to_string().contains("painter, bsp"), "{}: {error}", algorithm.name);
@@ -156,7 +156,7 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
                 parts.rotate_left(turn);
                 parts.swap(0, 3);
                 let mut permuted = renderer(parts, TransparencyOrder::BACK_TO_FRONT, samples);
-                algorithm.name.clone_into(&mut permuted.settings.visibility);
+                permuted.settings.visibility = algorithm.choice();
                 let apart = apart(&colors(&mut permuted));
                 assert_eq!(apart, 0, "{}, {samples} samples, permutation {turn}", algorithm.name);
             }
@@ -169,7 +169,7 @@ fn t10_lines_take_their_place_among_the_panes_of_a_list() {
     for visibility in ["painter", "bsp"] {
         let picture = |order| {
             let mut r = renderer(glasses(), order, 4);
-            (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, visibility.to_owned());
+            (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, visibility.parse().unwrap());
             colors(&mut r)
         };
         let (own, sorted) = (picture(TransparencyOrder::BACK_TO_FRONT), picture(TransparencyOrder::SORTED));
@@ -195,13 +195,13 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
     turned.reverse();
     let exact = colors(&mut renderer(glasses(), TransparencyOrder::A_BUFFER, 1));
     for order in ORDERS.iter().filter(|o| !o.exact) {
-        let first = colors(&mut renderer(glasses(), order.value, 1));
-        let other = colors(&mut renderer(turned.clone(), order.value, 1));
+        let first = colors(&mut renderer(glasses(), order.choice(), 1));
+        let other = colors(&mut renderer(turned.clone(), order.choice(), 1));
         assert!(largest_difference(&first, &other) > 20, "{}: the order of the scene shows", order.name);
         assert!(largest_difference(&first, &exact) > 20, "{}", order.name);
         let panes = || vec![glasses().remove(4), glasses().remove(2)];
         let single = |value| colors(&mut renderer(panes(), value, 4));
-        let difference = largest_difference(&single(order.value), &single(TransparencyOrder::SORTED));
+        let difference = largest_difference(&single(order.choice()), &single(TransparencyOrder::SORTED));
         assert!(difference <= 1, "{}: one layer is exact", order.name);
     }
 }
@@ -363,7 +363,7 @@ fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
     let seen = |opacity, metallic, textured, shadows: &str| {
         let mut r = exact(pane(opacity, metallic, textured), 20, 20);
         (r.camera, r.lights, r.ambient) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]), [0.0; 3]);
-        r.settings.shadows.algorithm = shadows.to_owned();
+        r.settings.shadows.algorithm = shadows.parse().unwrap();
         i32::from(colors(&mut r)[210][0])
     };
     for (opacity, metallic) in [(0.0f32, 0.0f32), (0.4, 0.0), (0.0, 0.6), (0.4, 0.6), (0.2, 1.0)] {
@@ -426,7 +426,7 @@ fn the_inner_sides_of_bodies_are_lit_as_both_sides_of_sheets_are() {
                 r.camera = Some(Camera { position, ..on_z(2.5, 0.7) });
                 r.lights = Some(vec![sun(DVec3::new(0.4, 0.6, -0.7), 1.0)]);
                 (r.settings.shading.model, r.settings.global.model) = (shading, global);
-                r.settings.shadows.algorithm = shadows.to_owned();
+                r.settings.shadows.algorithm = shadows.parse().unwrap();
                 colors(&mut r)
             };
             assert!(picture(false) == picture(true), "{:?}, {shading:?}, {shadows}, {global:?}", material.alpha_mode);
@@ -455,8 +455,8 @@ fn coincident_panes_are_two_layers_and_the_first_of_the_scene_is_in_front() {
             let listing = VISIBILITY.iter().filter(|a| a.makes_list());
             for algorithm in VISIBILITY.iter().filter(|_| !order.needs_list).chain(listing.filter(|_| order.needs_list))
             {
-                let mut r = renderer(Vec::clone(&parts), order.value, 4);
-                algorithm.name.clone_into(&mut r.settings.visibility);
+                let mut r = renderer(Vec::clone(&parts), order.choice(), 4);
+                r.settings.visibility = algorithm.choice();
                 let middle = colors(&mut r)[35 * 90 + 45][0];
                 assert!(middle.abs_diff(expected) <= 1, "{}, {}: {middle}, not {expected}", algorithm.name, order.name);
             }
@@ -484,7 +484,7 @@ fn t12_passes_over_the_triangles_give_the_picture_of_all_layers_at_once() {
             let picture = |order| {
                 let mut r = renderer(lit_glasses(), order, samples);
                 r.lights = Some(vec![sun(DVec3::new(0.3, 0.4, 0.8), 1.0)]);
-                (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, algorithm.name.to_owned());
+                (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, algorithm.name.parse().unwrap());
                 colors(&mut r)
             };
             let same = picture(TransparencyOrder::MULTI_PASS) == picture(TransparencyOrder::A_BUFFER);
@@ -510,7 +510,7 @@ fn t12_the_picture_after_each_pass_can_be_had() {
     // Without passes it is an error to ask for them.
     for (order, visibility) in [("sorted", "z-buffer"), ("multi-pass", "ray-cast"), ("multi-pass", "brute-force")] {
         let order = ORDERS.iter().find(|o| o.name == order).unwrap();
-        (r.settings.transparency.order, r.settings.visibility) = (order.value, visibility.to_owned());
+        (r.settings.transparency.order, r.settings.visibility) = (order.choice(), visibility.parse().unwrap());
         assert!(r.render().unwrap_err().to_string().contains("multi-pass"), "{visibility}");
     }
 }
@@ -521,7 +521,7 @@ fn passes_lose_no_layer_and_lists_keep_the_nearest() {
     let run = |order, visibility: &str, memory: u64| {
         let mut r = exact(scene_of(panes.clone()), 24, 24);
         (r.camera, r.settings.transparency.order) = (Some(on_z(3.0, 0.9)), order);
-        (r.settings.transparency.layer_memory, r.settings.visibility) = (memory, visibility.to_owned());
+        (r.settings.transparency.layer_memory, r.settings.visibility) = (memory, visibility.parse().unwrap());
         let rendered = r.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings.len())
     };

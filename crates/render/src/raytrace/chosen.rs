@@ -14,7 +14,7 @@ use super::bvh::Bvh;
 use super::grid::Grid;
 use super::intersect::Ray;
 use super::octree::Octree;
-use super::packet::{self, closest_hits};
+use super::packet::{PacketVisitor, closest_hits};
 use super::triangles::Triangles;
 use super::volumes::{Shape, Volumes};
 use super::{Counters, Structure, Visitor};
@@ -106,7 +106,7 @@ impl Chosen {
         &self,
         simd: S,
         rays: &[Ray],
-        visitor: &mut impl packet::Visitor,
+        visitor: &mut impl PacketVisitor,
         counters: &mut Counters,
     ) {
         match self {
@@ -121,7 +121,7 @@ impl Chosen {
 }
 
 /// Shows a packet's visitor what each ray of it meets.
-fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
+fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
     let triangles = structure.triangles();
     let mut hit = Vec::new();
     for (lane, ray) in rays.iter().enumerate() {
@@ -143,7 +143,7 @@ struct Alone<'a, T, V> {
     tests: u64,
 }
 
-impl<T: Structure, V: packet::Visitor> Visitor for Alone<'_, T, V> {
+impl<T: Structure, V: PacketVisitor> Visitor for Alone<'_, T, V> {
     #[inline(always)]
     fn skips(&self, _: usize, near: f32) -> bool {
         self.done(near)

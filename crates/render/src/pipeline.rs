@@ -11,7 +11,7 @@ use crate::shading::{
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
 use crate::transparency::registry::{ORDERS, order};
-use crate::visible::{Nowhere, charged};
+use crate::visible::NullSink;
 use crate::{
     Coherence, Error, Execution, Global, PreparedView, Session, Settings, SettingsError, Transparency, registry, shadow,
 };
@@ -127,9 +127,9 @@ pub fn illuminate_corners(
     let (shadows, radiosity) = (shadows.as_deref(), radiosity.as_deref());
     let constants =
         FrameConstants::new(&view, settings, shot.lights, shot.ambient, shadows, radiosity, &tables, execution);
-    let corners = charged(&execution.budget, bytes, "illuminated corners", || {
-        lit_corners(&facets, &constants, &execution.budget)
-    })?;
+    let corners = execution
+        .budget
+        .charged(bytes, "illuminated corners", || lit_corners(&facets, &constants, &execution.budget))?;
     Ok(corners)
 }
 
@@ -371,7 +371,7 @@ fn render_steps(
     frame: &mut Frame,
 ) -> Result<(), Error> {
     let bytes = Recorder::bytes(viewport.width, viewport.height);
-    charged(&execution.budget, bytes, "the picture of the steps", || {
+    execution.budget.charged(bytes, "the picture of the steps", || {
         let recorder = Arc::new(Recorder::new(viewport.width, viewport.height));
         let watched = Execution { observer: Some(Arc::clone(&recorder) as Arc<dyn Observer>), ..execution.clone() };
         let mut grid = TileGrid::new(viewport, 1);
@@ -379,7 +379,7 @@ fn render_steps(
         let pattern = SamplePattern::new(1);
         let view = PreparedView::new(session, &shot.camera, settings, viewport, pattern, &watched, culled);
         let algorithm = registry::visibility(&settings.visibility).expect("settings were checked").algorithm;
-        algorithm.resolve(&view, None, &mut grid, &watched, &Nowhere)?;
+        algorithm.resolve(&view, None, &mut grid, &watched, &NullSink)?;
         frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
         Ok(())
     })?;

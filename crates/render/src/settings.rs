@@ -618,6 +618,11 @@ impl Settings {
         CoherenceSet::of(self.coherence.as_deref().unwrap_or_else(all))
     }
 
+    /// Whether layers come in the order of a list of polygons, where the algorithm makes one.
+    pub fn lists_layers(&self) -> bool {
+        transparency::registry::order(self.transparency_order).needs_list
+    }
+
     fn check_shadows(&self) -> Result<(), SettingsError> {
         if !(1..=4096).contains(&self.light_samples) {
             return Err(SettingsError::LightSamples(self.light_samples));

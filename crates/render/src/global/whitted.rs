@@ -45,7 +45,7 @@ use crate::shading::{Bounce, FrameConstants, Lit, Points, shade_hits};
 use crate::shadow::{Place, clearance, facet, hash, weighted, weights};
 use crate::stats::TracingCounters;
 use crate::transparency::scattering::Strata;
-use crate::visible::{few_enough, nearer};
+use crate::visible::nearer;
 use crate::{Acceleration, Execution, Settings};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -134,7 +134,7 @@ impl<'a> Whitted<'a> {
         if view.acceleration == Acceleration::None {
             // About as many rays as samples.
             let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
-            few_enough(samples.saturating_mul(facets), "ray tracing without a structure")?;
+            execution.budget.check_work(samples.saturating_mul(facets), "ray tracing without a structure")?;
         }
         let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
         let charged = Triangles::bytes(facets) + Chosen::bytes(view.acceleration, facets) + forests;

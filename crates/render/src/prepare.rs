@@ -5,10 +5,11 @@
 //! cover and how near they are there; the z-buffer's kernels compute the same in bulk.
 
 use crate::cull::frustum::{self, VisibleInstance};
+use crate::cull::opacity::is_layered;
 use crate::stats::CullCounters;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
-use vitral_light::{AlphaMode, Material};
+use vitral_light::Material;
 use vitral_math::lanes::Level;
 use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
 use vitral_raster::clip::{Polygon, clip};
@@ -196,15 +197,6 @@ fn layer_limit(viewport: Viewport, bytes: u64) -> usize {
 /// Whether a transform turns left-handed into right-handed.
 pub fn mirrors(transform: &DMat4) -> bool {
     transform.determinant() < 0.0
-}
-
-/// Whether surfaces of a material are layers in front of what is opaque.
-pub(crate) fn is_layered(material: Option<&Material>, transparency: Transparency) -> bool {
-    material.is_some_and(|m| match m.alpha_mode {
-        AlphaMode::Opaque => false,
-        AlphaMode::Mask { .. } => true,
-        AlphaMode::Blend => transparency != Transparency::None,
-    })
 }
 
 /// The opacity class of a material.

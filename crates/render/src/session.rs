@@ -2,8 +2,7 @@
 //!
 //! Pictures with a fresh session and with a used one are equal.
 
-use crate::cull::{backface, bounds_tree::BoundsTree};
-use crate::prepare::is_layered;
+use crate::cull::{backface, bounds_tree::BoundsTree, opacity::is_layered};
 use crate::radiosity;
 use crate::raytrace::bsp::Bsp;
 use crate::raytrace::bvh::Bvh;

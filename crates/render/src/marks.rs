@@ -184,57 +184,107 @@ pub(crate) fn build(
     fade: Option<Fade>,
     execution: &Execution,
 ) -> (Marks, MarkColors) {
-    let world = &view.session.world;
-    let count = view.pattern.len();
+    let (world, count) = (&view.session.world, view.pattern.len());
     let samples =
         if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
     let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
-    let raw = settings.picture.color_space == crate::ColorSpace::Raw;
-    let encode = |c: [f32; 3]| if raw { c } else { c.map(linear_from_srgb) };
-    let mut marks = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
+    let colors = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
     let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
-    let mut pen = Pen { view, drawn, clip_from_model, lift, half };
-    let edge_color = encode(edge_color(&settings.picture.background));
+    let pen = Pen { view, drawn, clip_from_model, lift, half };
+
+    // Draw edges, lines and points, instance by instance.
+    let mut drawing = Drawing { view, settings, execution, pen, colors };
     for prepared in &view.instances {
-        let instance = &world.instances[prepared.instance];
-        let (positions, clip_from_model) = view.session.placed_positions(instance, &view.view.clip_from_world());
-        pen.clip_from_model = clip_from_model;
-        let toward = (view.view.view_from_world * instance.world_from_model).row(2).as_vec4();
-        let depth = |i: u32| -toward.dot(Vec3::from(instance.mesh.positions[i as usize]).extend(1.0));
-        if settings.picture.lines != Lines::None {
-            for edge in view.session.edges(instance.mesh_index, &execution.workers) {
-                let Some(id) = marks.next([edge_color[0], edge_color[1], edge_color[2], 1.0]) else { break };
-                if let Some(drawn) = pen.stroke(edge.ends.map(|i| positions[i as usize]), id) {
-                    marks.place(&drawn, edge.ends.map(depth));
-                }
+        drawing.instance(&world.instances[prepared.instance]);
+    }
+    let Drawing { pen: Pen { drawn: mut marks, .. }, colors, .. } = drawing;
+    marks.all.finish(&view.screen);
+    marks.hiding.finish(&view.screen);
+    (marks, colors)
+}
+
+/// The marks of a view, while they are made.
+struct Drawing<'v, 'a> {
+    view: &'v PreparedView<'a>,
+    settings: &'v Settings,
+    execution: &'v Execution,
+    pen: Pen<'v, 'a>,
+    colors: MarkColors,
+}
+
+/// An instance whose marks are made.
+struct Subject<'v> {
+    instance: &'v Instance,
+    positions: &'v [[f32; 3]],
+    /// Where the direction of sight leads, model space.
+    toward: Vec4,
+}
+
+impl Subject<'_> {
+    /// The depth of a vertex along the direction of sight.
+    fn depth(&self, vertex: u32) -> f32 {
+        -self.toward.dot(Vec3::from(self.instance.mesh.positions[vertex as usize]).extend(1.0))
+    }
+}
+
+impl Drawing<'_, '_> {
+    fn instance(&mut self, instance: &Instance) {
+        let (session, view) = (self.view.session, &self.view.view);
+        let (positions, clip_from_model) = session.placed_positions(instance, &view.clip_from_world());
+        self.pen.clip_from_model = clip_from_model;
+        let toward = (view.view_from_world * instance.world_from_model).row(2).as_vec4();
+        let subject = Subject { instance, positions, toward };
+        if self.settings.picture.lines != Lines::None {
+            self.edges(&subject);
+        }
+        self.lines(&subject);
+        self.points(&subject);
+    }
+
+    /// Draws the edges of faces, as long as there are ids.
+    fn edges(&mut self, subject: &Subject<'_>) {
+        let raw = self.settings.picture.color_space == crate::ColorSpace::Raw;
+        let color = edge_color(&self.settings.picture.background);
+        let [r, g, b] = if raw { color } else { color.map(linear_from_srgb) };
+        for edge in self.view.session.edges(subject.instance.mesh_index, &self.execution.workers) {
+            let Some(id) = self.colors.next([r, g, b, 1.0]) else { break };
+            if let Some(drawn) = self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id) {
+                self.colors.place(&drawn, edge.ends.map(|i| subject.depth(i)));
             }
         }
-        let mesh = &instance.mesh;
-        let paint = Paint { view, instance, settings };
+    }
+
+    /// Draws the mesh's own lines, as long as there are ids.
+    fn lines(&mut self, subject: &Subject<'_>) {
+        let mesh = &subject.instance.mesh;
+        let paint = Paint { view: self.view, instance: subject.instance, settings: self.settings };
         for (i, line) in mesh.lines.iter().enumerate() {
             let material = FreePart::material_of(&mesh.line_parts, i);
             let [start, end] = line.map(|vertex| paint.color(material, vertex));
-            let Some(id) = marks.next(start) else { break };
-            let Some(drawn) = pen.stroke(line.map(|i| positions[i as usize]), id) else { continue };
-            marks.place(&drawn, line.map(depth));
+            let Some(id) = self.colors.next(start) else { break };
+            let Some(drawn) = self.pen.stroke(line.map(|i| subject.positions[i as usize]), id) else { continue };
+            self.colors.place(&drawn, line.map(|i| subject.depth(i)));
             if start != end {
-                let mark = marks.colors.len() - 1;
-                let gradient = drawn.gradient([start, end], settings.shading.interpolation);
-                marks.colors[mark] = gradient.0;
-                marks.gradients.push((mark as u32, gradient.1));
+                let mark = self.colors.colors.len() - 1;
+                let gradient = drawn.gradient([start, end], self.settings.shading.interpolation);
+                self.colors.colors[mark] = gradient.0;
+                self.colors.gradients.push((mark as u32, gradient.1));
             }
         }
+    }
+
+    /// Draws the mesh's points, as long as there are ids.
+    fn points(&mut self, subject: &Subject<'_>) {
+        let mesh = &subject.instance.mesh;
+        let paint = Paint { view: self.view, instance: subject.instance, settings: self.settings };
         for (i, &point) in mesh.points.iter().enumerate() {
             let material = FreePart::material_of(&mesh.point_parts, i);
             let color = paint.color(material, point);
-            let Some(id) = marks.next(color) else { break };
-            marks.place_dot(depth(point));
-            pen.dot(positions[point as usize], id, color[3] >= 1.0);
+            let Some(id) = self.colors.next(color) else { break };
+            self.colors.place_dot(subject.depth(point));
+            self.pen.dot(subject.positions[point as usize], id, color[3] >= 1.0);
         }
     }
-    pen.drawn.all.finish(&view.screen);
-    pen.drawn.hiding.finish(&view.screen);
-    (pen.drawn, marks)
 }
 
 /// Dark edges on light ground and the other way round.

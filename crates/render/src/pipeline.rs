@@ -13,7 +13,7 @@ use crate::shading::{
 use crate::shadow::{self, Shadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::trace::{Observer, picture::Recorder};
-use crate::visible::{Nowhere, Resolved, VisibleSurface, charged};
+use crate::visible::{NullSink, Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
 use assemble::Assembler;
 use checks::{check_indices, check_order, warnings};
@@ -117,9 +117,9 @@ pub fn illuminate_corners(
     let shadows = context.shadows(&view)?;
     let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
     let bytes = facets.len() as u64 * 3 * size_of::<LitCorner>() as u64;
-    let corners = charged(&execution.budget, bytes, "illuminated corners", || {
-        lit_corners(&facets, &constants, &execution.budget)
-    })?;
+    let corners = execution
+        .budget
+        .charged(bytes, "illuminated corners", || lit_corners(&facets, &constants, &execution.budget))?;
     Ok(corners)
 }
 
@@ -271,14 +271,14 @@ impl<'a> FrameContext<'a> {
     /// The steps of the algorithm with one sample a pixel, over the colour picture, which goes if it was not asked for.
     fn render_steps(&self, session: &mut Session, frame: &mut Frame) -> Result<(), Error> {
         let Viewport { width, height, .. } = self.viewport;
-        charged(&self.execution.budget, Recorder::bytes(width, height), "the picture of the steps", || {
+        self.execution.budget.charged(Recorder::bytes(width, height), "the picture of the steps", || {
             let recorder = Arc::new(Recorder::new(width, height));
             let observer = Arc::clone(&recorder) as Arc<dyn Observer>;
             let watched = Execution { observer: Some(observer), ..self.execution.clone() };
             let watched_context = FrameContext { execution: &watched, ..*self };
             let mut grid = TileGrid::new(self.viewport, 1);
             let view = watched_context.view(session, SamplePattern::new(1), &mut CullCounters::default());
-            self.visibility().resolve(&view, None, &mut grid, &watched, &Nowhere)?;
+            self.visibility().resolve(&view, None, &mut grid, &watched, &NullSink)?;
             frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
             Ok(())
         })?;

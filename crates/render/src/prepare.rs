@@ -4,12 +4,12 @@
 //! facet, [`PreparedView::setups`] gives its pieces on the screen, whose `covers` and `depth` say which samples they
 //! cover and how near they are there; the z-buffer's kernels compute the same in bulk.
 
-use crate::cull::frustum;
+use crate::cull::frustum::{self, VisibleInstance};
+use crate::cull::opacity::is_layered;
 use crate::stats::CullCounters;
-use crate::visible::TileSink;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
-use vitral_light::{AlphaMode, Material};
+use vitral_light::Material;
 use vitral_math::lanes::Level;
 use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
 use vitral_raster::clip::{Polygon, clip};
@@ -76,30 +76,14 @@ impl<'a> PreparedView<'a> {
         let aspect = f64::from(viewport.width) / f64::from(viewport.height);
         let view = camera.transform(aspect, depth_range(camera, &session.world.bounds));
         let clip_from_world = view.clip_from_world();
-        let surfaces = !matches!(settings.picture.lines, crate::Lines::Wireframe);
-        let mut instances = Vec::new();
         let coherence = settings.coherence();
         let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
-        for visible in frustum::cull(session, &clip_from_world, cull_objects, counters) {
-            let instance = &session.world.instances[visible.instance];
-            let drops = settings.cull.back_face && is_outside(instance, camera, &view);
-            let back_faces = |class: Class| {
-                if !drops || class.double_sided || class.layered {
-                    return BackFaces::Kept;
-                }
-                session.back_faces(instance.mesh_index, settings.transparency.model, &execution.workers)
-            };
-            let draws = if surfaces {
-                draws(session, instance, &visible.ranges, &clip_from_world, settings, back_faces)
-            } else {
-                Vec::new()
-            };
-            let (layered, opaque): (Vec<_>, Vec<_>) = draws.into_iter().partition(|(class, _)| class.layered);
-            let strip = |list: Vec<(Class, Draw<'a>)>| list.into_iter().map(|(_, draw)| draw).collect::<Vec<_>>();
-            let (opaque, layered) = (strip(opaque), strip(layered));
-            counters.back_face_culled_instances += u64::from(opaque.iter().any(|d| d.back_faces != BackFaces::Kept));
-            instances.push(PreparedInstance { instance: visible.instance, opaque, layered });
-        }
+        let visible = frustum::cull(session, &clip_from_world, cull_objects, counters);
+        let preparation = Preparation { session, camera, settings, view: &view, clip_from_world, execution };
+        let instances: Vec<_> = visible.into_iter().map(|visible| preparation.instance(&visible)).collect();
+        let drops = |draw: &Draw<'_>| draw.back_faces != BackFaces::Kept;
+        counters.back_face_culled_instances +=
+            instances.iter().filter(|instance| instance.opaque.iter().any(drops)).count() as u64;
         let screen = Screen::new(viewport, &pattern);
         let acceleration = settings.acceleration.unwrap_or_default();
         let layer_limit = layer_limit(viewport, settings.transparency.layer_memory);
@@ -122,15 +106,6 @@ impl<'a> PreparedView<'a> {
     pub(crate) fn layer_list(&self) -> LayerList {
         let list = LayerList::new(self.layer_limit, self.pattern.len());
         if self.lists_layers { list.from_back_to_front() } else { list }
-    }
-
-    /// [`Self::layer_list`] for an algorithm that walks triangles one by one, as `sink` takes it.
-    pub(crate) fn layer_list_for(&self, sink: &dyn TileSink) -> LayerList {
-        let mut list = self.layer_list();
-        if sink.takes_fragments() {
-            list.gather();
-        }
-        list
     }
 
     /// The viewer in world space, and whether projectors meet there.
@@ -224,61 +199,81 @@ pub fn mirrors(transform: &DMat4) -> bool {
     transform.determinant() < 0.0
 }
 
-/// Whether surfaces of a material are layers in front of what is opaque.
-pub(crate) fn is_layered(material: Option<&Material>, transparency: Transparency) -> bool {
-    material.is_some_and(|m| match m.alpha_mode {
-        AlphaMode::Opaque => false,
-        AlphaMode::Mask { .. } => true,
-        AlphaMode::Blend => transparency != Transparency::None,
-    })
-}
-
 /// The opacity class of a material.
 fn class(material: Option<&Material>, transparency: Transparency) -> Class {
     Class { layered: is_layered(material, transparency), double_sided: material.is_some_and(|m| m.double_sided) }
 }
 
-/// Cuts an instance's visible ranges by class, in order, one draw a class.
-fn draws<'a>(
+/// What instances are prepared with.
+struct Preparation<'p, 'a> {
     session: &'a Session,
-    instance: &'a Instance,
-    ranges: &[Range<u32>],
-    clip_from_world: &DMat4,
-    settings: &Settings,
-    back_faces: impl Fn(Class) -> BackFaces<'a>,
-) -> Vec<(Class, Draw<'a>)> {
-    let mesh = &*instance.mesh;
-    let (positions, clip_from_model) = session.placed_positions(instance, clip_from_world);
-    let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
-    for part in &mesh.parts {
-        let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
-        let class = class(material, settings.transparency.model);
-        for range in ranges {
-            let (start, end) = (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
-            if start >= end {
-                continue;
+    camera: &'p Camera,
+    settings: &'p Settings,
+    view: &'p ViewTransform,
+    clip_from_world: DMat4,
+    execution: &'p Execution,
+}
+
+impl<'a> Preparation<'_, 'a> {
+    /// An instance's draws, opaque ones apart from layers.
+    fn instance(&self, visible: &VisibleInstance) -> PreparedInstance<'a> {
+        let session = self.session;
+        let instance = &session.world.instances[visible.instance];
+        let mut prepared = PreparedInstance { instance: visible.instance, opaque: Vec::new(), layered: Vec::new() };
+        if matches!(self.settings.picture.lines, crate::Lines::Wireframe) {
+            return prepared;
+        }
+        let drops = self.settings.cull.back_face && is_outside(instance, self.camera, self.view);
+        let back_faces = |class: Class| {
+            if !drops || class.double_sided || class.layered {
+                return BackFaces::Kept;
             }
-            let draw = match draws.iter().position(|(c, _)| *c == class) {
-                Some(i) => &mut draws[i].1,
-                None => {
-                    let draw = Draw {
-                        positions,
-                        triangles: &mesh.triangles,
-                        ranges: Vec::new(),
-                        clip_from_model,
-                        first_facet: instance.first_facet,
-                        back_faces: back_faces(class),
-                        mirrored: mirrors(&instance.world_from_model),
-                    };
-                    draws.push((class, draw));
-                    &mut draws.last_mut().expect("just pushed").1
+            session.back_faces(instance.mesh_index, self.settings.transparency.model, &self.execution.workers)
+        };
+        for (class, draw) in self.draws(instance, &visible.ranges, back_faces) {
+            if class.layered { &mut prepared.layered } else { &mut prepared.opaque }.push(draw);
+        }
+        prepared
+    }
+
+    /// Cuts an instance's visible ranges by class, in order, one draw a class.
+    fn draws(
+        &self,
+        instance: &'a Instance,
+        ranges: &[Range<u32>],
+        back_faces: impl Fn(Class) -> BackFaces<'a>,
+    ) -> Vec<(Class, Draw<'a>)> {
+        let mesh = &*instance.mesh;
+        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.clip_from_world);
+        let new_draw = |class: Class| Draw {
+            positions,
+            triangles: &mesh.triangles,
+            ranges: Vec::new(),
+            clip_from_model,
+            first_facet: instance.first_facet,
+            back_faces: back_faces(class),
+            mirrored: mirrors(&instance.world_from_model),
+        };
+        let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
+        for part in &mesh.parts {
+            let material = part.material.and_then(|m| self.session.scene.materials.get(m as usize));
+            let class = class(material, self.settings.transparency.model);
+            for range in ranges {
+                let (start, end) = (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
+                if start >= end {
+                    continue;
                 }
-            };
-            match draw.ranges.last_mut() {
-                Some(last) if last.end == start => last.end = end,
-                _ => draw.ranges.push(start..end),
+                let index = draws.iter().position(|(c, _)| *c == class).unwrap_or_else(|| {
+                    draws.push((class, new_draw(class)));
+                    draws.len() - 1
+                });
+                let ranges = &mut draws[index].1.ranges;
+                match ranges.last_mut() {
+                    Some(last) if last.end == start => last.end = end,
+                    _ => ranges.push(start..end),
+                }
             }
         }
+        draws
     }
-    draws
 }

@@ -3,8 +3,7 @@
 //! Pictures with a fresh session and with a used one are equal.
 
 use crate::cache::{Cache, PerMesh};
-use crate::cull::backface;
-use crate::prepare::is_layered;
+use crate::cull::{backface, opacity::is_layered};
 use crate::{Error, Transparency};
 use std::any::Any;
 use std::convert::Infallible;

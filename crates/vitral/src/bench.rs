@@ -11,7 +11,7 @@ use vitral_exec::Limit;
 use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
-use vitral_render::visible::Nowhere;
+use vitral_render::visible::NullSink;
 use vitral_render::{Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
 use vitral_scene::{Camera, Scene};
 
@@ -130,7 +130,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
         let pattern = SamplePattern::new(samples);
         let culled = &mut CullCounters::default();
         let view = PreparedView::new(&session, task.camera, &settings, viewport, pattern, &execution, culled);
-        let resolved = entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &Nowhere)?;
+        let resolved = entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &NullSink)?;
         Ok((execution.budget.elapsed() - start, resolved))
     };
     let (first_seconds, resolved) = match picture(&mut grid) {

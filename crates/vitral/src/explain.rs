@@ -13,7 +13,7 @@ use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
 use vitral_render::shading::gouraud::{EdgeStep, ScreenIntensity, scan_convert};
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, Step, Way};
-use vitral_render::visible::Nowhere;
+use vitral_render::visible::NullSink;
 use vitral_render::{
     Channels, Execution, Global, PreparedView, Session, Settings, Shading, Shot, illuminate_corners, render,
 };
@@ -385,7 +385,7 @@ fn decide(
     let culled = &mut CullCounters::default();
     let view = PreparedView::new(session, camera, &settings, viewport, SamplePattern::new(1), &execution, culled);
     let mut grid = TileGrid::new(viewport, 1);
-    let resolved = entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &Nowhere);
+    let resolved = entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &NullSink);
     let (tile, at) = grid.locate(pixel[0], pixel[1]);
     let seen = resolved.is_ok() && tile.facet[at] != NO_FACET;
     let steps = std::mem::take(&mut *onlooker.steps.lock().expect("no thread panics while it keeps a step"));

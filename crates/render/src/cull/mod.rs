@@ -3,3 +3,4 @@
 pub mod backface;
 pub mod bounds_tree;
 pub mod frustum;
+pub(crate) mod opacity;

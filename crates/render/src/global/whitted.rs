@@ -41,7 +41,7 @@ use crate::raytrace::triangles::Triangles;
 use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Strata, Tracer, shade_hits};
 use crate::shadow::Place;
 use crate::stats::TracingCounters;
-use crate::visible::{few_enough, nearer};
+use crate::visible::nearer;
 use crate::{Execution, Settings};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -100,7 +100,7 @@ impl<'a> Whitted<'a> {
         if view.acceleration.asks_all {
             // About as many rays as samples.
             let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
-            few_enough(samples.saturating_mul(facets), "ray tracing without a structure")?;
+            execution.budget.check_work(samples.saturating_mul(facets), "ray tracing without a structure")?;
         }
         let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
         let charged = Triangles::bytes(facets) + AnyStructure::bytes(view.acceleration, facets) + forests;

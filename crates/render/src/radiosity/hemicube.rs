@@ -17,7 +17,7 @@ use super::patch::Trees;
 use super::targets::{Sums, Targets};
 use crate::shadow::clearance;
 use crate::stats::CullCounters;
-use crate::visible::{TileSink, zbuffer::resolve_in_passing};
+use crate::visible::{TileSink, resolve_in_passing};
 use crate::{Execution, PreparedView, Settings};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Mutex;

@@ -245,15 +245,11 @@ mod tests {
         let white = [[255; 4]; 2];
         let of = |raw, from_srgb| {
             let color_space = if raw { ColorSpace::Raw } else { ColorSpace::default() };
-            looks(
-                white,
-                &Settings::default().with_color_space(color_space),
-                |_, mesh, _| {
-                    let colors = mesh.positions.iter().map(|p| [p[0] + 0.5, 0.2, 0.2, 1.0]).collect();
-                    mesh.colors = Some(Attribute::per_vertex(colors));
-                    mesh.colors_from_srgb = from_srgb;
-                },
-            )
+            looks(white, &Settings::default().with_color_space(color_space), |_, mesh, _| {
+                let colors = mesh.positions.iter().map(|p| [p[0] + 0.5, 0.2, 0.2, 1.0]).collect();
+                mesh.colors = Some(Attribute::per_vertex(colors));
+                mesh.colors_from_srgb = from_srgb;
+            })
         };
         for (middle, surface) in of(false, true) {
             assert!(close(surface.reflectance, [0.9 * (middle.x + 0.5), 0.18, 0.18]), "{:?}", surface.reflectance);

@@ -210,37 +210,19 @@ impl Build<'_> {
             .map(|[least, most]| [least.clamp(min, max), most.clamp(min, max)])
             .collect();
         let [least, most] = boxes.iter().fold([max, min], |[l, m], b| [l.min(b[0]), m.max(b[1])]);
-        let size = max - min;
-        let scale = 1.0 / size.max_element();
-        let whole = area(size * scale);
         let count = boxes.len() as u32;
-
-        let mut best = (count as f32, None);
+        let mut planes = Planes::new([min, max], count);
         for axis in 0..3 {
-            let mut consider = |at: f32, lower: u32, upper: u32| {
-                let side = |extent: f32| {
-                    let mut side = size;
-                    side[axis] = extent;
-                    area(side * scale)
-                };
-                let triangles = side(at - min[axis]) * lower as f32 + side(max[axis] - at) * upper as f32;
-                let empty = if lower == 0 || upper == 0 { EMPTY_SIDE } else { 1.0 };
-                let cost = VISIT + empty * triangles / whole;
-                if cost < best.0 {
-                    best = (cost, Some((axis, at)));
-                }
-            };
-
             // Cut off what is empty, if it is more than what cells overlap by.
             let (low, high) = (least[axis] - 2.0 * self.slack, most[axis] + 2.0 * self.slack);
             if low - min[axis] > 4.0 * self.slack {
-                consider(low, 0, count);
+                planes.consider(axis, low, [0, count]);
             }
             if max[axis] - high > 4.0 * self.slack {
-                consider(high, count, 0);
+                planes.consider(axis, high, [count, 0]);
             }
 
-            // Count who begins and who ends in each bin.
+            // Count who begins and who ends in each bin, and try the borders between bins.
             let width = (most[axis] - least[axis]) / BINS as f32;
             if width <= 4.0 * self.slack {
                 continue;
@@ -255,10 +237,47 @@ impl Build<'_> {
             for plane in 1..BINS {
                 lower += begin[plane - 1];
                 upper -= end[plane - 1];
-                consider(least[axis] + width * plane as f32, lower, upper);
+                planes.consider(axis, least[axis] + width * plane as f32, [lower, upper]);
             }
         }
-        best.1
+        planes.cheapest
+    }
+}
+
+/// The planes that a cell might be cut by, and the cheapest so far.
+struct Planes {
+    min: Vec3,
+    max: Vec3,
+    /// Half the surface of the whole cell; sizes are relative to its longest side.
+    whole: f32,
+    cost: f32,
+    /// Its axis, and where it is on that; `None` if a leaf is cheaper.
+    cheapest: Option<(usize, f32)>,
+}
+
+impl Planes {
+    /// None yet, of a cell with `count` triangles.
+    fn new([min, max]: Cell, count: u32) -> Self {
+        let size = max - min;
+        let whole = area(size * (1.0 / size.max_element()));
+        Self { min, max, whole, cost: count as f32, cheapest: None }
+    }
+
+    /// Considers a plane with so many triangles below and above.
+    fn consider(&mut self, axis: usize, at: f32, [lower, upper]: [u32; 2]) {
+        let size = self.max - self.min;
+        let scale = 1.0 / size.max_element();
+        let side = |extent: f32| {
+            let mut side = size;
+            side[axis] = extent;
+            area(side * scale)
+        };
+        let triangles = side(at - self.min[axis]) * lower as f32 + side(self.max[axis] - at) * upper as f32;
+        let empty = if lower == 0 || upper == 0 { EMPTY_SIDE } else { 1.0 };
+        let cost = VISIT + empty * triangles / self.whole;
+        if cost < self.cost {
+            (self.cost, self.cheapest) = (cost, Some((axis, at)));
+        }
     }
 }
 

@@ -1,22 +1,19 @@
 //! A hierarchy of bounding volumes over all triangles of a scene.
 //!
-//! Each node is a box round the two nodes below it; a ray that misses the box misses everything in it. A good tree
-//! separates large empty places early. Where to cut is guessed by the surface area heuristic: a ray that meets a node
-//! meets a child in proportion to the child's surface, so the expected cost of a cut is the sum over its sides of area
-//! times triangles. The triangles' centres are sorted into a few bins an axis and the borders between bins tried; of a
-//! large node, all three axes are filled in one pass over its triangles. Large halves are built at the same time.
+//! Each node is a box round the two nodes below it; a ray that misses the box misses everything in it. How the tree is cut is
+//! in `sah.rs`. Packets of eight rays go down it together (`packet.rs`), all others down a tree with eight boxes a node that is
+//! made of it (`wide.rs`).
 //!
 //! In:   triangles. Out: [`Bvh`], with the triangles in the order of its leaves.
-//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and up to 100 a triangle for eight boxes a node
-//!       (`wide.rs`), which all but packets of rays go down.
-//! Source: [Rubin & Whitted 1980], the heuristic after [MacDonald & Booth 1990], bins after [Wald 2007]. Departs from
-//!       them: below a certain depth cuts are at the median, which bounds the stack.
+//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and up to 100 a triangle for eight boxes a node.
+//! Source: [Rubin & Whitted 1980].
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
 use super::intersect::Ray;
-use super::packet::{self, Packet};
-use super::triangles::{Triangles, bounds_of};
+use super::packet::{Packet, PacketVisitor};
+use super::sah::{BYTES_A_TRIANGLE, Node, SAH_DEPTH, build};
+use super::triangles::Triangles;
 use super::wide::Wide;
 use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
@@ -27,31 +24,8 @@ use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, LANES, Level, Mask8, Simd, dispatch};
 
-/// Most bins an axis.
-const BINS: usize = 16;
-/// Most triangles in a leaf.
-const LEAF: usize = 4;
-/// Nodes with more triangles are cut with their halves built at the same time, and ask the budget.
-const LARGE: usize = 4096;
-/// Triangles whose boxes are made at once.
-const CHUNK: usize = 8192;
-/// Below this depth cuts are at the median.
-const SAH_DEPTH: usize = 48;
 /// 32 halvings of what is left below `SAH_DEPTH` end in a leaf.
 const STACK: usize = SAH_DEPTH + 34;
-/// The cost of visiting a node, in triangle tests.
-const VISIT: f32 = 1.0;
-
-/// A box, and below it a left child (the next node) and a right one, or triangles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
-    pub(super) min: [f32; 3],
-    /// Triangles of a leaf, 0 for an inner node.
-    pub(super) count: u32,
-    pub(super) max: [f32; 3],
-    /// First triangle of a leaf; distance to the right child of an inner node.
-    pub(super) link: u32,
-}
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,61 +36,10 @@ pub struct Bvh {
     triangles: Triangles,
 }
 
-/// A growing box. The fourth lane is idle: four numbers are handled at once.
-#[derive(Clone, Copy, Debug, Default)]
-struct Bounds {
-    min: [f32; 4],
-    max: [f32; 4],
-}
-
-/// A triangle while the tree is built.
-#[derive(Clone, Copy, Debug, Default)]
-struct Item {
-    bounds: Bounds,
-    index: u32,
-}
-
-impl Item {
-    /// Twice the centre of the box.
-    #[inline(always)]
-    fn center(&self) -> [f32; 4] {
-        std::array::from_fn(|k| self.bounds.min[k] + self.bounds.max[k])
-    }
-}
-
-impl Bounds {
-    const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
-
-    /// Written with comparisons that four lanes have an instruction for.
-    #[inline(always)]
-    fn join(self, min: [f32; 4], max: [f32; 4]) -> Self {
-        Self {
-            min: std::array::from_fn(|k| if min[k] < self.min[k] { min[k] } else { self.min[k] }),
-            max: std::array::from_fn(|k| if max[k] > self.max[k] { max[k] } else { self.max[k] }),
-        }
-    }
-
-    #[inline(always)]
-    fn area(&self) -> f32 {
-        area(&self.min, &self.max)
-    }
-}
-
-/// Half the surface of a box; NaN for nothing.
-#[inline(always)]
-pub(super) fn area<const N: usize>(min: &[f32; N], max: &[f32; N]) -> f32 {
-    let [x, y, z] = [0, 1, 2].map(|k| max[k] - min[k]);
-    x * y + y * z + z * x
-}
-
-/// The triangles of a node, in no order yet, the box round them, and the box round their doubled centres.
-struct Span<'a> {
-    items: &'a mut [Item],
-    /// The place of the first in the tree.
-    first: usize,
-    bounds: Bounds,
-    centers: Bounds,
-    depth: usize,
+/// Nodes that a packet goes down later, and where each ray enters them; infinite for those that pass one by.
+struct PacketStack {
+    nodes: [(u32, [f32; LANES]); STACK],
+    count: usize,
 }
 
 impl Cached for Bvh {
@@ -138,7 +61,7 @@ impl Bvh {
 
     /// Bytes needed while a tree over this many triangles, or the tree with eight boxes a node, is built.
     pub fn bytes(triangles: u64) -> u64 {
-        triangles * (size_of::<Item>() + size_of::<Node>() + size_of::<[Vec3; 3]>() + 4 + Wide::BYTES) as u64
+        triangles * (BYTES_A_TRIANGLE + size_of::<[Vec3; 3]>() + 4 + Wide::BYTES) as u64
     }
 
     /// Builds the tree. The result does not depend on the number of workers.
@@ -146,26 +69,12 @@ impl Bvh {
     /// # Errors
     /// A limit of the budget.
     pub fn build(triangles: &Triangles, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
-        budget.check("building the tree of boxes")?;
-        if triangles.count() == 0 {
-            return Ok(Self { nodes: Vec::new(), wide: OnceLock::new(), triangles: triangles.clone() });
-        }
-        let mut items = vec![Item::default(); triangles.count()];
-        workers.for_each_chunk(&mut items, CHUNK, |chunk, items| {
-            for (i, item) in items.iter_mut().enumerate() {
-                let index = chunk * CHUNK + i;
-                let [min, max] = bounds_of(&triangles.corners[index]).map(|p| [p.x, p.y, p.z, 0.0]);
-                *item = Item { bounds: Bounds { min, max }, index: index as u32 };
-            }
-        });
-        let span = Span::new(&mut items);
-        let nodes = split(span, workers, budget)?;
-        let triangles = triangles.reordered(items.iter().map(|item| item.index));
-        Ok(Self { nodes, wide: OnceLock::new(), triangles })
+        let (nodes, order) = build(triangles, workers, budget)?;
+        Ok(Self { nodes, wide: OnceLock::new(), triangles: triangles.reordered(order.iter().copied()) })
     }
 
     #[inline(always)]
-    fn descend_together<S: Simd, V: packet::Visitor>(
+    fn descend_together<S: Simd, V: PacketVisitor>(
         &self,
         simd: S,
         rays: &[Ray],
@@ -178,8 +87,8 @@ impl Bvh {
         let apart = F32x8::splat(simd, f32::INFINITY);
         let mut near = packet.live().select(packet.enters(simd, root.min, root.max), apart);
         counters.boxes += rays.len() as u64;
-        let mut stack = [(0u32, [0.0f32; LANES]); STACK];
-        let (mut top, mut index) = (0, 0);
+        let mut stack = PacketStack { nodes: [(0, [0.0; LANES]); STACK], count: 0 };
+        let mut index = 0;
         loop {
             let wanted = near.simd_le(F32x8::from_slice(simd, visitor.limits()));
             let node = &self.nodes[index];
@@ -192,37 +101,54 @@ impl Bvh {
                 }
             } else {
                 counters.boxes += 2 * u64::from(wanted.to_bitmask().count_ones());
-                let (left, right) = (index + 1, index + node.link as usize);
-                let (l, r) = (&self.nodes[left], &self.nodes[right]);
-                let at_left = wanted.select(packet.enters(simd, l.min, l.max), apart);
-                let at_right = wanted.select(packet.enters(simd, r.min, r.max), apart);
-                let lanes = |mask: Mask8<S>| mask.to_bitmask().count_ones();
-                below = match (at_left.simd_lt(apart).any_true(), at_right.simd_lt(apart).any_true()) {
-                    (false, false) => None,
-                    (true, false) => Some((left, at_left)),
-                    (false, true) => Some((right, at_right)),
-                    (true, true) => {
-                        let left_first =
-                            !V::NEAREST_FIRST || lanes(at_right.simd_lt(at_left)) <= lanes(at_left.simd_lt(at_right));
-                        let (next, later) = if left_first {
-                            ((left, at_left), (right, at_right))
-                        } else {
-                            ((right, at_right), (left, at_left))
-                        };
-                        stack[top] = (later.0 as u32, later.1.to_array());
-                        top += 1;
-                        Some(next)
-                    }
-                };
+                below = self.open(simd, &packet, index, wanted, V::NEAREST_FIRST, &mut stack);
             }
             (index, near) = match below {
                 Some(next) => next,
-                None if top == 0 => return,
+                None if stack.count == 0 => return,
                 None => {
-                    top -= 1;
-                    (stack[top].0 as usize, F32x8::from_slice(simd, &stack[top].1))
+                    stack.count -= 1;
+                    let (index, near) = &stack.nodes[stack.count];
+                    (*index as usize, F32x8::from_slice(simd, near))
                 }
             };
+        }
+    }
+
+    /// The child of an inner node that is gone down first and where each of the `wanted` rays enters it, if any does. The other
+    /// one is left for later.
+    #[inline(always)]
+    fn open<S: Simd>(
+        &self,
+        simd: S,
+        packet: &Packet<'_, S>,
+        index: usize,
+        wanted: Mask8<S>,
+        nearest_first: bool,
+        stack: &mut PacketStack,
+    ) -> Option<(usize, F32x8<S>)> {
+        let apart = F32x8::splat(simd, f32::INFINITY);
+        let (left, right) = (index + 1, index + self.nodes[index].link as usize);
+        let (l, r) = (&self.nodes[left], &self.nodes[right]);
+        let at_left = wanted.select(packet.enters(simd, l.min, l.max), apart);
+        let at_right = wanted.select(packet.enters(simd, r.min, r.max), apart);
+        match (at_left.simd_lt(apart).any_true(), at_right.simd_lt(apart).any_true()) {
+            (false, false) => None,
+            (true, false) => Some((left, at_left)),
+            (false, true) => Some((right, at_right)),
+            (true, true) => {
+                let sooner = |mask: Mask8<S>| mask.to_bitmask().count_ones();
+                let left_first =
+                    !nearest_first || sooner(at_right.simd_lt(at_left)) <= sooner(at_left.simd_lt(at_right));
+                let (next, later) = if left_first {
+                    ((left, at_left), (right, at_right))
+                } else {
+                    ((right, at_right), (left, at_left))
+                };
+                stack.nodes[stack.count] = (later.0 as u32, later.1.to_array());
+                stack.count += 1;
+                Some(next)
+            }
         }
     }
 
@@ -234,7 +160,7 @@ impl Bvh {
 
 impl Follow for Bvh {
     #[inline(always)]
-    fn follow<S: Simd>(&self, simd: S, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
+    fn follow<S: Simd>(&self, simd: S, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
         simd.vectorize(
             #[inline(always)]
             || self.descend_together(simd, rays, visitor, counters),
@@ -291,208 +217,11 @@ impl Tree for Bvh {
     }
 }
 
-impl<'a> Span<'a> {
-    fn new(items: &'a mut [Item]) -> Self {
-        let (mut bounds, mut centers) = (Bounds::EMPTY, Bounds::EMPTY);
-        for item in items.iter() {
-            bounds = bounds.join(item.bounds.min, item.bounds.max);
-            centers = centers.join(item.center(), item.center());
-        }
-        Self { items, first: 0, bounds, centers, depth: 0 }
-    }
-
-    /// The axis on which the centres spread most, and how much.
-    fn widest(&self) -> (usize, f32) {
-        let size = |k: usize| self.centers.max[k] - self.centers.min[k];
-        let k = (1..3).fold(0, |k, other| if size(other) > size(k) { other } else { k });
-        (k, size(k))
-    }
-
-    /// Cuts in two, or not where a leaf is cheaper.
-    fn cut(self) -> Result<[Span<'a>; 2], Self> {
-        let (axis, size) = self.widest();
-        let cut = (self.items.len() > 1 && size > 0.0 && size.is_finite() && self.depth < SAH_DEPTH)
-            .then(|| Cut::cheapest(&self))
-            .flatten();
-        if self.items.len() <= LEAF {
-            let leaf = self.items.len() as f32;
-            let split = cut.as_ref().map_or(f32::INFINITY, |c| VISIT + c.cost / self.bounds.area());
-            if split.is_nan() || split >= leaf {
-                return Err(self);
-            }
-        }
-        Ok(match cut {
-            Some(cut) => self.partition(&cut),
-            None => self.halves(axis),
-        })
-    }
-
-    /// Swaps the items left of the cut to the front.
-    fn partition(self, cut: &Cut) -> [Self; 2] {
-        let Span { items, first, depth, .. } = self;
-        let mut sides = [Bounds::EMPTY; 2];
-        let mut middle = 0;
-        for i in 0..items.len() {
-            let center = items[i].center();
-            let left = cut.bins.of(center)[cut.axis] < cut.border;
-            let side = &mut sides[usize::from(!left)];
-            *side = side.join(center, center);
-            if left {
-                items.swap(i, middle);
-                middle += 1;
-            }
-        }
-        let (left, right) = items.split_at_mut(middle);
-        let child = |items, first, side: usize| Span {
-            items,
-            first,
-            bounds: cut.bounds[side],
-            centers: sides[side],
-            depth: depth + 1,
-        };
-        [child(left, first, 0), child(right, first + middle, 1)]
-    }
-
-    /// Cuts at the median of the centres.
-    fn halves(self, axis: usize) -> [Self; 2] {
-        let Span { items, first, depth, .. } = self;
-        let key = |i: &Item| i.center()[axis];
-        items.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index)));
-        let middle = items.len() / 2;
-        let (left, right) = items.split_at_mut(middle);
-        [
-            Span { first, depth: depth + 1, ..Span::new(left) },
-            Span { first: first + middle, depth: depth + 1, ..Span::new(right) },
-        ]
-    }
-}
-
-/// From a doubled centre to a bin on each axis.
-struct Bins {
-    min: [f32; 4],
-    scale: [f32; 4],
-    count: usize,
-}
-
-impl Bins {
-    /// Few triangles need few bins.
-    fn new(span: &Span<'_>) -> Self {
-        let count = (4 + span.items.len() / 8).min(BINS);
-        let scale = std::array::from_fn(|k| {
-            let scale = (count - 1) as f32 / (span.centers.max[k] - span.centers.min[k]);
-            if scale.is_finite() { scale } else { 0.0 }
-        });
-        Self { min: span.centers.min, scale, count }
-    }
-
-    /// The bin, by rounding: adding 2^23 leaves a whole number in the last bits.
-    #[inline(always)]
-    fn of(&self, center: [f32; 4]) -> [usize; 4] {
-        let at: [f32; 4] = std::array::from_fn(|k| (center[k] - self.min[k]) * self.scale[k] + 8_388_608.0);
-        at.map(|v| v.to_bits() as usize & (BINS - 1))
-    }
-}
-
-/// Where to cut: items whose bin on `axis` is less than `border` are on the left.
-struct Cut {
-    bins: Bins,
-    axis: usize,
-    border: usize,
-    /// Area times triangles, both sides.
-    cost: f32,
-    bounds: [Bounds; 2],
-}
-
-impl Cut {
-    /// The best of all borders between bins on all axes.
-    fn cheapest(span: &Span<'_>) -> Option<Self> {
-        let bins = Bins::new(span);
-        let mut filled = [[(Bounds::EMPTY, 0u32); BINS]; 3];
-        for item in span.items.iter() {
-            let at = bins.of(item.center());
-            for axis in 0..3 {
-                let (bounds, count) = &mut filled[axis][at[axis]];
-                *bounds = bounds.join(item.bounds.min, item.bounds.max);
-                *count += 1;
-            }
-        }
-        let mut best: Option<(f32, usize, usize, [Bounds; 2])> = None;
-        for axis in (0..3).filter(|&k| bins.scale[k] > 0.0) {
-            if let Some((cost, border, bounds)) = cheapest_border(&filled[axis][..bins.count])
-                && best.as_ref().is_none_or(|b| cost < b.0)
-            {
-                best = Some((cost, axis, border, bounds));
-            }
-        }
-        best.map(|(cost, axis, border, bounds)| Self { bins, axis, border, cost, bounds })
-    }
-}
-
-/// The cost (area times triangles, both sides), the first bin of the right side, and the sides' boxes of the best cut.
-fn cheapest_border(bins: &[(Bounds, u32)]) -> Option<(f32, usize, [Bounds; 2])> {
-    // Sweep from the right, remembering each right side, then from the left.
-    let mut rights = [(0.0f32, Bounds::EMPTY); BINS];
-    let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-    for i in (1..bins.len()).rev() {
-        (bounds, count) = (bounds.join(bins[i].0.min, bins[i].0.max), count + bins[i].1);
-        rights[i] = (if count > 0 { bounds.area() * count as f32 } else { f32::INFINITY }, bounds);
-    }
-    let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-    let mut best: Option<(f32, usize, [Bounds; 2])> = None;
-    for border in 1..bins.len() {
-        let (b, c) = bins[border - 1];
-        (bounds, count) = (bounds.join(b.min, b.max), count + c);
-        let (right, right_bounds) = rights[border];
-        let cost = bounds.area() * count as f32 + right;
-        if count > 0 && cost < best.map_or(f32::INFINITY, |(least, ..)| least) {
-            best = Some((cost, border, [bounds, right_bounds]));
-        }
-    }
-    best
-}
-
-/// The nodes over a span, whose items become sorted in the order of leaves.
-fn split(span: Span<'_>, workers: &Workers, budget: &Budget) -> Result<Vec<Node>, Limit> {
-    if span.items.len() <= LARGE {
-        let mut nodes = Vec::with_capacity(span.items.len());
-        split_small(span, &mut nodes);
-        return Ok(nodes);
-    }
-    budget.check("building the tree of boxes")?;
-    let bounds = span.bounds;
-    // More items than a leaf holds are always cut.
-    let [left, right] = span.cut().unwrap_or_else(|span| span.halves(0));
-    let (left, right) = workers.join(|| split(left, workers, budget), || split(right, workers, budget));
-    let (left, right) = (left?, right?);
-    let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(node(&bounds, 0, left.len() + 1));
-    nodes.extend(left);
-    nodes.extend(right);
-    Ok(nodes)
-}
-
-/// [`split`] on one thread, adding to `nodes`.
-fn split_small(span: Span<'_>, nodes: &mut Vec<Node>) {
-    let (bounds, at) = (span.bounds, nodes.len());
-    match span.cut() {
-        Err(leaf) => nodes.push(node(&bounds, leaf.items.len(), leaf.first)),
-        Ok([left, right]) => {
-            nodes.push(node(&bounds, 0, 0));
-            split_small(left, nodes);
-            nodes[at].link = (nodes.len() - at) as u32;
-            split_small(right, nodes);
-        }
-    }
-}
-
-fn node(bounds: &Bounds, count: usize, link: usize) -> Node {
-    let three = |v: [f32; 4]| [v[0], v[1], v[2]];
-    Node { min: three(bounds.min), max: three(bounds.max), count: count as u32, link: link as u32 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raytrace::triangles::bounds_of;
+    use vitral_math::lanes::available_levels;
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
 
@@ -541,5 +270,49 @@ mod tests {
             let hit = bvh.closest_hit(&Ray::new(vec3(0.2, 0.3, -1.0), Vec3::Z), &mut Counters::default());
             assert_eq!(hit, (count > 0).then_some((0, 2.0)), "the lowest of equals");
         }
+    }
+
+    /// Numbers without pattern from -1 to 1.
+    fn random(state: &mut u32) -> f32 {
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (*state >> 8) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    #[test]
+    fn rays_together_meet_what_each_meets_alone() {
+        let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
+        let triangles = Triangles::of_world(&world, &Workers::single());
+        let bvh = Bvh::build(&triangles, &Workers::single(), &Budget::default()).unwrap();
+        let (size, mut state, mut hits) = (triangles.extent, 3, 0);
+        for packet in 0..600 {
+            // Bundles side by side, bundles from one point, and rays that have nothing in common; some packets are not full.
+            let mut vector = || vec3(random(&mut state), random(&mut state), random(&mut state)) * size;
+            let (from, to) = (vector() * 2.0, vector() * 0.5);
+            let rays: Vec<Ray> = (0..1 + packet % 8)
+                .map(|_| match packet % 3 {
+                    0 => Ray::new(from + vector() * 0.1, to - from),
+                    1 => Ray::new(from, to + vector() * 0.1 - from),
+                    _ => Ray::new(vector() * 2.0, vector()),
+                })
+                .collect();
+            let mut alone = Counters::default();
+            let first: Vec<_> = rays.iter().map(|r| bvh.closest_hit_from(r, u32::MAX, &mut alone)).collect();
+            // Leaving what was met, each ray meets the next.
+            let own: Vec<u32> =
+                first.iter().map(|hit| hit.map_or(u32::MAX, |(p, _)| bvh.triangles().facets[p])).collect();
+            let second: Vec<_> =
+                rays.iter().zip(&own).map(|(r, own)| bvh.closest_hit_from(r, *own, &mut alone)).collect();
+            for (_, level) in available_levels() {
+                let mut together = Counters::default();
+                let nobody = [u32::MAX; LANES];
+                let (a, b) = dispatch!(level, simd => (
+                    bvh.closest_hits(simd, &rays, &nobody, &mut together).0,
+                    bvh.closest_hits(simd, &rays, &own, &mut together).0
+                ));
+                assert_eq!((&a[..rays.len()], &b[..rays.len()]), (&first[..], &second[..]), "packet {packet}");
+            }
+            hits += second.iter().flatten().count();
+        }
+        assert!(hits > 500, "{hits}");
     }
 }

@@ -8,7 +8,7 @@
 
 use super::beam::Beam;
 use super::intersect::Ray;
-use super::packet::{self, closest_hits};
+use super::packet::{PacketVisitor, closest_hits};
 use super::{Counters, Structure, Tree, Visitor};
 use vitral_math::lanes::{LANES, Simd};
 
@@ -16,7 +16,7 @@ use vitral_math::lanes::{LANES, Simd};
 pub(crate) trait Follow: Structure + Sized {
     /// Shows `visitor` what one to eight rays meet, each triangle once.
     #[inline(always)]
-    fn follow<S: Simd>(&self, _: S, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
+    fn follow<S: Simd>(&self, _: S, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
         one_by_one(self, rays, visitor, counters);
     }
 
@@ -58,7 +58,7 @@ pub(crate) trait StructureUser {
 }
 
 /// Shows a packet's visitor what each ray of it meets.
-fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl packet::Visitor, counters: &mut Counters) {
+fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
     let triangles = structure.triangles();
     let mut hit = Vec::new();
     for (lane, ray) in rays.iter().enumerate() {
@@ -80,7 +80,7 @@ struct Alone<'a, T, V> {
     tests: u64,
 }
 
-impl<T: Structure, V: packet::Visitor> Visitor for Alone<'_, T, V> {
+impl<T: Structure, V: PacketVisitor> Visitor for Alone<'_, T, V> {
     #[inline(always)]
     fn skips(&self, _: usize, near: f32) -> bool {
         self.done(near)

@@ -27,7 +27,7 @@ use vitral_math::Vec3;
 /// Cells a triangle.
 pub const DENSITY: f32 = 4.0;
 /// Most cells on an axis.
-const MOST: f32 = 1024.0;
+const MAX_CELLS_ALONG_AN_AXIS: f32 = 1024.0;
 /// The margin, in sides of a cell.
 const MARGIN: f32 = 1.0 / 32.0;
 /// Entries for each triangle, at most: else cells become larger.
@@ -112,7 +112,7 @@ impl Grid {
             let largest = size.max_element();
             let relative = size / largest;
             let side = cube_root(relative.x * relative.y * relative.z / cells);
-            let count = [0, 1, 2].map(|k| (relative[k] / side + 0.5).floor().clamp(1.0, MOST));
+            let count = [0, 1, 2].map(|k| (relative[k] / side + 0.5).floor().clamp(1.0, MAX_CELLS_ALONG_AN_AXIS));
             let cell = size / Vec3::from_array(count) * (1.0 + 4.0 * MARGIN / Vec3::from_array(count));
             let grid = Self {
                 min: min - cell * (2.0 * MARGIN),

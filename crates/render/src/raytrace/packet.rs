@@ -17,7 +17,7 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd};
 
 /// Follows the rays of a packet.
-pub(crate) trait Visitor {
+pub(crate) trait PacketVisitor {
     /// Whether what most rays enter first is wanted first. Else triangles come in the order of the tree, which is the same for
     /// a ray whatever its companions are.
     const NEAREST_FIRST: bool;
@@ -128,7 +128,12 @@ impl<'r, S: Simd> Packet<'r, S> {
 
     /// Tells `visitor` which rays hit the triangle at `place`; only `wanted` ones are tested.
     #[inline(always)]
-    pub(crate) fn triangle(&self, (place, corners): (usize, &[Vec3; 3]), wanted: Mask8<S>, visitor: &mut impl Visitor) {
+    pub(crate) fn triangle(
+        &self,
+        (place, corners): (usize, &[Vec3; 3]),
+        wanted: Mask8<S>,
+        visitor: &mut impl PacketVisitor,
+    ) {
         let mut lanes = self.may_meet(corners, wanted);
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
@@ -141,7 +146,7 @@ impl<'r, S: Simd> Packet<'r, S> {
 }
 
 /// Keeps the first hit of each ray.
-pub(super) struct Closest<'a> {
+pub(super) struct ClosestHits<'a> {
     triangles: &'a Triangles,
     /// The facets that the rays leave.
     own: &'a [u32],
@@ -153,7 +158,7 @@ pub(super) struct Closest<'a> {
     crowded: [bool; LANES],
 }
 
-impl Visitor for Closest<'_> {
+impl PacketVisitor for ClosestHits<'_> {
     const NEAREST_FIRST: bool = true;
 
     #[inline(always)]
@@ -181,70 +186,14 @@ pub(super) fn closest_hits<'a>(
     triangles: &'a Triangles,
     rays: &[Ray],
     own: &'a [u32],
-    follow: impl FnOnce(&mut Closest<'a>),
+    follow: impl FnOnce(&mut ClosestHits<'a>),
 ) -> ([Option<(usize, f32)>; LANES], [bool; LANES]) {
     let mut slack = [0.0; LANES];
     for (slack, ray) in slack.iter_mut().zip(rays) {
         *slack = ray.rounding(triangles.extent);
     }
     let (limits, best, crowded) = ([f32::MAX; LANES], [None; LANES], [false; LANES]);
-    let mut closest = Closest { triangles, own, slack, limits, best, crowded };
+    let mut closest = ClosestHits { triangles, own, slack, limits, best, crowded };
     follow(&mut closest);
     (closest.best, closest.crowded)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::raytrace::bvh::Bvh;
-    use crate::raytrace::follow::Follow;
-    use crate::raytrace::{Counters, Structure};
-    use vitral_exec::{Budget, Workers};
-    use vitral_math::lanes::{available_levels, dispatch};
-    use vitral_math::vec3;
-    use vitral_scene::{World, builtin};
-
-    /// Numbers without pattern from -1 to 1.
-    fn random(state: &mut u32) -> f32 {
-        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (*state >> 8) as f32 / (1 << 23) as f32 - 1.0
-    }
-
-    #[test]
-    fn rays_together_meet_what_each_meets_alone() {
-        let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
-        let triangles = Triangles::of_world(&world, &Workers::single());
-        let bvh = Bvh::build(&triangles, &Workers::single(), &Budget::default()).unwrap();
-        let (size, mut state, mut hits) = (triangles.extent, 3, 0);
-        for packet in 0..600 {
-            // Bundles side by side, bundles from one point, and rays that have nothing in common; some packets are not full.
-            let mut vector = || vec3(random(&mut state), random(&mut state), random(&mut state)) * size;
-            let (from, to) = (vector() * 2.0, vector() * 0.5);
-            let rays: Vec<Ray> = (0..1 + packet % 8)
-                .map(|_| match packet % 3 {
-                    0 => Ray::new(from + vector() * 0.1, to - from),
-                    1 => Ray::new(from, to + vector() * 0.1 - from),
-                    _ => Ray::new(vector() * 2.0, vector()),
-                })
-                .collect();
-            let mut alone = Counters::default();
-            let first: Vec<_> = rays.iter().map(|r| bvh.closest_hit_from(r, u32::MAX, &mut alone)).collect();
-            // Leaving what was met, each ray meets the next.
-            let own: Vec<u32> =
-                first.iter().map(|hit| hit.map_or(u32::MAX, |(p, _)| bvh.triangles().facets[p])).collect();
-            let second: Vec<_> =
-                rays.iter().zip(&own).map(|(r, own)| bvh.closest_hit_from(r, *own, &mut alone)).collect();
-            for (_, level) in available_levels() {
-                let mut together = Counters::default();
-                let nobody = [u32::MAX; LANES];
-                let (a, b) = dispatch!(level, simd => (
-                    bvh.closest_hits(simd, &rays, &nobody, &mut together).0,
-                    bvh.closest_hits(simd, &rays, &own, &mut together).0
-                ));
-                assert_eq!((&a[..rays.len()], &b[..rays.len()]), (&first[..], &second[..]), "packet {packet}");
-            }
-            hits += second.iter().flatten().count();
-        }
-        assert!(hits > 500, "{hits}");
-    }
 }

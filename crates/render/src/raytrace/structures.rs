@@ -17,7 +17,7 @@ use super::follow::{Follow, StructureUser};
 use super::grid::Grid;
 use super::intersect::Ray;
 use super::octree::Octree;
-use super::packet;
+use super::packet::PacketVisitor;
 use super::triangles::Triangles;
 use super::volumes::{Shape, Volumes};
 use super::{Counters, Structure, Visitor};
@@ -221,7 +221,7 @@ impl AnyStructure {
         &self,
         simd: S,
         rays: &[Ray],
-        visitor: &mut impl packet::Visitor,
+        visitor: &mut impl PacketVisitor,
         counters: &mut Counters,
     ) {
         with!(self, structure => structure.follow(simd, rays, visitor, counters));

@@ -1,19 +1,12 @@
-//! The triangles of a scene in one list: what all structures are built over, and the structure that is none.
+//! The triangles of a scene in one list: what all structures are built over.
 //!
 //! There is one flat list, not one for each mesh with instances on top: no matrix stands between ray and triangle, at
 //! the price of memory where a mesh is used often. Coordinates are relative to the middle of the scene, so that 32 bits
 //! are enough wherever in the world it lies.
 //!
-//! As a structure the list shows every triangle to every ray: the `O(n p)` that other structures are measured against.
-//!
 //! In:   the world. Out: [`Triangles`], world space less [`Triangles::center`].
 //! Cost: linear; 40 bytes a triangle.
-//! Source: [Appel 1968].
 
-use super::beam::Beam;
-use super::follow::Follow;
-use super::{Structure, Visitor};
-use crate::trace::{Passed, Step};
 use crate::{Cached, Execution, Session};
 use std::sync::Arc;
 use vitral_exec::{Limit, Workers};
@@ -122,33 +115,6 @@ impl Triangles {
     }
 }
 
-impl Follow for Triangles {}
-
-impl Structure for Triangles {
-    const REPEATS: bool = false;
-
-    fn triangles(&self) -> &Triangles {
-        self
-    }
-
-    fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
-        vec![(0..self.count()).map(value).fold(f32::NEG_INFINITY, f32::max)]
-    }
-
-    fn step(&self) -> Option<Step> {
-        None
-    }
-
-    fn names(&self, _: &[u32]) -> Passed {
-        Passed::Nowhere
-    }
-
-    fn traverse(&self, _: &Beam, visitor: &mut impl Visitor) -> u64 {
-        (0..self.count()).for_each(|place| visitor.triangle(place));
-        0
-    }
-}
-
 /// An instance's finite triangles, relative to `center`.
 fn placed(world: &World, index: usize, center: DVec3) -> Vec<(u32, [Vec3; 3])> {
     let instance = &world.instances[index];
@@ -161,26 +127,4 @@ fn placed(world: &World, index: usize, center: DVec3) -> Vec<(u32, [Vec3; 3])> {
     let triangles = (instance.first_facet..).zip(&instance.mesh.triangles);
     let triangles = triangles.map(|(facet, t)| (facet, t.map(|i| positions[i as usize])));
     triangles.filter(|(_, t)| t.iter().all(|p| p.is_finite())).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::raytrace::Counters;
-    use crate::raytrace::intersect::Ray;
-    use vitral_scene::{Scene, builtin};
-
-    #[test]
-    fn every_triangle_is_asked_and_the_nearest_wins() {
-        let mut mesh = builtin::solids::tetrahedron(1.0);
-        mesh.positions[0][1] = f32::NAN;
-        let world = World::new(&Scene::from_mesh(mesh)).unwrap();
-        let list = Triangles::of_world(&world, &Workers::single());
-        assert_eq!(list.count(), 1, "three of the four have the broken corner");
-        let middle = list.corners[0].iter().copied().sum::<Vec3>() / 3.0;
-        let mut counters = Counters::default();
-        let hit = list.closest_hit(&Ray::new(middle * 3.0, -middle), &mut counters);
-        assert!(hit.is_some_and(|(facet, t)| facet == list.facets[0] && (t - 2.0).abs() < 1e-5), "{hit:?}");
-        assert_eq!(counters, Counters { boxes: 0, triangles: 1 });
-    }
 }

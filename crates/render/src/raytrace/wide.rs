@@ -12,8 +12,8 @@
 //! Source: \[Wald, Benthin & Boulos 2008\].
 
 use super::beam::{self, Lines};
-use super::bvh::{self, area};
 use super::intersect::{Ray, surely_beside};
+use super::sah::{self, area};
 use super::triangles::Triangles;
 use super::{Boxes, Counters, Probe, Visitor};
 use std::ops::Range;
@@ -71,7 +71,7 @@ impl Wide {
     pub(super) const BYTES: usize = 100;
 
     /// From a tree with two children a node.
-    pub(super) fn new(tree: &[bvh::Node], triangles: &Triangles, workers: &Workers) -> Self {
+    pub(super) fn new(tree: &[sah::Node], triangles: &Triangles, workers: &Workers) -> Self {
         // The triangles below each node.
         let mut runs = vec![[0; 2]; tree.len()];
         for (i, node) in tree.iter().enumerate().rev() {
@@ -98,7 +98,7 @@ impl Wide {
     }
 
     /// Makes a node of what is below `top`: its number.
-    fn grow(&mut self, tree: &[bvh::Node], runs: &[[u32; 2]], top: usize) -> u32 {
+    fn grow(&mut self, tree: &[sah::Node], runs: &[[u32; 2]], top: usize) -> u32 {
         let is_leaf = |i: usize| (runs[i][1] - runs[i][0]) as usize <= LANES;
         let member = |i: usize| (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) });
         let mut members = [member(top); LANES];

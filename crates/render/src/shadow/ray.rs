@@ -24,7 +24,6 @@ use super::{ShadowAlgorithm, Shadows};
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::{Counters, packet};
-use crate::visible::few_enough;
 use crate::{Execution, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
@@ -55,7 +54,7 @@ impl ShadowAlgorithm for RayShadows {
         if acceleration.asks_all {
             let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
             let tests = pixels.saturating_mul(lights.len() as u64 * u64::from(session.world.facet_count));
-            few_enough(tests, "shadows by rays without a structure")?;
+            execution.budget.check_work(tests, "shadows by rays without a structure")?;
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
@@ -190,7 +189,7 @@ struct Passing<'a> {
     left: [[f64; 3]; LANES],
 }
 
-impl packet::Visitor for Passing<'_> {
+impl packet::PacketVisitor for Passing<'_> {
     // Every triangle on the way counts.
     const NEAREST_FIRST: bool = false;
 

@@ -267,7 +267,7 @@ mod tests {
             let (pattern, culled) = (vitral_raster::SamplePattern::new(1), &mut crate::stats::CullCounters::default());
             let view = crate::PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, culled);
             let mut grid = vitral_raster::TileGrid::new(viewport, 1);
-            let resolved = algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &crate::visible::Nowhere);
+            let resolved = algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &crate::visible::NullSink);
             resolved.unwrap();
             let planes = recorder.planes.lock().unwrap();
             let drawn = [

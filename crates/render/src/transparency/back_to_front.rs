@@ -9,7 +9,7 @@
 //! fragment before it comes here, as the drawing of opaque lists does, and counted it.
 //!
 //! Transparent polygons take part in the list with the opaque ones; those that lie behind an opaque surface are left out
-//! as everywhere (`visible/pieces.rs`). Lines and points of the model are no polygons and have no place in a list:
+//! as everywhere (`visible/priority_list.rs`). Lines and points of the model are no polygons and have no place in a list:
 //! each is put in front of the last fragment that is farther than it, sample by sample.
 //!
 //! In:   fragments of a pixel in the order of the list. Out: its samples.

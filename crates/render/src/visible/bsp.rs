@@ -17,16 +17,18 @@
 mod tree;
 
 use super::cut::{Cut, Depth};
-use super::facets::{Facets, fill_with};
-use super::pieces::{Footprint, List, Pieces, Raster, draw, draw_layers, piece_step};
-use super::{Resolved, TileSink, VisibleSurface};
+use super::facets::Facets;
+use super::pieces::{Footprint, Pieces, Raster};
+use super::priority_list::{PriorityList, draw_list, piece_step};
+use super::sink::TileSink;
+use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Cached, Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, DVec4};
-use vitral_raster::{LayerList, SUBPIXEL, Setup, Tile, TileGrid, Viewport};
+use vitral_raster::{SUBPIXEL, Setup, TileGrid, Viewport};
 
 pub(crate) use tree::Tree;
 
@@ -56,7 +58,7 @@ impl VisibleSurface for Bsp {
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (tree, reused) = tree_of(view, execution)?;
         execution.budget.charge(tree.bytes(), "the BSP tree")?;
-        let pictured = picture(&tree, &facets, marks, grid, execution, sink);
+        let pictured = picture(&tree, &facets, marks, grid, sink);
         execution.budget.release(tree.bytes());
         resolved.counters = pictured?;
         resolved.counters.tree_nodes = tree.node_count();
@@ -87,71 +89,87 @@ fn picture(
     facets: &Facets<'_, '_>,
     marks: Option<&Marks>,
     grid: &mut TileGrid,
-    execution: &Execution,
     sink: &dyn TileSink,
 ) -> Result<VisibilityCounters, Limit> {
-    let view = facets.view();
-    let mut setups = facets.opaque();
-    let opaque = setups.len();
-    setups.extend(facets.listed_layers());
+    let (view, execution) = (facets.view(), facets.execution());
+    let (setups, opaque) = facets.listed();
     let facet_count = view.session.world.facet_count;
     let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + size_of_val(tree.cutters()) as u64;
-    execution.budget.charge(bytes, "BSP fragments on the screen")?;
+    execution.budget.charged(bytes, "BSP fragments on the screen", || {
+        // Find the order of the fragments from front to back, and where their facets are on the screen.
+        let raster = Raster::new(view.viewport, &view.pattern);
+        let footprints = footprints(&setups, &raster, execution);
+        let (order, places) = execution
+            .workers
+            .join(|| front_to_back(tree, eye(view)), || SetupIndex::new(&setups, &footprints, facet_count));
 
-    // Of a fine mesh, most facets lie between the samples.
-    let raster = Raster::new(view.viewport, &view.pattern);
+        // Bring the fragments to the screen, in runs.
+        let lines = Lines::new(view, tree, execution);
+        let fragments = Fragments { tree, setups: &setups, footprints, raster, order, places, lines, execution };
+        let count = fragments.order.len().div_ceil(FRAGMENTS_A_RUN);
+        let runs = execution.workers.map(count, |run| fragments.pieces(run));
+
+        // Draw them, tile by tile.
+        let list = PriorityList { setups: &setups, opaque, runs: &runs };
+        let mut counters = draw_list::<true>(facets, &list, marks, grid, sink, "drawing BSP fragments")?;
+        counters.pieces = runs.iter().map(|r| r.len() as u64).sum();
+        Ok(counters)
+    })
+}
+
+/// Where each triangle may have samples. Of a fine mesh, most facets lie between the samples.
+fn footprints(setups: &[&Setup], raster: &Raster<'_>, execution: &Execution) -> Vec<Option<Footprint>> {
     let mut footprints: Vec<Option<Footprint>> = vec![None; setups.len()];
     execution.workers.for_each_chunk(&mut footprints, FACETS_A_JOB, |job, footprints| {
         for (footprint, setup) in footprints.iter_mut().zip(&setups[job * FACETS_A_JOB..]) {
             *footprint = raster.footprint(setup);
         }
     });
+    footprints
+}
 
-    // Find the order of the fragments from front to back, those of facets that have no place in the tree last.
-    let to_viewer = eye(view);
-    let walk = || {
-        let mut order = Vec::with_capacity(tree.fragment_count() as usize);
-        tree.back_to_front(to_viewer, |fragment| order.push(fragment));
-        order.reverse();
-        order
-    };
-    let (order, places) = execution.workers.join(walk, || Places::new(&setups, &footprints, facet_count));
+/// The fragments of the tree from front to back, those of facets that have no place in the tree last.
+fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
+    let mut order = Vec::with_capacity(tree.fragment_count() as usize);
+    tree.back_to_front(to_viewer, |fragment| order.push(fragment));
+    order.reverse();
+    order
+}
 
-    // Bring the fragments to the screen, in runs.
-    let lines = Lines::new(view, tree, execution);
-    let runs = execution.workers.map(order.len().div_ceil(FRAGMENTS_A_RUN), |run| {
+/// The fragments of a tree, on their way to the screen.
+struct Fragments<'a> {
+    tree: &'a Tree,
+    setups: &'a [&'a Setup],
+    footprints: Vec<Option<Footprint>>,
+    raster: Raster<'a>,
+    /// From front to back.
+    order: Vec<u32>,
+    places: SetupIndex,
+    lines: Lines,
+    execution: &'a Execution,
+}
+
+impl Fragments<'_> {
+    /// The pieces of a run of the list.
+    fn pieces(&self, run: usize) -> Pieces {
         let mut pieces = Pieces::default();
-        let places_in_list = (0..order.len() as u32).rev().skip(run * FRAGMENTS_A_RUN);
-        for (&fragment, place) in order[run * FRAGMENTS_A_RUN..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
-            for at in places.of(tree.facet(fragment), &setups) {
-                let setup = setups[at as usize];
+        let first = run * FRAGMENTS_A_RUN;
+        let places_in_list = (0..self.order.len() as u32).rev().skip(first);
+        for (&fragment, place) in self.order[first..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
+            for at in self.places.setups_of(self.tree.facet(fragment), self.setups) {
+                let setup = self.setups[at as usize];
                 let plane = Depth::of(setup);
-                let cuts = || tree.cuts(fragment).map(|(cutter, positive)| lines.cut(cutter, positive, plane));
-                let footprint = footprints[at as usize];
-                if footprint.is_some_and(|footprint| pieces.add(at, (setup, footprint), cuts(), &raster)) {
-                    execution.tell(|| piece_step(place, setup, &cuts().collect::<Vec<_>>()));
+                let cuts =
+                    || self.tree.cuts(fragment).map(|(cutter, positive)| self.lines.cut(cutter, positive, plane));
+                let footprint = self.footprints[at as usize];
+                if footprint.is_some_and(|footprint| pieces.add(at, (setup, footprint), cuts(), &self.raster)) {
+                    self.execution.tell(|| piece_step(place, setup, &cuts().collect::<Vec<_>>()));
                 }
             }
         }
-        pieces.finish(view.viewport);
+        pieces.finish(self.raster.viewport());
         pieces
-    });
-
-    // Draw them, tile by tile.
-    let list = List { setups: &setups, opaque, runs: &runs };
-    let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
-        execution.budget.check("drawing BSP fragments")?;
-        draw::<true>(facets, &list, index, &mut tiles[0], counters);
-        Ok(())
-    };
-    let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
-        draw_layers::<true>(facets, &list, index, tile, layers);
-    };
-    let filled = fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect));
-    execution.budget.release(bytes);
-    let mut counters = filled?;
-    counters.pieces = runs.iter().map(|r| r.len() as u64).sum();
-    Ok(counters)
+    }
 }
 
 /// The viewer as a homogeneous point, world space: an eye, or the direction towards it.
@@ -161,11 +179,11 @@ fn eye(view: &PreparedView<'_>) -> DVec4 {
 }
 
 /// Where each facet's triangles are among the view's, if they may have samples. Those of a clipped facet follow one another.
-struct Places {
+struct SetupIndex {
     first: Vec<u32>,
 }
 
-impl Places {
+impl SetupIndex {
     fn new(setups: &[&Setup], footprints: &[Option<Footprint>], facet_count: u32) -> Self {
         let mut first = vec![ABSENT; facet_count as usize];
         for (i, setup) in setups.iter().enumerate().rev().filter(|(i, _)| footprints[*i].is_some()) {
@@ -174,7 +192,7 @@ impl Places {
         Self { first }
     }
 
-    fn of<'s>(&self, facet: u32, setups: &'s [&Setup]) -> impl Iterator<Item = u32> + use<'s> {
+    fn setups_of<'s>(&self, facet: u32, setups: &'s [&Setup]) -> impl Iterator<Item = u32> + use<'s> {
         let first = self.first[facet as usize];
         (first..setups.len() as u32).take_while(move |&at| setups[at as usize].facet == facet)
     }

@@ -8,18 +8,17 @@
 //! In:   prepared draws (model space). Out: set-up triangles (screen space).
 //! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they are set up.
 
-use super::zbuffer::hide_behind;
-use super::zbuffer::{jobs, retire_vertices, rounds, set_up, transform_vertices, walk};
-use super::{Peel, Resolved, TileSink};
+use super::Resolved;
+use super::front_end::{BYTES_A_TRIANGLE, DrawOrder, FrontEnd, triangle_count};
+use super::sink::{TileSink, layer_list};
+use super::tiles::{Outcome, PASSES, hand_on_in_passes};
+use super::walk::{hide_behind, walk};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
-use std::sync::{Mutex, OnceLock};
+use std::sync::OnceLock;
 use vitral_exec::Limit;
-use vitral_raster::{Batch, LayerList, SUBPIXEL, SamplePattern, ScreenVertex, Setup, TILE, Tile, TileGrid, TileLists};
-
-/// Bytes of a triangle: its setup, its entry in a tile's list, and what becomes of that when the lists are sorted.
-pub(super) const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
+use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, TILE, Tile, TileGrid, TileLists};
 
 /// The set-up triangles of a view. A facet that was clipped has several, with one depth plane.
 pub(super) struct Facets<'v, 'a> {
@@ -40,28 +39,21 @@ impl<'v, 'a> Facets<'v, 'a> {
         resolved: &mut Resolved,
     ) -> Result<Self, Limit> {
         let start = execution.budget.elapsed();
-        let draws = view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
-        let triangles: u64 = draws.flat_map(|d| &d.ranges).map(|r| u64::from(r.end - r.start)).sum();
-        let charged = triangles * BYTES_A_TRIANGLE;
+        let charged = triangle_count(view) * BYTES_A_TRIANGLE;
         execution.budget.charge(charged, "the view's facets")?;
         let rows = OnceLock::new();
         let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows, charged };
-        let jobs = jobs(view);
-        let mut vertices: Vec<Vec<ScreenVertex>> = view.instances.iter().map(|_| Vec::new()).collect();
-        for round in rounds(&jobs) {
+        let mut front_end = FrontEnd::new(view, execution);
+        for round in front_end.rounds() {
             execution.budget.check("the view's facets")?;
-            let jobs = &jobs[round];
-            transform_vertices(view, jobs, &mut vertices, execution, &mut resolved.geometry);
-            for (layered, batch) in set_up(view, jobs, &vertices, TileLists::Kept, execution) {
-                resolved.geometry.add(&batch.counters);
+            front_end.transform(round.clone());
+            for (layered, batch) in front_end.set_up(round.clone(), DrawOrder::Scene, TileLists::Kept) {
                 let list = if layered { &mut facets.layered } else { &mut facets.opaque };
                 list.push(batch);
             }
-            retire_vertices(view, jobs, &mut vertices);
+            front_end.retire(round);
         }
-        let mut spare = view.session.spare_vertices.lock().expect("spare vertices");
-        spare.extend(vertices.into_iter().filter(|v| v.capacity() > 0));
-        drop(spare);
+        resolved.geometry = front_end.stats;
         resolved.geometry_seconds = execution.budget.elapsed() - start;
         Ok(facets)
     }
@@ -95,14 +87,15 @@ impl<'v, 'a> Facets<'v, 'a> {
         self.opaque.iter().flat_map(move |batch| batch.tile(tile))
     }
 
-    /// All opaque triangles; those of a clipped facet follow one another.
-    pub(super) fn opaque(&self) -> Vec<&Setup> {
-        self.opaque.iter().flat_map(Batch::setups).collect()
-    }
-
-    /// All layers, where they are to be drawn by a list; none elsewhere.
-    pub(super) fn listed_layers(&self) -> impl Iterator<Item = &Setup> {
-        self.layered.iter().filter(|_| self.view.lists_layers).flat_map(Batch::setups)
+    /// The triangles that take part in a list by depth, those of a clipped facet one after the other, and how many of them are
+    /// opaque: these come first, then the layers, where they are to be drawn by a list.
+    pub(super) fn listed(&self) -> (Vec<&Setup>, usize) {
+        let mut setups: Vec<_> = self.opaque.iter().flat_map(Batch::setups).collect();
+        let opaque = setups.len();
+        if self.view.lists_layers {
+            setups.extend(self.layered.iter().flat_map(Batch::setups));
+        }
+        (setups, opaque)
     }
 
     /// The view.
@@ -130,12 +123,10 @@ impl<'v, 'a> Facets<'v, 'a> {
         }
         let all = marks.map(|m| &m.all);
         if sink.takes_passes() {
-            let batches = self.layered.iter().chain(all);
-            let go_on = || self.execution.budget.check("passes over layers").is_ok();
-            let mut pass = |peel: &mut Peel| go_on() && peel.pass(level, batches.clone(), index, tile, pattern);
-            return sink.tile_in_passes(index, tile, &mut pass);
+            let layered = self.layered.iter().chain(all);
+            return hand_on_in_passes(self.view, self.execution, layered, index, tile, sink);
         }
-        let mut layers = self.view.layer_list_for(sink);
+        let mut layers = layer_list(self.view, sink);
         let mut layered = self.layered.as_slice();
         if let Some(collect) = collect.filter(|_| self.view.lists_layers) {
             collect(self, index, tile, &mut layers);
@@ -191,11 +182,12 @@ pub(super) fn fill_with(
     fill: &Fill<'_>,
     collect: Option<&Collect<'_>>,
 ) -> Result<VisibilityCounters, Limit> {
-    let outcome = Mutex::new(Ok(VisibilityCounters::default()));
-    facets.execution.budget.begin("tiles", grid.tiles.len() as u64);
+    let outcome = Outcome::new();
+    let budget = &facets.execution.budget;
+    budget.begin("tiles", grid.tiles.len() as u64);
     facets.execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
         // After a limit, the rest of the pieces are passed over.
-        if outcome.lock().expect("no thread panics while it counts").is_err() {
+        if outcome.is_limit() {
             return;
         }
         tiles.iter_mut().for_each(Tile::clear);
@@ -204,45 +196,14 @@ pub(super) fn fill_with(
         if filled.is_ok() {
             for (i, tile) in tiles.iter_mut().enumerate() {
                 facets.finish(first + i, tile, marks, sink, collect);
-                facets.execution.budget.advance();
+                budget.advance();
             }
         }
-        let mut outcome = outcome.lock().expect("no thread panics while it counts");
-        match filled {
-            Ok(()) => {
-                if let Ok(sum) = &mut *outcome {
-                    sum.add(&counters);
-                }
-            }
-            Err(limit) if outcome.is_ok() => *outcome = Err(limit),
-            Err(_) => {}
-        }
+        outcome.add(filled.map(|()| counters));
     });
     if sink.takes_passes() {
         // Passes end early at a limit.
-        facets.execution.budget.check("passes over layers")?;
+        budget.check(PASSES)?;
     }
-    outcome.into_inner().expect("no thread panics while it counts")
-}
-
-/// Smallest and largest x, then y, of a pattern's samples within the pixel.
-pub(super) fn extent(pattern: &SamplePattern) -> [[i32; 2]; 2] {
-    [0, 1].map(|axis| {
-        let values = (0..pattern.len()).map(|s| pattern.position(s)[axis]);
-        values.fold([i32::MAX, i32::MIN], |[low, high], v| [low.min(v), high.max(v)])
-    })
-}
-
-/// Whether depth `a` of facet `fa` hides depth `b` of facet `fb` at one sample: the law of agreement.
-#[inline]
-pub(crate) fn nearer((a, fa): (f32, u32), (b, fb): (f32, u32)) -> bool {
-    a > b || (a == b && fa < fb)
-}
-
-/// Puts a facet into a sample, `at` its index in the tile's planes.
-#[inline]
-pub(super) fn put(tile: &mut Tile, at: usize, (depth, facet): (f32, u32)) {
-    tile.depth[at] = depth;
-    tile.facet[at] = facet;
-    tile.touched = true;
+    outcome.into_result()
 }

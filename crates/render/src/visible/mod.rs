@@ -1,63 +1,44 @@
 //! Which surface is seen at each sample.
 
+mod agreement;
 pub mod brute_force;
 pub mod bsp;
 mod cut;
 mod facets;
+mod front_end;
+mod jobs;
 mod near_first;
+mod overdraw;
 pub mod painter;
+mod passing;
 mod peel;
 mod pieces;
+mod priority_list;
 pub mod ray_cast;
+mod round_tiles;
 pub mod scanline;
 mod screen_setups;
+mod sink;
+mod tiles;
+mod walk;
 pub mod warnock;
 pub mod weiler_atherton;
 pub mod zbuffer;
 
-pub(crate) use brute_force::few_enough;
-pub(crate) use facets::nearer;
+pub(crate) use agreement::nearer;
+pub(crate) use front_end::{all_batches, give_back, touching};
+pub(crate) use passing::resolve_in_passing;
 pub use peel::{PassLayer, Peel};
-pub(crate) use screen_setups::charged;
+pub(crate) use sink::layer_list;
+pub use sink::{NullSink, TileSink};
+pub(crate) use tiles::{tile_origin, with_spare};
+pub(crate) use walk::walk;
 
 use crate::marks::Marks;
 use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
-use vitral_raster::{LayerList, Tile, TileGrid};
-
-/// Takes tiles as they are finished, from any thread, each once.
-pub trait TileSink: Sync {
-    /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
-    fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
-
-    /// Whether the grid's tiles are wanted when all have been handed on. If not, algorithms may fill each in memory that the next one
-    /// uses again.
-    fn keeps_tiles(&self) -> bool {
-        true
-    }
-
-    /// Whether it takes layers as [`LayerList::fragments`] from algorithms that find them so.
-    fn takes_fragments(&self) -> bool {
-        false
-    }
-
-    /// Whether it asks for layers pass by pass. Algorithms that find all layers of a sample at once (rays) hand on all.
-    fn takes_passes(&self) -> bool {
-        false
-    }
-
-    /// [`Self::tile`] for those that do: `pass` goes through all layers again, as long as it finds some.
-    fn tile_in_passes(&self, _: usize, _: &Tile, _: &mut dyn FnMut(&mut Peel) -> bool) {}
-}
-
-/// Takes tiles and does nothing with them.
-#[derive(Clone, Copy, Debug)]
-pub struct Nowhere;
-
-impl TileSink for Nowhere {
-    fn tile(&self, _: usize, _: &Tile, _: &mut LayerList) {}
-}
+use vitral_raster::TileGrid;
 
 /// What an algorithm did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

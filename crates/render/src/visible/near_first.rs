@@ -5,7 +5,7 @@
 //! In:   jobs in the scene's order. Out: the same triangles in jobs of about the same size.
 //! Cost: linear in runs of [`TRIANGLES_A_RUN`] triangles.
 
-use super::zbuffer::{Job, Jobs, Piece};
+use super::jobs::{Job, Jobs, Piece};
 use crate::PreparedView;
 use vitral_math::{Aabb, DVec4};
 use vitral_scene::TRIANGLES_A_RUN;
@@ -15,7 +15,22 @@ const SLICES: usize = 256;
 
 /// The jobs, those with opaque triangles from near to far.
 pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> Vec<Job<'v, 'a>> {
-    let mut runs = Vec::new();
+    let (distances, pieces) = runs(view, jobs);
+    let mut ordered = Jobs::default();
+    for number in by_distance(&distances) {
+        ordered.push(&pieces[number], false);
+    }
+    for job in jobs.iter().filter(|job| job.layered) {
+        for piece in &job.pieces {
+            ordered.push(piece, true);
+        }
+    }
+    ordered.finish()
+}
+
+/// The runs of opaque triangles: how far away each begins, and its part of a piece.
+fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<Piece<'v, 'a>>) {
+    let (mut distances, mut pieces) = (Vec::new(), Vec::new());
     let mut item = None;
     let mut forward = DVec4::ZERO;
     for piece in jobs.iter().filter(|job| !job.layered).flat_map(|job| &job.pieces) {
@@ -28,42 +43,39 @@ pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>
         while start < piece.range.end {
             let run = start as usize / TRIANGLES_A_RUN;
             let end = piece.range.end.min(((run + 1) * TRIANGLES_A_RUN) as u32);
-            runs.push((nearest(forward, &bounds[run]), Piece { range: start..end, ..piece.clone() }));
+            distances.push(nearest(forward, &bounds[run]));
+            pieces.push(Piece { range: start..end, ..piece.clone() });
             start = end;
         }
     }
+    (distances, pieces)
+}
 
+/// The order of these distances, dealt into slices; equal slices stay in order.
+fn by_distance(distances: &[f64]) -> Vec<usize> {
     let (mut near, mut far) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (distance, _) in &runs {
-        (near, far) = (near.min(*distance), far.max(*distance));
+    for &distance in distances {
+        (near, far) = (near.min(distance), far.max(distance));
     }
     let scale = SLICES as f64 / (far - near);
     // Conversion ends at the limits, and makes 0 of what is not a number.
     let slice = |distance: f64| (((distance - near) * scale) as usize).min(SLICES - 1);
-    let mut slices = [0; SLICES + 1];
-    for (distance, _) in &runs {
-        slices[slice(*distance) + 1] += 1;
-    }
-    for i in 1..slices.len() {
-        slices[i] += slices[i - 1];
-    }
-    let mut order = vec![0; runs.len()];
-    for (number, (distance, _)) in runs.iter().enumerate() {
-        let place = &mut slices[slice(*distance)];
-        order[*place] = number;
-        *place += 1;
-    }
 
-    let mut ordered = Jobs::default();
-    for number in order {
-        ordered.push(&runs[number].1, false);
+    // Count what falls into each slice, then deal.
+    let mut starts = [0; SLICES + 1];
+    for &distance in distances {
+        starts[slice(distance) + 1] += 1;
     }
-    for job in jobs.iter().filter(|job| job.layered) {
-        for piece in &job.pieces {
-            ordered.push(piece, true);
-        }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
     }
-    ordered.finish()
+    let mut order = vec![0; distances.len()];
+    for (number, &distance) in distances.iter().enumerate() {
+        let next = &mut starts[slice(distance)];
+        order[*next] = number;
+        *next += 1;
+    }
+    order
 }
 
 /// How far along a direction a box begins.
@@ -74,7 +86,7 @@ fn nearest(forward: DVec4, bounds: &Aabb) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::zbuffer::jobs;
+    use super::super::jobs::jobs;
     use super::*;
     use crate::stats::CullCounters;
     use crate::{Execution, Session, Settings};

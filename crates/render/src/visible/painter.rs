@@ -21,9 +21,11 @@
 mod compare;
 
 use super::cut::{Cut, bounds, corners};
-use super::facets::{Facets, fill_with};
-use super::pieces::{List, Pieces, Raster, draw, draw_layers, piece_step};
-use super::{Resolved, TileSink, VisibleSurface};
+use super::facets::Facets;
+use super::pieces::{Pieces, Raster};
+use super::priority_list::{PriorityList, draw_list, piece_step};
+use super::sink::TileSink;
+use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -33,7 +35,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{LayerList, Setup, Tile, TileGrid};
+use vitral_raster::{Setup, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -50,36 +52,38 @@ impl VisibleSurface for Painter {
     ) -> Result<Resolved, Limit> {
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
-        let mut setups = facets.opaque();
-        let opaque = setups.len();
-        setups.extend(facets.listed_layers());
-        let raster = Raster::new(view.viewport, &view.pattern);
+        let (setups, opaque) = facets.listed();
+
+        // Sort from back to front, splitting what is in no order.
         let mut counters = VisibilityCounters::default();
-        let mut sorting = Sorting::new(&setups, raster, execution, &mut counters)?;
-        let sorted = sorting.sort();
-        let (list, charged) = (sorting.list(), sorting.charged);
-        drop(sorting);
-        execution.budget.release(charged);
-        sorted?;
-        execution.budget.charge(list.bytes(), "the painter's list")?;
+        let list = sorted(&setups, Raster::new(view.viewport, &view.pattern), execution, &mut counters)?;
         counters.pieces = list.len() as u64;
-        let bytes = list.bytes();
-        let runs = [list];
-        let list = List { setups: &setups, opaque, runs: &runs };
-        let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
-            execution.budget.check("painting")?;
-            draw::<false>(facets, &list, index, &mut tiles[0], counters);
-            Ok(())
-        };
-        let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
-            draw_layers::<false>(facets, &list, index, tile, layers);
-        };
-        let filled = fill_with(&facets, marks, grid, sink, 1, &fill, Some(&collect));
-        execution.budget.release(bytes);
-        counters.add(&filled?);
+
+        // Paint.
+        let (bytes, runs) = (list.bytes(), [list]);
+        let list = PriorityList { setups: &setups, opaque, runs: &runs };
+        let painted = execution.budget.charged(bytes, "the painter's list", || {
+            draw_list::<false>(&facets, &list, marks, grid, sink, "painting")
+        })?;
+        counters.add(&painted);
         resolved.counters = counters;
         Ok(resolved)
     }
+}
+
+/// The list of all triangles or their pieces, from back to front.
+fn sorted(
+    setups: &[&Setup],
+    raster: Raster<'_>,
+    execution: &Execution,
+    counters: &mut VisibilityCounters,
+) -> Result<Pieces, Limit> {
+    let mut sorting = Sorting::new(setups, raster, execution, counters)?;
+    let outcome = sorting.sort();
+    let (list, charged) = (sorting.list(), sorting.charged);
+    drop(sorting);
+    execution.budget.release(charged);
+    outcome.map(|()| list)
 }
 
 /// What has become of a polygon.
@@ -93,23 +97,23 @@ enum State {
     Split,
 }
 
-/// A polygon's place in the first order: the farthest first.
+/// What the first order goes by: the farthest first.
 #[derive(Clone, Copy, PartialEq)]
-struct Place {
+struct Farness {
     far: f32,
     facet: u32,
     polygon: u32,
 }
 
-impl Eq for Place {}
+impl Eq for Farness {}
 
-impl PartialOrd for Place {
+impl PartialOrd for Farness {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Place {
+impl Ord for Farness {
     /// The greatest is painted first; of equally far ones, the higher facet.
     fn cmp(&self, other: &Self) -> Ordering {
         other.far.total_cmp(&self.far).then(self.facet.cmp(&other.facet)).then(other.polygon.cmp(&self.polygon))
@@ -139,7 +143,7 @@ const SMALLEST_CELL: u32 = 8;
 /// About how many polygons a cell should hold.
 const POLYGONS_A_CELL: usize = 12;
 /// Bytes of a polygon: itself, its corners, its place, its entries in the grid.
-const BYTES_A_POLYGON: u64 = (size_of::<Polygon>() + 3 * 16 + size_of::<Place>() + 16) as u64;
+const BYTES_A_POLYGON: u64 = (size_of::<Polygon>() + 3 * 16 + size_of::<Farness>() + 16) as u64;
 
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
@@ -152,7 +156,7 @@ struct Sorting<'f, 'c> {
     corners: Vec<[f64; 2]>,
     cuts: Vec<Cut>,
     /// The order by the farthest point.
-    waiting: BinaryHeap<Place>,
+    waiting: BinaryHeap<Farness>,
     marked: Vec<Marked>,
     /// Polygons by cell, row by row.
     cells: Vec<Vec<u32>>,
@@ -220,7 +224,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 self.cells[y as usize * self.columns as usize + x as usize].push(number);
             }
         }
-        self.waiting.push(Place { far: polygon.far, facet: setup.facet, polygon: number });
+        self.waiting.push(Farness { far: polygon.far, facet: setup.facet, polygon: number });
         self.briefs.push(Brief { cell: [x0, y0], far: polygon.far, state: State::Waiting });
         self.polygons.push(polygon);
     }
@@ -388,7 +392,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 *state = State::Waiting;
                 let waiting = &self.polygons[left.polygon as usize];
                 let facet = self.setups[waiting.setup as usize].facet;
-                self.waiting.push(Place { far: waiting.far, facet, polygon: left.polygon });
+                self.waiting.push(Farness { far: waiting.far, facet, polygon: left.polygon });
             }
         }
         for (corners, cut) in halves.iter().zip([line, line.opposite()]) {

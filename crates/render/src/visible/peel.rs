@@ -9,7 +9,7 @@
 //! Cost: twice the covered samples; memory: five numbers a sample.
 //! Source: \[Mammen 1989\].
 
-use super::facets::nearer;
+use super::agreement::nearer;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Level, Mask8, Simd, dispatch};
 use vitral_raster::{

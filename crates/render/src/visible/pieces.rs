@@ -1,4 +1,4 @@
-//! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
+//! Pieces of facets: what painter's algorithm and BSP trees cut polygons into.
 //!
 //! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
 //! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
@@ -6,64 +6,42 @@
 //! with rounding; it only bounds the pixels where samples are looked for, a little too far out. A triangle of few samples
 //! needs no outline: each sample is asked, and the piece is the list of those that belong to it.
 //!
-//! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
-//! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
-//! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
-//! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
-//!
-//! Transparent facets can take part in the list, for an order of transparency that draws by it. Which of them lie in front
-//! of what is opaque is the law's matter as for all algorithms; in which order they are drawn is the list's alone.
-//!
-//! In:   set-up triangles and lines (screen space). Out: the samples of each tile (screen space).
-//! Cost: linear in the pieces, the tiles that each touches, and covered samples, hidden ones included.
-//! Source: [Newell, Newell & Sancha 1972] for the list; the lines are those of [Fuchs, Kedem & Naylor 1980].
+//! In:   set-up triangles and lines (screen space). Out: pieces, sorted into tiles.
+//! Cost: linear in the pieces and the tiles that each touches.
+//! Source: the lines are those of [Fuchs, Kedem & Naylor 1980].
 
 use super::cut::{Cut, around, bounds, clip_outline, corners};
-use super::facets::{Facets, extent};
-use crate::stats::VisibilityCounters;
-use crate::trace::Step;
+use super::tiles::extent;
 use std::ops::Range;
-use vitral_math::lanes::{Simd, dispatch};
-use vitral_raster::{
-    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
-    SamplePattern, Setup, TILE, Tile, Viewport, traverse_by_rows, traverse_window,
-};
+use vitral_raster::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, Viewport};
 
 /// Samples in the box of a triangle that are asked one by one, in at most 8x8 pixels.
-const FEW: usize = 64;
+const MAX_LISTED_SAMPLES: usize = 64;
 /// Samples of a block that are asked without a look at the block's corners first.
-const CORNERS: u32 = 4;
-
-/// The step that gives a piece its place in the list, the smallest from the back.
-pub(super) fn piece_step(order: u32, setup: &Setup, cuts: &[Cut]) -> Step {
-    let (mut outline, mut scratch) = (corners(setup).to_vec(), Vec::new());
-    cuts.iter().for_each(|cut| clip_outline(&mut outline, &mut scratch, cut));
-    let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
-    Step::Piece { order, facet: setup.facet, cuts: cuts.len() as u32, outline }
-}
+const CORNER_TEST_THRESHOLD: u32 = 4;
 
 /// A part of a set-up triangle.
 #[derive(Clone, Debug)]
-struct Piece {
+pub(super) struct Piece {
     /// Index among the view's triangles.
-    setup: u32,
+    pub(super) setup: u32,
     /// First and last pixel column and row that may have samples of it.
-    pixels: [u16; 4],
-    cuts: Range<u32>,
+    pub(super) pixels: [u16; 4],
+    pub(super) cuts: Range<u32>,
     /// Where its own samples are listed, if they are: then no cut is needed.
-    samples: u32,
+    pub(super) samples: u32,
 }
 
 /// The samples of a piece are not listed.
-const UNLISTED: u32 = u32::MAX;
+pub(super) const UNLISTED: u32 = u32::MAX;
 
 /// A run of the list, sorted into tiles.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
-    pieces: Vec<Piece>,
-    cuts: Vec<Cut>,
+    pub(super) pieces: Vec<Piece>,
+    pub(super) cuts: Vec<Cut>,
     /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the piece's, 8 a row.
-    samples: Vec<u64>,
+    pub(super) samples: Vec<u64>,
     /// Tile and piece, in the order of the list.
     entries: Vec<[u32; 2]>,
     starts: Vec<u32>,
@@ -101,7 +79,7 @@ impl<'p> Raster<'p> {
     /// Whether it takes less to ask each sample of these pixels than to clip an outline.
     fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
         let [width, height] = [x1 - x0 + 1, y1 - y0 + 1].map(usize::from);
-        width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= FEW
+        width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= MAX_LISTED_SAMPLES
     }
 
     /// Where a triangle may have samples, if anywhere; what has few pixels is asked for each.
@@ -265,6 +243,12 @@ impl Pieces {
         self.entries = Vec::new();
     }
 
+    /// The pieces that may touch a tile, in the order of the list.
+    pub(super) fn in_tile(&self, index: usize) -> impl DoubleEndedIterator<Item = &Piece> {
+        let items = &self.items[self.starts[index] as usize..self.starts[index + 1] as usize];
+        items.iter().map(|&item| &self.pieces[item as usize])
+    }
+
     /// How many pieces there are.
     pub(super) fn len(&self) -> usize {
         self.pieces.len()
@@ -277,173 +261,17 @@ impl Pieces {
     }
 }
 
-/// A list of pieces, in runs.
-#[derive(Clone, Copy)]
-pub(super) struct List<'a> {
-    /// The triangles that they are of, opaque ones first.
-    pub(super) setups: &'a [&'a Setup],
-    /// How many are opaque.
-    pub(super) opaque: usize,
-    pub(super) runs: &'a [Pieces],
-}
-
-impl<'a> List<'a> {
-    /// The pieces that may touch a tile, in the order of the list: each with its run.
-    fn in_tile(&self, index: usize) -> impl DoubleEndedIterator<Item = (&'a Pieces, &'a Piece)> {
-        self.runs.iter().flat_map(move |run| {
-            let items = &run.items[run.starts[index] as usize..run.starts[index + 1] as usize];
-            items.iter().map(move |&item| (run, &run.pieces[item as usize]))
-        })
-    }
-}
-
-/// Draws the opaque pieces of a tile's part of a list, from front to back or from back to front.
-pub(super) fn draw<const FRONT_FIRST: bool>(
-    facets: &Facets<'_, '_>,
-    list: &List<'_>,
-    index: usize,
-    tile: &mut Tile,
-    counters: &mut VisibilityCounters,
-) {
-    let pattern = &facets.view().pattern;
-    let place = (tile.x, tile.y);
-    let mut inner = PrioritySink::<FRONT_FIRST>::new(tile, pattern);
-    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
-    dispatch!(facets.execution().level, simd => {
-        for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
-            draw_piece(simd, list, run, piece, &mut sink);
-        }
-    });
-    let counts: PriorityCounts = inner.counts;
-    counters.overdrawn += counts.overdrawn;
-    counters.overruled += counts.overruled;
-    counters.overruled_far += counts.overruled_far;
-}
-
-/// Collects the layers of a tile's part of a list from back to front, as far as they lie in front of its opaque samples.
-pub(super) fn draw_layers<const FRONT_FIRST: bool>(
-    facets: &Facets<'_, '_>,
-    list: &List<'_>,
-    index: usize,
-    tile: &Tile,
-    layers: &mut LayerList,
-) {
-    let pattern = &facets.view().pattern;
-    let place = (tile.x, tile.y);
-    let mut inner = LayerSink::new(tile, pattern, layers);
-    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
-    let pieces = list.in_tile(index).filter(|(_, piece)| piece.setup as usize >= list.opaque);
-    dispatch!(facets.execution().level, simd => {
-        // Loops: a closure that is not inlined would do without the instruction set.
-        if FRONT_FIRST {
-            for (run, piece) in pieces.rev() {
-                draw_piece(simd, list, run, piece, &mut sink);
-            }
-        } else {
-            for (run, piece) in pieces {
-                draw_piece(simd, list, run, piece, &mut sink);
-            }
-        }
-    });
-}
-
-#[inline(always)]
-fn draw_piece<'a, S: Simd, K: RowSink<S>>(
-    simd: S,
-    list: &List<'_>,
-    run: &'a Pieces,
-    piece: &Piece,
-    sink: &mut PieceSink<'a, InBlocks<'_, K>>,
-) {
-    let setup = list.setups[piece.setup as usize];
-    let (place, pattern) = (sink.place, sink.pattern);
-    if piece.samples != UNLISTED {
-        let samples = &run.samples[piece.samples as usize..][..pattern.len()];
-        return draw_samples(simd, setup, piece.pixels, samples, sink);
-    }
-    sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
-    if sink.cuts.is_empty() {
-        traverse_by_rows(simd, setup, place, pattern, sink.inner.0);
-        return;
-    }
-    let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
-    let inside = |first: i32, last: i32, start: u32| {
-        let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
-        pixel(first)..pixel(last + 1)
-    };
-    let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
-    traverse_window(simd, setup, place, &window, pattern, sink);
-}
-
-/// Draws the samples that a piece has in the tile, block by block.
-#[inline(always)]
-fn draw_samples<S: Simd, K: BlockSink<S>>(
-    simd: S,
-    setup: &Setup,
-    pixels: [u16; 4],
-    samples: &[u64],
-    sink: &mut PieceSink<'_, K>,
-) {
-    let [left, top] = [sink.place.0, sink.place.1].map(|v| v as i32);
-    let [x0, y0, x1, y1] = pixels.map(i32::from);
-    let ([x0, x1], [y0, y1]) = ([x0 - left, x1 - left], [y0 - top, y1 - top]);
-    let (side, last) = (BLOCK as i32, TILE as i32 - 1);
-    for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
-        for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
-            let mut masks = [0; 16];
-            let masks = &mut masks[..samples.len()];
-            let mut any = 0;
-            for (mask, &list) in masks.iter_mut().zip(samples) {
-                *mask = moved(list, x0 - bx, y0 - by);
-                any |= *mask;
-            }
-            let rows = (y0 - by).max(0) as usize..(y1 - by + 1).min(side) as usize;
-            let block = Block { x: bx as usize, y: by as usize, rows };
-            if any != 0 && !sink.inner.rejects(setup, &block) {
-                sink.inner.cover(simd, setup, &block, masks);
-            }
-        }
-    }
-}
-
 /// What of 8x8 pixels is left when they are moved by `dx` to the right and `dy` down, less than 8 either way.
 #[inline(always)]
-fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
+pub(super) fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
     let shifted = |v: u64, by: i32| if by >= 0 { v << by } else { v >> -by };
     // Those that enter a row of 8 from the next one are not meant.
     let columns = shifted(0xff, dx) & 0xff;
     shifted(shifted(pixels, 8 * dy), dx) & (columns * 0x0101_0101_0101_0101)
 }
 
-/// Narrows a triangle's coverage to one of its pieces.
-struct PieceSink<'a, K> {
-    inner: K,
-    /// The tile's first pixel.
-    place: (u32, u32),
-    pattern: &'a SamplePattern,
-    cuts: &'a [Cut],
-}
-
-impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
-    #[inline(always)]
-    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
-        self.inner.rejects(setup, block)
-    }
-
-    #[inline(always)]
-    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
-        let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
-        let mut kept = [0; 16];
-        let kept = &mut kept[..masks.len()];
-        kept.copy_from_slice(masks);
-        if cut_masks(self.cuts, self.pattern, origin, kept) {
-            self.inner.cover(simd, setup, block, kept);
-        }
-    }
-}
-
 /// Takes from the coverage of a block, at pixel `origin`, what lies beyond the cuts; false if nothing is left.
-fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &mut [u64]) -> bool {
+pub(super) fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &mut [u64]) -> bool {
     let mut any = false;
     for (s, mask) in masks.iter_mut().enumerate() {
         for cut in cuts {
@@ -465,7 +293,7 @@ fn keep(cut: &Cut, offset: [i32; 2], origin: [usize; 2], mut mask: u64) -> u64 {
     };
     // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes no more
     // to ask them.
-    if mask.count_ones() > CORNERS {
+    if mask.count_ones() > CORNER_TEST_THRESHOLD {
         let last = BLOCK - 1;
         let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
         if keeps[1..].iter().all(|&k| k == keeps[0]) {

@@ -15,33 +15,25 @@
 //! Cost: `O(log n)` for each sample in scenes of everyday, after `O(n log n)` for the structure and `O(n)` for a view.
 //! Source: [Appel 1968]; the tree after [Rubin & Whitted 1980]. Departs from them: see above.
 
+mod cast;
 mod eye;
 mod packet;
 mod single;
 
-use super::brute_force::{each_tile, few_enough};
-use super::screen_setups::{ScreenSetups, charged};
-use super::{Resolved, TileSink, VisibleSurface};
+use super::screen_setups::ScreenSetups;
+use super::sink::TileSink;
+use super::tiles::each_tile;
+use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::raytrace::follow::StructureUser;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::raytrace::{Structure, Tree};
 use crate::stats::VisibilityCounters;
-use crate::trace::Passed;
 use crate::{Coherence, Execution, PreparedView};
-use eye::Eye;
-use std::collections::HashSet;
-use std::sync::Mutex;
+use cast::Cast;
 use vitral_exec::Limit;
-use vitral_raster::{LayerList, Setup, Tile, TileGrid};
-
-/// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
-const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
-/// Triangles whose places are listed at once.
-const CHUNK: usize = 16384;
-/// No setup: nothing of this triangle is on the screen.
-const NONE: u32 = u32::MAX;
+use vitral_raster::{LayerList, Tile, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -59,15 +51,15 @@ impl VisibleSurface for RayCast {
         let facets = u64::from(view.session.world.facet_count);
         let bytes = AnyStructure::bytes(view.acceleration, facets);
         let bytes = ScreenSetups::bytes(view) + Triangles::bytes(facets) + bytes + facets * 32;
-        charged(&execution.budget, bytes, "ray casting", || {
-            let job = Job { view, marks, execution, sink, start: execution.budget.elapsed() };
-            AnyStructure::new(view.acceleration, view.session, execution)?.lend((job, grid))
+        execution.budget.charged(bytes, "ray casting", || {
+            let casting = RayCasting { view, marks, execution, sink, start: execution.budget.elapsed() };
+            AnyStructure::new(view.acceleration, view.session, execution)?.lend((casting, grid))
         })
     }
 }
 
 /// What is to be done, with any structure.
-struct Job<'a> {
+struct RayCasting<'a> {
     view: &'a PreparedView<'a>,
     marks: Option<&'a Marks>,
     execution: &'a Execution,
@@ -76,27 +68,27 @@ struct Job<'a> {
     start: f64,
 }
 
-/// Rays through a tree go down it in packets; other structures take them one by one.
-impl StructureUser for (Job<'_>, &mut TileGrid) {
+/// Rays go down a tree in packets; other structures take them one by one.
+impl StructureUser for (RayCasting<'_>, &mut TileGrid) {
     type Outcome = Result<Resolved, Limit>;
 
     fn with_structure<T: Structure>(self, structure: &T) -> Self::Outcome {
-        let (job, grid) = self;
-        job.run(grid, structure, single::look)
+        let (casting, grid) = self;
+        casting.run(grid, structure, single::look)
     }
 
     fn with_tree<T: Tree>(self, tree: &T) -> Self::Outcome {
-        let (job, grid) = self;
-        tree.widen(&job.execution.workers);
-        if job.view.coherence.has(Coherence::Area) {
-            job.run(grid, tree, packet::look)
+        let (casting, grid) = self;
+        tree.widen(&casting.execution.workers);
+        if casting.view.coherence.has(Coherence::Area) {
+            casting.run(grid, tree, packet::look)
         } else {
-            job.run(grid, tree, single::look)
+            casting.run(grid, tree, single::look)
         }
     }
 }
 
-impl Job<'_> {
+impl RayCasting<'_> {
     /// Sets up what is on the screen and lets `look` fill each tile.
     fn run<T: Structure>(
         &self,
@@ -112,7 +104,7 @@ impl Job<'_> {
         let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
         let all = (pixels * view.pattern.len() as u64).saturating_mul(setups);
         if view.acceleration.asks_all {
-            few_enough(all, "ray casting without a structure")?;
+            execution.budget.check_work(all, "ray casting without a structure")?;
         }
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;
         if let (Some(observer), Some(step)) = (&execution.observer, structure.step()) {
@@ -122,180 +114,5 @@ impl Job<'_> {
         resolved.counters = each_tile(view, self.marks, grid, execution, self.sink, look)?;
         resolved.counters.tests_saved = all.saturating_sub(resolved.counters.triangle_tests);
         Ok(resolved)
-    }
-}
-
-/// A structure, what its triangles are in this view, and the eye.
-struct Cast<'a, T> {
-    view: &'a PreparedView<'a>,
-    execution: &'a Execution,
-    structure: &'a T,
-    on_screen: ScreenSetups,
-    /// What each triangle of the structure is on the screen.
-    places: Vec<Place>,
-    /// For each part how wrong the depth of an opaque facet in it may be, then the same for layers; -∞ if there is
-    /// none in it. No list of layers if there are none at all.
-    slack: [Vec<f32>; 2],
-    largest_slack: f32,
-    eye: Eye,
-    /// Lists to use again.
-    stamps: Mutex<Vec<Stamps>>,
-}
-
-impl<'a, T: Structure> Cast<'a, T> {
-    fn new(view: &'a PreparedView<'a>, execution: &'a Execution, structure: &'a T, on_screen: ScreenSetups) -> Self {
-        // Find each facet's setups, and how wrong their depths may be.
-        let mut of_facet = vec![Place::NOWHERE; view.session.world.facet_count as usize];
-        let mut start = 0;
-        for &(end, clipped) in &on_screen.runs {
-            for (i, setup) in on_screen.setups[start..end].iter().enumerate() {
-                of_facet[setup.facet as usize].add((start + i) as u32, setup, clipped);
-            }
-            start = end;
-        }
-        let facets = &structure.triangles().facets;
-        let mut places = vec![Place::NOWHERE; facets.len()];
-        execution.workers.for_each_chunk(&mut places, CHUNK, |chunk, places| {
-            for (place, &f) in places.iter_mut().zip(&facets[chunk * CHUNK..]) {
-                *place = of_facet[f as usize];
-            }
-        });
-        let opaque = on_screen.opaque as u32;
-        let slack_of = |place: usize, layered: bool| {
-            let place = &places[place];
-            if (place.setups[0] >= opaque) == layered { place.slack } else { f32::NEG_INFINITY }
-        };
-        let any_layered = on_screen.opaque < on_screen.setups.len();
-        let slack = [
-            structure.largest(&|place| slack_of(place, false)),
-            if any_layered { structure.largest(&|place| slack_of(place, true)) } else { Vec::new() },
-        ];
-        let largest_slack = slack.iter().flatten().copied().fold(f32::NEG_INFINITY, f32::max);
-        let eye = Eye::new(view, structure.triangles());
-        Self { view, execution, structure, on_screen, places, slack, largest_slack, eye, stamps: Mutex::default() }
-    }
-
-    /// A facet's setups.
-    #[inline(always)]
-    fn setups(&self, [first, end]: [u32; 2]) -> &[Setup] {
-        &self.on_screen.setups[first as usize..end as usize]
-    }
-
-    /// Whether these are setups of a facet that becomes a layer.
-    #[inline(always)]
-    fn is_layered(&self, [first, _]: [u32; 2]) -> bool {
-        first as usize >= self.on_screen.opaque
-    }
-
-    fn take_stamps(&self) -> Stamps {
-        let spare = self.stamps.lock().expect("no thread panics while it holds stamps").pop();
-        spare.unwrap_or_else(|| Stamps::new(if T::REPEATS { self.places.len() } else { 0 }))
-    }
-
-    fn give_stamps(&self, stamps: Stamps) {
-        self.stamps.lock().expect("no thread panics while it holds stamps").push(stamps);
-    }
-}
-
-/// Names what rays went through, each part once, and empties the list.
-fn names(structure: &impl Structure, passed: &mut Vec<u32>) -> Passed {
-    let mut seen = HashSet::new();
-    passed.retain(|part| seen.insert(*part));
-    let names = structure.names(passed);
-    passed.clear();
-    names
-}
-
-/// What a triangle is on the screen: little enough to be looked at before its setups are.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// The first setup and the one behind the last, or `NONE`.
-    setups: [u32; 2],
-    /// Left and right pixel column, top and bottom row, of the box round them.
-    columns: [i16; 2],
-    rows: [i16; 2],
-    /// The nearest depth.
-    nearest: f32,
-    /// How wrong depths may be, -∞ where there are none.
-    slack: f32,
-}
-
-impl Place {
-    const NOWHERE: Self = Self {
-        setups: [NONE; 2],
-        columns: [i16::MAX, i16::MIN],
-        rows: [i16::MAX, i16::MIN],
-        nearest: 0.0,
-        slack: f32::NEG_INFINITY,
-    };
-
-    /// Adds the setup of this number, which is the first or the one behind those before it.
-    fn add(&mut self, number: u32, setup: &Setup, clipped: bool) {
-        self.setups = [self.setups[0].min(number), number + 1];
-        // Setups lie within the guard band, which 16 bits can hold.
-        let pixel = |v: i32| (v >> 8).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
-        for (range, v) in [(&mut self.columns, &setup.x), (&mut self.rows, &setup.y)] {
-            let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
-            *range = [range[0].min(pixel(low)), range[1].max(pixel(high))];
-        }
-        self.nearest = self.nearest.max(setup.z_max);
-        self.slack = self.slack.max(depth_slack(setup, clipped));
-    }
-}
-
-/// Who was already asked: a structure may show a triangle to the same ray several times.
-struct Stamps {
-    seen: Vec<u32>,
-    now: u32,
-}
-
-impl Stamps {
-    fn new(count: usize) -> Self {
-        Self { seen: vec![0; count], now: 0 }
-    }
-
-    /// Begins another ray.
-    #[inline(always)]
-    fn next(&mut self) {
-        self.now = self.now.wrapping_add(1);
-        if self.now == 0 {
-            self.seen.fill(0);
-            self.now = 1;
-        }
-    }
-
-    /// Whether the triangle at `place` has not been asked since [`Self::next`].
-    #[inline(always)]
-    fn first_time(&mut self, place: usize) -> bool {
-        std::mem::replace(&mut self.seen[place], self.now) != self.now
-    }
-}
-
-/// By how much `Setup::depth` can differ from the exact interpolation of the corners' depths: rounding grows with the
-/// square of the length over the area, but not beyond the range that depths are clamped to.
-fn depth_slack(setup: &Setup, clipped: bool) -> f32 {
-    let range = setup.z_max - setup.z_min + setup.z_max * DEPTH_ROUNDING;
-    if clipped {
-        return range;
-    }
-    let extent = |v: &[i32; 3]| (v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2])) as f32;
-    let (dx, dy) = (extent(&setup.x), extent(&setup.y));
-    let [x, y] = [&setup.x, &setup.y].map(|v| [v[1] - v[0], v[2] - v[0]].map(i64::from));
-    let area = (x[0] * y[1] - x[1] * y[0]) as f32;
-    range.min(DEPTH_ROUNDING * (range * (dx * dx + dy * dy) / area + setup.z_max))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stamps_tell_the_first_time() {
-        let mut stamps = Stamps::new(2);
-        stamps.now = u32::MAX - 1;
-        for _ in 0..3 {
-            stamps.next();
-            assert!(stamps.first_time(1) && !stamps.first_time(1) && stamps.first_time(0));
-        }
     }
 }

@@ -15,8 +15,11 @@
 //! leaves a margin for rounding and reckons with the clamping of depths, so that it never decides but what the facets'
 //! depth function would; two facets with one depth plane are decided by their ids.
 
-use super::facets::{Facets, extent, fill_tiles, nearer, put};
-use super::{Resolved, TileSink, VisibleSurface};
+use super::agreement::nearer;
+use super::facets::{Facets, fill_tiles};
+use super::sink::TileSink;
+use super::tiles::{extent, put};
+use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::{Step, WindowVerdict};
@@ -154,7 +157,7 @@ impl<'t, 'f> Subdivision<'t, 'f> {
         result
     }
 
-    /// What is to be told of a window with this list.
+    /// The step of a window with this list.
     fn step(&self, window: Window, list: &[Entry]) -> Step {
         let (columns, rows) = self.pixels(window);
         let pixels = [

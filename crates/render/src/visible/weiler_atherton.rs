@@ -18,8 +18,11 @@
 
 mod region;
 
-use super::facets::{Facets, fill_tiles, nearer, put};
-use super::{Resolved, TileSink, VisibleSurface};
+use super::agreement::nearer;
+use super::facets::{Facets, fill_tiles};
+use super::sink::TileSink;
+use super::tiles::put;
+use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;

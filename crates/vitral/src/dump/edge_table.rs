@@ -8,7 +8,7 @@ use vitral_raster::{TileGrid, Viewport};
 use vitral_render::Execution;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, SpanVerdict, Step};
-use vitral_render::visible::{Nowhere, VisibleSurface, scanline::ScanLine};
+use vitral_render::visible::{NullSink, VisibleSurface, scanline::ScanLine};
 use vitral_scene::Camera;
 
 /// Keeps what is told of the tables, with the place of each part: row of pixels, and 0 for tables, 1 for lines.
@@ -30,7 +30,7 @@ pub(super) fn edge_tables(renderer: &Renderer, camera: &Camera, viewport: Viewpo
     let execution = Execution { observer, ..renderer.execution().clone() };
     let view = prepare(renderer, camera, viewport, &mut CullCounters::default());
     let mut grid = TileGrid::new(viewport, 1);
-    ScanLine.resolve(&view, None, &mut grid, &execution, &Nowhere).map_err(vitral_render::Error::from)?;
+    ScanLine.resolve(&view, None, &mut grid, &execution, &NullSink).map_err(vitral_render::Error::from)?;
     let mut parts = std::mem::take(&mut *tables.0.lock().expect("no thread panics while it keeps a step"));
     parts.sort_by_key(|(place, _)| *place);
     Ok(parts.into_iter().map(|(_, text)| text).collect())

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use vitral::explain::explain;
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
 use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::{ACCELERATION, SHADOWS, VISIBILITY};
+use vitral::render::registry::{SHADOWS, VISIBILITY};
 use vitral::render::stats::TracingCounters;
 use vitral::render::trace::{Observer, Step, Way};
 use vitral::render::{Acceleration, Background, Global, Shadows, Transparency, Visibility};

@@ -11,8 +11,9 @@ use super::tiles::{Layer, Map, MapTile, Pending, nearest_depths};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::occluders::Occluders;
 use crate::stats::CullCounters;
-use crate::visible::TileSink;
-use crate::visible::zbuffer::{all_batches, resolve_in_passing, tile_place, touching, walk, with_spare};
+use crate::visible::{
+    TileSink, all_batches, give_back, layer_list, resolve_in_passing, tile_origin, touching, walk, with_spare,
+};
 use crate::{Background, Execution, Lines, PreparedView, Session, Settings, Visibility};
 use std::sync::{Mutex, OnceLock};
 use vitral_exec::Limit;
@@ -101,8 +102,7 @@ impl FirstPass<'_> {
             let opaque = opaque.into_iter().map(|(_, batch)| batch).collect();
             pending = Some(Pending { batches: opaque, level: self.execution.level });
         }
-        let mut spare = self.session.spare_batches.lock().expect("spare batches");
-        spare.extend(batches.into_iter().map(|(_, batch)| batch));
+        give_back(self.session, batches);
         pending
     }
 }
@@ -162,7 +162,7 @@ impl<'a> DepthSink<'a> {
         if self.is_given_up() {
             return;
         }
-        let place = tile_place(view, index);
+        let place = tile_origin(view, index);
         let opaque = batches.iter().filter(|(layered, _)| !layered).map(|(_, batch)| *batch);
         let level = self.execution.level;
         let nearest = nearest_depths(level, place, opaque, index);
@@ -175,7 +175,7 @@ impl<'a> DepthSink<'a> {
                 (tile.x, tile.y) = place;
                 (tile.block_far, tile.touched) = (far, true);
                 tile.depth.copy_from_slice(&depths);
-                let mut list = view.layer_list_for(self);
+                let mut list = layer_list(view, self);
                 let layered: Vec<_> = batches.iter().copied().filter(|(layered, _)| *layered).collect();
                 walk(level, &layered, index, tile, &view.pattern, &mut list);
                 list.finish();

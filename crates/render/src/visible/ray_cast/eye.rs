@@ -9,7 +9,6 @@
 //! Cost: some 50 operations each.
 //! Source: [Appel 1968] for the rays.
 
-use super::DEPTH_ROUNDING;
 use crate::PreparedView;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::pyramid::{Plane, Pyramid};
@@ -18,6 +17,8 @@ use vitral_math::lanes::Simd;
 use vitral_math::{DMat4, DVec3, Vec3, vec3};
 use vitral_raster::SUBPIXEL;
 
+/// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
+pub(super) const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
 /// Half the width of a beam in pixels. Snapping moves a corner by 1/512 pixel an axis, rounding of far corners by a few
 /// times that.
 const HAIR: f64 = 1.0 / 64.0;

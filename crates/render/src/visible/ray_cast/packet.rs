@@ -11,12 +11,11 @@
 //! Cost: one way down for each block and kind.
 //! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
 
-use super::{Cast, Place, Stamps, names};
+use super::cast::{Cast, ScreenTriangle, Stamps, names};
 use crate::raytrace::{Probe, Structure, Tree, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
-use crate::visible::brute_force::size_in_picture;
-use crate::visible::facets::extent;
+use crate::visible::tiles::{extent, size_in_picture};
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
@@ -72,7 +71,7 @@ impl<S: Simd> Taker<S> for Layers<'_> {
 }
 
 /// The facets of a block that `taker` takes.
-struct Search<'a, S, T, K> {
+struct BlockSearch<'a, S, T, K> {
     simd: S,
     cast: &'a Cast<'a, T>,
     taker: K,
@@ -93,20 +92,20 @@ fn farthest(tile: &Tile, (x, y): (usize, usize)) -> f32 {
 
 /// Whether a triangle's box on the screen touches the block, in front of depth `far`. What is nowhere does not.
 #[inline(always)]
-fn reaches(place: &Place, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool {
+fn reaches(triangle: &ScreenTriangle, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool {
     let (x, y, side) = (tile.x as i32 + x as i32, tile.y as i32 + y as i32, BLOCK as i32);
     let touches = |range: [i16; 2], start: i32| i32::from(range[0]) < start + side && i32::from(range[1]) >= start;
-    touches(place.columns, x) & touches(place.rows, y) & (place.nearest >= far)
+    touches(triangle.columns, x) & touches(triangle.rows, y) & (triangle.nearest >= far)
 }
 
-impl<S: Simd, T: Structure, K: Taker<S>> Search<'_, S, T, K> {
+impl<S: Simd, T: Structure, K: Taker<S>> BlockSearch<'_, S, T, K> {
     #[inline(always)]
     fn is_behind(&self, near: f32, slack: f32) -> bool {
         self.cast.eye.is_behind(near, slack, farthest(self.taker.tile(), self.block))
     }
 }
 
-impl<S: Simd, T: Structure, K: Taker<S>> Visitor for Search<'_, S, T, K> {
+impl<S: Simd, T: Structure, K: Taker<S>> Visitor for BlockSearch<'_, S, T, K> {
     #[inline(always)]
     fn skips(&self, part: usize, near: f32) -> bool {
         self.is_behind(near, self.cast.slack[usize::from(K::LAYERED)][part])
@@ -121,7 +120,7 @@ impl<S: Simd, T: Structure, K: Taker<S>> Visitor for Search<'_, S, T, K> {
     fn triangle(&mut self, place: usize) {
         let tile = self.taker.tile();
         let far = farthest(tile, self.block);
-        let found = &self.cast.places[place];
+        let found = &self.cast.triangles[place];
         if !reaches(found, tile, self.block, far) || self.cast.is_layered(found.setups) != K::LAYERED {
             return;
         }
@@ -191,13 +190,13 @@ fn look_at_block<S: Simd, T: Tree>(
     let pyramid = cast.eye.pyramid(simd, low, high);
 
     stamps.next();
-    let mut opaque = Search { simd, cast, taker: Opaque(tile), block, samples: [low, high], stamps, tests: 0 };
+    let mut opaque = BlockSearch { simd, cast, taker: Opaque(tile), block, samples: [low, high], stamps, tests: 0 };
     let mut boxes = descend(cast.structure, &pyramid, &mut opaque, passed.as_deref_mut());
     let mut tests = opaque.tests;
     if !cast.slack[1].is_empty() {
         stamps.next();
         let mut visitor =
-            Search { simd, cast, taker: Layers(tile, layers), block, samples: [low, high], stamps, tests: 0 };
+            BlockSearch { simd, cast, taker: Layers(tile, layers), block, samples: [low, high], stamps, tests: 0 };
         boxes += descend(cast.structure, &pyramid, &mut visitor, passed);
         tests += visitor.tests;
     }

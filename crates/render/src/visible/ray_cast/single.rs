@@ -1,24 +1,27 @@
 //! One ray at a time, for structures that are walked rather than gone down: the grid, and the mere list.
 //!
-//! Each sample has its beam. The facet that the ray before met is tried first: most often it is met again, and then
+//! Each sample has its beam. The facet that the last ray met is tried first: most often this one meets it, too, and then
 //! whatever lies behind it need not be looked at.
 //!
 //! In:   a view's facets and the structure over them. Out: the samples of a tile.
 //! Cost: one walk a sample.
 //! Source: [Appel 1968].
 
-use super::{Cast, NONE, Stamps, names};
+use super::cast::{Cast, NONE, Stamps, names};
 use crate::Coherence;
 use crate::raytrace::{Structure, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
-use crate::visible::brute_force::size_in_picture;
-use crate::visible::facets::nearer;
+use crate::visible::agreement::nearer;
+use crate::visible::tiles::size_in_picture;
 use vitral_exec::Limit;
 use vitral_raster::{Layer, LayerList, NO_FACET, SUBPIXEL, TILE, TILE_PIXELS, Tile};
 
+/// Depth and facet where nothing is.
+const BACKGROUND: (f32, u32) = (0.0, NO_FACET);
+
 /// What the ray through one sample has met.
-struct Search<'a, T> {
+struct RaySearch<'a, T> {
     cast: &'a Cast<'a, T>,
     sample: [i32; 2],
     /// Depth and facet of the nearest opaque facet, and the setups of it.
@@ -30,7 +33,38 @@ struct Search<'a, T> {
     tests: u64,
 }
 
-impl<T: Structure> Search<'_, T> {
+impl<T: Structure> RaySearch<'_, T> {
+    /// Follows the ray through a sample of a tile's pixel; notes the parts it went through in `passed`.
+    #[inline]
+    fn follow(
+        &mut self,
+        tile: &Tile,
+        [column, row]: [usize; 2],
+        sample: usize,
+        passed: Option<&mut Vec<u32>>,
+        counters: &mut VisibilityCounters,
+    ) {
+        let cast = self.cast;
+        let [sx, sy] = cast.view.pattern.position(sample);
+        let x = (tile.x as i32 + column as i32) * SUBPIXEL + sx;
+        let y = (tile.y as i32 + row as i32) * SUBPIXEL + sy;
+        (self.sample, self.nearest) = ([x, y], BACKGROUND);
+        self.stamps.next();
+
+        // Try what the last ray met, then follow the beam.
+        let last = std::mem::replace(&mut self.setups, [NONE; 2]);
+        if last[0] != NONE && cast.view.coherence.has(Coherence::Area) {
+            self.test(last);
+            counters.saved_by_area += u64::from(self.setups[0] != NONE);
+        }
+        let beam = cast.eye.beam(x, y);
+        counters.box_tests += match passed {
+            None => cast.structure.traverse(&beam, self),
+            Some(passed) => cast.structure.traverse(&beam, &mut Watched { visitor: self, passed }),
+        };
+        counters.rays += 1;
+    }
+
     /// Asks the law of agreement about the facet of these setups.
     #[inline]
     fn test(&mut self, setups: [u32; 2]) {
@@ -52,7 +86,7 @@ impl<T: Structure> Search<'_, T> {
     }
 }
 
-impl<T: Structure> Visitor for Search<'_, T> {
+impl<T: Structure> Visitor for RaySearch<'_, T> {
     #[inline]
     fn skips(&self, part: usize, near: f32) -> bool {
         let [opaque, layered] = &self.cast.slack;
@@ -67,7 +101,7 @@ impl<T: Structure> Visitor for Search<'_, T> {
 
     #[inline]
     fn triangle(&mut self, place: usize) {
-        let setups = self.cast.places[place].setups;
+        let setups = self.cast.triangles[place].setups;
         if setups[0] != NONE && (!T::REPEATS || self.stamps.first_time(place)) {
             self.test(setups);
         }
@@ -81,37 +115,18 @@ pub(super) fn look<T: Structure>(
     layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
-    let (background, none) = ((0.0, NO_FACET), [NONE; 2]);
-    let (stamps, layer_list) = (cast.take_stamps(), Vec::new());
+    let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
     let mut search =
-        Search { cast, sample: [0; 2], nearest: background, setups: none, layers: layer_list, stamps, tests: 0 };
-    let pattern = &cast.view.pattern;
-    let try_before = cast.view.coherence.has(Coherence::Area);
+        RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests: 0 };
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
         for column in 0..columns {
             let before_pixel = (counters.box_tests, search.tests);
-            for sample in 0..pattern.len() {
-                let [sx, sy] = pattern.position(sample);
-                let x = (tile.x as i32 + column as i32) * SUBPIXEL + sx;
-                let y = (tile.y as i32 + row as i32) * SUBPIXEL + sy;
-                (search.sample, search.nearest) = ([x, y], background);
-                search.stamps.next();
-
-                // Try what the ray before met, then follow the beam.
-                let before = std::mem::replace(&mut search.setups, none);
-                if try_before && before != none {
-                    search.test(before);
-                    counters.saved_by_area += u64::from(search.setups != none);
-                }
-                let beam = cast.eye.beam(x, y);
-                counters.box_tests += match &mut passed {
-                    None => cast.structure.traverse(&beam, &mut search),
-                    Some(passed) => cast.structure.traverse(&beam, &mut Watched { visitor: &mut search, passed }),
-                };
-                counters.rays += 1;
+            let samples = cast.view.pattern.len();
+            for sample in 0..samples {
+                search.follow(tile, [column, row], sample, passed.as_mut(), &mut counters);
 
                 // Keep the nearest, and the layers in front of it.
                 let at = sample * TILE_PIXELS + row * TILE + column;
@@ -122,7 +137,7 @@ pub(super) fn look<T: Structure>(
                 seen.for_each(|(depth, facet)| layers.push(Layer { at: at as u32, depth, facet }));
             }
             if let Some(passed) = &mut passed {
-                let (rays, boxes) = (pattern.len() as u64, counters.box_tests - before_pixel.0);
+                let (rays, boxes) = (samples as u64, counters.box_tests - before_pixel.0);
                 let (facets, through) = (search.tests - before_pixel.1, names(cast.structure, passed));
                 let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
                 cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, through });

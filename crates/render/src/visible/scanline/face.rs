@@ -43,7 +43,7 @@ impl OnLine<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::visible::scanline::tests::triangle;
+    use crate::visible::scanline::edges::tests::triangle;
 
     fn on_line(setup: &Setup, y: i32) -> OnLine<'_> {
         OnLine { setup, start: setup.depth_of_line(y) }

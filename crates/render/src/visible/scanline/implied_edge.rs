@@ -46,7 +46,7 @@ pub(super) struct ImpliedEdges {
 
 /// How a span falls in parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Parts {
+pub(super) struct DividedSpan {
     /// The pixels where the depths decide. Those before them and those behind them have a winner.
     pub(super) undecided: Range<usize>,
     /// Whether the first polygon is nearer on the left, and the second on the right, or the other way round.
@@ -62,7 +62,7 @@ impl ImpliedEdges {
         pixels: Range<usize>,
         sample_x: i32,
         y: i32,
-    ) -> Parts {
+    ) -> DividedSpan {
         if self.places.is_empty() {
             self.places = vec![None; PLACES];
         }
@@ -74,7 +74,7 @@ impl ImpliedEdges {
                 *self.places[place as usize].insert(ImpliedEdge::new(polygons, setups, y))
             }
         };
-        Parts { undecided: edge.undecided(pixels, sample_x, y), first_on_left: edge.first_on_left }
+        DividedSpan { undecided: edge.undecided(pixels, sample_x, y), first_on_left: edge.first_on_left }
     }
 }
 
@@ -149,8 +149,8 @@ impl Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::visible::facets::nearer;
-    use crate::visible::scanline::tests::triangle;
+    use crate::visible::agreement::nearer;
+    use crate::visible::scanline::edges::tests::triangle;
 
     /// Two faces that are equally near where `x + y` is 20 pixels.
     fn crossing() -> [Setup; 2] {
@@ -166,7 +166,7 @@ mod tests {
         for line in 0..18 {
             let parts = edges.divide([1, 2], [&p, &q], 0..30, 128, at(line));
             let middle = 19 - line as usize;
-            assert_eq!(parts, Parts { undecided: middle..middle + 1, first_on_left: false }, "line {line}");
+            assert_eq!(parts, DividedSpan { undecided: middle..middle + 1, first_on_left: false }, "line {line}");
         }
         assert_eq!(edges.found, 1);
         // A span beside the edge has no undecided part, at one end of it or the other.

@@ -1,16 +1,16 @@
 //! The tables of a band, for whoever looks on.
 //!
 //! In:   polygon table, edge table, active edges (screen space). Out: the same in pixels.
-//! Cost: linear in what is told; nothing if nobody listens.
+//! Cost: linear in what is reported; nothing if nobody listens.
 
-use super::{ActiveEdge, Edge, Line, Polygon, downwards};
+use super::edges::{ActiveEdge, Edge, Line, Polygon, downwards};
 use crate::trace::Step;
 use crate::trace::tables::{Bucket, Crossing, TableEdge, TablePolygon};
 use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::SUBPIXEL;
 
-/// Tells the tables of the band of these `rows` of pixels.
+/// Reports the tables of the band of these `rows` of pixels.
 pub(super) fn tables(
     execution: &Execution,
     view: &PreparedView<'_>,
@@ -26,9 +26,9 @@ pub(super) fn tables(
     execution.budget.charge(bytes as u64, "the edge table that is told")?;
     let rows = rows.map(|row| row as u32);
     let world = view.session.world();
-    let polygons_told = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.setup.facet))).collect();
+    let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.setup.facet))).collect();
     let buckets = buckets(polygons, edges, lines, rows[0]);
-    execution.tell(|| Step::EdgeTable { rows, polygons: polygons_told, buckets });
+    execution.tell(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
     execution.budget.release(bytes as u64);
     Ok(())
 }
@@ -42,7 +42,7 @@ fn polygon(Polygon { setup, .. }: &Polygon<'_>, surface: u32) -> TablePolygon {
 /// The edge table, of a band whose first row of pixels is `top`.
 fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -> Vec<Bucket> {
     let place = |line: &Line| [top + line.row as u32, line.sample as u32];
-    let told = |edge: &Edge| {
+    let entry = |edge: &Edge| {
         let (setup, line) = (polygons[edge.polygon as usize].setup, &lines[usize::from(edge.lines.start)]);
         let active = ActiveEdge::new(edge, setup, line.y, 0);
         let (dx, dy, _) = downwards(setup, edge.corner);
@@ -57,20 +57,20 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
     };
     let bucket = |edges: &[Edge]| {
         let [row, sample] = place(&lines[usize::from(edges[0].lines.start)]);
-        Bucket { row, sample, edges: edges.iter().map(told).collect() }
+        Bucket { row, sample, edges: edges.iter().map(entry).collect() }
     };
     edges.chunk_by(|a, b| a.lines.start == b.lines.start).map(bucket).collect()
 }
 
 /// The active edge table.
 pub(super) fn crossings(active: &[ActiveEdge], polygons: &[Polygon<'_>]) -> Vec<Crossing> {
-    let told = |edge: &ActiveEdge| Crossing {
+    let crossing = |edge: &ActiveEdge| Crossing {
         x: edge.place(),
         polygon: edge.polygon,
         facet: polygons[edge.polygon as usize].setup.facet,
         edge: edge.corner,
     };
-    active.iter().map(told).collect()
+    active.iter().map(crossing).collect()
 }
 
 impl ActiveEdge {
@@ -86,8 +86,8 @@ fn pixels(v: i32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::triangle;
-    use super::super::{edge_table, lines};
+    use super::super::edges::tests::triangle;
+    use super::super::edges::{edge_table, lines};
     use super::*;
     use vitral_raster::{SamplePattern, Setup};
 

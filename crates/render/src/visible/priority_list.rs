@@ -1,0 +1,208 @@
+//! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
+//!
+//! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
+//! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
+//! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
+//! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
+//!
+//! Transparent facets can take part in the list, for an order of transparency that draws by it. Which of them lie in front
+//! of what is opaque is the law's matter as for all algorithms; in which order they are drawn is the list's alone.
+//!
+//! In:   pieces of facets in order (screen space). Out: the samples of each tile (screen space).
+//! Cost: linear in the pieces of each tile and covered samples, hidden ones included.
+//! Source: [Newell, Newell & Sancha 1972].
+
+use super::cut::{Cut, clip_outline, corners};
+use super::facets::{Facets, fill_with};
+use super::pieces::{Piece, Pieces, UNLISTED, cut_masks, moved};
+use super::sink::TileSink;
+use crate::marks::Marks;
+use crate::stats::VisibilityCounters;
+use crate::trace::Step;
+use vitral_exec::Limit;
+use vitral_math::lanes::{Simd, dispatch};
+use vitral_raster::{
+    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
+    SamplePattern, Setup, TILE, Tile, TileGrid, traverse_by_rows, traverse_window,
+};
+
+/// The step that gives a piece its place in the list, the smallest from the back.
+pub(super) fn piece_step(order: u32, setup: &Setup, cuts: &[Cut]) -> Step {
+    let (mut outline, mut scratch) = (corners(setup).to_vec(), Vec::new());
+    cuts.iter().for_each(|cut| clip_outline(&mut outline, &mut scratch, cut));
+    let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
+    Step::Piece { order, facet: setup.facet, cuts: cuts.len() as u32, outline }
+}
+
+/// A list of pieces, in runs.
+#[derive(Clone, Copy)]
+pub(super) struct PriorityList<'a> {
+    /// The triangles that they are of, opaque ones first.
+    pub(super) setups: &'a [&'a Setup],
+    /// How many are opaque.
+    pub(super) opaque: usize,
+    pub(super) runs: &'a [Pieces],
+}
+
+impl<'a> PriorityList<'a> {
+    /// The pieces that may touch a tile, in the order of the list: each with its run.
+    fn in_tile(&self, index: usize) -> impl DoubleEndedIterator<Item = (&'a Pieces, &'a Piece)> {
+        self.runs.iter().flat_map(move |run| run.in_tile(index).map(move |piece| (run, piece)))
+    }
+}
+
+/// Draws a list tile by tile and hands the tiles on. `stage` is what the budget is told.
+pub(super) fn draw_list<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    list: &PriorityList<'_>,
+    marks: Option<&Marks>,
+    grid: &mut TileGrid,
+    sink: &dyn TileSink,
+    stage: &'static str,
+) -> Result<VisibilityCounters, Limit> {
+    let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
+        facets.execution().budget.check(stage)?;
+        draw::<FRONT_FIRST>(facets, list, index, &mut tiles[0], counters);
+        Ok(())
+    };
+    let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
+        draw_layers::<FRONT_FIRST>(facets, list, index, tile, layers);
+    };
+    fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect))
+}
+
+/// Draws the opaque pieces of a tile's part of a list, from front to back or from back to front.
+fn draw<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    list: &PriorityList<'_>,
+    index: usize,
+    tile: &mut Tile,
+    counters: &mut VisibilityCounters,
+) {
+    let pattern = &facets.view().pattern;
+    let place = (tile.x, tile.y);
+    let mut inner = PrioritySink::<FRONT_FIRST>::new(tile, pattern);
+    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
+    dispatch!(facets.execution().level, simd => {
+        for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
+            draw_piece(simd, list, run, piece, &mut sink);
+        }
+    });
+    let counts: PriorityCounts = inner.counts;
+    counters.overdrawn += counts.overdrawn;
+    counters.overruled += counts.overruled;
+    counters.overruled_far += counts.overruled_far;
+}
+
+/// Collects the layers of a tile's part of a list from back to front, as far as they lie in front of its opaque samples.
+fn draw_layers<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    list: &PriorityList<'_>,
+    index: usize,
+    tile: &Tile,
+    layers: &mut LayerList,
+) {
+    let pattern = &facets.view().pattern;
+    let place = (tile.x, tile.y);
+    let mut inner = LayerSink::new(tile, pattern, layers);
+    let mut sink = PieceSink { inner: InBlocks(&mut inner), place, pattern, cuts: &[] };
+    let pieces = list.in_tile(index).filter(|(_, piece)| piece.setup as usize >= list.opaque);
+    dispatch!(facets.execution().level, simd => {
+        // Loops: a closure that is not inlined would do without the instruction set.
+        if FRONT_FIRST {
+            for (run, piece) in pieces.rev() {
+                draw_piece(simd, list, run, piece, &mut sink);
+            }
+        } else {
+            for (run, piece) in pieces {
+                draw_piece(simd, list, run, piece, &mut sink);
+            }
+        }
+    });
+}
+
+#[inline(always)]
+fn draw_piece<'a, S: Simd, K: RowSink<S>>(
+    simd: S,
+    list: &PriorityList<'_>,
+    run: &'a Pieces,
+    piece: &Piece,
+    sink: &mut PieceSink<'a, InBlocks<'_, K>>,
+) {
+    let setup = list.setups[piece.setup as usize];
+    let (place, pattern) = (sink.place, sink.pattern);
+    if piece.samples != UNLISTED {
+        let samples = &run.samples[piece.samples as usize..][..pattern.len()];
+        return draw_samples(simd, setup, piece.pixels, samples, sink);
+    }
+    sink.cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
+    if sink.cuts.is_empty() {
+        traverse_by_rows(simd, setup, place, pattern, sink.inner.0);
+        return;
+    }
+    let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
+    let inside = |first: i32, last: i32, start: u32| {
+        let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
+        pixel(first)..pixel(last + 1)
+    };
+    let window = [inside(x0, x1, place.0), inside(y0, y1, place.1)];
+    traverse_window(simd, setup, place, &window, pattern, sink);
+}
+
+/// Draws the samples that a piece has in the tile, block by block.
+#[inline(always)]
+fn draw_samples<S: Simd, K: BlockSink<S>>(
+    simd: S,
+    setup: &Setup,
+    pixels: [u16; 4],
+    samples: &[u64],
+    sink: &mut PieceSink<'_, K>,
+) {
+    let [left, top] = [sink.place.0, sink.place.1].map(|v| v as i32);
+    let [x0, y0, x1, y1] = pixels.map(i32::from);
+    let ([x0, x1], [y0, y1]) = ([x0 - left, x1 - left], [y0 - top, y1 - top]);
+    let (side, last) = (BLOCK as i32, TILE as i32 - 1);
+    for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
+        for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
+            let mut masks = [0; 16];
+            let masks = &mut masks[..samples.len()];
+            let mut any = 0;
+            for (mask, &list) in masks.iter_mut().zip(samples) {
+                *mask = moved(list, x0 - bx, y0 - by);
+                any |= *mask;
+            }
+            let rows = (y0 - by).max(0) as usize..(y1 - by + 1).min(side) as usize;
+            let block = Block { x: bx as usize, y: by as usize, rows };
+            if any != 0 && !sink.inner.rejects(setup, &block) {
+                sink.inner.cover(simd, setup, &block, masks);
+            }
+        }
+    }
+}
+
+/// Narrows a triangle's coverage to one of its pieces.
+struct PieceSink<'a, K> {
+    inner: K,
+    /// The tile's first pixel.
+    place: (u32, u32),
+    pattern: &'a SamplePattern,
+    cuts: &'a [Cut],
+}
+
+impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
+    #[inline(always)]
+    fn rejects(&self, setup: &Setup, block: &Block) -> bool {
+        self.inner.rejects(setup, block)
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
+        let mut kept = [0; 16];
+        let kept = &mut kept[..masks.len()];
+        kept.copy_from_slice(masks);
+        if cut_masks(self.cuts, self.pattern, origin, kept) {
+            self.inner.cover(simd, setup, block, kept);
+        }
+    }
+}

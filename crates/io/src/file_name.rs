@@ -12,6 +12,6 @@ pub(crate) fn extension(file: &str) -> String {
 }
 
 /// The name behind the last slash of either kind.
-pub(crate) fn without_folder(file: &str) -> &str {
+fn without_folder(file: &str) -> &str {
     file.rsplit(['/', '\\']).next().unwrap_or(file)
 }

@@ -1,8 +1,9 @@
 //! The faces round each vertex, and which of them are smooth together.
 //!
-//! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all their faces; only where one is
-//! far from it are corners listed by vertex (a counting sort) and looked at. There, each face is averaged with those that the rule allows: faces within the crease angle of *it*, or faces of its smoothing
-//! group. Faces that end up with the same sum share one normal.
+//! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all their faces. Only where a
+//! face is far from that average are corners listed by vertex (a counting sort). There, each face is averaged with those
+//! that the rule allows: faces within the crease angle of *it*, or faces of its smoothing group. Faces that end up with
+//! the same sum share one normal.
 //!
 //! In:   a mesh, welded vertices.
 //! Out:  normals, and for each corner of a face which one it takes.
@@ -30,6 +31,7 @@ use vitral_exec::{Spare, Workers};
 
 /// Vertices or corners that are worked on together, where each is little work.
 const PIECE: usize = 1 << 16;
+
 /// What was made of the fans.
 pub(crate) struct FanNormals {
     /// The normals: one for each vertex, or as `of_corner` says.
@@ -49,9 +51,9 @@ struct Scratch {
     seen: Seen,
 }
 
-/// Gives each vertex the average of all its faces, and tells in `apart` those that need a closer look: where some face is farther
-/// from the average than half the angle, so that not all are within the angle of each other. Whether there are any. By groups, all
-/// vertices with faces need it.
+/// Gives each vertex the average of the normals of all its faces, and marks in `apart` the vertices that need a closer look.
+/// By angle these are vertices where some face is farther from the average than half the angle: only there can two faces
+/// differ by more than the whole one. By groups all vertices with faces are marked. Returns whether any is.
 fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Vec<bool>) -> bool {
     let has_faces = |degree: &u32| *degree > 0;
     let Rule::Angle { half, .. } = rule else {
@@ -61,12 +63,16 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
     };
     apart.clear();
     apart.resize(normals.len(), false);
+
+    // Average all faces. A vertex without a mean or with too many faces is marked at once.
     bucket.sums(normals);
     for ((normal, apart), &degree) in normals.iter_mut().zip(&mut *apart).zip(&bucket.around.degrees) {
         let mean = unit(*normal).filter(|_| degree as usize <= CELL_THRESHOLD);
         *apart = degree > 0 && mean.is_none();
         *normal = mean.unwrap_or(DEFAULT_NORMAL);
     }
+
+    // Mark vertices with a face far from the mean.
     bucket.for_each_crease(normals, half, |v| apart[v] = true);
     apart.contains(&true)
 }

@@ -4,7 +4,9 @@
 pub(crate) const DEFAULT_NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
 /// Sums shorter than this (they are weighted by radians) have cancelled out.
 pub(crate) const CANCELLED: f32 = 1e-5;
+
 /// `v` with length 1, unless it has cancelled out.
+#[inline]
 pub(crate) fn unit(v: [f32; 3]) -> Option<[f32; 3]> {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     (length > CANCELLED).then(|| v.map(|c| c / length))

@@ -18,6 +18,8 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -
         if element.properties.is_empty() {
             continue;
         }
+
+        // Refuse a count that the file cannot hold: an element takes at least a digit and a line end.
         let room = cursor.remaining() as u64 / 2 + 1;
         if element.count > room {
             let what = format!(
@@ -28,6 +30,8 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -
             );
             return Err(Error::malformed(reading.file, Place::Line(cursor.line()), what));
         }
+
+        // Read the elements, line by line.
         for n in 0..element.count {
             if !next_row(&mut cursor) {
                 let what = format!(
@@ -55,7 +59,7 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -
     Ok(())
 }
 
-/// Goes to the next line that is not blank.
+/// Goes to the next line that is not blank; false at the end of the file.
 fn next_row(cursor: &mut Cursor) -> bool {
     loop {
         cursor.skip_blanks();
@@ -69,6 +73,7 @@ fn next_row(cursor: &mut Cursor) -> bool {
     }
 }
 
+/// Reads an element into `row`.
 fn read_row(
     cursor: &mut Cursor,
     element: &Element,

@@ -61,6 +61,7 @@ impl Row {
 }
 
 /// A list item as an index.
+#[inline]
 fn whole(value: f64) -> Result<i64, String> {
     let index = value as i64;
     if index as f64 == value { Ok(index) } else { Err(format!("{value} is not an index")) }
@@ -92,7 +93,9 @@ pub(super) struct Content {
 }
 
 impl Content {
+    /// The arrays that the header promises, all of them empty.
     pub(super) fn new(header: &Header, layouts: &[Layout], file: &str) -> Result<Self, Error> {
+        // Find the vertices, and check that they can be read.
         let Some(v) = layouts.iter().position(|l| l.role == Role::Vertex) else {
             return Err(Error::malformed(file, Place::File, "the header has no element `vertex`"));
         };
@@ -109,6 +112,8 @@ impl Content {
             let what = format!("{} vertices, at most {} can be read", element.count, u32::MAX);
             return Err(Error::malformed(file, place, what));
         };
+
+        // Colours and texture coordinates of faces count where vertices have none.
         let face_colors = layouts.iter().any(|l| l.role == Role::Face && l.has_colors) && !layout.has_colors;
         let colored = layouts.iter().position(|l| l.has_colors && (l.role == Role::Vertex || face_colors));
         let color_types = [slot::COLOR, slot::COLOR + 3]
@@ -239,12 +244,16 @@ impl Content {
             (None, Some(colors)) => colors,
             _ => return,
         };
+
+        // Find the largest colour and the largest alpha.
         let most = |a: [f32; 2], b: [f32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         let of_blocks = workers.map(colors.len().div_ceil(COLORS), |block| {
             let colors = colors[block * COLORS..].iter().take(COLORS);
             colors.map(|&[r, g, b, a]| [r.max(g).max(b), a]).fold([0.0; 2], most)
         });
         let largest = of_blocks.into_iter().fold([0.0; 2], most);
+
+        // Values above the type's usual range are taken as 0 to its wide one.
         let scale = [0, 1].map(|k| match self.color_types[k] {
             Some(kind) if largest[k] > 1.0 => (kind.wide_scale() / kind.full_scale()) as f32,
             _ => 1.0,
@@ -253,6 +262,8 @@ impl Content {
             let (full, wide) = (kind.full_scale(), kind.wide_scale());
             warnings.note("", Place::File, || format!("colours exceed {full} and are read as 0 to {wide}"));
         }
+
+        // Decode in place.
         workers.for_each_chunk(colors, COLORS, |_, colors| {
             let unit = |c: f32| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) };
             for color in colors {
@@ -277,12 +288,14 @@ impl Content {
         runs
     }
 
+    /// The mesh of all that was read.
     pub(super) fn into_mesh(mut self, file: &str, workers: &Workers) -> Result<Mesh, Error> {
         if self.corners.len() > u32::MAX as usize {
             return Err(Error::malformed(file, Place::File, "more than 4294967295 face corners"));
         }
+
+        // Cut the polygons into triangles. Triangles that came in blocks need no cut, unless there are polygons, too.
         let mut corner_uvs = None;
-        // Triangles that came in blocks go before the rows' polygons only if there are none of these.
         let (triangles, faces, face_corners) = if self.sizes.is_empty() {
             let corners = self.face_colors.as_ref().map(|_| (0..self.triangles.len() as u32).map(|t| [t; 3]).collect());
             (self.triangles, Faces::Triangles, corners)
@@ -291,13 +304,15 @@ impl Content {
             if let Some(uvs) = &mut self.corner_uvs {
                 // Those that came in blocks have none.
                 uvs.splice(0..0, std::iter::repeat_n([0.0; 2], self.corners.len() - uvs.len()));
-                let places = polygons::places(&self.positions, &self.sizes, &self.corners);
-                corner_uvs = Some(Attribute { values: std::mem::take(uvs), corners: Some(places) });
+                let corners = polygons::places(&self.positions, &self.sizes, &self.corners);
+                corner_uvs = Some(Attribute { values: std::mem::take(uvs), corners: Some(corners) });
             }
             let built = polygons::build(&self.positions, &self.sizes, self.corners, workers);
             let corners = self.face_colors.as_ref().map(|_| built.per_face(&self.sizes));
             (built.triangles, built.faces, corners)
         };
+
+        // Take the colours of faces, or else of vertices.
         let colors = match self.face_colors {
             Some(values) => Some(Attribute { values, corners: face_corners }),
             None => self.colors.map(Attribute::per_vertex),

@@ -51,6 +51,7 @@ pub(super) enum Target {
 }
 
 impl Layout {
+    /// The layout of an element of the header.
     pub(super) fn new(element: &Element) -> Self {
         let role = match element.name.as_str() {
             "vertex" => Role::Vertex,
@@ -86,6 +87,7 @@ impl Layout {
         }
     }
 
+    /// Whether the element fills `count` slots from `first` on.
     pub(super) fn has_slots(&self, first: usize, count: usize) -> bool {
         (first..first + count).all(|s| self.targets.contains(&Target::Slot(s)))
     }

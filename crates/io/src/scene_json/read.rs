@@ -107,26 +107,31 @@ fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), 
     }
 }
 
-/// Reads all textures at once. Gives each entry's place in the scene; an image that cannot be had is a warning.
+/// A name for messages and the bytes of an image file, or why there are none.
+type ImageFile = (String, Result<Vec<u8>, String>);
+
+/// The image file of texture `i`.
+fn image_file(i: usize, form: &TextureForm, report: &Report<'_>, origin: &Origin<'_>) -> Result<ImageFile, Error> {
+    match (&form.file, &form.data) {
+        (Some(file), None) => Ok((file.clone(), origin.read(file).map_err(|e| e.to_string()))),
+        (None, Some(data)) => match uri::resolve(data) {
+            Ok(Target::Inline(bytes)) => Ok((format!("texture {i}"), Ok(bytes))),
+            Ok(Target::File(_)) => Err(report.at(format!("textures[{i}].data"), "this is no data URI")),
+            Err(what) => Err(report.at(format!("textures[{i}].data"), what)),
+        },
+        _ => Err(report.at(format!("textures[{i}]"), "either `file` or `data` is needed")),
+    }
+}
+
+/// Reads all textures at once. Gives each entry's index in the scene; an image that cannot be had is a warning.
 fn add_textures(
     forms: Vec<TextureForm>,
     scene: &mut Scene,
     report: &Report<'_>,
     origin: &Origin<'_>,
 ) -> Result<Vec<Option<u32>>, Error> {
-    let sources = forms
-        .iter()
-        .enumerate()
-        .map(|(i, form)| match (&form.file, &form.data) {
-            (Some(file), None) => Ok((file.clone(), origin.read(file).map_err(|e| e.to_string()))),
-            (None, Some(data)) => match uri::resolve(data) {
-                Ok(Target::Inline(bytes)) => Ok((format!("texture {i}"), Ok(bytes))),
-                Ok(Target::File(_)) => Err(report.at(format!("textures[{i}].data"), "this is no data URI")),
-                Err(what) => Err(report.at(format!("textures[{i}].data"), what)),
-            },
-            _ => Err(report.at(format!("textures[{i}]"), "either `file` or `data` is needed")),
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let sources = forms.iter().enumerate().map(|(i, form)| image_file(i, form, report, origin));
+    let sources = sources.collect::<Result<Vec<_>, _>>()?;
     let loaded = origin.workers.map(forms.len(), |i| {
         let (source, bytes) = &sources[i];
         let bytes = bytes.as_ref().map_err(String::clone)?;
@@ -234,15 +239,10 @@ fn add_nodes(
     }
     let has_parent = check_tree(&forms, report)?;
     let roots = roots.unwrap_or_else(|| (0..forms.len() as u32).filter(|&n| !has_parent[n as usize]).collect());
-    let mut listed = vec![false; forms.len()];
-    for (k, &root) in roots.iter().enumerate() {
-        let path = format!("roots[{k}]");
-        report.index(path.as_str(), "node", root, forms.len())?;
-        if has_parent[root as usize] || std::mem::replace(&mut listed[root as usize], true) {
-            return Err(report.at(path, format!("node {root} is in the tree already")));
-        }
-    }
+    check_roots(&roots, has_parent, report)?;
     scene.roots = roots;
+
+    // Add node after node, and note those that show a model.
     let mut models = Vec::new();
     for (i, form) in forms.into_iter().enumerate() {
         let path = format!("nodes[{i}]");
@@ -265,6 +265,18 @@ fn add_nodes(
         scene.nodes.push(node);
     }
     Ok(models)
+}
+
+/// Checks that every root is a node, without a parent, and listed once.
+fn check_roots(roots: &[u32], mut in_tree: Vec<bool>, report: &Report<'_>) -> Result<(), Error> {
+    for (k, &root) in roots.iter().enumerate() {
+        let path = format!("roots[{k}]");
+        report.index(path.as_str(), "node", root, in_tree.len())?;
+        if std::mem::replace(&mut in_tree[root as usize], true) {
+            return Err(report.at(path, format!("node {root} is in the tree already")));
+        }
+    }
+    Ok(())
 }
 
 /// Cameras that no node names stand in the world as they are.

@@ -102,11 +102,7 @@ fn without_a_kind_of_coherence_the_picture_is_the_same_and_nothing_is_saved() {
 #[test]
 fn a_turntable_reuses_what_its_first_picture_found_out() {
     for name in ["z-buffer", "bsp", "ray-cast"] {
-        let mut settings = Settings {
-            picture: PictureSettings { width: 32, height: 24, ..PictureSettings::default() },
-            visibility: name.parse().unwrap(),
-            ..Settings::default()
-        };
+        let mut settings = Settings::default().with_size(32, 24).with_visibility(name.parse().unwrap());
         let turn = |settings: &Settings| {
             let mut session = Session::new(scene()).unwrap();
             (0..4).map(|i| shown(&mut session, settings, f64::from(i))).collect::<Vec<_>>()

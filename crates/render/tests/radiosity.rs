@@ -438,7 +438,7 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
     let mut same = textured(red, &|scene| scene.materials[2].ior = 1.7);
     same.load_radiosity(&stored).unwrap();
     assert_eq!(picture(&mut same, &settings).unwrap().stats.radiosity.shots, 0);
-    let raw = Settings { picture: PictureSettings { color_space: ColorSpace::Raw, ..settings.picture }, ..settings };
+    let raw = settings.clone().with_color_space(ColorSpace::Raw);
     assert!(picture(&mut same, &raw).unwrap_err().to_string().contains("another color space"));
 }
 
@@ -504,7 +504,7 @@ fn what_lamps_light_lights_the_rest() {
     let lit = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     let [r, g, b, _] = lit.frame.color.unwrap().data()[32 * 64 + 32];
     assert!(r > 10 && g == b && r > 5 * g, "{r} {g} {b}");
-    let local = Settings { global: GlobalSettings { model: Global::None, ..settings.global }, ..settings };
+    let local = settings.clone().with_global(Global::None);
     let dark = render(&mut session, &shot, &local, &Execution::default()).unwrap();
     assert_eq!(dark.frame.color.unwrap().data()[32 * 64 + 32], [0, 0, 0, 255]);
 }

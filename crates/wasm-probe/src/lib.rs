@@ -15,9 +15,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_frame::Frame;
 use vitral_light::Illumination;
 use vitral_math::lanes::Level;
-use vitral_render::{
-    Channels, ColorSpace, Execution, Lines, PictureSettings, Session, Settings, Shading, ShadingSettings, Shot,
-};
+use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot};
 use vitral_scene::{Camera, Projection, builtin};
 
 /// Width and height of the pictures in pixels; the last tiles are not full.
@@ -52,25 +50,24 @@ fn draw(level: Level) -> Vec<u8> {
     let mut session = Session::new(scene).expect("built-in scenes are sound");
     let execution = Execution { workers: Workers::single(), level, budget: Budget::default(), observer: None };
     let camera = session.world().cameras[0];
-    let smooth = Settings {
-        picture: PictureSettings {
-            width: SIZE.0,
-            height: SIZE.1,
-            channels: Channels { depth: true, surface: true, normal: true, ..Channels::default() },
-            ..PictureSettings::default()
-        },
-        ..Settings::default()
-    };
-    let gouraud = Settings {
-        shading: ShadingSettings { model: Shading::Gouraud, ..smooth.shading },
-        picture: PictureSettings { color_space: ColorSpace::Raw, channels: Channels::default(), ..smooth.picture },
-        ..smooth.clone()
-    };
-    let faceted = Settings {
-        shading: ShadingSettings { model: Shading::Flat, illumination: Illumination::CookTorrance, ..smooth.shading },
-        picture: PictureSettings { lines: Lines::Edges, samples: 1, channels: Channels::default(), ..smooth.picture },
-        ..smooth.clone()
-    };
+    let smooth = Settings::default().with_size(SIZE.0, SIZE.1).with_channels(Channels {
+        depth: true,
+        surface: true,
+        normal: true,
+        ..Channels::default()
+    });
+    let gouraud = smooth
+        .clone()
+        .with_shading(Shading::Gouraud)
+        .with_color_space(ColorSpace::Raw)
+        .with_channels(Channels::default());
+    let faceted = smooth
+        .clone()
+        .with_shading(Shading::Flat)
+        .with_illumination(Illumination::CookTorrance)
+        .with_lines(Lines::Edges)
+        .with_samples(1)
+        .with_channels(Channels::default());
     // From close by, so that facets are clipped, too.
     let near =
         Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };

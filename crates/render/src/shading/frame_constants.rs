@@ -1,6 +1,6 @@
 //! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
 
-use super::flat::FaceTable;
+use super::face_table::FaceTable;
 use super::instance_constants::InstanceConstants;
 use super::material_constants::MaterialConstants;
 use crate::display::{BackgroundRows, DecodeTables, Fade};

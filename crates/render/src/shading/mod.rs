@@ -12,6 +12,7 @@
 //! In:   a tile's facets and depths. Out: display colours, straight alpha.
 //! Cost: linear in points, times the number of lights.
 
+pub mod face_table;
 pub mod flat;
 pub mod gouraud;
 pub mod phong;
@@ -56,7 +57,7 @@ pub(crate) use channels::{ChannelSink, DataPlanes};
 pub(crate) use color_sink::{ColorSink, Passes, Shown};
 pub use corners::LitCorner;
 pub(crate) use corners::lit_corners;
-pub use flat::FaceTable;
+pub use face_table::FaceTable;
 pub(crate) use frame_constants::FrameConstants;
 pub(crate) use hits::Hit;
 pub(crate) use points::Points;

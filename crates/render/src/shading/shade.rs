@@ -3,6 +3,7 @@
 use super::FrameConstants;
 use super::batch::{ShadingBatch8, each_pair};
 use super::color_only::{has_color_only, is_uniform, shade_color_only};
+use super::face_table::FaceTable;
 use super::facets::FacetTable;
 use super::geometry::{F, Record, Surface, surface};
 use super::hits::Hit;
@@ -209,7 +210,7 @@ fn reflect_lights<S: Simd>(
             }
             Shading::Flat => {
                 let k = parameters.coefficients(simd, material, parameters.base);
-                let faces = constants.faces.get_or_build(subject.mesh_index, || flat::FaceTable::new(subject.mesh));
+                let faces = constants.faces.get_or_build(subject.mesh_index, || FaceTable::new(subject.mesh));
                 flat::shade(simd, subject.mesh, faces, subject.instance, slots, surface, &lighting, &k)
             }
             Shading::Gouraud => {

@@ -260,7 +260,7 @@ mod tests {
             96.0 / 72.0,
         );
         for algorithm in crate::registry::VISIBILITY {
-            let settings = crate::Settings { visibility: algorithm.choice(), ..crate::Settings::default() };
+            let settings = crate::Settings::default().with_visibility(algorithm.choice());
             let recorder = std::sync::Arc::new(Recorder::new(96, 72));
             let observer = Some(std::sync::Arc::clone(&recorder) as std::sync::Arc<dyn Observer>);
             let execution = crate::Execution { observer, ..crate::Execution::default() };

@@ -35,10 +35,7 @@ fn from_above(scene: &Scene, lights: &[Light], settings: Settings) -> Vec<u8> {
         clip: Some((0.1, 9.0)),
     };
     let raw = vitral_render::ColorSpace::Raw;
-    let settings = Settings {
-        picture: PictureSettings { width: 192, height: 192, samples: 1, color_space: raw, ..settings.picture },
-        ..settings
-    };
+    let settings = settings.clone().with_size(192, 192).with_samples(1).with_color_space(raw);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let shot = Shot { camera, lights, ambient: [0.0; 3] };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;

@@ -52,7 +52,7 @@ fn mask(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Ve
 fn shadows(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Vec<Option<(f32, f32, u32)>> {
     let channels =
         Channels { color: false, object: true, cast_shadow: true, attached_shadow: true, ..Channels::default() };
-    let settings = Settings { picture: PictureSettings { channels, ..settings.picture }, ..settings.clone() };
+    let settings = settings.clone().with_channels(channels);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
@@ -80,10 +80,7 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
         exponent: 0.0,
     };
     for light in [sun(SUN), light(spot)] {
-        let by_rays = Settings {
-            shadows: ShadowSettings { algorithm: Shadows::RAY, ..with_cascades(1).shadows },
-            ..with_cascades(1)
-        };
+        let by_rays = with_cascades(1).with_shadows(Shadows::RAY);
         let seen = shadows(&scene, camera, &light, &by_rays);
         let rays: Vec<_> = seen.iter().map(|seen| seen.map(|(cast, ..)| cast)).collect();
         let dark = rays.iter().flatten().filter(|&&cast| cast == 1.0).count();
@@ -213,7 +210,7 @@ fn small_scenes_keep_the_map_of_the_whole_scene() {
 fn pictures_with_cascades_do_not_depend_on_threads_instructions_or_sessions() {
     let scene = plain();
     let lights = [sun(SUN)];
-    let settings = Settings { picture: PictureSettings { samples: 2, ..with_cascades(3).picture }, ..with_cascades(3) };
+    let settings = with_cascades(3).with_samples(2);
     let picture = |session: &mut Session, camera: Camera, execution: &Execution| {
         let shot = Shot { camera, lights: &lights, ambient: [0.2; 3] };
         render(session, &shot, &settings, execution).unwrap().frame

@@ -139,7 +139,7 @@ fn f26_pictures_from_within_a_shadow_are_those_of_rays() {
             let mask = |settings: Settings| {
                 let mut session = Session::new(Arc::new(scene.clone())).unwrap();
                 let shot = Shot { camera, lights: &light, ambient: [0.0; 3] };
-                let settings = Settings { picture: PictureSettings { channels, ..settings.picture }, ..settings };
+                let settings = settings.clone().with_channels(channels);
                 render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame.cast_shadow.unwrap()
             };
             let rays = mask(settings("ray"));

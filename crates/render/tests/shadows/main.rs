@@ -3,6 +3,7 @@
 mod area;
 mod cascades;
 mod exact;
+mod maps;
 
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
@@ -13,7 +14,7 @@ use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::shadow::{self, Drawn, Parts, Place, Places};
 use vitral_render::{
-    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadingSettings, ShadowSettings, Shadows, Shot,
+    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot,
     TransparencySettings, VolumeCounting, registry, render,
 };
 use vitral_scene::builtin::{self, solids};
@@ -37,11 +38,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 }
 
 fn settings(shadows: &str) -> Settings {
-    Settings {
-        shadows: ShadowSettings { algorithm: shadows.parse().unwrap(), ..ShadowSettings::default() },
-        picture: PictureSettings { width: 160, height: 120, samples: 1, ..PictureSettings::default() },
-        ..Settings::default()
-    }
+    Settings::default().with_shadows(shadows.parse().unwrap()).with_size(160, 120).with_samples(1)
 }
 
 /// Where shadows are looked at from, where that is not what a test is about.
@@ -184,7 +181,7 @@ fn nothing_shades_itself() {
 fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
     let channels =
         Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    let settings = Settings { picture: PictureSettings { channels, ..settings("ray").picture }, ..settings("ray") };
+    let settings = settings("ray").with_channels(channels);
     let towards = dvec3(-1.0, 2.0, -0.5).normalize();
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
     let frame = picture(&scene, &[sun(-towards)], &settings, &Execution::default());
@@ -209,22 +206,14 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
     let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
     for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| names().map(move |name| (s, name))) {
-        let settings = Settings {
-            picture: PictureSettings { channels: data, ..settings(algorithm).picture },
-            shading: ShadingSettings { model: shading.0, ..settings(algorithm).shading },
-            ..settings(algorithm)
-        };
+        let settings = settings(algorithm).with_channels(data).with_shading(shading.0);
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
         let unlit = picture(&scene, std::slice::from_ref(&dark), &settings, &execution);
         let plain = picture(
             &scene,
             std::slice::from_ref(&light),
-            &Settings {
-                shadows: ShadowSettings { algorithm: Shadows::NONE, ..settings.shadows },
-                picture: PictureSettings { channels: Channels::default(), ..settings.picture },
-                ..settings
-            },
+            &settings.clone().with_shadows(Shadows::NONE).with_channels(Channels::default()),
             &execution,
         );
         let [shaded_color, unlit, plain] = [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
@@ -328,7 +317,7 @@ fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
     };
     let mut session = Session::new(Arc::new(hollow())).unwrap();
     let shot = Shot { camera, lights: &[lamp(dvec3(0.3, 5.0, 0.2))], ambient: [0.0; 3] };
-    let settings = Settings { picture: PictureSettings { channels, ..settings("ray").picture }, ..settings("ray") };
+    let settings = settings("ray").with_channels(channels);
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
     let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
     let ceiling: Vec<_> = (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
@@ -433,7 +422,7 @@ fn pictures_do_not_depend(algorithm: &str) {
         assert!(first == picture(&scene, &lights, &settings, &Execution { level, ..many.clone() }), "{name}");
     }
     for algorithm in registry::VISIBILITY.iter().filter(|a| a.name != "brute-force") {
-        let settings = Settings { visibility: algorithm.choice(), ..settings.clone() };
+        let settings = settings.clone().with_visibility(algorithm.choice());
         assert!(first == picture(&scene, &lights, &settings, &many), "{}", algorithm.name);
     }
 }
@@ -478,10 +467,7 @@ fn settings_that_cannot_be_are_refused() {
             .contains("1 to 8")
     );
     let channels = Channels { cast_shadow: true, ..Channels::default() };
-    assert!(
-        text(Settings { picture: PictureSettings { channels, ..settings("none").picture }, ..settings("none") })
-            .contains("needs a shadow algorithm: choose ray")
-    );
+    assert!(text(settings("none").with_channels(channels)).contains("needs a shadow algorithm: choose ray"));
 }
 
 /// The part of pixels with a surface in which another algorithm and rays tell light from shadow alike.
@@ -492,10 +478,7 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
     let mut mask = |settings: &Settings| {
         let channels =
             Channels { color: false, object: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-        let settings = Settings {
-            picture: PictureSettings { channels, width: 320, height: 240, ..settings.picture },
-            ..settings.clone()
-        };
+        let settings = settings.clone().with_size(320, 240).with_channels(channels);
         let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
     };
@@ -557,106 +540,6 @@ fn opaque_scenes() -> Vec<&'static str> {
 }
 
 #[test]
-fn f23_maps_agree_with_rays_the_better_the_larger() {
-    let mut means = [0.0; 2];
-    for name in opaque_scenes() {
-        for light in lights_for(name) {
-            for from in SIDES {
-                let maps = |size| Settings {
-                    shadows: ShadowSettings { map_size: size, ..settings("map").shadows },
-                    ..settings("map")
-                };
-                let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
-                assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
-                means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
-            }
-        }
-    }
-    assert!(means[1] > means[0] && means[1] > 0.99, "{means:?}");
-}
-
-#[test]
-fn maps_show_no_acne() {
-    let light_from = |degrees: f64| {
-        let (sin, cos) = vitral_math::func::sin_cos(degrees.to_radians());
-        dvec3(cos * 0.8, sin, cos * 0.6)
-    };
-    for degrees in [1.0, 5.0, 20.0, 50.0, 90.0] {
-        let towards = light_from(degrees);
-        let floor = above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
-        for light in [sun(-towards), lamp(towards * 20.0)] {
-            with_shadows(
-                &floor,
-                &[light],
-                &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
-                |arriving| {
-                    for i in 0..10_000 {
-                        let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
-                        assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
-                    }
-                },
-            );
-        }
-    }
-    // A ball throws no shadow on its lit half.
-    let ball = Scene::from_mesh(solids::sphere(1.0, 96, 48));
-    let mesh = &ball.meshes[0];
-    with_shadows(
-        &ball,
-        &[sun(dvec3(-1.0, -2.0, 0.5))],
-        &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
-        |arriving| {
-            for (facet, t) in (0..).zip(&mesh.triangles) {
-                let [a, b, c] = t.map(|i| {
-                    let [x, y, z] = mesh.positions[i as usize].map(f64::from);
-                    dvec3(x, y, z)
-                });
-                let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
-                if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
-                    let position = (a + b + c) / 3.0;
-                    assert_eq!(
-                        arriving(Place { position, normal, facet, seed: 0, pixel: Some([0.5; 2]) }),
-                        1.0,
-                        "facet {facet}"
-                    );
-                }
-            }
-        },
-    );
-}
-
-#[test]
-fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
-    // A box that stands on the floor, and one that the floor cuts through.
-    for (height, inside) in [(0.5, false), (0.1, true)] {
-        let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, height, 0.0));
-        let size = 512;
-        let texel = 12.0 / f64::from(size - 8);
-        for i in 0..24 {
-            let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.26);
-            let towards = dvec3(cos, 1.0, sin);
-            let settings =
-                Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
-            for light in [sun(-towards), lamp(towards * 6.0)] {
-                let dark = with_shadows(&scene, &[light], &settings, |arriving| {
-                    let at = |p: DVec3| arriving(place(p, DVec3::Y)) == 0.0;
-                    // Behind the box, 1.5 texels (and what the slant makes of them) from its foot.
-                    let away = -dvec3(cos, 0.0, sin);
-                    let edge = 0.5 / cos.abs().max(sin.abs());
-                    let behind = at(away * (edge + 3.0 * texel));
-                    let under = (0..400).all(|k| {
-                        let p = dvec3(f64::from(k % 20) / 20.0 - 0.475, 0.0, f64::from(k / 20) / 20.0 - 0.475);
-                        at(p * 0.95)
-                    });
-                    behind && (under || !inside)
-                });
-                assert!(dark, "sun {i}, height {height}");
-            }
-        }
-    }
-}
-
-#[test]
 fn what_is_kept_changes_nothing() {
     names().for_each(kept_changes_nothing);
 }
@@ -700,41 +583,4 @@ fn places_on(scene: &Scene) -> Vec<Place> {
         }
     }
     places
-}
-
-#[test]
-fn maps_differ_from_rays_only_near_edges_of_shadows() {
-    let (size, towards) = (512, dvec3(1.0, 2.0, -0.6).normalize());
-    let (x, y) = towards.any_orthonormal_pair();
-    for name in ["cubs", "scene0", "scene1"] {
-        let scene = builtin::scene(name).unwrap();
-        // The map's side is at most the scene's diagonal, less its border.
-        let diagonal = Session::new(Arc::new(scene.clone())).unwrap().world().bounds.diagonal();
-        let texel = diagonal / f64::from(size - 8);
-        let places = places_on(&scene);
-        let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
-            let settings = Settings {
-                shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows },
-                ..settings(algorithm)
-            };
-            with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
-        };
-        let (rays, maps) = (ask("ray", &places), ask("map", &places));
-        let different: Vec<_> = (0..places.len()).filter(|&i| rays[i] != maps[i]).collect();
-        assert!(different.len() * 50 < places.len(), "{name}: {} of {}", different.len(), places.len());
-        // Somewhere within 1.5 texels the rays themselves change their mind.
-        let around = different.iter().flat_map(|&i| {
-            let place = places[i];
-            let slant = move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
-            (0..48).map(move |k| {
-                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
-                let step = texel * 0.5 * f64::from(k % 3 + 1);
-                Place { position: place.position + slant((x * cos + y * sin) * step), ..place }
-            })
-        });
-        let near = ask("ray", &around.collect::<Vec<_>>());
-        for (&i, near) in different.iter().zip(near.chunks(48)) {
-            assert!(near.iter().any(|&n| n != rays[i]), "{name}: no edge near {:?}, lit {}", places[i], rays[i]);
-        }
-    }
 }

@@ -3,10 +3,9 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::render::choice::Row;
-use vitral::render::transparency::registry as transparency;
 use vitral::render::{
     Acceleration, Choice, ColorSpace, Global, Interpolation, Shadows, Transparency, TransparencyOrder, Visibility,
-    VolumeCounting, registry,
+    VolumeCounting,
 };
 use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
@@ -54,7 +53,7 @@ pub(crate) fn transparency_order() -> impl TypedValueParser<Value = Transparency
 }
 
 pub(crate) fn global() -> impl TypedValueParser<Value = Global> {
-    of(registry::GLOBALS.iter().map(|row| (row.value, row.name, row.description)))
+    of(Global::ALL.iter().copied())
 }
 
 pub(crate) fn illumination() -> impl TypedValueParser<Value = Illumination> {
@@ -74,7 +73,7 @@ pub(crate) fn channel() -> impl TypedValueParser<Value = Channel> {
 }
 
 pub(crate) fn transparency_model() -> impl TypedValueParser<Value = Transparency> {
-    of(transparency::MODELS.iter().map(|row| (row.value, row.name, row.description)))
+    of(Transparency::ALL.iter().copied())
 }
 
 pub(crate) fn color_space() -> impl TypedValueParser<Value = ColorSpace> {

@@ -38,8 +38,8 @@ fn algorithms_as_json() -> Value {
     let shading = Shading::ALL.iter().map(|(_, name, what)| json!({"name": name, "description": what}));
     let acceleration = registry::ACCELERATION.iter().map(|a| row(a.name, a.description, a.source));
     let shadows = registry::SHADOWS.iter().map(|s| row(s.name, s.description, s.source));
-    let global = registry::GLOBALS.iter().map(|g| row(g.name, g.description, g.source));
-    let models = transparency::MODELS.iter().map(|m| row(m.name, m.description, m.source));
+    let global = registry::GLOBALS.iter().map(|g| row(g.value.name(), g.value.description(), g.source));
+    let models = transparency::MODELS.iter().map(|m| row(m.value.name(), m.value.description(), m.source));
     json!({
         "visibility": Vec::from_iter(visibility),
         "coherence": Vec::from_iter(coherence),
@@ -65,7 +65,7 @@ fn algorithms_as_text() -> String {
     add_section(&mut text, "Structures for rays (--acceleration)", rows);
     let rows = registry::SHADOWS.iter().map(|s| (s.name, sourced(s.description, s.source)));
     add_section(&mut text, "Shadows (--shadows)", rows);
-    let rows = registry::GLOBALS.iter().map(|g| (g.name, sourced(g.description, g.source)));
+    let rows = registry::GLOBALS.iter().map(|g| (g.value.name(), sourced(g.value.description(), g.source)));
     add_section(&mut text, "Global illumination (--global)", rows);
     let rows = Illumination::ALL.iter().map(|m| (m.name(), m.description().to_owned()));
     add_section(&mut text, "Illumination (--illumination)", rows);
@@ -75,7 +75,7 @@ fn algorithms_as_text() -> String {
     // Transparent and translucent surfaces.
     let rows = transparency::MODELS.iter().map(|m| {
         let source = if m.source.is_empty() { String::new() } else { format!(" ({})", m.source) };
-        (m.name, format!("{}{source}", m.description))
+        (m.value.name(), format!("{}{source}", m.value.description()))
     });
     add_section(&mut text, "Transparency (--transparency)", rows);
     let rows = transparency::ORDERS.iter().map(|o| (o.name, sourced(o.description, o.source)));

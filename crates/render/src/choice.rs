@@ -231,6 +231,13 @@ macro_rules! named {
                     $(Self::$value => $name,)*
                 }
             }
+
+            /// One line about it.
+            pub fn description(self) -> &'static str {
+                match self {
+                    $(Self::$value => $description,)*
+                }
+            }
         }
 
         impl std::str::FromStr for $type {

@@ -253,41 +253,19 @@ table! {
 /// A way to find light that comes from other surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct GlobalIllumination {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// What it does, in a line.
-    pub description: &'static str,
+    /// The setting, which knows name and description.
+    pub value: Global,
     /// Key into the bibliography.
     pub source: &'static str,
-    /// As a setting.
-    pub value: Global,
     /// The shadow algorithm that belongs to it, for faces that choose one if the user does not.
     pub shadows: Shadows,
 }
 
 /// All global illumination models, the default first.
 pub static GLOBALS: &[GlobalIllumination] = &[
-    GlobalIllumination {
-        name: "none",
-        description: "surfaces are lit by lights alone",
-        source: "Foley et al. 1990",
-        value: Global::None,
-        shadows: Shadows::NONE,
-    },
-    GlobalIllumination {
-        name: "ray-trace",
-        description: "rays go on where they are mirrored and bent; with ray-traced shadows",
-        source: "Whitted 1980",
-        value: Global::RayTrace,
-        shadows: Shadows::RAY,
-    },
-    GlobalIllumination {
-        name: "radiosity",
-        description: "matt surfaces light each other; solved once for all cameras",
-        source: "Cohen et al. 1988",
-        value: Global::Radiosity,
-        shadows: Shadows::RAY,
-    },
+    GlobalIllumination { value: Global::None, source: "Foley et al. 1990", shadows: Shadows::NONE },
+    GlobalIllumination { value: Global::RayTrace, source: "Whitted 1980", shadows: Shadows::RAY },
+    GlobalIllumination { value: Global::Radiosity, source: "Cohen et al. 1988", shadows: Shadows::RAY },
 ];
 
 /// The code of a visible-surface algorithm.

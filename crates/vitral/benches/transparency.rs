@@ -38,7 +38,7 @@ fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
     for model in MODELS.iter().filter(|m| m.value != Transparency::default() && m.value != Transparency::None) {
         let mut renderer = renderer()?;
         renderer.settings.transparency.model = model.value;
-        ways.push((Way::new(model.name, None), renderer));
+        ways.push((Way::new(model.value.name(), None), renderer));
     }
     ways.push((Way::new("translucent", None), arguments.renderer(blurred)?));
     Ok(ways)

@@ -8,42 +8,18 @@ use crate::choice::table;
 /// How much light a surface lets through.
 #[derive(Clone, Copy, Debug)]
 pub struct TransparencyModel {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// What it does, in a line.
-    pub description: &'static str,
+    /// The setting, which knows name and description.
+    pub value: Transparency,
     /// Key into the bibliography; empty where nothing is computed.
     pub source: &'static str,
-    /// As a setting.
-    pub value: Transparency,
 }
 
-/// All models.
+/// All models, the default first.
 pub static MODELS: &[TransparencyModel] = &[
-    TransparencyModel {
-        name: "linear",
-        description: "opacity of the surface, the rest of what is behind",
-        source: "Newell, Newell & Sancha 1972",
-        value: Transparency::Linear,
-    },
-    TransparencyModel {
-        name: "kay",
-        description: "less light passes where a surface turns away: the rim of curved glass is darker",
-        source: "Kay & Greenberg 1979",
-        value: Transparency::Kay,
-    },
-    TransparencyModel {
-        name: "filtered",
-        description: "what is behind is tinted by the material's filter, highlights stay whole",
-        source: "Foley et al. 1990",
-        value: Transparency::Filtered,
-    },
-    TransparencyModel {
-        name: "none",
-        description: "every surface is opaque; cut-outs stay",
-        source: "",
-        value: Transparency::None,
-    },
+    TransparencyModel { value: Transparency::Linear, source: "Newell, Newell & Sancha 1972" },
+    TransparencyModel { value: Transparency::Kay, source: "Kay & Greenberg 1979" },
+    TransparencyModel { value: Transparency::Filtered, source: "Foley et al. 1990" },
+    TransparencyModel { value: Transparency::None, source: "" },
 ];
 
 /// How transparent surfaces are laid over each other.
@@ -179,8 +155,8 @@ mod tests {
     #[test]
     fn every_choice_has_a_row_under_its_name_in_files() {
         for row in MODELS {
-            let name: Transparency = by_name(row.name);
-            assert_eq!(name, row.value);
+            let value: Transparency = by_name(row.value.name());
+            assert_eq!((value, row.value.name().parse()), (row.value, Ok(row.value)));
         }
         assert_eq!(MODELS[0].value, Transparency::default());
     }

@@ -1,7 +1,6 @@
 //! What the colours of a picture of steps mean, algorithm by algorithm: `docs/steps.md`, `vitral algorithms`.
 
 use super::picture::{MARKS, OUTLINE, STOPS};
-use crate::Visibility;
 use std::fmt::Write;
 
 /// What an algorithm's picture of steps shows.
@@ -76,18 +75,18 @@ fn hex([r, g, b]: [u8; 3]) -> String {
     format!("`#{r:02x}{g:02x}{b:02x}`")
 }
 
-/// The text of `docs/steps.md`.
-pub fn page() -> String {
+/// The text of `docs/steps.md`, of the algorithms' names and legends.
+pub fn page(algorithms: impl IntoIterator<Item = (&'static str, Legend)>) -> String {
     let mut text = "# What `--channel steps` shows\n\n\
         The steps of the visibility algorithm with one sample a pixel, drawn over the picture, which is grey there. Colours of a \
         ramp are darker where the picture is; outlines are not. `--trace FILE` writes the same steps as numbers, `--pixel X,Y` \
         tells those of a pixel in words. This page is made of the tables that draw the picture \
         (`crates/render/src/trace/legend.rs`).\n"
         .to_owned();
-    for algorithm in Visibility::all() {
+    for (name, legend) in algorithms {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "\n## `--visibility {}`\n\n| colour | meaning |\n|---|---|", algorithm.name);
-        for (color, meaning) in algorithm.steps.colors() {
+        let _ = writeln!(text, "\n## `--visibility {}`\n\n| colour | meaning |\n|---|---|", name);
+        for (color, meaning) in legend.colors() {
             let _ = writeln!(text, "| {color} | {meaning} |");
         }
     }

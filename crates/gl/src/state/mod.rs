@@ -3,6 +3,7 @@
 mod client;
 mod fragment;
 mod lighting;
+mod limits;
 mod matrix;
 mod pixel;
 mod raster;
@@ -12,6 +13,11 @@ mod vertex;
 pub use client::{ArrayPointer, ClientState, PixelStore};
 pub use fragment::{Blend, ColorBuffer, DepthState, Fog, StencilFace, StencilState};
 pub use lighting::{ColorMaterial, Light, LightModel, Lighting, MaterialFace};
+pub use limits::{
+    MAX_3D_TEXTURE_SIZE, MAX_ANISOTROPY, MAX_ATTRIB_STACK_DEPTH, MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS,
+    MAX_EVAL_ORDER, MAX_LIGHTS, MAX_LIST_NESTING, MAX_MATRIX_STACK_DEPTH, MAX_NAME_STACK_DEPTH, MAX_PIXEL_MAP_TABLE,
+    MAX_POINT_SIZE, MAX_SAMPLES, MAX_TEXTURE_LOD_BIAS, MAX_TEXTURE_SIZE, MAX_TEXTURE_STACK_DEPTH, MAX_TEXTURE_UNITS,
+};
 pub use matrix::{Matrices, MatrixStack};
 pub use pixel::{PixelMap, PixelMode, PixelTransfer};
 pub use raster::{Lines, Points, Polygons, Scissor, Viewport};
@@ -19,42 +25,6 @@ pub use texture::{Combine, TexGen, TextureEnvironment, TextureUnit, target};
 pub use vertex::{Current, Eval, Map1, Map2, RasterPosition};
 
 use crate::enums;
-
-/// Texture units of the fixed-function pipeline.
-pub const MAX_TEXTURE_UNITS: usize = 8;
-/// Lights. MuJoCo names up to 100.
-pub const MAX_LIGHTS: usize = 128;
-/// User clip planes.
-pub const MAX_CLIP_PLANES: usize = 8;
-/// Depth of the server and client attribute stacks.
-pub const MAX_ATTRIB_STACK_DEPTH: usize = 16;
-/// Depth of the selection name stack.
-pub const MAX_NAME_STACK_DEPTH: usize = 128;
-/// Nested display lists.
-pub const MAX_LIST_NESTING: usize = 64;
-/// Order of evaluator polynomials.
-pub const MAX_EVAL_ORDER: usize = 30;
-/// Side of a 1D, 2D or cube texture, of a renderbuffer and of the viewport.
-pub const MAX_TEXTURE_SIZE: usize = 16384;
-/// Side of a 3D texture.
-pub const MAX_3D_TEXTURE_SIZE: usize = 2048;
-/// Entries of a pixel map.
-pub const MAX_PIXEL_MAP_TABLE: usize = 65536;
-/// Samples of multisample renderbuffers.
-pub const MAX_SAMPLES: usize = 4;
-/// Colour attachments of a framebuffer object.
-pub const MAX_COLOR_ATTACHMENTS: usize = 8;
-
-/// Depth of the modelview and projection stacks.
-pub const MAX_MATRIX_STACK_DEPTH: usize = 32;
-/// Depth of each texture matrix stack.
-pub const MAX_TEXTURE_STACK_DEPTH: usize = 10;
-/// Width of points and lines.
-pub const MAX_POINT_SIZE: f32 = 256.0;
-/// Magnitude of `TEXTURE_LOD_BIAS`, object's and unit's together.
-pub const MAX_TEXTURE_LOD_BIAS: f32 = 16.0;
-/// `MAX_TEXTURE_MAX_ANISOTROPY_EXT`.
-pub const MAX_ANISOTROPY: f32 = 16.0;
 
 /// All server state of a context that is not an object.
 #[derive(Clone, Debug)]

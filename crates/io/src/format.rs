@@ -5,6 +5,10 @@
 //! outermost object, OFF without its first word by its counts, where the name does not tell. What nobody claims is refused
 //! with the list of what is read; formats that are known but not read are named.
 
+pub(crate) mod obj_statement;
+pub(crate) mod off_header;
+pub(crate) mod stl_size;
+
 use crate::text::{Cursor, to_utf8};
 use crate::{Error, Place};
 
@@ -70,7 +74,39 @@ impl Format {
         }
     }
 
-    /// The format of `bytes`, which were read from `file`.
+    /// The feature of this crate that reads it; `None`: always read.
+    pub fn feature(self) -> Option<&'static str> {
+        match self {
+            Self::Gltf | Self::Glb => Some("gltf"),
+            Self::Obj => Some("obj"),
+            Self::Stl => Some("stl"),
+            Self::Ply => Some("ply"),
+            Self::Off => Some("off"),
+            Self::SceneJson => None,
+        }
+    }
+
+    /// Whether this build reads it.
+    pub fn is_read(self) -> bool {
+        match self {
+            Self::Gltf | Self::Glb => cfg!(feature = "gltf"),
+            Self::Obj => cfg!(feature = "obj"),
+            Self::Stl => cfg!(feature = "stl"),
+            Self::Ply => cfg!(feature = "ply"),
+            Self::Off => cfg!(feature = "off"),
+            Self::SceneJson => true,
+        }
+    }
+
+    /// Why `file` is refused where this build does not read the format.
+    #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+    pub(crate) fn left_out(self, file: &str) -> Error {
+        let what = left_out(self.name(), self.feature().unwrap_or_default());
+        Error::Unsupported { file: file.to_owned(), what }
+    }
+
+    /// The format of `bytes`, which were read from `file`. It may be one that this build leaves out
+    /// ([`Self::is_read`]).
     ///
     /// # Errors
     /// [`Error::Malformed`] for an empty file, [`Error::Unsupported`] for a format that is not read or not known.
@@ -98,11 +134,24 @@ impl Format {
             Some(format) => Ok(format),
             None => match FOREIGN_EXTENSIONS.iter().find(|(e, _)| *e == extension) {
                 Some((_, name)) => Err(not_read(file, name)),
-                None if crate::off::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
+                None if off_header::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
                 None => Err(not_read(file, "this format")),
             },
         }
     }
+}
+
+/// The message about a format whose feature is switched off.
+#[cfg(not(all(
+    feature = "gltf",
+    feature = "obj",
+    feature = "stl",
+    feature = "ply",
+    feature = "off",
+    feature = "images"
+)))]
+pub(crate) fn left_out(name: &str, feature: &str) -> String {
+    format!("{name} is left out of this build; the feature `{feature}` of the crate brings it")
 }
 
 /// Formats that are known and not read.
@@ -136,8 +185,11 @@ const FOREIGN_EXTENSIONS: [(&str, &str); 26] = [
 ];
 
 fn not_read(file: &str, name: &str) -> Error {
-    let list: Vec<String> =
-        Format::ALL.iter().map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
+    let list: Vec<String> = Format::ALL
+        .iter()
+        .filter(|f| f.is_read())
+        .map(|f| format!("{} (.{})", f.name(), f.extensions().join(", .")))
+        .collect();
     Error::Unsupported { file: file.to_owned(), what: format!("{name} is not read; readable are {}", list.join(", ")) }
 }
 
@@ -150,7 +202,7 @@ pub(crate) fn extension_of(file: &str) -> String {
 fn by_magic(bytes: &[u8]) -> Option<Format> {
     match bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes) {
         // Nothing else has this size by chance, and the header of an STL file may say anything.
-        _ if crate::stl::is_binary_size(bytes) => Some(Format::Stl),
+        _ if stl_size::is_binary_size(bytes) => Some(Format::Stl),
         [b'g', b'l', b'T', b'F', ..] => Some(Format::Glb),
         [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..] => Some(Format::Ply),
         _ => None,
@@ -249,13 +301,13 @@ fn by_text(head: &[u8]) -> Option<Format> {
     }
     let start = cursor;
     let word = cursor.word();
-    if crate::off::Header::begin(word).is_some() {
+    if off_header::Header::begin(word).is_some() {
         return Some(Format::Off);
     }
     if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {
         return Some(Format::Stl);
     }
-    (crate::obj::begins(start) && !head.contains(&0)).then_some(Format::Obj)
+    (obj_statement::begins(start) && !head.contains(&0)).then_some(Format::Obj)
 }
 
 /// What a format holds.
@@ -284,14 +336,14 @@ pub struct FormatRow {
     pub write: bool,
 }
 
-/// Every format that can be read or written, models first.
+/// Every format, models first. What this build leaves out can be neither read nor written.
 pub fn formats() -> Vec<FormatRow> {
     let model = |f: Format| FormatRow {
         name: f.name(),
         extensions: f.extensions(),
         description: f.description(),
         kind: FormatKind::Model,
-        read: true,
+        read: f.is_read(),
         write: f == Format::SceneJson,
     };
     let picture = |name, extensions, description, read| FormatRow {
@@ -302,11 +354,13 @@ pub fn formats() -> Vec<FormatRow> {
         read,
         write: true,
     };
+    let coded = cfg!(feature = "images");
     let texture =
-        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, true) };
+        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, coded) };
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
     rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
-    rows.push(picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", true));
+    let jpeg = picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", coded);
+    rows.push(FormatRow { write: coded, ..jpeg });
     rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
     rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
     rows.push(texture("GIF", &["gif"], "GIF, the first picture, as textures"));

@@ -2,27 +2,44 @@
 //!
 //! Readers take bytes and a [`Resolver`] for the files that a model names (buffers, materials, textures); nothing here
 //! touches the file system or the clock, so the same code runs in a browser.
+//!
+//! Each format is a feature of its own name, on by default: `obj`, `stl`, `ply`, `off`, `gltf`; `images` reads textures of
+//! other formats than PNG and writes JPEG. A file of a format that is left out is refused with the name of its feature.
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(all(feature = "obj", feature = "stl", feature = "ply", feature = "off", feature = "gltf")),
+    allow(dead_code, reason = "readers share helpers, and not all are used where some readers are left out")
+)]
 
 mod colored;
 pub mod encode;
 mod error;
 mod format;
+#[cfg(feature = "gltf")]
 pub mod gltf;
 pub mod image;
+mod json;
+#[cfg(feature = "obj")]
 mod mtl;
+#[cfg(feature = "obj")]
 pub mod obj;
+#[cfg(feature = "off")]
 pub mod off;
+#[cfg(feature = "ply")]
 pub mod ply;
 mod polygons;
 mod resolve;
 pub mod scene_json;
+#[cfg(feature = "stl")]
 pub mod stl;
 mod text;
+#[cfg(any(feature = "obj", feature = "ply"))]
 mod textures;
 pub mod triangulate;
 mod uri;
+#[cfg(any(feature = "obj", feature = "off", feature = "ply", feature = "stl"))]
 mod warnings;
+#[cfg(feature = "stl")]
 mod weld;
 
 pub use error::{Error, Place};
@@ -44,12 +61,19 @@ use vitral_scene::{Axis, Mesh, Scene, normals};
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
     let format = Format::detect(bytes, file)?;
     let mut scene = match format {
+        #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
+        #[cfg(feature = "obj")]
         Format::Obj => obj::load(bytes, file, resolver, workers),
+        #[cfg(feature = "stl")]
         Format::Stl => stl::load(bytes, file, workers),
+        #[cfg(feature = "ply")]
         Format::Ply => ply::load(bytes, file, resolver, workers),
+        #[cfg(feature = "off")]
         Format::Off => off::load(bytes, file, workers),
         Format::SceneJson => scene_json::load(bytes, file, resolver, workers),
+        #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+        _ => Err(format.left_out(file)),
     }?;
     scene.meshes.iter_mut().for_each(|mesh| normals::make_measurable(mesh, workers));
     // A scene file says the rest itself.

@@ -10,6 +10,7 @@
 
 use super::{instances, untidy};
 use crate::format::extension_of;
+use crate::json::plain_message;
 use crate::{Error, Place};
 use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
 use serde_json::{Map, Value};
@@ -153,16 +154,6 @@ fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
         let place = if path == "." { Place::File } else { Place::Json(path) };
         Error::malformed(file, place, plain_message(e.inner()))
     })
-}
-
-/// The message without the position, which [`Place`] gives, and without names of Rust's types.
-pub(crate) fn plain_message(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    let text = text.split(" at line ").next().unwrap_or_default();
-    match text.split_once(", expected struct ") {
-        Some((found, _)) => format!("{found}, expected an object"),
-        None => text.to_owned(),
-    }
 }
 
 /// Refuses required extensions that are not read; names those that a picture can do without.

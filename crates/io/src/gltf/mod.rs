@@ -22,8 +22,6 @@ mod specular_glossiness;
 mod texture;
 mod untidy;
 
-pub(crate) use document::plain_message;
-
 use crate::{Error, Place, Resolver};
 use accessor::Source;
 use buffers::Buffers;

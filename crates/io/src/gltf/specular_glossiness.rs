@@ -12,8 +12,8 @@
 //! the specular colour as well, if there is anything diffuse.
 
 use super::accessor::Source;
-use super::document::plain_message;
 use crate::Error;
+use crate::json::plain_message;
 use gltf::json::texture::Info;
 use serde::Deserialize;
 use vitral_light::{DIELECTRIC_F0, Reflectance};

@@ -224,12 +224,12 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
                 // Where the text breaks off there is no key yet.
                 let path = path.trim_end_matches('?').trim_end_matches('.');
                 let path = if path.is_empty() { String::new() } else { format!("{path}: ") };
-                let what = format!("column {}: {path}{}", inner.column(), crate::gltf::plain_message(inner));
+                let what = format!("column {}: {path}{}", inner.column(), crate::json::plain_message(inner));
                 Error::malformed(file, Place::Line(inner.line() as u64), what)
             });
             let form = parsed?;
             deserializer.end().map_err(|e| {
-                let what = format!("column {}: {}", e.column(), crate::gltf::plain_message(&e));
+                let what = format!("column {}: {}", e.column(), crate::json::plain_message(&e));
                 Error::malformed(file, Place::Line(e.line() as u64), what)
             })?;
             form

@@ -3,11 +3,11 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::sync::LazyLock;
-use vitral::render::transparency::registry as transparency;
-use vitral::render::{
-    Acceleration, ColorSpace, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting, registry,
+use vitral::internals::render::{registry, transparency::registry as transparency};
+use vitral::{
+    Acceleration, Channel, ColorSpace, Global, Illumination, Interpolation, Normals, Shading, Transparency,
+    TransparencyOrder, View, VolumeCounting, names,
 };
-use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
 /// A name, one line that explains it (may be empty), what it stands for.
 pub(crate) type Choice<T> = (&'static str, &'static str, T);

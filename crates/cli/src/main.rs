@@ -7,6 +7,7 @@ mod bench_report;
 mod choices;
 mod compare_command;
 mod depth_cue;
+mod exit;
 mod fields;
 mod info_command;
 mod interrupt;

@@ -4,11 +4,10 @@ use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-use vitral::math::DVec3;
-use vitral::render::{
-    Acceleration, ColorSpace, Culling, DepthCue, Global, Interpolation, Transparency, TransparencyOrder, VolumeCounting,
+use vitral::{
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation,
+    MaterialOverride, Normals, Shading, Transparency, TransparencyOrder, View, VolumeCounting,
 };
-use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
 #[derive(Args, Debug, Default)]

@@ -16,6 +16,7 @@ pub mod extent;
 pub mod framing;
 pub mod lab;
 mod mesh;
+mod mesh_builders;
 pub mod normals;
 mod scene;
 mod solidity;

@@ -24,13 +24,12 @@ mod facets;
 mod scene;
 mod two_buffer;
 
-use crate::picture::{self, EncodeOptions};
-use crate::{Channel, Error, Frame, PictureFormat, Renderer};
+use crate::{Channel, Error, Frame, Picture, PictureFormat, Renderer, picture};
 use serde_json::Value;
 use std::path::Path;
 use vitral_raster::{SamplePattern, Viewport};
 use vitral_render::stats::CullCounters;
-use vitral_render::{ColorSpace, PreparedView, Settings, Shot, TransparencyOrder, illuminate_corners};
+use vitral_render::{PreparedView, Settings, Shot, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
 
 /// A file that the index lists.
@@ -87,24 +86,23 @@ pub fn dump(
     let in_passes = has_passes(&renderer.settings);
     let wanted = renderer.settings.channels;
     let channels = &mut renderer.settings.channels;
-    [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
+    [Channel::Color, Channel::Depth, Channel::Surface].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
     let rendered = renderer.render_from(camera);
     renderer.settings.channels = wanted;
     let rendered = rendered?;
     debug_assert_eq!(rendered.stats.cull.triangles, cull_counters.triangles);
-    let options = EncodeOptions { srgb: renderer.settings.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
     for (name, channel) in [
-        ("8-surface.npy", Channel::Id),
-        ("8-surface.png", Channel::Id),
+        ("8-surface.npy", Channel::Surface),
+        ("8-surface.png", Channel::Surface),
         ("8-depth.npy", Channel::Depth),
         ("9-framebuffer.png", Channel::Color),
     ] {
-        write(name, &picture::encode_with(&rendered.frame, channel, PictureFormat::from_path(name)?, &options)?)?;
+        write(name, &rendered.encode_channel(channel, PictureFormat::from_path(name)?)?)?;
     }
     for (number, pass) in rendered.frame.passes.iter().enumerate() {
         let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
-        let png = picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &options)?;
+        let png = Picture { color_space: rendered.color_space, ..frame.into() }.encode(PictureFormat::Png)?;
         let (name, what) = (format!("9-pass-{number:02}.png"), format!("after pass {number}"));
         write(&name, &png)?;
         of_picture.push(Listed { name, what });

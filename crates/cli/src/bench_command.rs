@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::atomic::Ordering;
 use vitral::bench::{Entrant, Measured};
-use vitral::{Execution, Renderer, State, execution};
+use vitral::{Execution, Renderer, State};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
-    let execution = execution(values::threads_or_environment(args.threads)?)?;
+    let execution = values::execution_from(args.threads)?;
     let cancelled = execution.budget.cancel_flag();
     interrupt::listen(cancelled.clone());
     let result = match &args.report {
@@ -31,8 +31,8 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     state.load.allow_external = args.allow_external;
     let settings = &mut state.settings;
     ([settings.picture.width, settings.picture.height], settings.picture.samples) = (args.resolution, args.samples);
-    settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
-    let scene = state.load_scene(&execution.workers)?;
+    settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
+    let scene = state.load_scene_on(&execution.workers)?;
     if !args.quiet {
         report::warnings(&scene.warnings);
     }

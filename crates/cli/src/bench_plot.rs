@@ -1,7 +1,7 @@
 //! Growth drawn as SVG: both axes logarithmic, so that a power is a straight line and its exponent the slope.
 
 use std::fmt::Write;
-use vitral::math::func;
+use vitral::internals::math::func;
 
 /// A curve.
 pub(crate) struct Curve {

@@ -11,9 +11,8 @@ use crate::report::{self, Failure};
 use std::fmt::Write;
 use std::path::Path;
 use vitral::bench::Entrant;
-use vitral::math::{DMat4, DQuat, DVec3};
-use vitral::scene::builtin::solids::grid_torus;
-use vitral::{Execution, Renderer, Scene};
+use vitral::solids::grid_torus;
+use vitral::{DMat4, DQuat, DVec3, Execution, Renderer, Scene};
 
 /// Polygons, at [`PIXELS`] of the third size.
 const POLYGONS: [usize; 4] = [512, 2048, 8192, 32_768];

@@ -2,9 +2,9 @@
 
 use crate::args::BenchArgs;
 use crate::report::{self, Failure};
+use vitral::Limit;
 use vitral::Renderer;
 use vitral::bench::{Entrant, Measured, Task, measure};
-use vitral::exec::Limit;
 
 /// A row of the table: who, and what it took or the limit it met.
 pub(crate) type Row = (Entrant, Result<Measured, Limit>);

@@ -2,12 +2,11 @@
 //! itself uses, so that help, completions and man page say what there is.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use vitral::render::choice::Row;
-use vitral::render::{
-    Acceleration, Choice, ColorSpace, Global, Interpolation, Shadows, Transparency, TransparencyOrder, Visibility,
-    VolumeCounting,
+use vitral::internals::render::choice::Row;
+use vitral::{
+    Acceleration, Channel, Choice, ColorSpace, Global, Illumination, Interpolation, Normals, Shading, Shadows,
+    Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
-use vitral::{Channel, Illumination, Normals, Shading, View, names};
 
 /// A value, its name, one line that explains it (may be empty).
 type Named<T> = (T, &'static str, &'static str);

@@ -5,9 +5,8 @@ use crate::report::{self, DIFFERENT, Failure};
 use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
-use vitral::frame::Plane;
-use vitral::frame::compare::{self, Component, Difference, SizeMismatch};
-use vitral::{PictureFormat, picture};
+use vitral::internals::frame::compare::{self, Component, Difference, SizeMismatch};
+use vitral::{PictureFormat, Plane, picture};
 
 /// Largest picture file that is read, in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 30;
@@ -61,7 +60,7 @@ impl Picture {
     fn read(path: &Path) -> Result<Self, Failure> {
         let file = vitral::read(path, MAX_FILE_BYTES)?;
         let bytes = decode(&file, path)?;
-        Ok(Self { bytes, deep: vitral::io::image::decode_deep(&file) })
+        Ok(Self { bytes, deep: vitral::internals::io::image::decode_deep(&file) })
     }
 
     /// 16 bits a channel.
@@ -97,7 +96,7 @@ pub(crate) fn read(path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
 }
 
 fn decode(bytes: &[u8], path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
-    Ok(vitral::io::encode::decode_picture(bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?)
+    Ok(vitral::internals::io::encode::decode_picture(bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?)
 }
 
 /// What was found, for programs.
@@ -132,7 +131,7 @@ fn write_picture(path: &Path, plane: &Plane<[u8; 4]>, format: PictureFormat) -> 
         color: Some(plane.clone()),
         ..vitral::Frame::default()
     };
-    let bytes = picture::encode(&frame, vitral::Channel::Color, format)?;
+    let bytes = vitral::Picture::from(frame).encode(format)?;
     if path == Path::new("-") { report::print(&bytes) } else { Ok(picture::write(path, &bytes)?) }
 }
 

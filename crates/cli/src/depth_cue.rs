@@ -2,7 +2,7 @@
 
 use crate::fields::Fields;
 use crate::values::{color, not_negative, share};
-use vitral::render::DepthCue;
+use vitral::DepthCue;
 
 /// Reads the numbers; what is left out has its default. Whether they go together is checked with the other settings.
 pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {

@@ -6,7 +6,7 @@ pub(crate) const EXIT_CODES: &str = "Exit codes: 0 done, 1 other failure, 2 usag
 
 /// The help of MODEL.
 pub(crate) fn model_help() -> String {
-    let names: Vec<_> = vitral::scene::builtin::names().iter().map(|(name, _)| *name).collect();
+    let names: Vec<_> = vitral::builtin_names().iter().map(|(name, _)| *name).collect();
     format!(
         "Model files, `-` for standard input, which may name files in the current folder, or `builtin:NAME`, a scene that needs \
          no file; `vitral formats` tells what each shows: {}",

@@ -4,7 +4,7 @@ use crate::args::InfoArgs;
 use crate::report::{self, Failure};
 use crate::values;
 use serde_json::{Value, json};
-use vitral::{LoadOptions, Workers, info, load};
+use vitral::{LoadOptions, Workers, info, load_on};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
@@ -13,9 +13,9 @@ pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
     let options = LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
     let mut models = Vec::new();
     for model in &args.models {
-        let scene = load(model, &options, &workers)?;
+        let scene = load_on(model, &options, &workers)?;
         // Warnings are results here: told once, and not in words if nobody wants them.
-        let mut found = info::info(&scene, &workers)?;
+        let mut found = info::info_on(&scene, &workers)?;
         if args.quiet && !args.json {
             found.warnings.clear();
         }

@@ -16,9 +16,7 @@
 
 use crate::fields::Fields;
 use crate::values::{direction, not_negative, number, numbers, positive, switch, vector};
-use vitral::light::{AreaShape, Attenuation, Light, LightKind};
-use vitral::math::DVec3;
-use vitral::names;
+use vitral::{AreaShape, Attenuation, DVec3, Light, LightKind, names};
 
 /// Half angle of a spot light's cone in degrees where none is given.
 const CUTOFF: f64 = 30.0;

@@ -8,6 +8,7 @@ mod bench_rows;
 mod choices;
 mod compare_command;
 mod depth_cue;
+mod exit;
 mod fields;
 mod help;
 mod info_command;

@@ -3,8 +3,7 @@
 use crate::report::{self, Failure};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use vitral::picture::{self, EncodeOptions};
-use vitral::{Channel, Frame, PictureFormat};
+use vitral::{Channel, EncodeOptions, Frame, PictureFormat, picture};
 
 /// A file, or standard output, for one channel.
 #[derive(Clone, Debug, PartialEq)]

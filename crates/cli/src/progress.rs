@@ -37,7 +37,7 @@ impl Progress {
     }
 
     /// What tells how far the long stages of a single frame are.
-    pub(crate) fn stages(when: ProgressWhen, quiet: bool) -> Option<Arc<vitral::exec::Progress>> {
+    pub(crate) fn stages(when: ProgressWhen, quiet: bool) -> Option<Arc<vitral::Progress>> {
         let terminal = std::io::stderr().is_terminal();
         match when {
             ProgressWhen::Never => return None,

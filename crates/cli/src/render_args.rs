@@ -5,12 +5,10 @@ use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-use vitral::math::DVec3;
-use vitral::render::{
-    Acceleration, ColorSpace, Culling, DepthCue, Global, Interpolation, Shadows, Transparency, TransparencyOrder,
-    Visibility, VolumeCounting,
+use vitral::{
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation,
+    MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
-use vitral::{Axis, Channel, Illumination, MaterialOverride, Normals, Shading, View};
 
 /// Options of `vitral render`.
 #[derive(Args, Debug, Default)]

@@ -14,12 +14,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Explanation, explain};
-use vitral::frame::{Plane, compare};
-use vitral::picture::EncodeOptions;
-use vitral::render::ColorSpace;
-use vitral::render::trace::Observer;
-use vitral::scene::Camera;
-use vitral::{Frame, Renderer, dump, execution};
+use vitral::internals::frame::compare;
+use vitral::internals::render::trace::Observer;
+use vitral::{Camera, ColorSpace, EncodeOptions, Frame, Plane, Renderer, dump};
 
 /// What each algorithm may take for `--pixel`, if nothing else is said.
 const SECONDS_TO_EXPLAIN: f64 = 20.0;
@@ -41,7 +38,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
         }
         report::write(file, state.to_json().as_bytes())?;
     }
-    let mut execution = execution(values::threads_or_environment(args.process.threads)?)?;
+    let mut execution = values::execution_from(args.process.threads)?;
     execution.budget =
         execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
     let one_frame = plan.frames.end() == plan.frames.start();
@@ -102,7 +99,7 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
 
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
-    let scene = plan.state.load_scene(&execution.workers)?;
+    let scene = plan.state.load_scene_on(&execution.workers)?;
     let warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);

@@ -1,5 +1,6 @@
 //! What the user is told: results on standard output, everything else on standard error, one line each.
 
+use crate::exit::{exit_code, hint};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::io::Write;
 use std::path::Path;
@@ -75,12 +76,12 @@ impl Failure {
 
 impl From<vitral::Error> for Failure {
     fn from(error: vitral::Error) -> Self {
-        Self { code: error.exit_code(), message: Some(error.to_string()), hint: error.hint() }
+        Self { code: exit_code(&error), message: Some(error.to_string()), hint: hint(&error) }
     }
 }
 
-impl From<vitral::exec::Limit> for Failure {
-    fn from(limit: vitral::exec::Limit) -> Self {
+impl From<vitral::Limit> for Failure {
+    fn from(limit: vitral::Limit) -> Self {
         vitral::Error::from(limit).into()
     }
 }

@@ -9,9 +9,11 @@ use crate::values;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use vitral::frame::Plane;
-use vitral::render::{Background, Channels, ColorSpace, Global, Lines, Settings, Transparency, registry};
-use vitral::{Channel, Normals, State, Viewpoint, default_camera};
+use vitral::internals::render::registry;
+use vitral::{
+    Background, Channel, Channels, ColorSpace, Global, Lines, Normals, Plane, Settings, State, Transparency, Viewpoint,
+    default_camera,
+};
 
 /// Largest configuration or state file, in bytes.
 const MAX_STATE_BYTES: u64 = 64 << 20;
@@ -45,7 +47,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
 
     // Refuse what does not fit together.
     check_pictures_are_made(args, &state, &outputs)?;
-    state.settings.check().map_err(|e| vitral::Error::from(vitral::render::Error::from(e)))?;
+    state.settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
     check_standard_output(args, &outputs)?;
     check_background_and_pixel(args, &state, &outputs)?;
 
@@ -362,9 +364,9 @@ fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {
     viewpoint.focal_point = args.camera_focal_point.map(|p| p.to_array()).or(viewpoint.focal_point);
     viewpoint.view_up = args.camera_view_up.map(|p| p.to_array()).or(viewpoint.view_up);
     viewpoint.direction = args.camera_direction.map(|p| p.to_array()).or(viewpoint.direction);
-    viewpoint.view_angle = args.camera_view_angle.or(viewpoint.view_angle);
+    viewpoint.view_angle_degrees = args.camera_view_angle.or(viewpoint.view_angle_degrees);
     viewpoint.orthographic |= args.camera_orthographic;
     viewpoint.zoom_factor = args.camera_zoom_factor.unwrap_or(viewpoint.zoom_factor);
-    viewpoint.azimuth_angle = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_angle);
-    viewpoint.elevation_angle = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_angle);
+    viewpoint.azimuth_degrees = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_degrees);
+    viewpoint.elevation_degrees = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_degrees);
 }

@@ -5,9 +5,9 @@ use crate::report::{self, Failure};
 use clap::CommandFactory;
 use serde_json::{Value, json};
 use std::fmt::Write;
-use vitral::render::transparency::registry as transparency;
-use vitral::render::{Coherence, registry};
-use vitral::{Illumination, Shading};
+use vitral::internals::render::registry;
+use vitral::internals::render::transparency::registry as transparency;
+use vitral::{Coherence, Illumination, Shading};
 
 /// `vitral algorithms`.
 pub(crate) fn algorithms(args: &ListArgs) -> Result<u8, Failure> {
@@ -115,8 +115,8 @@ fn add_section<'a>(text: &mut String, title: &str, rows: impl Iterator<Item = (&
 
 /// `vitral formats`: file formats and built-in scenes.
 pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
-    let rows = vitral::io::formats();
-    let kind = |row: &vitral::io::FormatRow| format!("{:?}", row.kind).to_lowercase();
+    let rows = vitral::internals::io::formats();
+    let kind = |row: &vitral::internals::io::FormatRow| format!("{:?}", row.kind).to_lowercase();
     if args.json {
         let list: Vec<_> = rows
             .iter()
@@ -125,7 +125,7 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
                     "read": r.read, "write": r.write})
             })
             .collect();
-        let builtin: Vec<_> = vitral::scene::builtin::names()
+        let builtin: Vec<_> = vitral::builtin_names()
             .iter()
             .map(|(name, about)| json!({"name": format!("builtin:{name}"), "description": about}))
             .collect();
@@ -142,7 +142,7 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
         let _ = writeln!(text, "{:<12} {:<14} {:<8} {:<14} {}", r.name, extensions, kind(r), ways, r.description);
     }
     text.push_str("\nScenes that need no file\n");
-    for (name, about) in vitral::scene::builtin::names() {
+    for (name, about) in vitral::builtin_names() {
         let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));
     }
     report::print(text.as_bytes()).map(|()| 0)

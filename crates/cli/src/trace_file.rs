@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use vitral::render::trace::{Observer, Step};
+use vitral::internals::render::trace::{Observer, Step};
 
 /// A file, or standard output, that steps are written to as they are done.
 pub(crate) struct TraceFile {

@@ -1,13 +1,13 @@
 //! Values as users type them: sizes, colours, vectors, numbers with a range. Each parser says what it requires.
 
+use crate::exit::hint;
 use crate::report::Failure;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
-use vitral::math::DVec3;
-use vitral::render::{Coherence, Culling};
-use vitral::{MaterialOverride, Workers, names};
+use vitral::internals::math::lanes::level_from_environment;
+use vitral::{Coherence, Culling, DVec3, Execution, MaterialOverride, Workers, execution, names};
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
@@ -72,6 +72,14 @@ pub(crate) fn threads_or_environment(asked: Option<usize>) -> Result<usize, Fail
         (None, Ok(text)) => threads(&text).map_err(|e| Failure::usage(format!("VITRAL_THREADS={text}: {e}"))),
         (None, Err(_)) => Ok(0),
     }
+}
+
+/// How to compute, with as many threads as were asked for. The environment variable `VITRAL_SIMD` may name another
+/// instruction set than the best.
+pub(crate) fn execution_from(threads: Option<usize>) -> Result<Execution, Failure> {
+    let execution = execution(threads_or_environment(threads)?);
+    let level = level_from_environment().map_err(Failure::usage)?;
+    Ok(Execution { level, ..execution })
 }
 
 /// A parser of whole numbers from a range.
@@ -206,7 +214,7 @@ pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u32>, String> {
 
 /// A material override `NAME.PROPERTY=VALUE`.
 pub(crate) fn material(text: &str) -> Result<MaterialOverride, String> {
-    MaterialOverride::parse(text).map_err(|e| match e.hint() {
+    MaterialOverride::parse(text).map_err(|e| match hint(&e) {
         Some(hint) => format!("{e}; {hint}"),
         None => e.to_string(),
     })

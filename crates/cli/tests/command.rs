@@ -472,7 +472,7 @@ fn lists_and_pages() {
     let (formats, page) = (text(&["formats"]), text(&["man"]).replace("\\-", "-"));
     let helps = ["render", "info", "bench"]
         .map(|verb| text(&[verb, "--help"]).split_whitespace().collect::<Vec<_>>().join(" "));
-    for (i, (name, about)) in vitral::scene::builtin::names().iter().enumerate() {
+    for (i, (name, about)) in vitral::builtin_names().iter().enumerate() {
         let line = formats.lines().find(|line| line.trim_start().starts_with(&format!("builtin:{name} ")));
         assert!(line.is_some_and(|line| line.ends_with(about)), "{name}");
         assert_eq!(json["builtin"][i]["name"], format!("builtin:{name}"));

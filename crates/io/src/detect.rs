@@ -6,11 +6,12 @@
 //! with the list of what is read; formats that are known but not read are named.
 
 use crate::file_name::extension;
+use crate::format::{obj_statement, off_header, stl_size};
 use crate::text::{Cursor, to_utf8};
-use crate::{Error, Format, Place, obj, off, stl};
+use crate::{Error, Format, Place};
 
 impl Format {
-    /// The format of `bytes`, which were read from `file`.
+    /// The format of `bytes`, which were read from `file`. It may be one that this build leaves out ([`Self::is_read`]).
     ///
     /// # Errors
     /// [`Error::Malformed`] for an empty file, [`Error::Unsupported`] for a format that is not read or not known.
@@ -38,7 +39,7 @@ impl Format {
             Some(format) => Ok(format),
             None => match FOREIGN_EXTENSIONS.iter().find(|(e, _)| *e == extension) {
                 Some((_, name)) => Err(not_read(file, name)),
-                None if off::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
+                None if off_header::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
                 None => Err(not_read(file, "this format")),
             },
         }
@@ -76,15 +77,15 @@ const FOREIGN_EXTENSIONS: [(&str, &str); 26] = [
 ];
 
 fn not_read(file: &str, name: &str) -> Error {
-    let list: Vec<String> =
-        Format::ALL.iter().map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
+    let read = Format::ALL.iter().filter(|format| format.is_read());
+    let list: Vec<String> = read.map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
     Error::Unsupported { file: file.to_owned(), what: format!("{name} is not read; readable are {}", list.join(", ")) }
 }
 
 fn by_magic(bytes: &[u8]) -> Option<Format> {
     match bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes) {
         // Nothing else has this size by chance, and the header of an STL file may say anything.
-        _ if stl::is_binary_size(bytes) => Some(Format::Stl),
+        _ if stl_size::is_binary_size(bytes) => Some(Format::Stl),
         [b'g', b'l', b'T', b'F', ..] => Some(Format::Glb),
         [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..] => Some(Format::Ply),
         _ => None,
@@ -183,13 +184,13 @@ fn by_text(head: &[u8]) -> Option<Format> {
     }
     let start = cursor;
     let word = cursor.word();
-    if off::Header::begin(word).is_some() {
+    if off_header::Header::begin(word).is_some() {
         return Some(Format::Off);
     }
     if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {
         return Some(Format::Stl);
     }
-    (obj::begins(start) && !head.contains(&0)).then_some(Format::Obj)
+    (obj_statement::begins(start) && !head.contains(&0)).then_some(Format::Obj)
 }
 
 #[cfg(test)]

@@ -1,4 +1,9 @@
-//! The formats that are read and written: names, extensions, descriptions.
+//! The formats that are read and written: names, extensions, descriptions, features; and how a file of each begins
+//! (`format/`), which is known whether or not a build reads the format.
+
+pub(crate) mod obj_statement;
+pub(crate) mod off_header;
+pub(crate) mod stl_size;
 
 /// A model format that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -61,6 +66,49 @@ impl Format {
             Self::SceneJson => "vitral's own scenes: models, lights, cameras, materials",
         }
     }
+
+    /// The feature of this crate that reads it; `None`: always read.
+    pub fn feature(self) -> Option<&'static str> {
+        match self {
+            Self::Gltf | Self::Glb => Some("gltf"),
+            Self::Obj => Some("obj"),
+            Self::Stl => Some("stl"),
+            Self::Ply => Some("ply"),
+            Self::Off => Some("off"),
+            Self::SceneJson => None,
+        }
+    }
+
+    /// Whether this build reads it.
+    pub fn is_read(self) -> bool {
+        match self {
+            Self::Gltf | Self::Glb => cfg!(feature = "gltf"),
+            Self::Obj => cfg!(feature = "obj"),
+            Self::Stl => cfg!(feature = "stl"),
+            Self::Ply => cfg!(feature = "ply"),
+            Self::Off => cfg!(feature = "off"),
+            Self::SceneJson => true,
+        }
+    }
+
+    /// Why a file is refused where this build does not read its format.
+    #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+    pub(crate) fn left_out(self) -> String {
+        left_out(self.name(), self.feature().unwrap_or_default())
+    }
+}
+
+/// The message about a format whose feature is switched off.
+#[cfg(not(all(
+    feature = "gltf",
+    feature = "obj",
+    feature = "stl",
+    feature = "ply",
+    feature = "off",
+    feature = "images"
+)))]
+pub(crate) fn left_out(name: &str, feature: &str) -> String {
+    format!("{name} is left out of this build; the feature `{feature}` of the crate brings it")
 }
 
 /// What a format holds.
@@ -89,14 +137,14 @@ pub struct FormatRow {
     pub write: bool,
 }
 
-/// Every format that can be read or written, models first.
+/// Every format, models first. What this build leaves out can be neither read nor written.
 pub fn formats() -> Vec<FormatRow> {
     let model = |f: Format| FormatRow {
         name: f.name(),
         extensions: f.extensions(),
         description: f.description(),
         kind: FormatKind::Model,
-        read: true,
+        read: f.is_read(),
         write: f == Format::SceneJson,
     };
     let picture = |name, extensions, description, read| FormatRow {
@@ -107,11 +155,13 @@ pub fn formats() -> Vec<FormatRow> {
         read,
         write: true,
     };
+    let coded = cfg!(feature = "images");
     let texture =
-        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, true) };
+        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, coded) };
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
     rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
-    rows.push(picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", true));
+    let jpeg = picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", coded);
+    rows.push(FormatRow { write: coded, ..jpeg });
     rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
     rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
     rows.push(texture("GIF", &["gif"], "GIF, the first picture, as textures"));

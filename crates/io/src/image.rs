@@ -5,10 +5,10 @@
 //! TIFF: the first picture. DDS: the largest level of what S3TC packs (DXT1, DXT3, DXT5).
 //! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before anything is allocated.
 
+#[cfg(feature = "images")]
+mod codecs;
+
 use crate::{Error, Place};
-use image::codecs::{bmp::BmpDecoder, dds::DdsDecoder, gif::GifDecoder, jpeg::JpegDecoder, tga::TgaDecoder};
-use image::codecs::{tiff::TiffDecoder, webp::WebPDecoder};
-use image::{DynamicImage, ImageDecoder, ImageResult};
 use std::io::Cursor;
 use vitral_frame::Plane;
 
@@ -20,15 +20,7 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 const DECODER_MEMORY: usize = 64 << 20;
 
 /// What is read, for messages about other formats.
-const READ: &str = "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are";
-
-/// So many pixels are read however short a file is: one colour all over takes few bytes.
-const SURE_PIXELS: u64 = 1 << 24;
-/// Beyond them, most pixels that a byte of a file may stand for.
-const PIXELS_A_BYTE: u64 = 1 << 12;
-
-/// Most pixels that a byte of a JPEG file can stand for: each block of 64 takes at least one bit of its first scan.
-const JPEG_PIXELS_A_BYTE: u64 = 64 * 8;
+const READ: &str = if cfg!(feature = "images") { "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are" } else { "PNG is" };
 
 /// Decodes a picture. `file` is its name, for messages.
 ///
@@ -83,22 +75,63 @@ pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Pl
     match bytes {
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
-        [0xff, 0xd8, 0xff, ..] => decode_jpeg(bytes, file),
-        [b'G', b'I', b'F', b'8', ..] => decode_dense(GifDecoder::new(Cursor::new(bytes)), "GIF", (bytes, file)),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
-            decode_dense(WebPDecoder::new(Cursor::new(bytes)), "WebP", (bytes, file))
-        }
-        [b'D', b'D', b'S', b' ', ..] => decode_dense(DdsDecoder::new(Cursor::new(bytes)), "DDS", (bytes, file)),
         [0xab, b'K', b'T', b'X', ..] => Err(unsupported("KTX")),
-        [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => {
-            decode_dense(BmpDecoder::new(Cursor::new(bytes)), "BMP", (bytes, file))
-        }
-        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
-            decode_dense(TiffDecoder::new(Cursor::new(bytes)), "TIFF", (bytes, file))
-        }
-        _ if has_tga_header(bytes) => decode_dense(TgaDecoder::new(Cursor::new(bytes)), "TGA", (bytes, file)),
-        _ => Err(unsupported("this image format")),
+        _ => match Codec::detect(bytes) {
+            Some(codec) => decode_coded(codec, bytes, file),
+            None => Err(unsupported("this image format")),
+        },
     }
+}
+
+/// A format besides PNG, decoded by the feature `images`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Codec {
+    Jpeg,
+    Gif,
+    WebP,
+    Dds,
+    Bmp,
+    Tiff,
+    Tga,
+}
+
+impl Codec {
+    /// The format of `bytes`, by their first ones.
+    fn detect(bytes: &[u8]) -> Option<Self> {
+        match bytes {
+            [0xff, 0xd8, 0xff, ..] => Some(Self::Jpeg),
+            [b'G', b'I', b'F', b'8', ..] => Some(Self::Gif),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::WebP),
+            [b'D', b'D', b'S', b' ', ..] => Some(Self::Dds),
+            [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..] => Some(Self::Bmp),
+            [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Some(Self::Tiff),
+            _ if has_tga_header(bytes) => Some(Self::Tga),
+            _ => None,
+        }
+    }
+
+    /// Its name, for messages.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Jpeg => "JPEG",
+            Self::Gif => "GIF",
+            Self::WebP => "WebP",
+            Self::Dds => "DDS",
+            Self::Bmp => "BMP",
+            Self::Tiff => "TIFF",
+            Self::Tga => "TGA",
+        }
+    }
+}
+
+#[cfg(feature = "images")]
+use codecs::decode as decode_coded;
+
+/// Refuses the format: its decoder is not part of this build.
+#[cfg(not(feature = "images"))]
+fn decode_coded(codec: Codec, _: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
+    let what = crate::format::left_out(codec.name(), "images");
+    Err(Error::Unsupported { file: file.to_owned(), what })
 }
 
 /// A TGA has no magic number: look at its colour map type, image type and depth.
@@ -166,39 +199,6 @@ pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
         png::ColorType::Indexed => return None,
     };
     Plane::from_rows(width, height, rgba)
-}
-
-fn decode_jpeg(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
-    decode_by(JpegDecoder::new(Cursor::new(bytes)), "JPEG", (bytes, file), JPEG_PIXELS_A_BYTE * bytes.len() as u64)
-}
-
-/// Any of the formats whose pictures may be much shorter than their pixels.
-fn decode_dense(
-    decoder: ImageResult<impl ImageDecoder>,
-    format: &str,
-    (bytes, file): (&[u8], &str),
-) -> Result<Plane<[u8; 4]>, Error> {
-    decode_by(decoder, format, (bytes, file), SURE_PIXELS.max(PIXELS_A_BYTE * bytes.len() as u64))
-}
-
-/// What a decoder gives of a file that cannot hold more than `most` pixels.
-fn decode_by(
-    decoder: ImageResult<impl ImageDecoder>,
-    format: &str,
-    (bytes, file): (&[u8], &str),
-    most: u64,
-) -> Result<Plane<[u8; 4]>, Error> {
-    let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("{format}: {e}"));
-    let decoder = decoder.map_err(bad)?;
-    let (width, height) = decoder.dimensions();
-    check_size(width, height, file)?;
-    // Pixels of more than four bytes count for as many as they take.
-    if (u64::from(width) * u64::from(height)).max(decoder.total_bytes() / 4) > most {
-        let what = format!("{format}: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
-        return Err(Error::malformed(file, Place::File, what));
-    }
-    let rgba = DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgba8().into_raw();
-    plane(width, height, rgba_from_bytes(rgba), file)
 }
 
 /// Groups bytes into pixels, without a copy where the allocation allows it.

@@ -2,7 +2,14 @@
 //!
 //! Readers take bytes and a [`Resolver`] for the files that a model names (buffers, materials, textures); nothing here
 //! touches the file system or the clock, so the same code runs in a browser.
+//!
+//! Each format is a feature of its own name, on by default: `obj`, `stl`, `ply`, `off`, `gltf`; `images` reads textures of
+//! other formats than PNG and writes JPEG. A file of a format that is left out is refused with the name of its feature.
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(all(feature = "obj", feature = "stl", feature = "ply", feature = "off", feature = "gltf")),
+    allow(dead_code, reason = "readers share helpers, and not all are used where some readers are left out")
+)]
 
 mod colored;
 mod detect;
@@ -10,24 +17,33 @@ pub mod encode;
 mod error;
 mod file_name;
 mod format;
+#[cfg(feature = "gltf")]
 pub mod gltf;
 pub mod image;
 mod json_message;
 mod mesh_scene;
 mod models;
+#[cfg(feature = "obj")]
 mod mtl;
+#[cfg(feature = "obj")]
 pub mod obj;
+#[cfg(feature = "off")]
 pub mod off;
+#[cfg(feature = "ply")]
 pub mod ply;
 mod polygons;
 mod resolve;
 pub mod scene_json;
+#[cfg(feature = "stl")]
 pub mod stl;
 mod text;
+#[cfg(any(feature = "obj", feature = "ply"))]
 mod textures;
 pub mod triangulate;
 mod uri;
+#[cfg(any(feature = "obj", feature = "off", feature = "ply", feature = "stl"))]
 mod warnings;
+#[cfg(feature = "stl")]
 mod weld;
 
 pub use error::{Error, Place};

@@ -1,7 +1,17 @@
 //! The readers of model formats, and what they share after reading: the usual upward axis of the format, and materials
 //! for vertex colours. Scene files refer to models and therefore stand above this file.
 
-use crate::{Error, Format, Resolver, colored, gltf, obj, off, ply, stl};
+#[cfg(feature = "gltf")]
+use crate::gltf;
+#[cfg(feature = "obj")]
+use crate::obj;
+#[cfg(feature = "off")]
+use crate::off;
+#[cfg(feature = "ply")]
+use crate::ply;
+#[cfg(feature = "stl")]
+use crate::stl;
+use crate::{Error, Format, Resolver, colored};
 use vitral_exec::Workers;
 use vitral_scene::{Axis, Scene, normals};
 
@@ -14,12 +24,19 @@ pub(crate) fn load(
     workers: &Workers,
 ) -> Option<Result<Scene, Error>> {
     let scene = match format {
+        #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
+        #[cfg(feature = "obj")]
         Format::Obj => obj::load(bytes, file, resolver, workers),
+        #[cfg(feature = "stl")]
         Format::Stl => stl::load(bytes, file, workers),
+        #[cfg(feature = "ply")]
         Format::Ply => ply::load(bytes, file, resolver, workers),
+        #[cfg(feature = "off")]
         Format::Off => off::load(bytes, file, workers),
         Format::SceneJson => return None,
+        #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+        _ => Err(Error::Unsupported { file: file.to_owned(), what: format.left_out() }),
     };
     Some(scene.map(|scene| completed(scene, format, workers)))
 }

@@ -30,10 +30,10 @@ mod stitch;
 
 use crate::file_name::stem;
 use crate::mesh_scene::with_mesh;
-use crate::text::{Cursor, cut_at_lines, to_utf8};
+use crate::text::{cut_at_lines, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
-use chunk::{Chunk, Statement};
+use chunk::Chunk;
 use vitral_exec::Workers;
 use vitral_scene::Scene;
 
@@ -46,19 +46,6 @@ const PIECE: usize = 1 << 18;
 /// [`Error::Malformed`] with the line of an index out of range, or of a statement that has no number where one is due.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
     load_in_pieces(bytes, file, resolver, workers, PIECE)
-}
-
-/// Whether the text reads like an OBJ file: a usual statement, behind nothing but seldom ones. Words as `end` or `call` alone could
-/// begin anything.
-pub(crate) fn begins(mut cursor: Cursor) -> bool {
-    while cursor.next_content() {
-        match Statement::of(cursor.word()) {
-            Statement::Unknown => return false,
-            Statement::Unused | Statement::FreeForm => cursor.next_line(),
-            _ => return true,
-        }
-    }
-    false
 }
 
 fn load_in_pieces(

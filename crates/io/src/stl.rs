@@ -14,6 +14,7 @@
 //! Source: \[STL\].
 
 use crate::file_name::stem;
+use crate::format::stl_size::{HEADER, RECORD, claimed, is_binary_size};
 use crate::mesh_scene::with_mesh;
 use crate::text::{self, Cursor, to_utf8};
 use crate::warnings::Warnings;
@@ -21,19 +22,6 @@ use crate::weld::weld;
 use crate::{Error, Place};
 use vitral_exec::Workers;
 use vitral_scene::{Mesh, Part, Scene};
-
-const HEADER: usize = 84;
-const RECORD: usize = 50;
-
-/// Whether the size is what the triangle count of a binary file demands.
-pub(crate) fn is_binary_size(bytes: &[u8]) -> bool {
-    claimed(bytes).is_some_and(|n| bytes.len() as u64 == HEADER as u64 + RECORD as u64 * u64::from(n))
-}
-
-/// The triangle count of a binary file's header.
-fn claimed(bytes: &[u8]) -> Option<u32> {
-    Some(u32::from_le_bytes(*bytes.get(80..HEADER)?.first_chunk()?))
-}
 
 /// Reads an STL file of either kind.
 ///

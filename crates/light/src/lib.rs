@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 mod area;
+mod builders;
 mod cook_torrance;
 mod illumination;
 mod light;

@@ -57,6 +57,34 @@ pub struct ViewTransform {
 }
 
 impl Camera {
+    /// Vertical angle of view where none is chosen: 30 degrees in radians, a moderate telephoto lens with little distortion.
+    pub const VIEW_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
+
+    /// A perspective camera at `position` that looks at `focal_point`, with +Y up in the picture, the angle of view
+    /// [`VIEW_ANGLE`](Self::VIEW_ANGLE) and clipping planes fitted to the scene.
+    pub fn look_at(position: impl Into<DVec3>, focal_point: impl Into<DVec3>) -> Self {
+        let projection = Projection::Perspective { view_angle: Self::VIEW_ANGLE };
+        Self { position: position.into(), focal_point: focal_point.into(), view_up: DVec3::Y, projection, clip: None }
+    }
+
+    /// With this direction upwards in the picture.
+    #[must_use]
+    pub fn with_up(self, view_up: impl Into<DVec3>) -> Self {
+        Self { view_up: view_up.into(), ..self }
+    }
+
+    /// In perspective with this vertical angle of view in radians, `0..π`.
+    #[must_use]
+    pub fn with_view_angle(self, view_angle: f64) -> Self {
+        Self { projection: Projection::Perspective { view_angle }, ..self }
+    }
+
+    /// With clipping planes at these distances along the direction of view, `0 < near < far`.
+    #[must_use]
+    pub fn with_clip(self, near: f64, far: f64) -> Self {
+        Self { clip: Some((near, far)), ..self }
+    }
+
     /// World to view. Falls back to another up vector where `view_up` is parallel to the view direction or zero.
     pub fn view_from_world(&self) -> DMat4 {
         let forward = (self.focal_point - self.position).try_normalize().unwrap_or(DVec3::NEG_Z);
@@ -135,6 +163,16 @@ mod tests {
             projection,
             clip: Some((1.0, 10.0)),
         }
+    }
+
+    #[test]
+    fn a_camera_looks_at_its_focal_point() {
+        let camera =
+            Camera::look_at([0.0, -4.0, 0.0], [0.0; 3]).with_up(DVec3::Z).with_view_angle(1.0).with_clip(1.0, 9.0);
+        let view = camera.view_from_world();
+        assert!(view.transform_point3(DVec3::ZERO).abs_diff_eq(DVec3::new(0.0, 0.0, -4.0), 1e-12));
+        assert!(view.transform_vector3(DVec3::Z).abs_diff_eq(DVec3::Y, 1e-12));
+        assert_eq!((camera.projection, camera.clip), (Projection::Perspective { view_angle: 1.0 }, Some((1.0, 9.0))));
     }
 
     #[test]

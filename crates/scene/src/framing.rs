@@ -67,9 +67,9 @@ pub enum Lens {
 }
 
 impl Default for Lens {
-    /// 30 degrees, a moderate telephoto lens: little distortion.
+    /// Perspective with [`Camera::VIEW_ANGLE`].
     fn default() -> Self {
-        Self::Perspective { view_angle: std::f64::consts::FRAC_PI_6 }
+        Self::Perspective { view_angle: Camera::VIEW_ANGLE }
     }
 }
 

@@ -19,6 +19,7 @@ mod face_data;
 pub mod framing;
 pub mod lab;
 mod mesh;
+mod mesh_builders;
 pub mod normals;
 mod scene;
 mod skins;

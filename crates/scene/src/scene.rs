@@ -92,10 +92,16 @@ impl Scene {
 
     /// Adds a mesh and a root node that shows it; gives the node's index.
     pub fn add_mesh(&mut self, mesh: Mesh, parent_from_model: DMat4) -> u32 {
-        let name = mesh.name.clone();
         self.meshes.push(Arc::new(mesh));
-        let mesh = Some(self.meshes.len() as u32 - 1);
-        self.add_root(Node { name, transform: NodeTransform::Matrix(parent_from_model), mesh, ..Node::default() })
+        self.add_instance(self.meshes.len() as u32 - 1, parent_from_model)
+    }
+
+    /// Adds a root node that shows the mesh with index `mesh` in [`Scene::meshes`]; gives the node's index. Instances share
+    /// their mesh.
+    pub fn add_instance(&mut self, mesh: u32, parent_from_model: DMat4) -> u32 {
+        let name = self.meshes.get(mesh as usize).map_or(String::new(), |mesh| mesh.name.clone());
+        let transform = NodeTransform::Matrix(parent_from_model);
+        self.add_root(Node { name, transform, mesh: Some(mesh), ..Node::default() })
     }
 
     /// Adds a root node; gives its index.
@@ -104,6 +110,11 @@ impl Scene {
         let index = self.nodes.len() as u32 - 1;
         self.roots.push(index);
         index
+    }
+
+    /// Adds a light of the scene as a whole, world space.
+    pub fn add_light(&mut self, light: Light) {
+        self.lights.push(light);
     }
 
     /// Adds a material; gives its index.

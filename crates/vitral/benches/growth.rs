@@ -4,9 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use vitral::math::DMat4;
-use vitral::scene::builtin::solids;
-use vitral::{Material, Renderer, Scene};
+use vitral::{DMat4, Material, Renderer, Scene, solids};
 
 /// A torus of about `triangles` triangles that fills much of the picture.
 fn renderer(triangles: u32, size: (u32, u32)) -> Renderer {

@@ -4,9 +4,8 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use vitral::render::Global;
-use vitral::scene::builtin;
-use vitral::{Renderer, Scene};
+use vitral::internals::scene::builtin;
+use vitral::{Global, Renderer, Scene};
 
 /// Longest edges of patches.
 const PATCH_SIZES: [f64; 7] = [0.15, 0.1, 0.09, 0.055, 0.045, 0.025, 0.0225];

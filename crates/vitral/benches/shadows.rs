@@ -8,8 +8,7 @@
 mod turntable;
 
 use turntable::{Arguments, FRAMES, Way};
-use vitral::math::DVec3;
-use vitral::{Error, Light};
+use vitral::{DVec3, Error, Light};
 
 /// How a way makes shadows: the algorithm, the maps' cascades, whether the light moves.
 type Shadows = (&'static str, u32, bool);
@@ -28,7 +27,7 @@ const WAYS: [(&str, Shadows, Option<f64>); 9] = [
 ];
 
 fn sun(turn: f64) -> Light {
-    let kind = vitral::light::LightKind::Directional { direction: DVec3::new(-1.0 + turn, -2.0, -1.0 - turn) };
+    let kind = vitral::LightKind::Directional { direction: DVec3::new(-1.0 + turn, -2.0, -1.0 - turn) };
     Light { kind, ..Light::default() }
 }
 

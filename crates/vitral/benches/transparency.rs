@@ -8,9 +8,8 @@
 mod turntable;
 
 use turntable::{Arguments, Way};
-use vitral::render::Transparency;
-use vitral::render::transparency::registry::{MODELS, ORDERS};
-use vitral::{Error, Renderer, override_material};
+use vitral::internals::render::transparency::registry::{MODELS, ORDERS};
+use vitral::{Error, Renderer, Transparency, override_material};
 
 /// A frame of the default order takes at most so many times an opaque one.
 const MOST: f64 = 1.6;

@@ -3,27 +3,25 @@
 //! `cargo run --release -p vitral --example 02_load_a_model [MODEL] [OUT.png]`
 
 use std::path::PathBuf;
-use vitral::{Channel, Error, LoadOptions, Renderer, View, Workers, info, load, picture};
+use vitral::{LoadOptions, Renderer, View, info};
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let model = arguments.next().unwrap_or("builtin:scene1".to_owned());
     let out = PathBuf::from(arguments.next().unwrap_or("target/examples/02_load_a_model.png".to_owned()));
     if let Some(folder) = out.parent() {
-        std::fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
+        std::fs::create_dir_all(folder)?;
     }
 
     // Read it. Normals that the file lacks are made, with edges where faces meet at more than the crease angle.
-    let workers = Workers::new(0);
     let options = LoadOptions { crease_angle: Some(30.0f64.to_radians()), ..LoadOptions::default() };
-    let scene = load(&model, &options, &workers)?;
-    print!("{}", info::info(&scene, &workers)?);
+    let mut renderer = Renderer::open_with(&model, &options)?;
+    print!("{}", info::info(renderer.scene())?);
 
     // Frame it from the right. Which way is up depends on the format's habits.
-    let mut renderer = Renderer::new(scene)?;
     renderer.view = View::Right;
-    let rendered = renderer.render()?;
-    picture::save(&out, &rendered.frame, Channel::Color)?;
-    println!("wrote {}, {:.1} ms", out.display(), rendered.stats.seconds.total * 1e3);
+    let picture = renderer.render()?;
+    picture.save(&out)?;
+    println!("wrote {}, {:.1} ms", out.display(), picture.stats.seconds.total * 1e3);
     Ok(())
 }

@@ -4,21 +4,17 @@
 //! `cargo run --release -p vitral --example 04_illumination_and_shading [FOLDER]`
 
 use std::path::PathBuf;
-use vitral::frame::Plane;
-use vitral::scene::builtin::solids;
-use vitral::{Channel, Error, Frame, Illumination, Renderer, Scene, Shading, load_builtin, picture};
+use vitral::{Frame, Illumination, Picture, Plane, Renderer, Scene, Shading, load_builtin, solids};
 
 const SIDE: u32 = 220;
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or("target/examples".to_owned()));
-    std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
+    std::fs::create_dir_all(&folder)?;
 
     // The ball of Lab3D with fewer faces, so that the shading models differ.
     let mut scene: Scene = load_builtin("sphere")?;
-    let mut ball = solids::sphere(1.0, 20, 10);
-    ball.parts[0].material = Some(0);
-    scene.meshes[0] = std::sync::Arc::new(ball);
+    scene.meshes[0] = std::sync::Arc::new(solids::sphere(1.0, 20, 10).with_material(0));
     let mut renderer = Renderer::new(scene)?;
     renderer.camera = renderer.world().cameras.first().copied();
     (renderer.settings.picture.width, renderer.settings.picture.height) = (SIDE, SIDE);
@@ -43,7 +39,7 @@ fn main() -> Result<(), Error> {
     }
     let frame = Frame { width: sheet.width(), height: sheet.height(), color: Some(sheet), ..Frame::default() };
     let path = folder.join("04_illumination_and_shading.png");
-    picture::save(&path, &frame, Channel::Color)?;
+    Picture::from(frame).save(&path)?;
     println!("wrote {}", path.display());
     Ok(())
 }

@@ -3,36 +3,36 @@
 //! `cargo run --release -p vitral --example 05_channels [FOLDER]`
 
 use std::path::PathBuf;
-use vitral::{Channel, Error, Frame, Renderer, load_builtin, picture};
+use vitral::{Channel, Error, Frame};
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or("target/examples".to_owned()));
-    std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
+    std::fs::create_dir_all(&folder)?;
 
-    let mut renderer = Renderer::new(load_builtin("scene0")?)?;
+    let mut renderer = vitral::open("builtin:scene0")?;
     renderer.camera = renderer.world().cameras.first().copied();
     // Cast shadows are a channel only where an algorithm looks for them.
     renderer.settings.shadows.algorithm = vitral::Shadows::RAY;
     for (channel, ..) in Channel::ALL {
         channel.request(&mut renderer.settings.picture.channels);
     }
-    let frame = renderer.render()?.frame;
+    let picture = renderer.render()?;
 
     for (channel, name, description) in Channel::ALL {
         println!("{name}: {description}");
         for extension in ["png", "npy"] {
             let path = folder.join(format!("05_channels_{name}.{extension}"));
-            match picture::save(&path, &frame, channel) {
+            match picture.save_channel(channel, &path) {
                 Ok(()) => println!("  wrote {}", path.display()),
-                Err(error) if error.exit_code() == 4 => println!("  {error}"),
-                Err(error) => return Err(error),
+                Err(Error::Unsupported { what, .. }) => println!("  {what}"),
+                Err(error) => return Err(error.into()),
             }
         }
     }
 
     // The planes can be read directly. What is in the middle of the picture?
-    let (x, y) = (frame.width / 2, frame.height / 2);
-    if let (Some(objects), Some(depths)) = (&frame.object, &frame.depth) {
+    let (x, y) = (picture.width() / 2, picture.height() / 2);
+    if let (Some(objects), Some(depths)) = (&picture.frame.object, &picture.frame.depth) {
         match *objects.at(x, y) {
             Frame::BACKGROUND => println!("in the middle: nothing"),
             object => {

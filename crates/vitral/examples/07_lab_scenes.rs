@@ -3,8 +3,7 @@
 //! `cargo run --release -p vitral --example 07_lab_scenes [FOLDER]`
 
 use std::path::{Path, PathBuf};
-use vitral::scene::{lab, walkthrough};
-use vitral::{Channel, Error, Renderer, Scene, load_builtin, picture};
+use vitral::{Error, Renderer, Scene, lab, load_builtin, walkthrough};
 
 /// Renders a scene through its own camera and writes it.
 fn draw(scene: Scene, lighting: bool, path: &Path) -> Result<(), Error> {
@@ -12,14 +11,14 @@ fn draw(scene: Scene, lighting: bool, path: &Path) -> Result<(), Error> {
     renderer.camera = renderer.world().cameras.first().copied();
     (renderer.settings.picture.width, renderer.settings.picture.height) = (480, 360);
     renderer.settings.shading.lighting = lighting;
-    picture::save(path, &renderer.render()?.frame, Channel::Color)?;
+    renderer.render()?.save(path)?;
     println!("wrote {}", path.display());
     Ok(())
 }
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or("target/examples".to_owned()));
-    std::fs::create_dir_all(&folder).map_err(|source| Error::Write { path: folder.clone(), source })?;
+    std::fs::create_dir_all(&folder)?;
     let path = |name: &str| folder.join(format!("07_{name}.png"));
 
     // The menu Exercises, each scene under LIGHT0 and LIGHT1.

@@ -10,17 +10,19 @@
 
 use std::sync::Mutex;
 use std::time::Instant;
-use vitral::exec::{Budget, Workers};
-use vitral::math::{DVec3, Vec3};
-use vitral::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
-use vitral::render::raytrace::intersect::Ray;
-use vitral::render::raytrace::{
+use vitral::internals::math::{Vec3, lanes::level_from_environment};
+use vitral::internals::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
+use vitral::internals::render::raytrace::intersect::Ray;
+use vitral::internals::render::raytrace::{
     Counters, Structure, Tree, bsp::Bsp, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles,
 };
-use vitral::render::stats::{CullCounters, VisibilityCounters};
-use vitral::render::visible::TileSink;
-use vitral::render::{Acceleration, PreparedView, Transparency, Visibility, registry};
-use vitral::{LoadOptions, Renderer, execution, load};
+use vitral::internals::render::stats::{CullCounters, VisibilityCounters};
+use vitral::internals::render::visible::TileSink;
+use vitral::internals::render::{PreparedView, registry};
+use vitral::{
+    Acceleration, Budget, DVec3, Execution, LoadOptions, Renderer, Transparency, Visibility, Workers, execution,
+    load_on,
+};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -30,8 +32,8 @@ const HEIGHT: u32 = 768;
 const BLOCK: u32 = 8;
 
 fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
-    let execution = execution(threads)?;
-    let scene = load(model, &LoadOptions::default(), &execution.workers)?;
+    let execution = Execution { level: level_from_environment()?, ..execution(threads) };
+    let scene = load_on(model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     let settings = &mut renderer.settings;
     (settings.picture.width, settings.picture.height, settings.picture.samples) = (WIDTH, HEIGHT, 1);

@@ -6,13 +6,12 @@
 //! (`benches/peers/common.py`), with the same angle of view; `coverage` is the share of pixels of the last frame that show the
 //! model. `parts_ms` is what the parts of a whole run take one by
 //! one, the median of five each: reading the file, the first picture of a scene, encoding it as PNG. `VITRAL_THREADS` limits
-//! the threads.
+//! the threads, `VITRAL_SIMD` names the instruction set.
 
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
-use vitral::math::{DVec3, func};
-use vitral::picture::encode;
-use vitral::{Camera, Channel, Error, Execution, LoadOptions, PictureFormat, Projection, Renderer, execution, load};
+use vitral::internals::math::{func, lanes::level_from_environment};
+use vitral::{Camera, DVec3, Error, Execution, LoadOptions, PictureFormat, Renderer, execution, load_on};
 
 /// What is to be measured.
 struct Plan {
@@ -40,7 +39,7 @@ impl Plan {
 
 /// A file as a renderer that will draw it.
 fn open(plan: &Plan, execution: &Execution) -> Result<Renderer, Error> {
-    let scene = load(&plan.model, &LoadOptions::default(), &execution.workers)?;
+    let scene = load_on(&plan.model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution.clone())?;
     (renderer.settings.picture.width, renderer.settings.picture.height) = plan.size;
     renderer.settings.picture.samples = plan.samples;
@@ -55,8 +54,7 @@ fn cameras(renderer: &Renderer, count: usize) -> Vec<Camera> {
     let turned = |i: usize| {
         let angle = TAU * i as f64 / count as f64;
         let position = center + DVec3::new(func::sin(angle), 0.0, func::cos(angle)) * distance;
-        let projection = Projection::Perspective { view_angle: PI / 6.0 };
-        Camera { position, focal_point: center, view_up: DVec3::Y, projection, clip: None }
+        Camera::look_at(position, center).with_view_angle(PI / 6.0)
     };
     let mut cameras: Vec<_> = (1..=count).map(turned).collect();
 
@@ -73,7 +71,7 @@ fn cameras(renderer: &Renderer, count: usize) -> Vec<Camera> {
     };
     let widest = cameras.iter().map(fill).fold(0.0, f64::max);
     let view_angle = 2.0 * func::atan2(0.5 * widest / 0.9, 1.0);
-    cameras.iter_mut().for_each(|camera| camera.projection = Projection::Perspective { view_angle });
+    cameras.iter_mut().for_each(|camera| *camera = camera.with_view_angle(view_angle));
     cameras
 }
 
@@ -86,10 +84,10 @@ fn parts(plan: &Plan, execution: &Execution) -> Result<f64, Error> {
         let mut renderer = open(plan, execution)?;
         timed(0, start);
         let start = Instant::now();
-        let rendered = renderer.render()?;
+        let picture = renderer.render()?;
         timed(1, start);
         let start = Instant::now();
-        std::hint::black_box(encode(&rendered.frame, Channel::Color, PictureFormat::Png)?);
+        std::hint::black_box(picture.encode(PictureFormat::Png)?);
         timed(2, start);
     }
     let median = |mut part: Vec<f64>| {
@@ -101,7 +99,8 @@ fn parts(plan: &Plan, execution: &Execution) -> Result<f64, Error> {
 
 fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
     let threads = std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
-    let execution = execution(threads)?;
+    let level = level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
+    let execution = Execution { level, ..execution(threads) };
     let start = Instant::now();
     let mut renderer = open(plan, &execution)?;
     let load_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -109,11 +108,11 @@ fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
     let (mut bytes, mut coverage) = (0, 0.0);
     for camera in cameras(&renderer, plan.frames) {
         let start = Instant::now();
-        let rendered = renderer.render_from(&camera)?;
+        let picture = renderer.render_from(&camera)?;
         milliseconds.push(start.elapsed().as_secs_f64() * 1e3);
-        coverage = rendered.stats.picture.covered_pixels as f64 / rendered.stats.picture.pixels as f64;
-        bytes += rendered.frame.color.as_ref().map_or(0, |c| c.data().as_flattened().len());
-        renderer.recycle(rendered);
+        coverage = picture.stats.picture.covered_pixels as f64 / picture.stats.picture.pixels as f64;
+        bytes += picture.rgba8().len();
+        renderer.recycle(picture);
     }
     milliseconds.sort_by(f64::total_cmp);
     let parts_ms = parts(plan, renderer.execution())?;
@@ -141,7 +140,7 @@ fn main() -> std::process::ExitCode {
         }
         Err(error) => {
             eprintln!("turntable_bench: {error}");
-            error.exit_code().into()
+            1.into()
         }
     }
 }

@@ -177,7 +177,7 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
         (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
             (48, 36, 1);
-        let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
+        let (camera, execution) = (renderer.frame_camera(), execution(1));
         let (scene, settings) = (renderer.scene(), &renderer.settings);
         let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };
         let all = Entrant::all();
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn an_algorithm_at_its_limit_says_which() {
         let renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
-        let (camera, execution) = (renderer.frame_camera(), execution(1).unwrap());
+        let (camera, execution) = (renderer.frame_camera(), execution(1));
         let (scene, settings) = (renderer.scene(), &renderer.settings);
         let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: Some(0.0), memory_limit: None };
         let first = measure(&task, &Entrant::all()[0], &execution).unwrap();

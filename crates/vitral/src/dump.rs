@@ -25,14 +25,13 @@ mod scene;
 mod stage;
 mod two_buffer;
 
-use crate::picture::{self, EncodeOptions};
-use crate::{Channel, Error, Frame, PictureFormat, Renderer};
+use crate::{Channel, Error, Frame, Picture, PictureFormat, Renderer, picture};
 use serde_json::Value;
 use stage::{Listed, Write, prepare};
 use std::path::Path;
 use vitral_raster::Viewport;
 use vitral_render::stats::CullCounters;
-use vitral_render::{ColorSpace, Rendered, Settings, Shot, TransparencyOrder, illuminate_corners};
+use vitral_render::{Settings, Shot, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
 
 /// Renders what `camera` sees and hands each stage's result to `write`, by file name.
@@ -61,7 +60,7 @@ pub fn dump(
     // Stages 8 and 9: samples and the picture.
     let rendered = render_planes(renderer, camera)?;
     debug_assert_eq!(rendered.stats.cull.triangles, cull.triangles);
-    write_picture(renderer, &rendered.frame, &mut write, &mut of_picture)?;
+    write_picture(&rendered, &mut write, &mut of_picture)?;
     if has_list(&renderer.settings) {
         of_picture.extend(two_buffer::write(renderer, camera, &mut write)?);
     }
@@ -109,11 +108,11 @@ fn write_geometry(
 }
 
 /// Renders the picture with the planes of the visible surface, and what each pass left.
-fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Error> {
+fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Picture, Error> {
     let in_passes = has_passes(&renderer.settings);
     let wanted = renderer.settings.picture.channels;
     let channels = &mut renderer.settings.picture.channels;
-    [Channel::Color, Channel::Depth, Channel::Id].iter().for_each(|c| c.request(channels));
+    [Channel::Color, Channel::Depth, Channel::Surface].iter().for_each(|c| c.request(channels));
     channels.passes = in_passes;
     let rendered = renderer.render_from(camera);
     renderer.settings.picture.channels = wanted;
@@ -121,25 +120,18 @@ fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, E
 }
 
 /// Stages 8 and 9: the planes of a frame, and the picture after each pass.
-fn write_picture(
-    renderer: &Renderer,
-    frame: &Frame,
-    write: &mut Write<'_>,
-    listed: &mut Vec<Listed>,
-) -> Result<(), Error> {
-    let options =
-        EncodeOptions { srgb: renderer.settings.picture.color_space == ColorSpace::Srgb, ..EncodeOptions::default() };
+fn write_picture(rendered: &Picture, write: &mut Write<'_>, listed: &mut Vec<Listed>) -> Result<(), Error> {
     for (name, channel) in [
-        ("8-surface.npy", Channel::Id),
-        ("8-surface.png", Channel::Id),
+        ("8-surface.npy", Channel::Surface),
+        ("8-surface.png", Channel::Surface),
         ("8-depth.npy", Channel::Depth),
         ("9-framebuffer.png", Channel::Color),
     ] {
-        write(name, &picture::encode_with(frame, channel, PictureFormat::from_path(name)?, &options)?)?;
+        write(name, &rendered.encode_channel(channel, PictureFormat::from_path(name)?)?)?;
     }
-    for (number, pass) in frame.passes.iter().enumerate() {
+    for (number, pass) in rendered.frame.passes.iter().enumerate() {
         let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
-        let png = picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &options)?;
+        let png = Picture { color_space: rendered.color_space, ..frame.into() }.encode(PictureFormat::Png)?;
         let (name, what) = (format!("9-pass-{number:02}.png"), format!("after pass {number}"));
         write(&name, &png)?;
         listed.push(Listed { name, what });
@@ -198,7 +190,7 @@ fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Scene, load_builtin};
+    use crate::{ColorSpace, EncodeOptions, Scene, load_builtin};
     use serde_json::json;
     use std::collections::{BTreeMap, BTreeSet};
     use vitral_math::DVec3;

@@ -83,8 +83,9 @@ pub struct MetSurface {
 pub struct Turn {
     /// Which way.
     pub way: Way,
-    /// Between the normal and the ray before and after, degrees.
-    pub angles: [f64; 2],
+    /// Angles between the normal and the ray before and after.
+    #[serde(rename = "angles")]
+    pub angles_degrees: [f64; 2],
     /// Indices of refraction of what it comes from and what it goes on in.
     pub indices: [f32; 2],
     /// Where it goes, unit, world space.
@@ -253,7 +254,7 @@ fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) 
                 rays.push(TracedRay { turns, origin, direction, meets, weight, light, goes_on: Vec::new() });
             }
             Step::RayGoesOn { way, angles, indices, direction, weight, .. } => {
-                let turn = Turn { way, angles, indices, direction, weight };
+                let turn = Turn { way, angles_degrees: angles, indices, direction, weight };
                 rays.last_mut().into_iter().for_each(|ray| ray.goes_on.push(turn.clone()));
             }
             _ => {}
@@ -444,7 +445,7 @@ impl fmt::Display for TracedRay {
         }
         writeln!(f, "; counts {}, adds {}", rgb(self.weight), rgb(self.light))?;
         for turn in &self.goes_on {
-            let ([before, after], [n1, n2]) = (turn.angles, turn.indices);
+            let ([before, after], [n1, n2]) = (turn.angles_degrees, turn.indices);
             let bent = format!("at {before:.4} degrees in {n1}, goes on at {after:.4} in {n2}");
             let (direction, weight) = (three(turn.direction), rgb(turn.weight));
             writeln!(f, "    {} {bent}, towards {direction}; counts {weight}", turn.way.name())?;

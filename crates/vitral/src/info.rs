@@ -205,7 +205,15 @@ pub struct TextureInfo {
 ///
 /// # Errors
 /// A mesh or a scene graph that is not sound.
-pub fn info(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
+pub fn info(scene: &Scene) -> Result<Info, crate::Error> {
+    info_on(scene, &Workers::new(0))
+}
+
+/// [`info`] on these threads.
+///
+/// # Errors
+/// As [`info`].
+pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
     let sound = scene.meshes.iter().try_for_each(|mesh| mesh.check_with(workers));
     sound.map_err(vitral_render::Error::Scene)?;
     let world = World::with_workers(scene, workers).map_err(vitral_render::Error::from)?;
@@ -398,7 +406,7 @@ mod tests {
 
     #[test]
     fn eight_cubes_are_counted() {
-        let info = info(&load_builtin("cubs").unwrap(), &Workers::single()).unwrap();
+        let info = info(&load_builtin("cubs").unwrap()).unwrap();
         assert_eq!((info.meshes.len(), info.faces, info.triangles, info.closed), (8, 48, 96, true));
         assert_eq!((info.lights.len(), info.cameras.len(), info.materials.len()), (2, 1, 8));
         let cube = &info.meshes[0];
@@ -419,7 +427,7 @@ mod tests {
         let mesh = Mesh { positions: corners, triangles: vec![[0, 1, 2], [0, 2, 4]], parts, ..Mesh::default() };
         // By 45 degrees: the box round the turned box would reach to 1.41 and -0.71.
         scene.add_mesh(mesh, DMat4::from_rotation_z(std::f64::consts::FRAC_PI_4));
-        let bounds = info(&scene, &Workers::single()).unwrap().bounds.unwrap();
+        let bounds = info(&scene).unwrap().bounds.unwrap();
         let half = std::f64::consts::FRAC_1_SQRT_2;
         for (seen, expected) in bounds.min.iter().chain(&bounds.max).zip([-half, -half, 0.0, half, half, 0.0]) {
             assert!((seen - expected).abs() < 1e-9, "{bounds:?}");
@@ -430,18 +438,18 @@ mod tests {
     fn an_open_mesh_and_bad_vertices_are_told() {
         let mut mesh = vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1);
         mesh.positions[0][1] = f32::NAN;
-        let info = info(&Scene::from_mesh(mesh), &Workers::single()).unwrap();
+        let info = info(&Scene::from_mesh(mesh)).unwrap();
         assert!(!info.closed && info.meshes[0].non_finite_vertices == 1);
         assert!(info.to_string().contains("1 vertex with a NaN") && info.warnings[0].contains("open"));
-        assert!(super::info(&Scene::default(), &Workers::single()).unwrap().bounds.is_none());
+        assert!(super::info(&Scene::default()).unwrap().bounds.is_none());
     }
 
     #[test]
     fn a_mesh_that_is_not_sound_is_an_error() {
         let mut mesh = vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1);
         mesh.triangles[0][1] = 99;
-        let error = info(&Scene::from_mesh(mesh), &Workers::single()).unwrap_err();
-        assert_eq!(error.exit_code(), 3);
+        let error = info(&Scene::from_mesh(mesh)).unwrap_err();
+        assert!(matches!(error, crate::Error::Render(vitral_render::Error::Scene(_))), "{error}");
         assert!(error.to_string().contains("index 99"), "{error}");
     }
 
@@ -454,7 +462,7 @@ mod tests {
             scene.add_mesh(mesh, DMat4::IDENTITY);
         }
         scene.nodes[1].name = "roof".to_owned();
-        let info = info(&scene, &Workers::single()).unwrap();
+        let info = info(&scene).unwrap();
         let open = "4 boundary edges: it is open, so its back faces are drawn too";
         assert_eq!(
             info.warnings,

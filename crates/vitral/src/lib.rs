@@ -1,30 +1,50 @@
-//! Floor 4: vitral as a library. A model file in, a picture out, without GPU, display or GL driver.
+//! A complete classical 3D renderer: a model file in, a picture out, without GPU, display or GL driver.
+//!
+//! ```no_run
+//! # fn main() -> Result<(), vitral::Error> {
+//! vitral::open("part.glb")?.render()?.save("part.png")?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`open`] reads a model and [frames](View) it. [`Renderer`] holds what is to be decided about pictures: [`Settings`]
+//! (size, algorithms, background, channels), camera and lights. [`Renderer::render`] gives a [`Picture`], which can be saved,
+//! encoded, or read as bytes. A scene can also be built:
 //!
 //! ```
-//! let mut renderer = vitral::Renderer::new(vitral::load_builtin("teapot")?)?;
-//! (renderer.settings.picture.width, renderer.settings.picture.height) = (160, 120);
-//! let picture = renderer.render()?.frame;
-//! let png = vitral::picture::encode(&picture, vitral::Channel::Color, vitral::PictureFormat::Png)?;
-//! assert!(png.starts_with(b"\x89PNG"));
+//! use vitral::{Camera, DMat4, Light, Material, Mesh, PictureFormat, Renderer, Scene};
+//!
+//! let mut scene = Scene::default();
+//! let red = scene.add_material(Material::matte([0.8, 0.1, 0.1]));
+//! let triangle = Mesh::new([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.5, 0.0]], [[0, 1, 2]]);
+//! scene.add_mesh(triangle.with_material(red), DMat4::IDENTITY);
+//! scene.add_light(Light::directional([-1.0, -1.0, -1.0]));
+//!
+//! let camera = Camera::look_at([0.0, 1.0, 4.0], [0.0, 0.7, 0.0]);
+//! let picture = Renderer::new(scene)?.with_camera(camera).render()?;
+//! assert!(picture.encode(PictureFormat::Png)?.starts_with(b"\x89PNG"));
 //! # Ok::<(), vitral::Error>(())
 //! ```
 //!
-//! [`load()`] reads a model, [`Renderer`] draws it with the [`Settings`] that it holds, [`picture`] writes what came out.
-//! [`info`](mod@info) tells what is in a scene, [`State`] keeps everything that makes a picture as JSON, [`dump`](mod@dump)
-//! writes what each stage of the pipeline hands on. The floors below are here under short names, for whoever builds
-//! scenes or algorithms: [`math`], [`exec`], [`frame`], [`light`], [`scene`], [`raster`], [`render`], [`io`].
+//! Angles are radians. Where an angle is in degrees, as on the command line and in its files, its name says so.
+//! Colours of lights and materials are linear RGB; colours of backgrounds are in the display's encoding.
 //!
-//! This crate and the command line are the only places that know files, clocks and the environment.
+//! | also here | for |
+//! |---|---|
+//! | [`info`](mod@info) | what is in a scene |
+//! | [`State`] | all that makes a picture, as JSON |
+//! | [`explain`](mod@explain) | how each algorithm decides about a pixel |
+//! | [`dump`](mod@dump) | what each stage of the pipeline hands on |
+//! | [`bench`] | time and memory of every visible-surface algorithm |
+//! | [`internals`] | the crates below, without a promise of stability |
+//!
+//! # Features
+//!
+//! `threads`: pictures are computed on all processors. `obj`, `stl`, `ply`, `off`, `gltf`: the model formats. `images`:
+//! textures of other formats than PNG, and pictures as JPEG. These are on by default. Pictures do not depend on `threads`; a
+//! file of a format that is left out is refused with the name of its feature. `scalar` adds the plain scalar instruction
+//! set, for comparison.
 #![forbid(unsafe_code)]
-
-pub use vitral_exec as exec;
-pub use vitral_frame as frame;
-pub use vitral_io as io;
-pub use vitral_light as light;
-pub use vitral_math as math;
-pub use vitral_raster as raster;
-pub use vitral_render as render;
-pub use vitral_scene as scene;
 
 pub mod bench;
 pub mod dump;
@@ -32,6 +52,7 @@ mod error;
 pub mod explain;
 mod files;
 pub mod info;
+pub mod internals;
 mod load;
 mod material_override;
 pub mod names;
@@ -45,23 +66,40 @@ mod viewpoint;
 
 pub use error::Error;
 pub use files::{FolderResolver, read};
-pub use load::{LoadOptions, Normals, default_camera, load, load_builtin, load_bytes};
+pub use load::{
+    LoadOptions, Normals, builtin_names, default_camera, load, load_builtin, load_bytes, load_bytes_with, load_on,
+    load_with,
+};
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
-pub use picture::{Channel, PictureFormat};
-pub use renderer::{Moves, Renderer, execution};
+pub use picture::{Channel, EncodeOptions, Picture, PictureFormat};
+pub use renderer::{Moves, Renderer, execution, open};
 pub use shadow_polygons::shadow_polygons;
 pub use state::State;
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
-pub use vitral_exec::{Budget, Workers};
-pub use vitral_frame::Frame;
-pub use vitral_light::{Illumination, Light, Material};
-pub use vitral_render::{
-    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Execution, Global,
-    GlobalSettings, Interpolation, Lines, PictureSettings, Rendered, Settings, SettingsError, Shading, ShadingSettings,
-    ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder, TransparencySettings, UnknownName, Visibility,
-    VolumeCounting,
+pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
+pub use vitral_frame::{Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
+pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
+pub use vitral_light::{
+    AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,
+    Transmission,
 };
-pub use vitral_scene::{Axis, Camera, Lens, Mesh, Node, Projection, Scene, View};
+pub use vitral_math::{Aabb, DMat4, DQuat, DVec3};
+pub use vitral_render::{
+    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Error as RenderError,
+    Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading,
+    ShadingSettings, ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder, TransparencySettings,
+    UnknownName, Visibility, VolumeCounting,
+};
+pub use vitral_scene::builtin::solids;
+pub use vitral_scene::{
+    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, View, World, lab,
+    walkthrough,
+};
+
+/// The programs of `docs/library.md`, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/library.md")]
+struct LibraryPage;

@@ -5,7 +5,7 @@ use crate::{Error, Scene, Workers};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
-use vitral_io::Resolver;
+use vitral_io::{NoFiles, Resolver};
 use vitral_scene::{Mesh, builtin, lab, normals};
 
 /// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by side; larger ones share the
@@ -67,7 +67,23 @@ pub enum Normals {
 ///
 /// # Errors
 /// A file that is missing, malformed, not of a known format or above the limit.
-pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
+pub fn load(path: impl AsRef<Path>) -> Result<Scene, Error> {
+    load_with(path, &LoadOptions::default())
+}
+
+/// [`load`] with options.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Error> {
+    load_on(path, options, &Workers::new(0))
+}
+
+/// [`load_with`] on these threads.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_on(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
     let path = path.as_ref();
     let name = path.to_string_lossy();
     if let Some(builtin) = name.strip_prefix("builtin:") {
@@ -86,30 +102,43 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) ->
     Ok(scene)
 }
 
-/// Reads a model from memory. `name` is for messages, and its extension decides where the content leaves a doubt;
-/// `resolver` finds the files that the model names.
+/// Reads a model from memory that names no other files. `name` is for messages, and its extension decides where the content
+/// leaves a doubt.
 ///
 /// # Errors
 /// Content that is malformed or not of a known format.
-pub fn load_bytes(
+pub fn load_bytes(bytes: &[u8], name: &str) -> Result<Scene, Error> {
+    load_bytes_with(bytes, name, &NoFiles, &LoadOptions::default())
+}
+
+/// [`load_bytes`] with options; `resolver` finds the files that the model names.
+///
+/// # Errors
+/// As [`load_bytes`].
+pub fn load_bytes_with(
     bytes: &[u8],
     name: &str,
     resolver: &dyn Resolver,
     options: &LoadOptions,
-    workers: &Workers,
 ) -> Result<Scene, Error> {
-    let mut scene = vitral_io::load(bytes, name, resolver, workers)?;
-    finish(&mut scene, options, workers);
+    let workers = Workers::new(0);
+    let mut scene = vitral_io::load(bytes, name, resolver, &workers)?;
+    finish(&mut scene, options, &workers);
     Ok(scene)
 }
 
 /// A scene that needs no file.
 ///
 /// # Errors
-/// [`Error::Read`] for a name that no scene has; the hint lists the names.
+/// [`Error::Read`] for a name that is not among [`builtin_names`].
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
     let none = || std::io::Error::new(std::io::ErrorKind::NotFound, "there is no such scene");
     builtin::scene(name).ok_or_else(|| Error::Read { path: format!("builtin:{name}").into(), source: none() })
+}
+
+/// The names of the scenes that need no file, each with a line on what it shows.
+pub fn builtin_names() -> &'static [(&'static str, &'static str)] {
+    builtin::names()
 }
 
 /// The camera of the scene from which models of this name are usually seen: figures among the built-in scenes have one.
@@ -163,12 +192,11 @@ fn lacks_normals(mesh: &Mesh) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_io::NoFiles;
 
     const SQUARE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
     fn square(options: &LoadOptions) -> Scene {
-        load_bytes(SQUARE, "square.obj", &NoFiles, options, &Workers::single()).unwrap()
+        load_bytes_with(SQUARE, "square.obj", &NoFiles, options).unwrap()
     }
 
     #[test]
@@ -186,7 +214,7 @@ mod tests {
         let of = |normals, crease_angle: Option<f64>| {
             let options =
                 LoadOptions { normals, crease_angle: crease_angle.map(f64::to_radians), ..LoadOptions::default() };
-            let scene = load_bytes(text, "l.obj", &NoFiles, &options, &Workers::single()).unwrap();
+            let scene = load_bytes_with(text, "l.obj", &NoFiles, &options).unwrap();
             let mesh = &scene.meshes[0];
             (mesh.normals.as_ref().unwrap().at(0, &mesh.triangles)[0], scene.warnings.len())
         };
@@ -203,18 +231,17 @@ mod tests {
 
     #[test]
     fn l22_no_normals_means_the_current_normal() {
-        let mut cube =
-            load("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() }, &Workers::single());
+        let mut cube = load_with("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() });
         let mesh = cube.as_mut().unwrap().meshes.swap_remove(0);
         assert_eq!(mesh.normals.as_ref().unwrap().at(7, &mesh.triangles), [[0.0, 0.0, 1.0]; 3]);
     }
 
     #[test]
     fn names_that_are_not_there() {
-        let error = load("builtin:nothing", &LoadOptions::default(), &Workers::single()).unwrap_err();
-        assert_eq!((error.exit_code(), error.hint().unwrap().contains("teapot")), (3, true));
-        let error = load("no/such/file.obj", &LoadOptions::default(), &Workers::single()).unwrap_err();
-        assert!(error.to_string().starts_with("no/such/file.obj: ") && error.exit_code() == 3);
+        let error = load("builtin:nothing").unwrap_err();
+        assert_eq!(error.to_string(), "builtin:nothing: there is no such scene");
+        let error = load("no/such/file.obj").unwrap_err();
+        assert!(error.to_string().starts_with("no/such/file.obj: ") && matches!(error, Error::Read { .. }));
     }
 
     #[test]

@@ -100,7 +100,8 @@ pub(crate) mod serde_view {
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<View, D::Error> {
         let name = String::deserialize(deserializer)?;
-        super::view(&name).map_err(|e| D::Error::custom(format!("{e}: {}", e.hint().unwrap_or_default())))
+        super::view(&name)
+            .map_err(|e| D::Error::custom(format!("{e}: choose {}", super::list(super::VIEWS.map(|v| v.1)))))
     }
 }
 
@@ -131,7 +132,8 @@ mod tests {
         for (v, name) in VIEWS {
             assert_eq!((view_name(v), view(name).unwrap()), (name, v));
         }
-        assert!(view("above").unwrap_err().hint().unwrap().contains("iso, front"));
+        let Err(Error::Usage { hint, .. }) = view("above") else { panic!() };
+        assert!(hint.contains("iso, front"));
         assert_eq!((axis("z").unwrap(), axis("-X").unwrap()), (Axis::PlusZ, Axis::MinusX));
         assert!(axis("up").is_err());
     }

@@ -8,12 +8,12 @@
 //! and viewer; what the light sees; the lit polygons as the light sees them, the same outlines; the lit polygons as the
 //! viewer sees them; the picture without shadows; the picture with them.
 
-use crate::{Error, Renderer};
+use crate::{Error, Picture, Renderer};
 use vitral_frame::{Frame, Plane};
 use vitral_light::{AreaShape, Light, LightKind, Material, Reflectance};
 use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_render::catalogue::Panels;
-use vitral_render::{Channels, Lines, Rendered, Settings, SettingsError, Shadows, registry, shadow};
+use vitral_render::{Channels, Lines, Settings, SettingsError, Shadows, registry, shadow};
 use vitral_scene::builtin::solids;
 use vitral_scene::{Camera, Faces, Lens, Mesh, Part, Projection, Scene, framing};
 
@@ -22,14 +22,14 @@ const GAP: usize = 4;
 /// What is left of a colour where shadow falls, if the picture is darkened afterwards.
 const DARKENED: f32 = 0.5;
 
-type Picture = Plane<[u8; 4]>;
+type Colors = Plane<[u8; 4]>;
 
 /// The panels of `renderer`'s shadow algorithm, seen by `camera`; each has the size of a picture. Light and shadow are those
 /// of the first light that casts shadows.
 ///
 /// # Errors
 /// Shadows without panels, a scene without such a light, and whatever ends a picture.
-pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Rendered, Error> {
+pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Picture, Error> {
     let settings = renderer.settings.clone();
     let shadows = settings.shadows.algorithm;
     let Some(sequence) = shadows.panels else {
@@ -53,8 +53,8 @@ fn six(
     sequence: Panels,
     [camera, from_light]: [&Camera; 2],
     (lights, number): (&[Light], usize),
-    overview: Picture,
-) -> Result<Rendered, Error> {
+    overview: Colors,
+) -> Result<Picture, Error> {
     let with = renderer.settings.clone();
     let own_lights = renderer.lights.replace(lights.to_vec());
     let intensity = renderer.light_intensity.replace(1.0);
@@ -97,12 +97,12 @@ fn six(
     made
 }
 
-fn color(rendered: Rendered) -> Picture {
+fn color(rendered: Picture) -> Colors {
     rendered.frame.color.unwrap_or_default()
 }
 
 /// A z-buffer as greys: the nearest depth white, the farthest dark, nothing black.
-fn grey(rendered: Rendered) -> Picture {
+fn grey(rendered: Picture) -> Colors {
     let depth = rendered.frame.depth.unwrap_or_default();
     let seen = depth.data().iter().copied().filter(|&z| z > 0.0);
     let (low, high) = seen.fold((f32::INFINITY, 0.0f32), |(low, high), z| (low.min(z), high.max(z)));
@@ -124,7 +124,7 @@ fn texels(settings: &Settings) -> Settings {
 }
 
 /// The picture in another size, each pixel as the nearest is.
-fn enlarged(picture: &Picture, [width, height]: [u32; 2]) -> Picture {
+fn enlarged(picture: &Colors, [width, height]: [u32; 2]) -> Colors {
     let from = |i: u32, size: u32, of: u32| (u64::from(i) * u64::from(of) / u64::from(size.max(1))) as u32;
     let column = |x: u32, y: u32| *picture.at(from(x, width, picture.width()), from(y, height, picture.height()));
     let all = (0..height).flat_map(|y| (0..width).map(move |x| column(x, y)));
@@ -132,7 +132,7 @@ fn enlarged(picture: &Picture, [width, height]: [u32; 2]) -> Picture {
 }
 
 /// The picture, darkened by the mask after it was illuminated.
-fn darkened(picture: &Picture, mask: &Plane<f32>) -> Picture {
+fn darkened(picture: &Colors, mask: &Plane<f32>) -> Colors {
     let mut darkened = picture.clone();
     for (pixel, cast) in darkened.data_mut().iter_mut().zip(mask.data()) {
         let keep = 1.0 - cast * (1.0 - DARKENED);
@@ -142,7 +142,7 @@ fn darkened(picture: &Picture, mask: &Plane<f32>) -> Picture {
 }
 
 /// Six pictures of one size, three in a row.
-fn sheet(panels: [&Picture; 6]) -> Frame {
+fn sheet(panels: [&Colors; 6]) -> Frame {
     let (width, height) = (panels[0].width() as usize, panels[0].height() as usize);
     let size = [3 * width + 2 * GAP, 2 * height + GAP].map(|s| s as u32);
     let mut all = Plane::filled(size[0], size[1], [255; 4]);
@@ -192,7 +192,7 @@ fn light_camera(renderer: &Renderer, light: &Light) -> Camera {
 }
 
 /// The whole scene with a ball for the light and a cone for the viewer, its tip where the viewer is.
-fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Camera) -> Result<Picture, Error> {
+fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Camera) -> Result<Colors, Error> {
     let mut scene = Scene::clone(renderer.scene());
     let size = renderer.world().bounds.diagonal().max(f64::MIN_POSITIVE) * 0.05;
     let mut mark = |mut mesh: Mesh, emission: [f32; 3], transform: DMat4| {
@@ -411,6 +411,6 @@ mod tests {
         assert!(error.to_string().contains("map, object-precision"), "{error}");
         renderer.settings.shadows.algorithm = Shadows::MAP;
         renderer.lights = Some(Vec::new());
-        assert_eq!(panels(&mut renderer, &camera).unwrap_err().exit_code(), 2);
+        assert!(matches!(panels(&mut renderer, &camera), Err(Error::Usage { .. })));
     }
 }

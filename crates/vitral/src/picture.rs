@@ -1,12 +1,106 @@
 //! From a frame to a file: channels and picture formats.
+//!
+//! [`Picture`] is what a renderer gives; its methods encode and save it. The functions of this module do the same for a
+//! [`Frame`] alone, with [`EncodeOptions`].
 
 use crate::names::list;
-use crate::{Error, Frame, files};
+use crate::{Error, Frame, Stats, files};
 use std::path::Path;
 use std::str::FromStr;
 use vitral_frame::Plane;
 use vitral_io::encode::{self, PngOptions};
-use vitral_render::Channels;
+use vitral_render::{Channels, ColorSpace, Rendered};
+
+/// A picture and how it came about.
+///
+/// ```
+/// let picture = vitral::open("builtin:teapot")?.render()?;
+/// assert_eq!(picture.rgba8().len(), 4 * (picture.width() * picture.height()) as usize);
+/// let png: Vec<u8> = picture.encode(vitral::PictureFormat::Png)?;
+/// # Ok::<(), vitral::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// The planes: colours, and the channels that were requested.
+    pub frame: Frame,
+    /// Counters and times.
+    pub stats: Stats,
+    /// What is not as it was asked for, a line each.
+    pub warnings: Vec<String>,
+    /// What the colour bytes mean.
+    pub color_space: ColorSpace,
+}
+
+impl From<Frame> for Picture {
+    /// A frame that was put together by hand, in sRGB.
+    fn from(frame: Frame) -> Self {
+        Self { frame, stats: Stats::default(), warnings: Vec::new(), color_space: ColorSpace::Srgb }
+    }
+}
+
+impl Picture {
+    /// What the renderer made in this colour space.
+    pub(crate) fn new(rendered: Rendered, color_space: ColorSpace) -> Self {
+        let Rendered { frame, stats, warnings } = rendered;
+        Self { frame, stats, warnings, color_space }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.frame.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.frame.height
+    }
+
+    /// The colours as bytes: red, green, blue and straight alpha of each pixel, the top row first. Empty if the channel
+    /// [`Channel::Color`] was switched off.
+    pub fn rgba8(&self) -> &[u8] {
+        self.frame.color.as_ref().map_or(&[], |plane| plane.data().as_flattened())
+    }
+
+    /// Writes the colours in the format that the path's extension names: `.png`, `.jpg` or `.ppm`. The file appears
+    /// complete or not at all.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for another extension, [`Error::Write`] if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.save_channel(Channel::Color, path)
+    }
+
+    /// Writes one channel, as [`save`](Self::save); `.npy` keeps its numbers without loss.
+    ///
+    /// # Errors
+    /// As [`save`](Self::save); [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one
+    /// that was not requested.
+    pub fn save_channel(&self, channel: Channel, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        write(path, &self.encode_channel(channel, PictureFormat::from_path(path)?)?)
+    }
+
+    /// The colours as the bytes of a file.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for [`PictureFormat::Npy`], which holds every channel but colours.
+    pub fn encode(&self, format: PictureFormat) -> Result<Vec<u8>, Error> {
+        self.encode_channel(Channel::Color, format)
+    }
+
+    /// One channel as the bytes of a file.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one that was not requested.
+    pub fn encode_channel(&self, channel: Channel, format: PictureFormat) -> Result<Vec<u8>, Error> {
+        encode_with(&self.frame, channel, format, &self.encode_options())
+    }
+
+    /// The options that fit the colour space.
+    fn encode_options(&self) -> EncodeOptions {
+        EncodeOptions { srgb: self.color_space == ColorSpace::Srgb, ..EncodeOptions::default() }
+    }
+}
 
 /// A plane of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -16,8 +110,8 @@ pub enum Channel {
     Color,
     /// 1 on the near plane, 0 on the far plane and behind everything. 16-bit grey in PNG, floats in NPY.
     Depth,
-    /// Ids of the file's faces. Colours in pictures, unsigned integers in NPY, 4294967295 where nothing is.
-    Id,
+    /// Surface ids: the faces as in the file. Colours in pictures, unsigned integers in NPY, 4294967295 where nothing is.
+    Surface,
     /// Instances, likewise.
     Object,
     /// Materials, likewise.
@@ -38,7 +132,7 @@ impl Channel {
         (Self::Color, "color", "the picture"),
         (Self::Depth, "depth", "1 near, 0 far: 16-bit grey in PNG, float32 in NPY"),
         (
-            Self::Id,
+            Self::Surface,
             "id",
             "surface ids, straight on through what is transparent: uint32 in NPY (4294967295 is background), colours in pictures",
         ),
@@ -72,7 +166,7 @@ impl Channel {
         match self {
             Self::Color => channels.color = true,
             Self::Depth => channels.depth = true,
-            Self::Id => channels.surface = true,
+            Self::Surface => channels.surface = true,
             Self::Object => channels.object = true,
             Self::Material => channels.material = true,
             Self::Normal => channels.normal = true,
@@ -161,15 +255,6 @@ impl Default for EncodeOptions {
     }
 }
 
-/// One channel of a frame as a file, with the default [`EncodeOptions`]: the colours are taken for sRGB, which PNG then says.
-/// Frames of [`ColorSpace::Raw`](vitral_render::ColorSpace) go through [`encode_with`] instead.
-///
-/// # Errors
-/// As [`encode_with`].
-pub fn encode(frame: &Frame, channel: Channel, format: PictureFormat) -> Result<Vec<u8>, Error> {
-    encode_with(frame, channel, format, &EncodeOptions::default())
-}
-
 /// Whether the format can hold the channel: known before there is a frame.
 ///
 /// # Errors
@@ -232,7 +317,7 @@ pub fn encode_with(
         }
         Channel::AttachedShadow => shares(&frame.attached_shadow),
         Channel::CastShadow => shares(&frame.cast_shadow),
-        Channel::Id => ids(&frame.surface),
+        Channel::Surface => ids(&frame.surface),
         Channel::Object => ids(&frame.object),
         Channel::Material => ids(&frame.material),
         Channel::Normal => {
@@ -303,29 +388,6 @@ pub fn write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
     files::write(path.as_ref(), bytes)
 }
 
-/// Encodes one channel in the format that the path names, and writes it; with the default [`EncodeOptions`], as [`encode()`]
-/// does. Frames of [`ColorSpace::Raw`](vitral_render::ColorSpace) go through [`save_with`] instead.
-///
-/// # Errors
-/// As [`encode_with`] and [`write()`].
-pub fn save(path: impl AsRef<Path>, frame: &Frame, channel: Channel) -> Result<(), Error> {
-    save_with(path, frame, channel, &EncodeOptions::default())
-}
-
-/// [`save`] with options.
-///
-/// # Errors
-/// As [`encode_with`] and [`write()`].
-pub fn save_with(
-    path: impl AsRef<Path>,
-    frame: &Frame,
-    channel: Channel,
-    options: &EncodeOptions,
-) -> Result<(), Error> {
-    let path = path.as_ref();
-    write(path, &encode_with(frame, channel, PictureFormat::from_path(path)?, options)?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -350,34 +412,46 @@ mod tests {
 
     #[test]
     fn channels_go_into_the_formats_that_can_hold_them() {
-        let frame = frame();
-        let code = |channel, format| encode(&frame, channel, format).map_or_else(|e| e.exit_code(), |_| 0);
+        let picture = Picture::from(frame());
+        let code = |channel, format| match picture.encode_channel(channel, format) {
+            Ok(_) => "held",
+            Err(Error::Unsupported { .. }) => "unsupported",
+            Err(Error::Usage { .. }) => "not requested",
+            Err(other) => panic!("{other}"),
+        };
+        const ALL: [&str; 4] = ["held"; 4];
+        const NONE: [&str; 4] = ["not requested"; 4];
         use {Channel as C, PictureFormat as P};
-        for (channel, codes) in [
-            (C::Color, [0, 0, 0, 4]),
-            (C::Depth, [0, 4, 4, 0]),
-            (C::Id, [0, 0, 0, 0]),
-            (C::Normal, [0, 0, 0, 0]),
-            (C::Steps, [0, 0, 0, 4]),
-            (C::Object, [2, 2, 2, 2]),
-            (C::CastShadow, [0, 0, 0, 0]),
-            (C::AttachedShadow, [2, 2, 2, 2]),
+        for (channel, expected) in [
+            (C::Color, ["held", "held", "held", "unsupported"]),
+            (C::Depth, ["held", "unsupported", "unsupported", "held"]),
+            (C::Surface, ALL),
+            (C::Normal, ALL),
+            (C::Steps, ["held", "held", "held", "unsupported"]),
+            (C::Object, NONE),
+            (C::CastShadow, ALL),
+            (C::AttachedShadow, NONE),
         ] {
-            assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), codes, "{}", channel.name());
+            assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), expected, "{}", channel.name());
         }
+    }
+
+    #[test]
+    fn bytes_come_row_by_row() {
+        let picture = Picture::from(frame());
+        assert_eq!((picture.width(), picture.height(), picture.rgba8()), (2, 1, &[1, 2, 3, 255, 0, 0, 0, 0][..]));
+        assert!(Picture::from(Frame { color: None, ..frame() }).rgba8().is_empty());
     }
 
     #[test]
     fn only_colours_that_are_srgb_are_said_to_be() {
         let path = std::env::temp_dir().join(format!("vitral-save-{}.png", std::process::id()));
-        for (srgb, said) in [(true, true), (false, false)] {
-            let options = EncodeOptions { srgb, ..EncodeOptions::default() };
-            save_with(&path, &frame(), Channel::Color, &options).unwrap();
+        for (color_space, said) in [(ColorSpace::Srgb, true), (ColorSpace::Raw, false)] {
+            let picture = Picture { color_space, ..Picture::from(frame()) };
+            picture.save(&path).unwrap();
             let bytes = std::fs::read(&path).unwrap();
             assert_eq!(bytes.windows(4).any(|chunk| chunk == b"sRGB"), said);
         }
-        save(&path, &frame(), Channel::Color).unwrap();
-        assert!(std::fs::read(&path).unwrap().windows(4).any(|chunk| chunk == b"sRGB"));
         std::fs::remove_file(path).unwrap();
     }
 
@@ -386,10 +460,11 @@ mod tests {
         for (channel, name, _) in Channel::ALL {
             assert_eq!((name.parse::<Channel>().unwrap(), channel.name()), (channel, name));
         }
-        assert!("alpha".parse::<Channel>().unwrap_err().hint().unwrap().contains("normal"));
+        let Err(Error::Usage { hint, .. }) = "alpha".parse::<Channel>() else { panic!() };
+        assert!(hint.contains("normal"));
         assert_eq!(PictureFormat::from_path("a/b.JPG").unwrap(), PictureFormat::Jpeg);
-        let error = PictureFormat::from_path("a.bmp").unwrap_err();
-        assert_eq!((error.exit_code(), error.hint().unwrap().contains(".npy")), (4, true));
+        let Err(Error::Unsupported { hint, .. }) = PictureFormat::from_path("a.bmp") else { panic!() };
+        assert!(hint.contains(".npy"));
         let bare = PictureFormat::from_path("/dev/null").unwrap_err().to_string();
         assert_eq!(bare, "/dev/null: the name has no extension that tells the format");
     }

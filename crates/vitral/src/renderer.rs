@@ -1,15 +1,23 @@
-//! The short way from a scene to pictures.
+//! The short way from a model or scene to pictures.
 
-use crate::{Error, SystemClock};
+use crate::{Channel, Error, LoadOptions, Picture, SystemClock, Viewpoint, default_camera, load_on};
+use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
-use vitral_math::lanes::level_from_environment;
 use vitral_math::{DQuat, DVec3};
-use vitral_render::{ColorSpace, Execution, Global, Rendered, Session, Settings, Shot, radiosity, render};
+use vitral_render::{ColorSpace, Execution, Global, Session, Settings, Shot, radiosity, render};
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, exposure, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
+///
+/// ```
+/// let mut renderer = vitral::open("builtin:teapot")?;
+/// renderer.view = vitral::View::Front;
+/// let picture = renderer.render()?;
+/// assert!(picture.warnings.is_empty());
+/// # Ok::<(), vitral::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Renderer {
     /// Size, algorithms, background, channels.
@@ -38,15 +46,19 @@ pub struct Renderer {
     execution: Execution,
 }
 
-/// An execution with the machine's clock and `threads` threads (0: as many as the process may use). The environment
-/// variable `VITRAL_SIMD` may name another instruction set than the best.
+/// An execution with the machine's clock and best instruction set, without limits, and with `threads` threads (0: as many
+/// as the process may use).
+pub fn execution(threads: usize) -> Execution {
+    let budget = Budget::new(Arc::new(SystemClock::default()));
+    Execution { workers: Workers::new(threads), budget, ..Execution::default() }
+}
+
+/// A renderer for a model: a file, `builtin:NAME`, or `-` for standard input. As [`Renderer::open`].
 ///
 /// # Errors
-/// [`Error::Usage`] if it names one that is not there.
-pub fn execution(threads: usize) -> Result<Execution, Error> {
-    let level = level_from_environment().map_err(|what| Error::usage(what, ""))?;
-    let budget = Budget::new(Arc::new(SystemClock::default()));
-    Ok(Execution { workers: Workers::new(threads), level, budget, observer: None })
+/// A file that is missing, malformed, not of a known format or above the limit.
+pub fn open(path: impl AsRef<Path>) -> Result<Renderer, Error> {
+    Renderer::open(path)
 }
 
 impl Renderer {
@@ -55,7 +67,60 @@ impl Renderer {
     /// # Errors
     /// A scene whose parts do not fit together.
     pub fn new(scene: Scene) -> Result<Self, Error> {
-        Self::with_execution(scene, execution(0)?)
+        Self::with_execution(scene, execution(0))
+    }
+
+    /// Reads a model: a file, `builtin:NAME`, or `-` for standard input. The model is framed; built-in scenes that are
+    /// figures are seen from their own camera ([`default_camera`]).
+    ///
+    /// # Errors
+    /// A file that is missing, malformed, not of a known format or above the limit.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::open_with(path, &LoadOptions::default())
+    }
+
+    /// [`open`](Self::open) with options.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Self, Error> {
+        let (path, execution) = (path.as_ref(), execution(0));
+        let mut renderer = Self::with_execution(load_on(path, options, &execution.workers)?, execution)?;
+        let viewpoint = Viewpoint { camera_index: default_camera(path), ..Viewpoint::default() };
+        let usual_up = renderer.up;
+        viewpoint.apply(&mut renderer, usual_up)?;
+        Ok(renderer)
+    }
+
+    /// With these settings.
+    #[must_use]
+    pub fn with_settings(self, settings: Settings) -> Self {
+        Self { settings, ..self }
+    }
+
+    /// Seen by this camera instead of a framed one.
+    #[must_use]
+    pub fn with_camera(self, camera: Camera) -> Self {
+        Self { camera: Some(camera), ..self }
+    }
+
+    /// Framed from this side.
+    #[must_use]
+    pub fn with_view(self, view: View) -> Self {
+        Self { camera: None, view, ..self }
+    }
+
+    /// In these lights alone, world space.
+    #[must_use]
+    pub fn with_lights(self, lights: impl Into<Vec<Light>>) -> Self {
+        Self { lights: Some(lights.into()), ..self }
+    }
+
+    /// With this channel in the pictures, besides those that are already requested.
+    #[must_use]
+    pub fn with_channel(mut self, channel: Channel) -> Self {
+        channel.request(&mut self.settings.picture.channels);
+        self
     }
 
     /// Takes a scene, and how to compute.
@@ -90,7 +155,7 @@ impl Renderer {
         self.session.world()
     }
 
-    /// What is known of the scene, for the algorithms of [`crate::render`].
+    /// What is known of the scene, for the algorithms of [`internals::render`](crate::internals::render).
     pub fn session(&self) -> &Session {
         &self.session
     }
@@ -193,7 +258,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Settings that cannot be carried out, or a limit that was reached.
-    pub fn render(&mut self) -> Result<Rendered, Error> {
+    pub fn render(&mut self) -> Result<Picture, Error> {
         let camera = self.frame_camera();
         self.render_from(&camera)
     }
@@ -202,7 +267,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`render`](Self::render).
-    pub fn render_from(&mut self, camera: &Camera) -> Result<Rendered, Error> {
+    pub fn render_from(&mut self, camera: &Camera) -> Result<Picture, Error> {
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
         let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;
@@ -214,13 +279,13 @@ impl Renderer {
                 "the scene's lights are too {what} for a picture, {change} {factor} times (--light-intensity 1 leaves them)"
             ));
         }
-        Ok(rendered)
+        Ok(Picture::new(rendered, self.settings.picture.color_space))
     }
 
     /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every
     /// picture has to get new pages from the system.
-    pub fn recycle(&mut self, rendered: Rendered) {
-        self.session.recycle(rendered.frame);
+    pub fn recycle(&mut self, picture: Picture) {
+        self.session.recycle(picture.frame);
     }
 
     /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
@@ -250,11 +315,10 @@ impl Renderer {
     pub fn turntable(
         &mut self,
         count: usize,
-        mut take: impl FnMut(usize, Rendered) -> Result<(), Error>,
+        mut take: impl FnMut(usize, Picture) -> Result<(), Error>,
     ) -> Result<(), Error> {
         for (i, camera) in self.turntable_cameras(count).iter().enumerate() {
-            let rendered = self.render_from(camera)?;
-            take(i, rendered)?;
+            take(i, self.render_from(camera)?)?;
         }
         Ok(())
     }
@@ -263,9 +327,9 @@ impl Renderer {
 /// Moves of a framed camera, in this order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moves {
-    /// A walk round the focal point, radians ([`Camera::azimuth`]).
+    /// Angle in radians of a walk round the focal point ([`Camera::azimuth`]).
     pub azimuth: f64,
-    /// A climb over it, radians ([`Camera::elevation`]).
+    /// Angle in radians of a climb over it ([`Camera::elevation`]).
     pub elevation: f64,
     /// Larger than 1 enlarges ([`Camera::zoomed`]).
     pub zoom: f64,
@@ -346,8 +410,8 @@ mod tests {
         assert!(away(0).abs_diff_eq(DVec3::Z, 1e-12) && away(1).abs_diff_eq(DVec3::X, 1e-12));
         let mut seen = Vec::new();
         renderer
-            .turntable(3, |i, rendered| {
-                seen.push((i, rendered.frame.color.is_some()));
+            .turntable(3, |i, picture| {
+                seen.push((i, picture.frame.color.is_some()));
                 Ok(())
             })
             .unwrap();

@@ -1,9 +1,9 @@
-//! Everything that makes a picture, as one JSON form for the command line, the Lab and configuration files.
+//! Everything that makes a picture, as one JSON form for the command line and configuration files.
 //!
 //! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
-use crate::load::load;
+use crate::load::load_on;
 use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -170,8 +170,16 @@ impl State {
     ///
     /// # Errors
     /// A model that cannot be read; an override that names what is not there; no model at all.
-    pub fn load_scene(&self, workers: &Workers) -> Result<Scene, Error> {
-        let mut scenes = self.models.iter().map(|model| load(model, &self.load, workers));
+    pub fn load_scene(&self) -> Result<Scene, Error> {
+        self.load_scene_on(&Workers::new(0))
+    }
+
+    /// [`load_scene`](Self::load_scene) on these threads.
+    ///
+    /// # Errors
+    /// As [`load_scene`](Self::load_scene).
+    pub fn load_scene_on(&self, workers: &Workers) -> Result<Scene, Error> {
+        let mut scenes = self.models.iter().map(|model| load_on(model, &self.load, workers));
         let mut scene =
             scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
         for other in scenes {
@@ -286,7 +294,7 @@ mod tests {
     fn mistakes_are_told_with_their_place() {
         let tell = |text: &str| {
             let error = State::from_json(text, "s.json").unwrap_err();
-            assert_eq!(error.exit_code(), 3);
+            assert!(matches!(error, Error::State { .. }));
             error.to_string()
         };
         let error = tell("{\n  \"settings\": {\"widht\": 3}\n}");
@@ -348,7 +356,7 @@ mod tests {
         let up = |models: &[&str], up: Option<Axis>| {
             let mut state = State { models: models.iter().map(|m| (*m).to_owned()).collect(), ..State::default() };
             state.viewpoint.up = up;
-            let scene = state.load_scene(&Workers::single()).unwrap();
+            let scene = state.load_scene().unwrap();
             let warnings = scene.warnings.clone();
             let mut renderer = Renderer::new(scene).unwrap();
             state.apply(&mut renderer).unwrap();
@@ -366,8 +374,8 @@ mod tests {
     fn several_models_make_one_scene() {
         let mut state = State { models: vec!["builtin:sphere".into(), "builtin:cubs".into()], ..State::default() };
         state.materials.push(MaterialOverride::parse("cube 0.color=1").unwrap());
-        let scene = state.load_scene(&Workers::single()).unwrap();
+        let scene = state.load_scene().unwrap();
         assert_eq!((scene.meshes.len(), scene.lights.len()), (9, 4));
-        assert!(State::default().load_scene(&Workers::single()).is_err());
+        assert!(State::default().load_scene().is_err());
     }
 }

@@ -1,7 +1,8 @@
 //! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and thread count.
 
-use vitral::render::{Background, Global, Lines, Shadows, Transparency};
-use vitral::{Execution, Illumination, LoadOptions, Renderer, Scene, Shading, Workers, panels};
+use vitral::{
+    Background, Execution, Global, Illumination, Lines, Renderer, Scene, Shading, Shadows, Transparency, panels,
+};
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
 use vitral_testkit::matrix::Setting;
@@ -42,7 +43,7 @@ fn builtin(name: &str) -> Scene {
 
 fn example(path: &str) -> Scene {
     let file = repository().join("examples/models").join(path);
-    vitral::load(file, &LoadOptions::default(), &Workers::single()).unwrap()
+    vitral::load(file).unwrap()
 }
 
 #[test]

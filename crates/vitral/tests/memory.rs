@@ -5,10 +5,8 @@
 
 use peak_alloc::PeakAlloc;
 use std::path::Path;
-use vitral::raster::Setup;
-use vitral::scene::builtin::solids;
-use vitral::scene::{Attribute, Faces};
-use vitral::{LoadOptions, Mesh, Renderer, Scene, execution, load};
+use vitral::internals::raster::Setup;
+use vitral::{Attribute, Faces, LoadOptions, Mesh, Renderer, Scene, execution, load_on, solids};
 use vitral_testkit::fixture::shared_model;
 
 #[global_allocator]
@@ -67,10 +65,10 @@ fn scene_bytes(scene: &Scene) -> usize {
 
 /// Growth of allocated memory from before a file is read to after its picture, over what has to be there.
 fn growth(path: &Path, samples: u32) -> f64 {
-    let execution = execution(2).unwrap();
+    let execution = execution(2);
     MEMORY.reset_peak_usage();
     let before = MEMORY.current_usage();
-    let scene = load(path, &LoadOptions::default(), &execution.workers).unwrap();
+    let scene = load_on(path, &LoadOptions::default(), &execution.workers).unwrap();
     let mut renderer = Renderer::with_execution(scene, execution).unwrap();
     (renderer.settings.picture.width, renderer.settings.picture.height) = SIZE;
     renderer.settings.picture.samples = samples;

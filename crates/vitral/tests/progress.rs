@@ -1,8 +1,7 @@
 //! Long stages tell how far they are: forwards only, and to the end.
 
 use std::sync::{Arc, Mutex};
-use vitral::render::Global;
-use vitral::{Execution, Renderer, Workers};
+use vitral::{Execution, Global, Renderer, Workers};
 
 /// What the listener heard of `stage`, in a small picture of a built-in scene: how much was done, of how much.
 fn heard(name: &str, global: Global, shadows: &str, stage: &'static str) -> Vec<(u64, u64)> {

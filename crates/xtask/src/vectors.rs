@@ -11,6 +11,9 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::Stdio;
 
+/// The released command is stripped, which would hide the names of its functions.
+const KEEP_SYMBOLS: &str = "profile.release.package.vitral-cli.strip=\"none\"";
+
 /// What the functions are called that hold one operation of an instruction set.
 const OPERATION: &str = "__fearless_simd_kernel";
 
@@ -21,7 +24,7 @@ pub(crate) fn run_all() -> Outcome {
         (&["--package", "vitral-cli"][..], "release/vitral"),
         (&["--package", "vitral-osmesa", "--lib"], "release/libOSMesa.so"),
     ] {
-        run(cargo().args(["build", "--release"]).args(arguments))?;
+        run(cargo().args(["build", "--release", "--config", KEEP_SYMBOLS]).args(arguments))?;
         let path = target_folder().join(file);
         let calls = calls_in(&path)?;
         println!("{}: {} operations are calls", relative(&path), calls.values().sum::<usize>());

@@ -2,30 +2,41 @@
 //!
 //! Source: \[JPEG\]; the coder is the `image` crate's.
 
-use super::pixels::{check_sides, over_white};
+use super::pixels::check_sides;
 use crate::Error;
-use image::codecs::jpeg::JpegEncoder;
 use vitral_frame::Plane;
 
 /// Writes an sRGB picture. `quality` is 1 (small) to 100 (good); 90 is a usual choice. JPEG knows no transparency:
 /// what is transparent lets a white page through.
 ///
 /// # Errors
-/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, or if `quality` is out of range.
+/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, if `quality` is out of range, or if the feature
+/// `images` is left out.
 pub fn jpeg(picture: &Plane<[u8; 4]>, quality: u8) -> Result<Vec<u8>, Error> {
     check_sides(picture.width(), picture.height(), 65_535, "JPEG")?;
     if !(1..=100).contains(&quality) {
         return Err(Error::Encode { what: format!("JPEG quality {quality}, 1 to 100 are possible") });
     }
+    code(picture, quality)
+}
+
+#[cfg(feature = "images")]
+fn code(picture: &Plane<[u8; 4]>, quality: u8) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
-    let rgb = over_white(picture);
-    JpegEncoder::new_with_quality(&mut out, quality)
+    let rgb = super::pixels::over_white(picture);
+    image::codecs::jpeg::JpegEncoder::new_with_quality(&mut out, quality)
         .encode(&rgb, picture.width(), picture.height(), image::ExtendedColorType::Rgb8)
         .map_err(|e| Error::Encode { what: format!("JPEG: {e}") })?;
     Ok(out)
 }
 
-#[cfg(test)]
+/// Refuses: the coder is not part of this build.
+#[cfg(not(feature = "images"))]
+fn code(_: &Plane<[u8; 4]>, _: u8) -> Result<Vec<u8>, Error> {
+    Err(Error::Encode { what: crate::format::left_out("JPEG", "images") })
+}
+
+#[cfg(all(test, feature = "images"))]
 mod tests {
     use super::*;
 

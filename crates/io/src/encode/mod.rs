@@ -24,6 +24,10 @@ pub use ppm::ppm;
 use crate::Error;
 use vitral_frame::Plane;
 
+/// What is read, for messages about other formats.
+const READ: &str =
+    if cfg!(feature = "images") { "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are" } else { "PNG and PPM are" };
+
 /// Reads a picture: PPM (also PGM), or a format that textures come in, known by content.
 ///
 /// # Errors
@@ -33,7 +37,7 @@ pub fn decode_picture(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error>
         [b'P', b'5' | b'6', ..] => ppm::decode(bytes, file),
         _ => {
             crate::image::whole(bytes, file)?;
-            crate::image::decode_else(bytes, file, "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are")
+            crate::image::decode_else(bytes, file, READ)
         }
     }
 }

@@ -1,6 +1,7 @@
 //! One piece of an OBJ file: its lines, read without knowing the lines before.
 
 use crate::Place;
+use crate::format::obj_statement::Statement;
 use crate::text::{Cursor, is_blank};
 use crate::warnings::Warnings;
 use std::ops::Range;
@@ -28,50 +29,6 @@ fn pack(index: i64, count: usize) -> Option<u32> {
 #[inline(always)]
 pub(super) fn unpack(packed: u32, base: u32) -> i64 {
     if packed & RELATIVE == 0 { i64::from(packed) } else { i64::from(base) + i64::from(packed ^ RELATIVE) - ORIGIN }
-}
-
-/// What a line begins with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Statement {
-    Position,
-    Texture,
-    Normal,
-    Face,
-    Line,
-    Points,
-    Group,
-    Object,
-    Smoothing,
-    Material,
-    Library,
-    FreeForm,
-    Unused,
-    Unknown,
-}
-
-impl Statement {
-    pub(super) fn of(word: &[u8]) -> Self {
-        match word {
-            b"v" => Self::Position,
-            b"vt" => Self::Texture,
-            b"vn" => Self::Normal,
-            b"f" | b"fo" => Self::Face,
-            b"l" => Self::Line,
-            b"p" => Self::Points,
-            b"g" => Self::Group,
-            b"o" => Self::Object,
-            b"s" => Self::Smoothing,
-            b"usemtl" => Self::Material,
-            b"mtllib" => Self::Library,
-            b"vp" | b"deg" | b"bmat" | b"step" | b"cstype" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim"
-            | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"cdc" | b"cdp" | b"bzp" | b"bsp" | b"res" => {
-                Self::FreeForm
-            }
-            b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib" | b"shadow_obj"
-            | b"trace_obj" | b"ctech" | b"stech" | b"call" | b"csh" => Self::Unused,
-            _ => Self::Unknown,
-        }
-    }
 }
 
 /// A change of state between faces.

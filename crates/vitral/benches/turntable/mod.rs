@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 use std::time::Instant;
-use vitral::{Error, Execution, LoadOptions, Renderer, Scene, execution, load};
+use vitral::internals::math::lanes::level_from_environment;
+use vitral::{Error, Execution, LoadOptions, Renderer, Scene, execution, load_on};
 
 /// Frames of the turntable.
 pub(crate) const FRAMES: usize = 8;
@@ -31,14 +32,16 @@ pub(crate) fn run(bench: &str, measure: impl FnOnce(&Arguments) -> Result<(), Er
         Ok(()) => 0.into(),
         Err(error) => {
             eprintln!("{bench}: {error}");
-            error.exit_code().into()
+            ExitCode::FAILURE
         }
     }
 }
 
-/// As many threads as `VITRAL_THREADS` says.
+/// As many threads as `VITRAL_THREADS` says, with the instruction set that `VITRAL_SIMD` names.
 fn threads() -> Result<Execution, Error> {
-    execution(std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0))
+    let execution = execution(std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0));
+    let level = level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
+    Ok(Execution { level, ..execution })
 }
 
 impl Arguments {
@@ -49,7 +52,7 @@ impl Arguments {
 
     /// The model.
     pub(crate) fn scene(&self) -> Result<Scene, Error> {
-        load(&self.model, &LoadOptions::default(), &threads()?.workers)
+        load_on(&self.model, &LoadOptions::default(), &threads()?.workers)
     }
 
     /// Renders the model, or what was made of it.

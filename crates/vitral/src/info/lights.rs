@@ -21,12 +21,12 @@ pub struct LightInfo {
     /// The way the light of a directional light or a spot travels, of any length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
-    /// Half angle of a spot's cone in degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cutoff: Option<f64>,
-    /// Half angle in degrees where a spot's fall-off begins.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub inner: Option<f64>,
+    /// Half angle of a spot's cone.
+    #[serde(rename = "cutoff", skip_serializing_if = "Option::is_none")]
+    pub cutoff_degrees: Option<f64>,
+    /// Half angle where a spot's fall-off begins.
+    #[serde(rename = "inner", skip_serializing_if = "Option::is_none")]
+    pub inner_degrees: Option<f64>,
     /// A spot's intensity goes with `cos^exponent`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exponent: Option<f64>,
@@ -77,8 +77,8 @@ impl LightInfo {
                 kind: "spot",
                 position: vector(position),
                 direction: vector(direction),
-                cutoff: Some(cutoff.to_degrees()),
-                inner: Some(inner.to_degrees()),
+                cutoff_degrees: Some(cutoff.to_degrees()),
+                inner_degrees: Some(inner.to_degrees()),
                 exponent: Some(exponent),
                 ..info
             },
@@ -108,7 +108,7 @@ impl fmt::Display for LightInfo {
             let corners: Vec<_> = corners.iter().map(|&c| triple(c)).collect();
             write!(f, " with corners {}", corners.join(" "))?;
         }
-        if let (Some(cutoff), Some(inner), Some(exponent)) = (self.cutoff, self.inner, self.exponent) {
+        if let (Some(cutoff), Some(inner), Some(exponent)) = (self.cutoff_degrees, self.inner_degrees, self.exponent) {
             write!(f, ", cutoff {}, inner {} degrees, exponent {}", short(cutoff), short(inner), short(exponent))?;
         }
         for (term, color) in [("ambient", self.ambient), ("diffuse", self.diffuse), ("specular", self.specular)] {
@@ -141,9 +141,9 @@ pub struct CameraInfo {
     pub focal_point: [f64; 3],
     /// Upwards in the picture.
     pub view_up: [f64; 3],
-    /// Vertical angle of view in degrees, of a perspective.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub view_angle: Option<f64>,
+    /// Vertical angle of view of a perspective.
+    #[serde(rename = "view-angle", skip_serializing_if = "Option::is_none")]
+    pub view_angle_degrees: Option<f64>,
     /// Height of the picture in world units, of a parallel projection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
@@ -151,13 +151,13 @@ pub struct CameraInfo {
 
 impl CameraInfo {
     pub(super) fn of(camera: &Camera) -> Self {
-        let (projection, view_angle, height) = match camera.projection {
+        let (projection, view_angle_degrees, height) = match camera.projection {
             Projection::Perspective { view_angle } => ("perspective", Some(view_angle.to_degrees()), None),
             Projection::Parallel { height } => ("parallel", None, Some(height)),
         };
         let [position, focal_point, view_up] =
             [camera.position, camera.focal_point, camera.view_up].map(|v| v.to_array());
-        Self { projection, position, focal_point, view_up, view_angle, height }
+        Self { projection, position, focal_point, view_up, view_angle_degrees, height }
     }
 }
 
@@ -165,7 +165,7 @@ impl fmt::Display for CameraInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [position, focal_point, up] = [self.position, self.focal_point, self.view_up].map(triple);
         write!(f, "{} at {position} looking at {focal_point}, up {up}", self.projection)?;
-        match (self.view_angle, self.height) {
+        match (self.view_angle_degrees, self.height) {
             (Some(angle), _) => write!(f, ", view angle {} degrees", short(angle)),
             (None, Some(height)) => write!(f, ", {} high", short(height)),
             (None, None) => Ok(()),
@@ -179,12 +179,11 @@ mod tests {
     use crate::info::info;
     use crate::load_builtin;
     use serde_json::json;
-    use vitral_exec::Workers;
     use vitral_math::dvec3;
     use vitral_scene::{Scene, lab};
 
     fn told(scene: &Scene) -> (String, serde_json::Value) {
-        let info = info(scene, &Workers::single()).unwrap();
+        let info = info(scene).unwrap();
         (info.to_string(), serde_json::to_value(&info).unwrap())
     }
 

@@ -5,14 +5,16 @@
 use crate::common::{all_channels, exact, exact_builtin};
 use crate::traps;
 use std::sync::Mutex;
-use vitral::exec::{Budget, Clock, Limit, Workers};
-use vitral::math::{DVec3, func};
-use vitral::raster::{BackFaces, LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
-use vitral::render::registry::{VISIBILITY, VisibilityAlgorithm};
-use vitral::render::stats::{CullCounters, VisibilityCounters};
-use vitral::render::visible::TileSink;
-use vitral::render::{Coherence, PreparedView};
-use vitral::{Camera, Execution, Frame, Projection, Renderer, load_builtin, override_material};
+use vitral::internals::math::func;
+use vitral::internals::raster::{BackFaces, LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};
+use vitral::internals::render::PreparedView;
+use vitral::internals::render::registry::{VISIBILITY, VisibilityAlgorithm};
+use vitral::internals::render::stats::{CullCounters, VisibilityCounters};
+use vitral::internals::render::visible::TileSink;
+use vitral::{
+    Budget, Camera, Clock, Coherence, DVec3, Execution, Frame, Limit, Projection, Renderer, Workers, load_builtin,
+    override_material,
+};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
@@ -107,14 +109,14 @@ fn p4_facets_that_are_clipped_agree_too() {
 #[test]
 fn p4_coplanar_faces_go_to_the_lower_surface() {
     // The same square twice, and once more with the other diagonal.
-    let square = vitral::scene::builtin::solids::plane(2.0, 2.0, 1, 1);
+    let square = vitral::solids::plane(2.0, 2.0, 1, 1);
     let mut scene = vitral::Scene::from_mesh(square.clone());
     let mut other = square.clone();
     other.triangles = vec![[1, 3, 0], [3, 2, 0]];
-    other.faces = vitral::scene::Faces::Triangles;
+    other.faces = vitral::Faces::Triangles;
     (other.normals, other.uvs) = (None, Vec::new());
-    scene.add_mesh(square, vitral::math::DMat4::IDENTITY);
-    scene.add_mesh(other, vitral::math::DMat4::IDENTITY);
+    scene.add_mesh(square, vitral::DMat4::IDENTITY);
+    scene.add_mesh(other, vitral::DMat4::IDENTITY);
     let mut renderer = exact(scene, WIDTH, HEIGHT);
     agree(&mut renderer, "three coplanar squares");
 }
@@ -233,7 +235,7 @@ fn cameras(middle: DVec3, size: f64) -> Vec<(Camera, String)> {
 
 #[test]
 fn p19_p20_all_algorithms_agree_on_the_built_in_scenes() {
-    for (name, _) in vitral::scene::builtin::names() {
+    for (name, _) in vitral::internals::scene::builtin::names() {
         let mut renderer = exact_builtin(name, WIDTH, HEIGHT);
         let bounds = renderer.world().bounds;
         for (camera, from) in cameras((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min).length() * 0.7) {
@@ -279,7 +281,7 @@ fn all_algorithms_agree_on_layers_and_odd_numbers_of_samples() {
 #[test]
 fn all_algorithms_write_the_same_picture_and_do_not_depend_on_threads() {
     let mut renderer = exact_builtin("scene0", 150, 101);
-    (renderer.settings.picture.samples, renderer.settings.picture.lines) = (4, vitral::render::Lines::Edges);
+    (renderer.settings.picture.samples, renderer.settings.picture.lines) = (4, vitral::Lines::Edges);
     let pictures: Vec<_> = VISIBILITY
         .iter()
         .map(|algorithm| {

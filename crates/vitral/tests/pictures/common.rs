@@ -1,9 +1,10 @@
 //! What the tests of whole pictures share.
 
-use vitral::light::{Light, LightKind, Reflectance};
-use vitral::math::{DMat4, DVec2, DVec3};
-use vitral::render::{Background, Channels, ColorSpace};
-use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, Scene, load_builtin};
+use vitral::internals::math::DVec2;
+use vitral::{
+    Background, Camera, Channels, ColorSpace, DMat4, DVec3, Error, Frame, Illumination, Light, LightKind, Limit,
+    Material, Mesh, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, load_builtin,
+};
 
 /// A renderer for exact checks: raw colours, one sample a pixel, black background, Phong's model.
 pub(crate) fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
@@ -49,6 +50,22 @@ pub(crate) fn all_channels() -> Channels {
     }
 }
 
+/// The limit at which the next picture stops.
+pub(crate) fn limit(renderer: &mut Renderer) -> Limit {
+    match renderer.render() {
+        Err(Error::Render(RenderError::Limit(limit))) => limit,
+        other => panic!("no limit: {:?}", other.map(|_| ())),
+    }
+}
+
+/// The settings that cannot be carried out.
+pub(crate) fn settings_error(error: &Error) -> &SettingsError {
+    match error {
+        Error::Render(RenderError::Settings(error)) => error,
+        other => panic!("{other}"),
+    }
+}
+
 /// The colour picture.
 pub(crate) fn colors(renderer: &mut Renderer) -> Vec<[u8; 4]> {
     renderer.render().unwrap().frame.color.unwrap().into_data()
@@ -80,7 +97,7 @@ pub(crate) fn on_z(distance: f64, view_angle: f64) -> Camera {
 /// Where a point of the world appears, in pixels from the top left.
 pub(crate) fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
     let camera = renderer.frame_camera();
-    let depths = vitral::scene::depth_range(&camera, &renderer.world().bounds);
+    let depths = vitral::internals::scene::depth_range(&camera, &renderer.world().bounds);
     let clip = camera.transform(renderer.aspect(), depths).clip_from_world() * point.extend(1.0);
     let (x, y) = (clip.x / clip.w, clip.y / clip.w);
     let (w, h) = (f64::from(renderer.settings.picture.width), f64::from(renderer.settings.picture.height));

@@ -1,14 +1,10 @@
 //! Culling never changes a picture, and saves work (COURSE.md P10, P14).
 
 use crate::common::{exact, exact_builtin, on_z};
-use vitral::light::AlphaMode;
-use vitral::math::{DMat4, DVec3};
-use vitral::scene::Part;
-use vitral::scene::builtin::solids;
-use vitral::{Camera, Material, Mesh, Projection, Rendered, Renderer, Scene};
+use vitral::{AlphaMode, Camera, DMat4, DVec3, Material, Mesh, Part, Picture, Projection, Renderer, Scene, solids};
 
 /// The picture with the given culling.
-fn culled(renderer: &mut Renderer, frustum: bool, back_face: bool) -> Rendered {
+fn culled(renderer: &mut Renderer, frustum: bool, back_face: bool) -> Picture {
     (renderer.settings.cull.frustum, renderer.settings.cull.back_face) = (frustum, back_face);
     renderer.render().unwrap()
 }
@@ -61,7 +57,7 @@ fn inner_walls_are_seen_through_a_window() {
     // The wall, raw 0.8, through the pane; without the wall the pane alone would be a tenth of it.
     assert!(culled_away.color.unwrap().at(30, 30)[0] > 190);
     // Without transparency the walls hide each other, and culling pays again.
-    renderer.settings.transparency.model = vitral::render::Transparency::None;
+    renderer.settings.transparency.model = vitral::Transparency::None;
     assert_eq!(culled(&mut renderer, true, true).stats.cull.back_face_culled_instances, 1);
 }
 
@@ -97,7 +93,7 @@ fn p14_about_half_of_a_closed_mesh_faces_away() {
 #[test]
 fn p14_open_and_inside_out_meshes_keep_their_back_faces() {
     let mut inside_out = solids::cuboid(DVec3::ONE);
-    inside_out.faces = vitral::scene::Faces::Triangles;
+    inside_out.faces = vitral::Faces::Triangles;
     inside_out.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     (inside_out.normals, inside_out.uvs) = (None, Vec::new());
     for mesh in [solids::plane(1.0, 1.0, 2, 2), inside_out] {
@@ -113,7 +109,7 @@ fn p14_open_and_inside_out_meshes_keep_their_back_faces() {
 fn p14_solid_bodies_of_an_open_mesh_lose_their_back_faces() {
     // A ball, a torus that pierces it, an open sheet and a pane of glass in one mesh.
     let mut mesh = solids::sphere(1.0, 48, 24);
-    (mesh.faces, mesh.normals, mesh.uvs) = (vitral::scene::Faces::Triangles, None, Vec::new());
+    (mesh.faces, mesh.normals, mesh.uvs) = (vitral::Faces::Triangles, None, Vec::new());
     let solid = mesh.triangles.len() + solids::torus(1.2, 0.3, 48, 24).triangles.len();
     for (more, z) in [
         (solids::torus(1.2, 0.3, 48, 24), 0.2),

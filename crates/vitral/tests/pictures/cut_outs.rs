@@ -3,13 +3,10 @@
 use crate::common::{colors, exact, on_z, one};
 use crate::transparency::{glass, square};
 use std::sync::Arc;
-use vitral::frame::{Encoding, Plane, Texture};
-use vitral::light::{AlphaMode, TextureRef};
-use vitral::math::{DMat4, DVec3};
-use vitral::render::{Background, Global};
-use vitral::scene::builtin::solids;
-use vitral::scene::{Attribute, NodeTransform, Part};
-use vitral::{Camera, Material, Mesh, Scene};
+use vitral::{
+    AlphaMode, Attribute, Background, Camera, DMat4, DVec3, Encoding, Global, Material, Mesh, NodeTransform, Part,
+    Plane, Scene, Texture, TextureRef, solids,
+};
 
 /// A square with a disc cut out of it by a texture of 32 x 32 texels, green before black, seen aslant. How much of each pixel is green.
 fn cut_out_disc((width, height): (u32, u32), samples: u32, rays: bool) -> Vec<f32> {

@@ -2,9 +2,8 @@
 //! the right. That of perspective has more in `interpolation.rs`.
 
 use crate::common::{all_channels, colors, exact_builtin, project};
-use vitral::math::{DVec3, func};
-use vitral::render::Interpolation;
-use vitral::{Renderer, Shading};
+use vitral::internals::math::func;
+use vitral::{DVec3, Interpolation, Renderer, Shading};
 
 fn figure(name: &str, shading: Shading) -> Renderer {
     let mut renderer = exact_builtin(&format!("defect-{name}"), 280, 210);

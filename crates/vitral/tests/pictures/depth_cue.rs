@@ -1,13 +1,12 @@
 //! P41: depth cueing. Light fades with distance, the same with every algorithm, on surfaces, glass, mirrors and lines.
 
 use crate::common::{colors, exact, largest_difference, on_z, pixel, poster};
-use vitral::light::{AlphaMode, Reflectance};
-use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::VISIBILITY;
-use vitral::render::{Background, DepthCue, Global, Lines, Shading};
-use vitral::scene::builtin::solids;
-use vitral::scene::{FreePart, Projection};
-use vitral::{Camera, Material, Mesh, Renderer, Scene};
+use vitral::internals::render::registry::VISIBILITY;
+use vitral::internals::scene::FreePart;
+use vitral::{
+    AlphaMode, Background, Camera, DMat4, DVec3, DepthCue, Global, Lines, Material, Mesh, Projection, Reflectance,
+    Renderer, Scene, Shading, solids,
+};
 
 /// A square towards +z.
 fn add(scene: &mut Scene, side: f64, material: Material, place: DVec3) {

@@ -1,10 +1,11 @@
 //! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one.
 
 use crate::common::{all_channels, colors, exact, exact_builtin};
-use vitral::exec::{Budget, Workers};
-use vitral::math::lanes::available_levels;
-use vitral::render::{Interpolation, Lines};
-use vitral::{Execution, Frame, Illumination, Renderer, Shading, load_builtin, override_material};
+use vitral::internals::math::lanes::available_levels;
+use vitral::{
+    Budget, Execution, Frame, Illumination, Interpolation, Lines, Renderer, Shading, Workers, load_builtin,
+    override_material,
+};
 
 /// Scene 1 with a transparent ball, lines on top, all channels, and one model and shading after the other.
 fn pictures(execution: &Execution) -> Vec<Frame> {

@@ -1,14 +1,12 @@
 //! Hidden lines: what is drawn of edges is what rays see of them (COURSE.md P2).
 
 use crate::common::{colors, exact_builtin};
-use vitral::math::{DVec2, DVec3};
-use vitral::render::raytrace::bvh::Bvh;
-use vitral::render::raytrace::intersect::Ray;
-use vitral::render::raytrace::{Counters, Structure};
-use vitral::render::{Background, Lines};
-use vitral::scene::edges::edges;
-use vitral::scene::{Camera, Projection};
-use vitral::{Renderer, Workers};
+use vitral::internals::math::DVec2;
+use vitral::internals::render::raytrace::bvh::Bvh;
+use vitral::internals::render::raytrace::intersect::Ray;
+use vitral::internals::render::raytrace::{Counters, Structure};
+use vitral::internals::scene::edges::edges;
+use vitral::{Background, Camera, DVec3, Lines, Projection, Renderer, Workers};
 
 /// What rays say about a place on an edge.
 #[derive(Clone, Copy, PartialEq)]
@@ -107,7 +105,7 @@ fn compare(name: &str, from: DVec3) -> Count {
     let is_line = |x: i32, y: i32| picture[(y * width + x) as usize][0] < 128;
 
     let tree = Bvh::of(renderer.session(), renderer.execution()).unwrap();
-    let focal = f64::from(height) * 0.5 / vitral::math::func::tan(view_angle * 0.5);
+    let focal = f64::from(height) * 0.5 / vitral::internals::math::func::tan(view_angle * 0.5);
     let eye = Eye { tree: &tree, renderer: &renderer, camera, focal };
     let mut places: Vec<(i32, i32, Seen)> = Vec::new();
     for instance in &renderer.world().instances {
@@ -159,7 +157,7 @@ fn p2_visible_edges_are_those_that_rays_see() {
         let mut all = Count::default();
         for view in 0..views {
             let angle = 0.4 + 1.7 * f64::from(view);
-            let (sin, cos) = vitral::math::func::sin_cos(angle);
+            let (sin, cos) = vitral::internals::math::func::sin_cos(angle);
             let Count { visible, hidden, unclear, wrong } = compare(name, DVec3::new(sin, 0.35 + 0.2 * cos, cos));
             all.visible += visible;
             all.hidden += hidden;

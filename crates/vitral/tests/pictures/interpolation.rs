@@ -3,13 +3,11 @@
 
 use crate::common::{all_channels, colors, exact, on_z, one};
 use std::sync::Arc;
-use vitral::frame::{Encoding, Filter, MipFilter, Plane, Sampler, Texture};
-use vitral::light::{Light, LightKind, TextureRef};
-use vitral::math::{DMat4, DVec3, DVec4};
-use vitral::render::{Channels, Interpolation};
-use vitral::scene::builtin::solids;
-use vitral::scene::{Attribute, Part};
-use vitral::{Camera, Frame, Material, Mesh, Projection, Renderer};
+use vitral::internals::math::DVec4;
+use vitral::{
+    Attribute, Camera, Channels, DMat4, DVec3, Encoding, Filter, Frame, Interpolation, Light, LightKind, Material,
+    Mesh, MipFilter, Part, Plane, Projection, Renderer, Sampler, Texture, TextureRef, solids,
+};
 
 const CELLS: f64 = 8.0;
 const SIDE: u32 = 200;
@@ -21,7 +19,7 @@ fn floor() -> Renderer {
     let sampler =
         Sampler { magnify: Filter::Nearest, minify: Filter::Nearest, mip: MipFilter::None, ..Sampler::default() };
     let texture = TextureRef { sampler, ..TextureRef::new(0) };
-    let reflectance = vitral::light::Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    let reflectance = vitral::Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let mut scene = one(
         solids::plane(4.0, 4.0, 1, 1),
         Material { base_texture: Some(texture), reflectance, ..Material::default() },

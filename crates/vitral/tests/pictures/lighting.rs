@@ -4,13 +4,12 @@ use crate::common::{
     all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun,
 };
 use std::collections::{BTreeMap, HashSet};
-use vitral::frame::{Encoding, Plane, Texture};
-use vitral::light::{Light, LightKind, Reflectance, TextureRef};
-use vitral::math::{DMat4, DQuat, DVec2, DVec3};
-use vitral::render::ColorSpace;
-use vitral::scene::builtin::solids;
-use vitral::scene::{Attribute, NodeTransform, Part, lab};
-use vitral::{Camera, Frame, Illumination, Material, Mesh, Projection, Renderer, Scene, Shading, View, load_builtin};
+use vitral::internals::math::DVec2;
+use vitral::{
+    Attribute, Camera, ColorSpace, DMat4, DQuat, DVec3, Encoding, Frame, Illumination, Light, LightKind, Material,
+    Mesh, NodeTransform, Part, Plane, Projection, Reflectance, Renderer, Scene, Shading, Texture, TextureRef, View,
+    lab, load_builtin, solids,
+};
 
 const BLACK: [u8; 4] = [0, 0, 0, 255];
 

@@ -1,11 +1,8 @@
 //! Lines, points and edges: those that are nearest to the viewer lie just behind the fitted near plane.
 
 use crate::common::{colors, exact, one};
-use vitral::math::DVec3;
-use vitral::render::{Interpolation, Lines, TransparencyOrder};
-use vitral::scene::FreePart;
-use vitral::scene::builtin::solids;
-use vitral::{Camera, Material, Mesh, Projection};
+use vitral::internals::scene::FreePart;
+use vitral::{Camera, DVec3, Interpolation, Lines, Material, Mesh, Projection, TransparencyOrder, solids};
 
 /// Seen along z from `distance`, or without a perspective.
 fn camera(distance: f64, perspective: bool) -> Camera {
@@ -22,7 +19,7 @@ fn camera(distance: f64, perspective: bool) -> Camera {
 
 /// How many pixels of a picture of the mesh are light: edges on black ground are, and lines of this material.
 fn light_pixels(mesh: Mesh, lines: Lines, (side, samples): (u32, u32), camera: Camera) -> usize {
-    let white = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    let white = vitral::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let mut renderer = exact(one(mesh, Material { reflectance: white, ..Material::default() }), side, side);
     (renderer.settings.picture.lines, renderer.settings.picture.samples) = (lines, samples);
     // What is no edge stays dark.
@@ -56,7 +53,7 @@ fn colored_line(y: f32, z: [f32; 2], colors: [[f32; 4]; 2]) -> Mesh {
     Mesh {
         positions: vec![[-1.0, y, z[0]], [1.0, y, z[1]]],
         lines: vec![[0, 1]],
-        colors: Some(vitral::scene::Attribute::per_vertex(colors.to_vec())),
+        colors: Some(vitral::Attribute::per_vertex(colors.to_vec())),
         ..Mesh::default()
     }
 }
@@ -73,7 +70,7 @@ fn colours_go_over_from_one_end_of_a_line_to_the_other() {
     let ends = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
     let row = |mesh: Mesh, perspective, interpolation| {
         let mut scene = vitral::Scene::default();
-        scene.add_mesh(mesh, vitral::math::DMat4::IDENTITY);
+        scene.add_mesh(mesh, vitral::DMat4::IDENTITY);
         let mut renderer = exact(scene, 81, 81);
         renderer.settings.shading.interpolation = interpolation;
         middle_row(renderer, camera(4.0, perspective))
@@ -101,7 +98,7 @@ fn colours_go_over_from_one_end_of_a_line_to_the_other() {
 #[test]
 fn lines_of_blended_materials_let_light_through() {
     let material = |alpha_mode| Material {
-        reflectance: vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        reflectance: vitral::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
         opacity: 0.5,
         alpha_mode,
         ..Material::default()
@@ -110,12 +107,12 @@ fn lines_of_blended_materials_let_light_through() {
         let mut mesh = colored_line(0.0, [0.0; 2], [[1.0, 1.0, 1.0, alpha]; 2]);
         FreePart::extend(&mut mesh.line_parts, 0..1, Some(0));
         let mut renderer = exact(one(mesh, material(alpha_mode)), 81, 81);
-        renderer.settings.picture.background = vitral::render::Background::Color { color: [0.2, 0.0, 0.0] };
+        renderer.settings.picture.background = vitral::Background::Color { color: [0.2, 0.0, 0.0] };
         renderer.settings.transparency.model = transparency;
         middle_row(renderer, camera(4.0, false))[40]
     };
-    use vitral::light::AlphaMode;
-    use vitral::render::Transparency;
+    use vitral::AlphaMode;
+    use vitral::Transparency;
     let linear = Transparency::Linear;
     assert_eq!(seen(AlphaMode::Opaque, 0.5, linear), [255; 4]);
     assert_eq!(seen(AlphaMode::Blend, 1.0, linear), [153, 128, 128, 255]);
@@ -132,10 +129,10 @@ fn raw_colours_of_lines_and_faces_are_those_of_the_file() {
         line.colors_from_srgb = from_srgb;
         let mut face = line.clone();
         face.positions = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
-        face.colors = Some(vitral::scene::Attribute::per_vertex(vec![[0.5, 0.5, 0.5, 1.0]; 3]));
+        face.colors = Some(vitral::Attribute::per_vertex(vec![[0.5, 0.5, 0.5, 1.0]; 3]));
         (face.triangles, face.lines) = (vec![[0, 1, 2]], Vec::new());
-        face.parts = vec![vitral::scene::Part { name: String::new(), triangles: 0..1, material: None }];
-        let white = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        face.parts = vec![vitral::Part { name: String::new(), triangles: 0..1, material: None }];
+        let white = vitral::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
         let unlit = Material { reflectance: white, unlit: true, ..Material::default() };
         for mesh in [line, face] {
             let row = middle_row(exact(one(mesh, unlit.clone()), 81, 81), camera(4.0, false));
@@ -169,10 +166,10 @@ fn slanted_lines_are_as_dark_all_along() {
     mesh.positions = vec![[-0.13, -1.2, 0.0], [0.17, 1.2, 0.0]];
     for samples in [4, 9] {
         let mut scene = vitral::Scene::default();
-        scene.add_mesh(mesh.clone(), vitral::math::DMat4::IDENTITY);
+        scene.add_mesh(mesh.clone(), vitral::DMat4::IDENTITY);
         let mut renderer = exact(scene, 90, 90);
         renderer.settings.picture.samples = samples;
-        renderer.settings.picture.color_space = vitral::render::ColorSpace::Raw;
+        renderer.settings.picture.color_space = vitral::ColorSpace::Raw;
         renderer.camera = Some(camera(4.0, false));
         let picture = colors(&mut renderer);
         let rows = (15..75).map(|y| picture[y * 90..][..90].iter().map(|c| f32::from(c[0]) / 255.0).sum::<f32>());
@@ -190,10 +187,9 @@ fn clouds_of_points_are_no_heap_of_layers() {
         points: (0..10_000).collect(),
         ..Mesh::default()
     };
-    let glass =
-        Material { opacity: 0.5, alpha_mode: vitral::light::AlphaMode::Blend, unlit: true, ..Material::default() };
+    let glass = Material { opacity: 0.5, alpha_mode: vitral::AlphaMode::Blend, unlit: true, ..Material::default() };
     let mut scene = one(solids::cuboid(DVec3::new(2.0, 2.0, 3.0)), glass);
-    scene.add_mesh(deep, vitral::math::DMat4::IDENTITY);
+    scene.add_mesh(deep, vitral::DMat4::IDENTITY);
     let mut pictures = Vec::new();
     for (visibility, order) in [
         ("z-buffer", TransparencyOrder::A_BUFFER),
@@ -225,7 +221,7 @@ fn clouds_of_points_are_no_heap_of_layers() {
 fn lines_shine_with_their_emission() {
     let mut mesh = colored_line(0.0, [0.0; 2], [[1.0; 4]; 2]);
     FreePart::extend(&mut mesh.line_parts, 0..1, Some(0));
-    let black = vitral::light::Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    let black = vitral::Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let glowing = Material { reflectance: black, emission: [1.0, 0.0, 0.0], ..Material::default() };
     assert_eq!(middle_row(exact(one(mesh, glowing), 81, 81), camera(4.0, false))[40], [255, 0, 0, 255]);
 }

@@ -3,11 +3,11 @@
 
 use crate::common::{colors, exact, on_z, sun};
 use std::sync::Arc;
-use vitral::frame::{Encoding, Plane, Texture};
-use vitral::light::{Reflectance, TextureRef};
-use vitral::math::{DMat4, DVec2, DVec3};
-use vitral::scene::{Attribute, Part};
-use vitral::{Camera, Illumination, Material, Mesh, Scene};
+use vitral::internals::math::DVec2;
+use vitral::{
+    Attribute, Camera, DMat4, DVec3, Encoding, Illumination, Material, Mesh, Part, Plane, Reflectance, Scene, Texture,
+    TextureRef,
+};
 
 /// Red and green of the texel: a normal that leans along growing u, and more along falling v.
 const TEXEL: [u8; 4] = [153, 204, 230, 255];

@@ -3,15 +3,13 @@
 use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
 use std::sync::{Arc, Mutex};
 use vitral::explain::explain;
-use vitral::light::{AlphaMode, Light, LightKind, Reflectance};
-use vitral::math::{DMat4, DVec3};
-use vitral::render::registry::{SHADOWS, VISIBILITY};
-use vitral::render::stats::TracingCounters;
-use vitral::render::trace::{Observer, Step, Way};
-use vitral::render::{Acceleration, Background, Global, Shadows, Transparency, Visibility};
-use vitral::scene::Part;
-use vitral::scene::builtin::solids;
-use vitral::{Camera, Material, Mesh, Projection, Renderer, Scene};
+use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
+use vitral::internals::render::stats::TracingCounters;
+use vitral::internals::render::trace::{Observer, Step, Way};
+use vitral::{
+    Acceleration, AlphaMode, Background, Camera, DMat4, DVec3, Global, Light, LightKind, Material, Mesh, Part,
+    Projection, Reflectance, Renderer, Scene, Shadows, Transparency, Visibility, solids,
+};
 
 /// Glass that shows nothing of its own.
 fn glass(kt: f32, ior: f32) -> Material {
@@ -89,12 +87,13 @@ fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
         for (ray, indices) in told.rays.iter().zip([[1.0, 1.5], [1.5, 1.0]]) {
             let [turn] = &ray.goes_on[..] else { panic!("{told}") };
             assert_eq!((turn.way, turn.indices), (Way::Refracted, indices), "{told}");
-            let [before, behind] =
-                [0, 1].map(|k| f64::from(turn.indices[k]) * vitral::math::func::sin(turn.angles[k].to_radians()));
+            let [before, behind] = [0, 1].map(|k| {
+                f64::from(turn.indices[k]) * vitral::internals::math::func::sin(turn.angles_degrees[k].to_radians())
+            });
             assert!((before - behind).abs() < 1e-6, "{before} {behind}: {told}");
         }
         // The front stands upright, the back lies aslant.
-        let [front, back] = [0, 1].map(|k| told.rays[k].goes_on[0].angles);
+        let [front, back] = [0, 1].map(|k| told.rays[k].goes_on[0].angles_degrees);
         assert!(front[0] < 1e-3 && back[0] > 20.0 && back[1] > back[0] + 10.0, "{told}");
         // What the rays add is the pixel.
         let mut renderer = traced(exact_builtin("refraction", 60, 44));
@@ -195,9 +194,10 @@ fn t5_a_slab_moves_what_is_behind_by_the_formula() {
     };
     let straight = center(&colors(&mut r));
     let bent = center(&colors(&mut traced(r)));
-    let sin_r = vitral::math::func::sin(angle) / 1.5;
-    let r_angle = vitral::math::func::asin(sin_r);
-    let offset = thick * vitral::math::func::sin(angle - r_angle) / vitral::math::func::cos(r_angle);
+    let sin_r = vitral::internals::math::func::sin(angle) / 1.5;
+    let r_angle = vitral::internals::math::func::asin(sin_r);
+    let offset =
+        thick * vitral::internals::math::func::sin(angle - r_angle) / vitral::internals::math::func::cos(r_angle);
     assert!(((bent - straight).abs() - offset * 100.0).abs() < 1.0, "{straight} {bent}, {}", offset * 100.0);
 }
 
@@ -441,8 +441,8 @@ fn every_visibility_algorithm_and_thread_count_gives_the_same_picture() {
     }
     r.settings.visibility = Visibility::Z_BUFFER;
     for threads in [1, 2, 5] {
-        let mut execution = vitral::execution(threads).unwrap();
-        for (_, level) in vitral::math::lanes::available_levels() {
+        let mut execution = vitral::execution(threads);
+        for (_, level) in vitral::internals::math::lanes::available_levels() {
             execution.level = level;
             let scene = vitral::load_builtin("mirrors").unwrap();
             let mut other = Renderer::with_execution(scene, execution.clone()).unwrap();

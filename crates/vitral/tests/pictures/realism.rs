@@ -2,9 +2,9 @@
 
 use crate::common::exact;
 use std::collections::{BTreeMap, HashSet};
-use vitral::light::{AlphaMode, LightKind, Transmission};
-use vitral::render::{Global, Transparency};
-use vitral::{Material, Scene, Settings, Shadows, load_builtin};
+use vitral::{
+    AlphaMode, Global, LightKind, Material, Scene, Settings, Shadows, Transmission, Transparency, load_builtin,
+};
 
 fn scene() -> Scene {
     load_builtin("realism").unwrap()

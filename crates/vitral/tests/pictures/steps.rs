@@ -2,9 +2,8 @@
 
 use crate::common::{exact, on_z, one};
 use std::sync::{Arc, Mutex};
-use vitral::render::trace::{Observer, SpanVerdict, Step};
-use vitral::scene::Part;
-use vitral::{Camera, Material, Mesh, Projection, Renderer, Visibility};
+use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
+use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -81,7 +80,7 @@ fn p19_tables_of_two_triangles_that_overlap() {
 #[test]
 fn the_page_about_steps_tells_what_is_drawn() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/steps.md");
-    let page = vitral::render::trace::legend::page(Visibility::all().map(|row| (row.name, row.steps)));
+    let page = vitral::internals::render::trace::legend::page(Visibility::all().map(|row| (row.name, row.steps)));
     if std::env::var_os("UPDATE_DOCS").is_some() {
         std::fs::write(path, &page).unwrap();
     }

@@ -1,8 +1,6 @@
 //! Scenes on which visible-surface algorithms go wrong.
 
-use vitral::math::DMat4;
-use vitral::scene::Part;
-use vitral::{Mesh, Scene};
+use vitral::{DMat4, Mesh, Part, Scene};
 
 type Corner = [f32; 3];
 

@@ -1,0 +1,16 @@
+//! The size of a binary STL file, by which it is known: the format has no magic number.
+
+/// Bytes before the first triangle: free text, then the number of triangles.
+pub(crate) const HEADER: usize = 84;
+/// Bytes of a triangle.
+pub(crate) const RECORD: usize = 50;
+
+/// Whether the size is what the triangle count of a binary file demands.
+pub(crate) fn is_binary_size(bytes: &[u8]) -> bool {
+    claimed(bytes).is_some_and(|n| bytes.len() as u64 == HEADER as u64 + RECORD as u64 * u64::from(n))
+}
+
+/// The triangle count of a binary file's header.
+pub(crate) fn claimed(bytes: &[u8]) -> Option<u32> {
+    Some(u32::from_le_bytes(*bytes.get(80..HEADER)?.first_chunk()?))
+}

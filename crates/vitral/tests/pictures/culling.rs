@@ -1,6 +1,6 @@
 //! Culling never changes a picture, and saves work (COURSE.md P10, P14).
 
-use crate::common::{exact, exact_builtin, on_z};
+use super::common::{exact, exact_builtin, on_z};
 use vitral::light::AlphaMode;
 use vitral::math::{DMat4, DVec3};
 use vitral::scene::Part;

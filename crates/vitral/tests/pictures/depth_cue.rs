@@ -1,6 +1,6 @@
 //! P41: depth cueing. Light fades with distance, the same with every algorithm, on surfaces, glass, mirrors and lines.
 
-use crate::common::{colors, exact, largest_difference, on_z, pixel, poster};
+use super::common::{colors, exact, largest_difference, on_z, pixel, poster};
 use vitral::light::{AlphaMode, Reflectance};
 use vitral::math::{DMat4, DVec3};
 use vitral::render::registry::VISIBILITY;

@@ -1,6 +1,6 @@
 //! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one.
 
-use crate::common::{all_channels, colors, exact, exact_builtin};
+use super::common::{all_channels, colors, exact, exact_builtin};
 use vitral::exec::{Budget, Workers};
 use vitral::math::lanes::available_levels;
 use vitral::render::{Interpolation, Lines};

@@ -1,6 +1,6 @@
 //! Hidden lines: what is drawn of edges is what rays see of them (COURSE.md P2).
 
-use crate::common::{colors, exact_builtin};
+use super::common::{colors, exact_builtin};
 use vitral::math::{DVec2, DVec3};
 use vitral::render::raytrace::bvh::Bvh;
 use vitral::render::raytrace::intersect::Ray;

@@ -1,6 +1,6 @@
 //! Lines, points and edges: those that are nearest to the viewer lie just behind the fitted near plane.
 
-use crate::common::{colors, exact, one};
+use super::common::{colors, exact, one};
 use vitral::math::DVec3;
 use vitral::render::{Interpolation, Lines, TransparencyOrder};
 use vitral::scene::FreePart;

@@ -1,6 +1,6 @@
 //! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
 
-use crate::common::{all_channels, colors, exact, exact_builtin, on_z, one, sun};
+use super::common::{all_channels, colors, exact, exact_builtin, on_z, one, sun};
 use std::sync::Arc;
 use vitral::exec::{Budget, Limit};
 use vitral::light::{AlphaMode, Light, LightKind, Reflectance};

@@ -1,7 +1,7 @@
 //! Translucent surfaces in whole pictures: they blur what is behind them, glow in the light behind them, and are refused
 //! where they cannot be shown.
 
-use crate::common::{colors, exact, on_z, sun};
+use super::common::{colors, exact, on_z, sun};
 use vitral::exec::{Budget, Workers};
 use vitral::light::{AlphaMode, Reflectance, Transmission};
 use vitral::math::lanes::available_levels;

@@ -1,8 +1,6 @@
 //! The course's OpenGL, item by item: each test is named by its item, and its expectations are closed forms.
 
-mod common;
-
-use common::{Stage, assert_color};
+use crate::common::{Stage, assert_color};
 use vitral_gl::{Context, OSMESA_RGB_565, enums as gl};
 
 const WHOLE: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];

@@ -3,9 +3,7 @@
 
 #![expect(clippy::disallowed_methods, reason = "expected values may differ by the machine's last bit")]
 
-mod common;
-
-use common::{Stage, assert_color};
+use crate::common::{Stage, assert_color};
 use vitral_gl::enums as gl;
 
 const WHOLE: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];

@@ -1,8 +1,6 @@
 //! Extensions beyond OpenGL 1.5, each against values worked out by hand.
 
-mod common;
-
-use common::{BUFFER, Stage};
+use crate::common::{BUFFER, Stage};
 use vitral_gl::enums as gl;
 
 /// What a texture of one texel gives where it replaces a fragment's colour of (64, 64, 64, 64), read from bytes.

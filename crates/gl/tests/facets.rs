@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-mod common;
-
-use common::Stage;
+use crate::common::Stage;
 use std::sync::{Arc, LazyLock};
 use vitral_exec::Workers;
 use vitral_gl::enums as gl;

@@ -45,7 +45,7 @@ fn random_calls_are_survived() {
     (0..6).for_each(replay);
 }
 
-/// More of them by `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test fuzz -- --nocapture`; two without it.
+/// More of them by `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test gl_suite fuzz:: -- --nocapture`; two without it.
 #[test]
 fn chosen_random_calls_are_survived() {
     let range = std::env::var("GL_FUZZ").unwrap_or_else(|_| "6..8".to_owned());

@@ -1,8 +1,6 @@
 //! Small draws that wait for each other: what is drawn is what would have been drawn one by one.
 
-mod common;
-
-use common::{Dice, Stage};
+use crate::common::{Dice, Stage};
 use std::sync::{Arc, OnceLock};
 use vitral_exec::Workers;
 use vitral_gl::enums as gl;

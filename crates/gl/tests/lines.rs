@@ -1,8 +1,6 @@
 //! Lines and outlines of polygons, fragment by fragment: what clipping adds, what stipples count, how far polygon offset moves.
 
-mod common;
-
-use common::Stage;
+use crate::common::Stage;
 use vitral_gl::enums as gl;
 
 /// Rows from the bottom, `#` where something was drawn.

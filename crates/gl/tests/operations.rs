@@ -1,9 +1,7 @@
 //! What happens to fragments after they are coloured, with each state alone and on primitives of all sizes: a rectangle over all of
 //! the window, tiny squares, points, each against the specification's formula for bytes.
 
-mod common;
-
-use common::Stage;
+use crate::common::Stage;
 use vitral_gl::enums as gl;
 
 const SIDE: i32 = 24;

@@ -1,9 +1,7 @@
 //! Pictures with shadow maps between their draws: what is drawn in one pass, or after what came later, is what would have been
 //! drawn one by one.
 
-mod common;
-
-use common::{Dice, Stage};
+use crate::common::{Dice, Stage};
 use vitral_gl::enums as gl;
 
 const SIZE: i32 = 100;

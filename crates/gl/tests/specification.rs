@@ -1,9 +1,7 @@
 //! Corners of the specification, each worked out by hand: clipping and depth, polygon offset, provoking vertices, level
 //! selection, antialiasing, window-system buffers, pixel transfer, feedback, evaluators, accumulation.
 
-mod common;
-
-use common::{BUFFER, Stage, assert_color};
+use crate::common::{BUFFER, Stage, assert_color};
 use vitral_gl::{OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, enums as gl};
 
 #[test]

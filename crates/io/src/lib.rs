@@ -8,7 +8,11 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(
     not(all(feature = "obj", feature = "stl", feature = "ply", feature = "off", feature = "gltf")),
-    allow(dead_code, unused_variables, reason = "readers share helpers, and not all are used where some readers are left out")
+    allow(
+        dead_code,
+        unused_variables,
+        reason = "readers share helpers, and not all are used where some readers are left out"
+    )
 )]
 
 mod colored;

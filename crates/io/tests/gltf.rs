@@ -1,8 +1,6 @@
 //! glTF and GLB: the shared models, the table of malformed files, small files made here, and files damaged at random.
 
-mod common;
-
-use common::documents::{FLOAT, Memory, ONE_NODE, document, floats, load_text, triangle};
+use crate::common::documents::{FLOAT, Memory, ONE_NODE, document, floats, load_text, triangle};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,6 @@
 //! glTF: extensions that change the picture, in small files made here.
 
-mod common;
-
-use common::documents::{FLOAT, Memory, document, floats, load_text, triangle};
+use crate::common::documents::{FLOAT, Memory, document, floats, load_text, triangle};
 use std::collections::BTreeMap;
 use vitral_exec::Workers;
 use vitral_frame::{Encoding, Plane};

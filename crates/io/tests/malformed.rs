@@ -1,8 +1,6 @@
 //! Bad files: each is refused with its place, or read with a warning; never a panic, a hang or a large allocation.
 
-mod common;
-
-use common::{Folder, files, models};
+use crate::common::{Folder, files, models};
 use proptest::prelude::*;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

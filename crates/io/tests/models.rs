@@ -1,8 +1,6 @@
 //! Every shared model is read, and has as many triangles as the manifest says.
 
-mod common;
-
-use common::{Folder, models};
+use crate::common::{Folder, models};
 use serde_json::Value;
 use vitral_exec::Workers;
 use vitral_io::{Error, load};

@@ -9,6 +9,7 @@ mod osmesa;
 mod prepare;
 mod sanitize;
 mod shell;
+mod spent;
 mod tally;
 mod test;
 mod vectors;

@@ -1,7 +1,10 @@
 //! Adds up what test programs print.
 //!
-//! Input: the lines of `cargo test -- --show-output`. A passing test that printed a line starting with `skip` (`skipped:
+//! Input: the lines of `cargo test -- --show-output`, errors and output in one stream, so that cargo's headings stand before
+//! the lines of their programs. A passing test that printed a line starting with `skip` (`skipped:
 //! ../shared/models/x.obj is not there`) has tested nothing and counts as skipped, as an ignored one does.
+
+use std::time::Duration;
 
 /// How many tests passed, failed and were skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,6 +20,13 @@ impl std::fmt::Display for Tally {
     }
 }
 
+/// A test program, or the documentation tests of a crate, and how long it ran.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Program {
+    pub(crate) name: String,
+    pub(crate) wall: Duration,
+}
+
 /// Reads the output line by line.
 #[derive(Debug, Default)]
 pub(crate) struct Reader {
@@ -29,11 +39,21 @@ pub(crate) struct Reader {
     skips: u64,
     /// What was skipped and why, in order.
     pub(crate) reasons: Vec<String>,
+    /// The program that runs, and when it started.
+    running: Option<(String, Duration)>,
+    /// The programs that ended, in order.
+    pub(crate) programs: Vec<Program>,
 }
 
 impl Reader {
-    /// Takes one line; says whether a person should see it (the chatter of passing tests is not shown).
-    pub(crate) fn line(&mut self, line: &str) -> bool {
+    /// Takes one line, which was read at the time `now`; says whether a person should see it (the chatter of passing tests
+    /// is not shown).
+    pub(crate) fn line(&mut self, line: &str, now: Duration) -> bool {
+        if let Some(program) = heading(line) {
+            self.end_program(now);
+            self.running = Some((program, now));
+            return true;
+        }
         if let Some(result) = line.strip_prefix("test result: ") {
             self.close(result);
             return true;
@@ -52,6 +72,13 @@ impl Reader {
             self.skip(line.trim());
         }
         false
+    }
+
+    /// Ends the program that runs, if there is one.
+    pub(crate) fn end_program(&mut self, now: Duration) {
+        if let Some((name, start)) = self.running.take() {
+            self.programs.push(Program { name, wall: now.saturating_sub(start) });
+        }
     }
 
     /// The sum so far.
@@ -84,13 +111,26 @@ impl Reader {
     }
 }
 
+/// The program that cargo announces: `Running unittests src/lib.rs (target/debug/deps/vitral_gl-0123456789abcdef)`,
+/// `Running tests/suite.rs (target/debug/deps/gl_suite-0123456789abcdef)` or `Doc-tests vitral_gl`.
+fn heading(line: &str) -> Option<String> {
+    let line = line.trim_start();
+    if let Some(crate_name) = line.strip_prefix("Doc-tests ") {
+        return Some(format!("{crate_name}, documentation"));
+    }
+    let (source, path) = line.strip_prefix("Running ")?.strip_suffix(')')?.split_once(" (")?;
+    let file = path.rsplit(['/', '\\']).next()?;
+    let name = file.rsplit_once('-').map_or(file, |(name, _hash)| name);
+    Some(if source.starts_with("unittests") { format!("{name}, unit tests") } else { name.to_owned() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn read(text: &str) -> (Reader, Vec<&str>) {
         let mut reader = Reader::default();
-        let shown = text.lines().filter(|line| reader.line(line)).collect();
+        let shown = text.lines().filter(|line| reader.line(line, Duration::ZERO)).collect();
         (reader, shown)
     }
 
@@ -125,5 +165,24 @@ mod tests {
         );
         assert_eq!(reader.tally(), Tally { passed: 1, failed: 1, skipped: 0 });
         assert!(shown.contains(&"skipped: half, then wrong"));
+    }
+
+    #[test]
+    fn each_program_has_its_time() {
+        let mut reader = Reader::default();
+        let lines = [
+            (1, "     Running unittests src/lib.rs (target/debug/deps/vitral_gl-0123456789abcdef)"),
+            (2, "test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s"),
+            (4, "     Running tests/suite.rs (target/debug/deps/gl_suite-0123456789abcdef)"),
+            (9, "   Doc-tests vitral_gl"),
+            (10, "Running out of names (in a message)"),
+        ];
+        lines.iter().for_each(|(now, line)| {
+            reader.line(line, Duration::from_secs(*now));
+        });
+        reader.end_program(Duration::from_secs(12));
+        let found: Vec<_> =
+            reader.programs.iter().map(|program| (program.name.as_str(), program.wall.as_secs())).collect();
+        assert_eq!(found, [("vitral_gl, unit tests", 3), ("gl_suite", 5), ("vitral_gl, documentation", 3)]);
     }
 }

@@ -1,10 +1,12 @@
 //! The WebAssembly test: one picture, drawn natively and by the same code under Node, must have the same bytes.
 //!
 //! The probe (`crates/wasm-probe`) is built without threads, once plain and once with simd128, and each time the hash of
-//! its bytes is compared with that of the native program.
+//! its bytes is compared with that of the native program. Crates are compiled once for each variant; the native program is
+//! linked from what the tests have built.
 
 use crate::prepare::WASM_TARGET;
 use crate::shell::{cargo, command, output, run, target_folder};
+use std::path::PathBuf;
 
 const PACKAGE: &str = "vitral-wasm-probe";
 
@@ -31,26 +33,37 @@ pub(crate) struct Check {
     pub(crate) result: CheckResult,
 }
 
-/// Name of each variant and the compiler flags that make it.
-const VARIANTS: [(&str, &str); 2] = [("scalar", ""), ("simd128", "-C target-feature=+simd128")];
+/// A set of compiler flags.
+struct Variant {
+    name: &'static str,
+    flags: &'static str,
+    /// Below cargo's folder. Modules have the same file name whatever their flags, so that each variant needs its own folder.
+    /// The scalar one shares procedural macros with the check of the OpenGL machine.
+    folder: &'static str,
+}
+
+const VARIANTS: [Variant; 2] = [
+    Variant { name: "scalar", flags: "", folder: "" },
+    Variant { name: "simd128", flags: "-C target-feature=+simd128", folder: "wasm-simd128" },
+];
 
 /// Runs all variants, unless `missing` says why that cannot be.
 pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
     let native = match missing {
         Some(_) => Ok(String::new()),
-        None => output(cargo().args(["run", "--quiet", "--package", PACKAGE])).map(|hash| hash.trim().to_owned()),
+        None => native_hash(),
     };
-    let check = |(name, flags)| {
+    let check = |variant: Variant| {
         let result = match (missing, &native) {
             (Some(why), _) => CheckResult::Skipped(why.to_owned()),
             (None, Err(why)) => CheckResult::Failed(why.clone()),
-            (None, Ok(native)) => match hash_under_node(name, flags) {
+            (None, Ok(native)) => match hash_under_node(&variant) {
                 Ok(hash) if hash == *native => CheckResult::Passed,
                 Ok(hash) => CheckResult::Failed(format!("native bytes have the hash {native}, WebAssembly's {hash}")),
                 Err(why) => CheckResult::Failed(why),
             },
         };
-        Check { name, result }
+        Check { name: variant.name, result }
     };
     let mut checks: Vec<Check> = VARIANTS.into_iter().map(check).collect();
     checks.push(Check {
@@ -68,12 +81,21 @@ fn opengl() -> CheckResult {
     }
 }
 
-/// Builds one variant and runs it; gives the hash that it prints. Each variant has a build folder of its own, since
-/// other flags mean other files.
-fn hash_under_node(name: &str, flags: &str) -> Result<String, String> {
-    let folder = target_folder().join(format!("wasm-{name}"));
+/// The hash that the native program prints. Cargo chooses features by the packages that are named: the whole workspace, as
+/// for the tests, so that it finds their crates built.
+fn native_hash() -> Result<String, String> {
+    run(cargo().args(["build", "--quiet", "--workspace", "--bin", PACKAGE]))?;
+    let program = target_folder().join("debug").join(format!("{PACKAGE}{}", std::env::consts::EXE_SUFFIX));
+    output(&mut command(program)).map(|hash| hash.trim().to_owned())
+}
+
+/// Builds one variant and runs it; gives the hash that it prints.
+fn hash_under_node(variant: &Variant) -> Result<String, String> {
+    let folder: PathBuf = target_folder().join(variant.folder);
     let mut build = cargo();
-    build.env("RUSTFLAGS", flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
+    build.env("RUSTFLAGS", variant.flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
+    // One small picture: a low level costs less in sum. Nobody looks at a backtrace.
+    build.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1").env("CARGO_PROFILE_DEV_DEBUG", "false");
     build.args(["build", "--quiet", "--lib", "--package", PACKAGE, "--no-default-features", "--target", WASM_TARGET]);
     run(build.arg("--target-dir").arg(&folder))?;
     let module = folder.join(WASM_TARGET).join("debug/vitral_wasm_probe.wasm");

@@ -1,5 +1,4 @@
 //! A context over an arena, with what the tests ask of it.
-#![allow(dead_code)]
 
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;

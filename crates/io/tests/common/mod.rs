@@ -1,5 +1,4 @@
 //! The folder of shared models, a resolver over it, and small files made here.
-#![allow(dead_code)]
 
 pub(crate) mod documents;
 

@@ -2,8 +2,8 @@
 //! P3, P4, P17). Every other algorithm of the registry: each sample holds what the first one finds, and has the same
 //! layers in front (P19, P20). No tolerance: ids and depths are equal.
 
-use crate::common::{all_channels, exact, exact_builtin};
-use crate::traps;
+use super::common::{all_channels, exact, exact_builtin};
+use super::traps;
 use std::sync::Mutex;
 use vitral::internals::math::func;
 use vitral::internals::raster::{BackFaces, LayerList, SUBPIXEL, SamplePattern, Setup, TILE_PIXELS, Tile, TileGrid};

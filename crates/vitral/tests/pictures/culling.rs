@@ -1,6 +1,6 @@
 //! Culling never changes a picture, and saves work (COURSE.md P10, P14).
 
-use crate::common::{exact, exact_builtin, on_z};
+use super::common::{exact, exact_builtin, on_z};
 use vitral::{AlphaMode, Camera, DMat4, DVec3, Material, Mesh, Part, Picture, Projection, Renderer, Scene, solids};
 
 /// The picture with the given culling.

@@ -1,7 +1,7 @@
 //! Cut-outs: surfaces that are there where their opacity reaches a cutoff.
 
-use crate::common::{colors, exact, on_z, one};
-use crate::transparency::{glass, square};
+use super::common::{colors, exact, on_z, one};
+use super::transparency::{glass, square};
 use std::sync::Arc;
 use vitral::{
     AlphaMode, Attribute, Background, Camera, DMat4, DVec3, Encoding, Global, Material, Mesh, NodeTransform, Part,
@@ -96,7 +96,7 @@ fn channels_show_cut_outs_where_they_are_there() {
         scene.add_mesh(quad(-0.5, 1.5), DMat4::IDENTITY);
         let mut r = exact(scene, 40, 40);
         r.settings.visibility = visibility.parse().unwrap();
-        r.settings.picture.channels = crate::common::all_channels();
+        r.settings.picture.channels = super::common::all_channels();
         (r.settings.picture.channels.attached_shadow, r.settings.picture.channels.cast_shadow) = (false, false);
         r.camera = Some(on_z(4.0, 0.5));
         let frame = r.render().unwrap().frame;

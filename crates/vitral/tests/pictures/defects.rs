@@ -1,7 +1,7 @@
 //! The defects of interpolated shading (COURSE.md P27), measured in the built-in figures: the defect on the left, its cure on
 //! the right. That of perspective has more in `interpolation.rs`.
 
-use crate::common::{all_channels, colors, exact_builtin, project};
+use super::common::{all_channels, colors, exact_builtin, project};
 use vitral::internals::math::func;
 use vitral::{DVec3, Interpolation, Renderer, Shading};
 

@@ -1,6 +1,6 @@
 //! P41: depth cueing. Light fades with distance, the same with every algorithm, on surfaces, glass, mirrors and lines.
 
-use crate::common::{colors, exact, largest_difference, on_z, pixel, poster};
+use super::common::{colors, exact, largest_difference, on_z, pixel, poster};
 use vitral::internals::render::registry::VISIBILITY;
 use vitral::internals::scene::FreePart;
 use vitral::{

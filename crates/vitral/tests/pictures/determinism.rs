@@ -1,6 +1,6 @@
 //! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one.
 
-use crate::common::{all_channels, colors, exact, exact_builtin};
+use super::common::{all_channels, colors, exact, exact_builtin};
 use vitral::internals::math::lanes::available_levels;
 use vitral::{
     Budget, Execution, Frame, Illumination, Interpolation, Lines, Renderer, Shading, Workers, load_builtin,

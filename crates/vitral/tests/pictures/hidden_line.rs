@@ -1,6 +1,6 @@
 //! Hidden lines: what is drawn of edges is what rays see of them (COURSE.md P2).
 
-use crate::common::{colors, exact_builtin};
+use super::common::{colors, exact_builtin};
 use vitral::internals::math::DVec2;
 use vitral::internals::render::raytrace::bvh::Bvh;
 use vitral::internals::render::raytrace::intersect::Ray;

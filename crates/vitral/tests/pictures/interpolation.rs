@@ -1,7 +1,7 @@
 //! Texture coordinates between vertices: as on the plane in space, or linearly on the screen, which is the classical
 //! defect.
 
-use crate::common::{all_channels, colors, exact, on_z, one};
+use super::common::{all_channels, colors, exact, on_z, one};
 use std::sync::Arc;
 use vitral::internals::math::DVec4;
 use vitral::{

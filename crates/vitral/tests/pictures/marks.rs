@@ -1,6 +1,6 @@
 //! Lines, points and edges: those that are nearest to the viewer lie just behind the fitted near plane.
 
-use crate::common::{colors, exact, one};
+use super::common::{colors, exact, one};
 use vitral::internals::scene::FreePart;
 use vitral::{Camera, DVec3, Interpolation, Lines, Material, Mesh, Projection, TransparencyOrder, solids};
 

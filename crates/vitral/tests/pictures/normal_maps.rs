@@ -1,7 +1,7 @@
 //! Normal maps lean the normal along the texture as it lies on the surface, however it is turned, mirrored or seen
 //! (glTF 2.0, 3.7.2.1 and 3.9).
 
-use crate::common::{colors, exact, on_z, sun};
+use super::common::{colors, exact, on_z, sun};
 use std::sync::Arc;
 use vitral::internals::math::DVec2;
 use vitral::{

@@ -1,6 +1,6 @@
 //! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with the local models.
 
-use crate::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
+use super::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
 use std::sync::{Arc, Mutex};
 use vitral::explain::explain;
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};

@@ -1,6 +1,6 @@
 //! The scene that has everything at once (COURSE.md P42): it has each thing, and each is seen.
 
-use crate::common::exact;
+use super::common::exact;
 use std::collections::{BTreeMap, HashSet};
 use vitral::{
     AlphaMode, Global, LightKind, Material, Scene, Settings, Shadows, Transmission, Transparency, load_builtin,

@@ -1,6 +1,6 @@
 //! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
 
-use crate::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one, settings_error, sun};
+use super::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one, settings_error, sun};
 use std::sync::Arc;
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{

@@ -1,6 +1,6 @@
 //! The steps of algorithms in whole pictures, by hand.
 
-use crate::common::{exact, on_z, one};
+use super::common::{exact, on_z, one};
 use std::sync::{Arc, Mutex};
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
 use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility};

@@ -1,7 +1,7 @@
 //! Translucent surfaces in whole pictures: they blur what is behind them, glow in the light behind them, and are refused
 //! where they cannot be shown.
 
-use crate::common::{colors, exact, limit, on_z, settings_error, sun};
+use super::common::{colors, exact, limit, on_z, settings_error, sun};
 use vitral::internals::math::dvec3;
 use vitral::internals::math::lanes::available_levels;
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};

@@ -1,6 +1,6 @@
 //! Transparent surfaces in whole pictures: models, orders, and what they do to each other.
 
-use crate::common::{colors, exact, largest_difference, on_z, one, settings_error, sun};
+use super::common::{colors, exact, largest_difference, on_z, one, settings_error, sun};
 use std::sync::Arc;
 use vitral::internals::frame::TwoBuffers;
 use vitral::internals::render::registry::VISIBILITY;

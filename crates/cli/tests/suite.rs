@@ -1,0 +1,4 @@
+//! Tests of the command, as one program.
+
+mod command;
+mod limits;

@@ -1,0 +1,15 @@
+//! Tests of the OpenGL machine. One program: linking and starting dominate the cost of many small ones.
+
+mod clients;
+mod common;
+mod course;
+mod course_surfaces;
+mod errors;
+mod extensions;
+mod facets;
+mod fuzz;
+mod gathering;
+mod lines;
+mod operations;
+mod passes;
+mod specification;

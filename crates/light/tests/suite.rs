@@ -1,0 +1,4 @@
+//! Tests of lights and reflection, as one program.
+
+mod course;
+mod lanes;

@@ -205,7 +205,7 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let light = Light { ambient: [0.1; 3], ..lamp(dvec3(2.0, 6.0, 1.0)) };
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
     let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    for (shading, algorithm) in Shading::ALL.into_iter().flat_map(|s| names().map(move |name| (s, name))) {
+    for (shading, algorithm) in Shading::ALL.iter().flat_map(|s| names().map(move |name| (s, name))) {
         let settings = settings(algorithm).with_channels(data).with_shading(shading.0);
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);

@@ -4,7 +4,7 @@
 //! `cargo run --release -p vitral --example 04_illumination_and_shading [FOLDER]`
 
 use std::path::PathBuf;
-use vitral::{Frame, Illumination, Picture, Plane, Renderer, Scene, Shading, load_builtin, solids};
+use vitral::{Frame, Illumination, Picture, Plane, Renderer, Scene, Settings, Shading, load_builtin, solids};
 
 const SIDE: u32 = 220;
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.meshes[0] = std::sync::Arc::new(solids::sphere(1.0, 20, 10).with_material(0));
     let mut renderer = Renderer::new(scene)?;
     renderer.camera = renderer.world().cameras.first().copied();
-    (renderer.settings.picture.width, renderer.settings.picture.height) = (SIDE, SIDE);
+    renderer.settings = Settings::default().with_size(SIDE, SIDE);
 
     // Put the pictures side by side.
     let (columns, rows) = (Illumination::ALL.len() as u32, Shading::ALL.len() as u32);

@@ -3,6 +3,7 @@
 //! `cargo run --release -p vitral --example 06_turntable [MODEL] [FOLDER] [COUNT]`
 
 use std::path::PathBuf;
+use vitral::Settings;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -11,8 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let count = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(12);
     std::fs::create_dir_all(&folder)?;
 
-    let mut renderer = vitral::open(&model)?;
-    (renderer.settings.picture.width, renderer.settings.picture.height) = (400, 300);
+    let settings = Settings::default().with_size(400, 300);
+    let mut renderer = vitral::open(&model)?.with_settings(settings);
     let mut seconds = 0.0;
     renderer.turntable(count, |i, picture| {
         seconds += picture.stats.seconds.total;

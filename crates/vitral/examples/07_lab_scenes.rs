@@ -3,13 +3,12 @@
 //! `cargo run --release -p vitral --example 07_lab_scenes [FOLDER]`
 
 use std::path::{Path, PathBuf};
-use vitral::{Error, Renderer, Scene, lab, load_builtin, walkthrough};
+use vitral::{Error, Renderer, Scene, Settings, lab, load_builtin, walkthrough};
 
 /// Renders a scene through its own camera and writes it.
 fn draw(scene: Scene, lighting: bool, path: &Path) -> Result<(), Error> {
-    let mut renderer = Renderer::new(scene)?;
+    let mut renderer = Renderer::new(scene)?.with_settings(Settings::default().with_size(480, 360));
     renderer.camera = renderer.world().cameras.first().copied();
-    (renderer.settings.picture.width, renderer.settings.picture.height) = (480, 360);
     renderer.settings.shading.lighting = lighting;
     renderer.render()?.save(path)?;
     println!("wrote {}", path.display());

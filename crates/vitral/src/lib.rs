@@ -35,7 +35,7 @@
 //! | [`State`] | all that makes a picture, as JSON |
 //! | [`explain`](mod@explain) | how each algorithm decides about a pixel |
 //! | [`dump`](mod@dump) | what each stage of the pipeline hands on |
-//! | [`bench`] | time and memory of every visible-surface algorithm |
+//! | [`bench`](mod@bench) | time and memory of every visible-surface algorithm |
 //! | [`internals`] | the crates below, without a promise of stability |
 //!
 //! # Features

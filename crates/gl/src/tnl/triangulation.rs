@@ -23,7 +23,7 @@ pub(crate) struct Triangulation {
     pub(super) ordered: [OnceLock<Vec<Vec<Primitive>>>; 2],
 }
 
-/// The cached [`Triangulation`] of a batch, no part of the batch's value: copies start without.
+/// The cached `Triangulation` of a batch, no part of the batch's value: copies start without.
 #[derive(Default)]
 pub struct TriangulationCell(OnceLock<Arc<Triangulation>>);
 

@@ -1,6 +1,6 @@
 //! The table of structures that find the triangles near a ray, and the one that was chosen.
 //!
-//! A new structure is its file and its row here. The row names its type; [`AnyStructure`] is one of these types, and code that is
+//! A new structure is its file and its row here. The row names its type; `AnyStructure` is one of these types, and code that is
 //! written for any structure runs with the type itself, so that choosing costs one branch for each packet of rays.
 //!
 //! What a ray is told is the same with every structure: each triangle that it hits, once. Only the order may be another, and who

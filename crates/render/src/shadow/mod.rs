@@ -43,7 +43,7 @@ pub trait Shadows: Sync {
     /// Other places in the same call do not change the answer. Adds the rays that it took.
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64);
 
-    /// Hands on the polygons that it works with; nothing where [`crate::registry::Shadowing::polygons`] says so.
+    /// Hands on the polygons that it works with; nothing where [`ShadowInfo::polygons`](crate::catalogue::ShadowInfo::polygons) says so.
     fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}
 }
 

@@ -6,7 +6,7 @@
 //!
 //! A point found by arithmetic lies a hair off its surface, and its ray might meet the very surface it leaves. The facet
 //! itself cannot hide its own points from a light in front of it, so it is left out by its number; as its neighbours may,
-//! the ray starts as far above the facet as rounding can have put things wrong ([`clearance`]).
+//! the ray starts as far above the facet as rounding can have put things wrong (`rounding.rs`).
 //!
 //! Neighbours' rays to one light go together, eight at a time (`raytrace/packet.rs`).
 //!

@@ -120,7 +120,7 @@ fn heading(line: &str) -> Option<String> {
     }
     let (source, path) = line.strip_prefix("Running ")?.strip_suffix(')')?.split_once(" (")?;
     let file = path.rsplit(['/', '\\']).next()?;
-    let name = file.rsplit_once('-').map_or(file, |(name, _hash)| name);
+    let (name, _hash) = file.rsplit_once('-')?;
     Some(if source.starts_with("unittests") { format!("{name}, unit tests") } else { name.to_owned() })
 }
 

@@ -118,7 +118,7 @@ fn heading(line: &str) -> Option<String> {
     if let Some(crate_name) = line.strip_prefix("Doc-tests ") {
         return Some(format!("{crate_name}, documentation"));
     }
-    let (source, path) = line.strip_prefix("Running ")?.strip_suffix(')')?.split_once(" (")?;
+    let (source, path) = line.strip_prefix("Running ")?.strip_suffix(')')?.split_once(".rs (")?;
     let file = path.rsplit(['/', '\\']).next()?;
     let (name, _hash) = file.rsplit_once('-')?;
     Some(if source.starts_with("unittests") { format!("{name}, unit tests") } else { name.to_owned() })

@@ -8,6 +8,9 @@ use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::time::Instant;
 
+/// The profile that everything here is built with, and the name of its folder: see the workspace's manifest.
+pub(crate) const PROFILE: &str = "suite";
+
 /// How many of the slowest test programs are listed.
 const LISTED_PROGRAMS: usize = 8;
 
@@ -18,7 +21,7 @@ pub(crate) fn run() -> Outcome {
     // Build all test programs, and examples. The plain scalar level, which takes minutes and gigabytes to compile, is tested
     // in WebAssembly and by `--features vitral/scalar`.
     let build = Stopwatch::start();
-    let built = shell::run(cargo().args(["test", "--workspace", "--no-run"]));
+    let built = shell::run(test_workspace().arg("--no-run"));
     let build = build.spent();
 
     // Run unit, integration and documentation tests.
@@ -51,10 +54,17 @@ pub(crate) fn run() -> Outcome {
     close(tally)
 }
 
+/// `cargo test` of the whole workspace.
+fn test_workspace() -> Command {
+    let mut command = cargo();
+    command.args(["test", "--workspace", "--profile", PROFILE]);
+    command
+}
+
 /// The command that runs what is built.
 fn test_programs() -> Command {
-    let mut command = cargo();
-    command.args(["test", "--workspace", "--no-fail-fast", "--color", "never", "--", "--show-output"]);
+    let mut command = test_workspace();
+    command.args(["--no-fail-fast", "--color", "never", "--", "--show-output"]);
     command
 }
 
@@ -68,7 +78,9 @@ fn list_skipped(reasons: &[String]) {
 
 /// Lists what each step took, and the slowest test programs.
 fn list_spent(steps: &[(&str, Spent)], mut programs: Vec<Program>) {
-    println!("\ntime spent (`cargo test --workspace --no-run --timings` tells the build by crate):");
+    println!(
+        "\ntime spent (`cargo test --workspace --profile {PROFILE} --no-run --timings` tells the build by crate):"
+    );
     steps.iter().for_each(|(name, spent)| println!("  {name:<32}{spent}"));
     programs.sort_by_key(|program| std::cmp::Reverse(program.wall));
     for program in programs.iter().take(LISTED_PROGRAMS) {
@@ -105,7 +117,7 @@ fn stream(command: &mut Command, reader: &mut Reader) -> Result<bool, String> {
 
 /// Used by `bless`: runs the workspace's tests with one more environment variable.
 pub(crate) fn with_environment(name: &str, value: &str, filter: Option<&str>) -> Outcome {
-    shell::run(cargo().env(name, value).args(["test", "--workspace", "--tests", "--no-fail-fast"]).args(filter))
+    shell::run(test_workspace().env(name, value).args(["--tests", "--no-fail-fast"]).args(filter))
 }
 
 #[cfg(test)]

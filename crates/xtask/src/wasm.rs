@@ -6,6 +6,7 @@
 
 use crate::prepare::WASM_TARGET;
 use crate::shell::{cargo, command, output, run, target_folder};
+use crate::test::PROFILE;
 use std::path::PathBuf;
 
 const PACKAGE: &str = "vitral-wasm-probe";
@@ -75,7 +76,16 @@ pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
 
 /// The OpenGL machine builds for WebAssembly; nothing there calls it yet, so that it is only checked.
 fn opengl() -> CheckResult {
-    match run(cargo().args(["check", "--quiet", "--package", "vitral-gl", "--target", WASM_TARGET])) {
+    match run(cargo().args([
+        "check",
+        "--quiet",
+        "--profile",
+        PROFILE,
+        "--package",
+        "vitral-gl",
+        "--target",
+        WASM_TARGET,
+    ])) {
         Ok(()) => CheckResult::Passed,
         Err(why) => CheckResult::Failed(why),
     }
@@ -84,8 +94,8 @@ fn opengl() -> CheckResult {
 /// The hash that the native program prints. Cargo chooses features by the packages that are named: the whole workspace, as
 /// for the tests, so that it finds their crates built.
 fn native_hash() -> Result<String, String> {
-    run(cargo().args(["build", "--quiet", "--workspace", "--bin", PACKAGE]))?;
-    let program = target_folder().join("debug").join(format!("{PACKAGE}{}", std::env::consts::EXE_SUFFIX));
+    run(cargo().args(["build", "--quiet", "--profile", PROFILE, "--workspace", "--bin", PACKAGE]))?;
+    let program = target_folder().join(PROFILE).join(format!("{PACKAGE}{}", std::env::consts::EXE_SUFFIX));
     output(&mut command(program)).map(|hash| hash.trim().to_owned())
 }
 
@@ -94,10 +104,8 @@ fn hash_under_node(variant: &Variant) -> Result<String, String> {
     let folder: PathBuf = target_folder().join(variant.folder);
     let mut build = cargo();
     build.env("RUSTFLAGS", variant.flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
-    // One small picture: a low level costs less in sum. Nobody looks at a backtrace.
-    build.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1").env("CARGO_PROFILE_DEV_DEBUG", "false");
-    build.args(["build", "--quiet", "--lib", "--package", PACKAGE, "--no-default-features", "--target", WASM_TARGET]);
-    run(build.arg("--target-dir").arg(&folder))?;
-    let module = folder.join(WASM_TARGET).join("debug/vitral_wasm_probe.wasm");
+    build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--package", PACKAGE, "--no-default-features"]);
+    run(build.args(["--target", WASM_TARGET, "--target-dir"]).arg(&folder))?;
+    let module = folder.join(WASM_TARGET).join(PROFILE).join("vitral_wasm_probe.wasm");
     output(command("node").arg("crates/wasm-probe/run.mjs").arg(module)).map(|hash| hash.trim().to_owned())
 }

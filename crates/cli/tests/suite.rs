@@ -1,4 +1,0 @@
-//! Tests of the command, as one program.
-
-mod command;
-mod limits;

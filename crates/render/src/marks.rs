@@ -20,7 +20,7 @@
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
 use crate::display::Fade;
-use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings, Transparency};
+use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings};
 use vitral_light::{AlphaMode, Reflectance};
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::{Mat4, Vec2, Vec3, Vec4};
@@ -329,7 +329,7 @@ impl Paint<'_, '_> {
         let alpha = match material.alpha_mode {
             AlphaMode::Opaque => 1.0,
             AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= AlphaMode::least_opacity(cutoff))),
-            AlphaMode::Blend if self.settings.transparency.model == Transparency::None => 1.0,
+            AlphaMode::Blend if !self.settings.transparency.model.sees_through() => 1.0,
             AlphaMode::Blend => alpha,
         };
         let [r, g, b] = [0, 1, 2].map(|k| (base[k] * own[k] + glow[k]) * alpha);

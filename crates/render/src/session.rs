@@ -187,7 +187,7 @@ impl Session {
 
     /// The solids that what is opaque of a mesh makes by itself, if that is not all and not nothing.
     fn opaque_solids(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> Option<&Solids> {
-        let known = &self.meshes[mesh as usize].opaque_solids[usize::from(transparency == Transparency::None)];
+        let known = &self.meshes[mesh as usize].opaque_solids[usize::from(!transparency.sees_through())];
         let mesh = &self.scene.meshes[mesh as usize];
         let make = || {
             let is_opaque = |part: &&Part| {

@@ -8,6 +8,6 @@ pub(crate) fn is_layered(material: Option<&Material>, transparency: Transparency
     material.is_some_and(|m| match m.alpha_mode {
         AlphaMode::Opaque => false,
         AlphaMode::Mask { .. } => true,
-        AlphaMode::Blend => transparency != Transparency::None,
+        AlphaMode::Blend => transparency.sees_through(),
     })
 }

@@ -3,7 +3,7 @@
 use crate::TransparencyOrder;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
-use crate::{Error, Global, Session, Settings, SettingsError, Stats, Transparency};
+use crate::{Error, Global, Session, Settings, SettingsError, Stats};
 use vitral_exec::Workers;
 use vitral_scene::Scene;
 
@@ -29,7 +29,7 @@ pub(super) fn check_order(material: &str, settings: &Settings) -> Result<(), Set
 /// What the user has to know about the picture.
 pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
     let mut warnings = Vec::new();
-    if settings.global.model == Global::RayTrace && settings.transparency.model != Transparency::None {
+    if settings.global.model == Global::RayTrace && settings.transparency.model.sees_through() {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
             let of =
                 if name.is_empty() { "a material without a name".to_owned() } else { format!("material `{name}`") };

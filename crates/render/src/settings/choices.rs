@@ -94,6 +94,23 @@ pub enum Lines {
     WireframeHiddenLine,
 }
 
+impl Transparency {
+    /// Whether blended surfaces are seen through at all.
+    pub const fn sees_through(self) -> bool {
+        !matches!(self, Self::None)
+    }
+
+    /// Whether light that passes takes the colour of the material's filter.
+    pub const fn tints(self) -> bool {
+        matches!(self, Self::Filtered)
+    }
+
+    /// Whether how much light passes depends on how the surface is turned to the viewer.
+    pub const fn varies_by_angle(self) -> bool {
+        matches!(self, Self::Kay)
+    }
+}
+
 named!(Shading, "shading model", [
     Phong: "phong", "normals are interpolated, each pixel is illuminated";
     Gouraud: "gouraud", "vertices are illuminated, intensities are interpolated";

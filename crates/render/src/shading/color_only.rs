@@ -14,7 +14,7 @@ use super::model::Model;
 use super::phong;
 use super::shaded_points::{ShadedPoints, premultiplied};
 use super::surface_parameters::{self, SurfaceParameters};
-use crate::{Interpolation, Shading, Transparency};
+use crate::{Interpolation, Shading};
 use vitral_math::lanes::{Floats, LANES, Lanes, Simd, V3};
 
 /// Whether the picture takes nothing of a material's points but what they reflect and shine.
@@ -23,7 +23,7 @@ pub(super) fn has_color_only(material: &MaterialConstants<'_>, constants: &Frame
     constants.shading == Shading::Phong
         && material.model.needs_light_visibility()
         && constants.radiosity.is_none()
-        && constants.transparency != Transparency::Filtered
+        && !constants.transparency.tints()
         && material.scatters.is_none()
         && !constants.follows_rays()
         && constants.interpolation == Interpolation::Perspective
@@ -122,7 +122,7 @@ impl<T: Lanes> PointNumbers<T> {
 /// Whether all points of a material on a mesh look the same but for how they are placed.
 pub(super) fn is_uniform(eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>) -> bool {
     let (material, mesh) = (eight.material, eight.subject.mesh);
-    let varied_by_angle = material.blend && (material.material.glass || constants.transparency == Transparency::Kay);
+    let varied_by_angle = material.blend && (material.material.glass || constants.transparency.varies_by_angle());
     !varied_by_angle && !material.has_textures() && mesh.colors.is_none()
 }
 

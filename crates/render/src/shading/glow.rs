@@ -13,7 +13,7 @@ use super::batch::ShadingBatch8;
 use super::geometry::{F, Surface, constant};
 use super::lighting::towards_viewer;
 use super::surface_parameters::SurfaceParameters;
-use crate::{Shading, Transparency};
+use crate::Shading;
 use vitral_light::transmitted_light;
 use vitral_math::lanes::{self, Simd, V3};
 
@@ -58,9 +58,10 @@ pub(super) fn glow<S: Simd>(
                 let outward = if subject.instance.mirrored { -winding } else { winding };
                 light = V3::select(lanes::Lanes::lt(outward, zero), light, V3::new(zero, zero, zero));
             }
-            let passes = match constants.transparency {
-                Transparency::Filtered => V3::splat(one, material.material.filter.map(|f| f.clamp(0.0, 1.0))),
-                _ => V3::new(one, one, one),
+            let passes = if constants.transparency.tints() {
+                V3::splat(one, material.material.filter.map(|f| f.clamp(0.0, 1.0)))
+            } else {
+                V3::new(one, one, one)
             };
             light.times(passes).scale(lanes::Lanes::saturate(parameters.kt) * parameters.coverage)
         },

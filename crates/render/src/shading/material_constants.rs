@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use crate::display::DecodeTables;
-use crate::{Global, PreparedView, Settings, Transparency};
+use crate::{Global, PreparedView, Settings};
 use vitral_frame::Texture;
 use vitral_light::{AlphaMode, Material, TextureRef, Transmission, scattering_exponent};
 
@@ -53,7 +53,7 @@ impl<'a> MaterialConstants<'a> {
         let (cutoff, blend) = match material.alpha_mode {
             AlphaMode::Opaque => (None, false),
             AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
-            AlphaMode::Blend => (None, settings.transparency.model != Transparency::None),
+            AlphaMode::Blend => (None, settings.transparency.model.sees_through()),
         };
         Self {
             model: Model::of_material(material, settings.shading.illumination, settings.shading.lighting),

@@ -16,10 +16,10 @@ use super::slots::Slots;
 use super::subject::{Subject, subject};
 use super::surface_parameters::SurfaceParameters;
 use super::{depth_cue, flat, glow, gouraud, hits, phong, shadowed};
+use crate::Shading;
 use crate::radiosity::Solution;
 use crate::shadow::Places;
 use crate::transparency::{filtered, linear};
-use crate::{Shading, Transparency};
 use vitral_light::Reflected;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3, Widest, dispatch};
@@ -161,7 +161,7 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
         Model::Constant(_) => V3::splat(parameters.alpha, [0.0; 3]),
         _ => parameters.emission,
     };
-    let filtered = constants.transparency == Transparency::Filtered;
+    let filtered = constants.transparency.tints();
     let mut color = premultiplied(material, filtered, &reflected, emitted, parameters.alpha, parameters.coverage);
 
     // Add the light that comes through translucent surfaces, and fade with the distance.

@@ -3,7 +3,6 @@
 use super::FrameConstants;
 use super::geometry::F;
 use super::material_constants::MaterialConstants;
-use crate::Transparency;
 use crate::shadow::Place;
 use vitral_light::{Reflected, Rgb};
 use vitral_math::DVec3;
@@ -44,7 +43,7 @@ impl Default for Bounce {
 impl ShadedPoints {
     /// Makes room for `count` points.
     pub(crate) fn reset(&mut self, count: usize, constants: &FrameConstants<'_>) {
-        let filtered = constants.transparency == Transparency::Filtered;
+        let filtered = constants.transparency.tints();
         // Every colour is written, so old contents may stay.
         self.colors.resize(count, [0.0; 4]);
         self.passes.clear();

@@ -15,8 +15,8 @@ use super::material_constants::{MaterialConstants, TextureConstants};
 use super::model::Model;
 use super::slots::Slots;
 use super::subject::Subject;
+use crate::Shading;
 use crate::transparency::{kay, linear};
-use crate::{Shading, Transparency};
 use vitral_light::{DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Lanes, Simd, V3};
@@ -132,7 +132,7 @@ impl<S: Simd> SurfaceParameters<S> {
         constants: &FrameConstants<'_>,
         along: Option<&Along>,
     ) {
-        let kay = constants.transparency == Transparency::Kay;
+        let kay = constants.transparency.varies_by_angle();
         if !material.blend || !(kay || material.material.glass) {
             return;
         }

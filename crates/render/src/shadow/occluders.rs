@@ -4,7 +4,7 @@
 use super::facet::weights;
 use crate::display::DecodeTables;
 use crate::transparency::{filtered, linear};
-use crate::{Session, Settings, Transparency};
+use crate::{Session, Settings};
 use vitral_frame::Encoding;
 use vitral_light::{AlphaMode, Material, Rgb, TextureRef};
 use vitral_math::{DVec3, Vec3};
@@ -24,7 +24,7 @@ pub(crate) struct Occluders<'a> {
 
 impl<'a> Occluders<'a> {
     pub(crate) fn new(session: &'a Session, settings: &Settings) -> Self {
-        let blend_is_opaque = settings.transparency.model == Transparency::None;
+        let blend_is_opaque = !settings.transparency.model.sees_through();
         let opaque = |m: &Material| match m.alpha_mode {
             AlphaMode::Opaque => true,
             AlphaMode::Mask { .. } => false,
@@ -32,7 +32,7 @@ impl<'a> Occluders<'a> {
         };
         let opaque: Vec<bool> = session.scene.materials.iter().map(opaque).collect();
         let all_opaque = opaque.iter().all(|&o| o);
-        let filtered = settings.transparency.model == Transparency::Filtered;
+        let filtered = settings.transparency.model.tints();
         let tables = DecodeTables::new(settings.picture.color_space);
         Self { session, opaque, all_opaque, blend_is_opaque, filtered, tables }
     }

@@ -8,7 +8,7 @@ use crate::clip::{Polygon, clip};
 use crate::kernel::sift::{Sieve, sift};
 use crate::screen::covered_pixels;
 pub use crate::screen::{Screen, ScreenVertex, ViewportTransform, flag};
-use crate::setup::{CornerPosition, DepthPlane, Setup};
+use crate::setup::{CornerPosition, DepthPlane, Setup, SharedPlane};
 use crate::{SUBPIXEL, TILE, Viewport};
 use bytemuck::Zeroable;
 use std::ops::Range;
@@ -62,8 +62,19 @@ pub struct Draw<'a> {
     pub first_facet: u32,
     /// Which triangles are dropped if they face away.
     pub back_faces: BackFaces<'a>,
+    /// For each triangle the number of the plane that it lies in with others, see [`Screen::with_planes`], or a number beyond;
+    /// empty if it is so for all.
+    pub planes: &'a [u32],
     /// The transform mirrors: what runs clockwise in model space is the front.
     pub mirrored: bool,
+}
+
+impl Draw<'_> {
+    /// The depths of the plane that a triangle lies in with others.
+    #[inline(always)]
+    fn plane<'s>(&self, facet: u32, screen: &'s Screen) -> Option<&'s SharedPlane> {
+        screen.plane(*self.planes.get((facet - self.first_facet) as usize)?)
+    }
 }
 
 /// What happened to triangles.
@@ -219,8 +230,12 @@ impl Batch {
                     self.add_other(draw, corners, vertices, facet, screen);
                 } else {
                     let [a, b, c] = corners.map(|i| vertices[i as usize].corner());
-                    let plane = sifted.plane(lane, a);
-                    let setup = Setup::with_plane([a, b, c], i64::from(sifted.area[lane]), &plane, facet);
+                    let area = sifted.area[lane];
+                    let plane = match draw.plane(facet, screen) {
+                        Some(plane) => plane.of_facet(&[a, b, c], (area > 0) != draw.mirrored),
+                        None => sifted.plane(lane, a),
+                    };
+                    let setup = Setup::with_plane([a, b, c], i64::from(area), &plane, facet);
                     self.push(setup, sifted.pixels(lane), screen);
                 }
             }
@@ -237,44 +252,50 @@ impl Batch {
         facet: u32,
         screen: &Screen,
     ) {
-        let cull_back = draw.back_faces.drops(facet - draw.first_facet);
         let [a, b, c] = corners.map(|i| vertices[i as usize]);
         if (a.flags | b.flags | c.flags) & flag::CLIP == 0 {
             let corners = [a.corner(), b.corner(), c.corner()];
-            self.add_corners(corners, cull_back, draw.mirrored, facet, screen);
+            let cull_back = draw.back_faces.drops(facet - draw.first_facet);
+            let plane = draw.plane(facet, screen);
+            self.add_corners(corners, (cull_back, draw.mirrored), plane, facet, screen);
         } else {
             let corners = corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
-            self.add_clipped(corners, cull_back, draw.mirrored, facet, screen);
+            self.add_clipped(draw, corners, facet, screen);
         }
     }
 
-    /// Adds one triangle of snapped corners inside the guard band.
+    /// Adds one triangle of snapped corners inside the guard band, with the depths of the plane that it shares, if it does.
     #[inline(always)]
     pub fn add_corners(
         &mut self,
         corners: [CornerPosition; 3],
-        cull_back: bool,
-        mirrored: bool,
+        (cull_back, mirrored): (bool, bool),
+        plane: Option<&SharedPlane>,
         facet: u32,
         screen: &Screen,
     ) {
         let [a, b, c] = corners;
         let area = Setup::doubled_area(a, b, c);
+        let faces_away = (area > 0) != mirrored;
         if area == 0 {
             self.counters.degenerate += 1;
-        } else if cull_back && (area > 0) != mirrored {
+        } else if faces_away && cull_back {
             self.counters.back_facing += 1;
         } else if let Some(pixels) = covered_pixels(&corners, screen) {
-            self.push(Setup::new(corners, area, facet), pixels, screen);
+            let setup = match plane {
+                Some(plane) => Setup::with_plane(corners, area, &plane.of_facet(&corners, faces_away), facet),
+                None => Setup::new(corners, area, facet),
+            };
+            self.push(setup, pixels, screen);
         } else {
             self.counters.no_sample += 1;
         }
     }
 
-    /// Clips a triangle given in clip space and adds the pieces: one facet with one depth plane, that of the largest
-    /// piece of the fan.
+    /// Clips a triangle given in clip space and adds the pieces: one facet with one depth plane, that which it shares or that of
+    /// the largest piece of the fan.
     #[cold]
-    fn add_clipped(&mut self, corners: [Vec4; 3], cull_back: bool, mirrored: bool, facet: u32, screen: &Screen) {
+    fn add_clipped(&mut self, draw: &Draw<'_>, corners: [Vec4; 3], facet: u32, screen: &Screen) {
         self.counters.clipped += 1;
         let polygon = clip(Polygon::triangle(corners), screen.transform().guard());
         let count = polygon.corners().len();
@@ -297,16 +318,22 @@ impl Batch {
             self.counters.degenerate += 1;
             return;
         };
-        if cull_back && (total > 0) != mirrored {
+        let faces_away = (total > 0) != draw.mirrored;
+        if faces_away && draw.back_faces.drops(facet - draw.first_facet) {
             self.counters.back_facing += 1;
             return;
         }
-        let [a, b, c] = fan(largest);
-        let mut plane = DepthPlane::new(a, b, c, areas(largest));
-        for corner in snapped {
-            plane.z_min = plane.z_min.min(corner.z);
-            plane.z_max = plane.z_max.max(corner.z);
-        }
+        let own_plane = || {
+            let [a, b, c] = fan(largest);
+            let mut plane = DepthPlane::new(a, b, c, areas(largest));
+            for corner in snapped {
+                plane.z_min = plane.z_min.min(corner.z);
+                plane.z_max = plane.z_max.max(corner.z);
+            }
+            plane
+        };
+        let shared = draw.plane(facet, screen).map(|plane| plane.of_facet(snapped, faces_away));
+        let plane = shared.unwrap_or_else(own_plane);
         for i in 1..count - 1 {
             let area = areas(i);
             // Snapping can turn a sliver of the fan over; its neighbours cover it.

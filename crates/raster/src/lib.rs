@@ -39,7 +39,7 @@ pub use kernel::traverse::{Window, traverse, traverse_block, traverse_by_rows, t
 pub use layers::{Fragment, Layer, LayerList};
 pub use samples::SamplePattern;
 pub use screen::ScreenVertex;
-pub use setup::{CornerPosition, Setup, snap};
+pub use setup::{CornerPosition, Setup, SharedPlane, snap};
 pub use sink::{LayerSink, NEAR_TIE, PriorityCounts, PrioritySink, VisibilitySink};
 pub use tile::{Tile, TileGrid, Viewport};
 

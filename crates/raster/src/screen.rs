@@ -1,6 +1,6 @@
 //! The screen: where vertices land, on a grid of 1/256 pixel, and which pixels and samples lie there.
 
-use crate::setup::CornerPosition;
+use crate::setup::{CornerPosition, SharedPlane};
 use crate::{GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
 use bytemuck::{Pod, Zeroable};
 use vitral_math::{Vec2, Vec4, vec2};
@@ -95,13 +95,33 @@ pub struct Screen {
     transform: ViewportTransform,
     pattern: SamplePattern,
     lines: [[i32; 2]; 2],
+    /// Depths of planes that several facets lie in, by number; `None` where the facets keep to their corners.
+    planes: Vec<Option<SharedPlane>>,
 }
 
 impl Screen {
     /// The screen for a viewport and sample pattern.
     pub fn new(viewport: Viewport, pattern: &SamplePattern) -> Self {
         let lines = [pattern.lines(0), pattern.lines(1)];
-        Self { viewport, transform: ViewportTransform::new(viewport), pattern: pattern.clone(), lines }
+        Self {
+            viewport,
+            transform: ViewportTransform::new(viewport),
+            pattern: pattern.clone(),
+            lines,
+            planes: Vec::new(),
+        }
+    }
+
+    /// The same with the depths of planes that several facets lie in, by the numbers of [`Draw::planes`](crate::Draw::planes).
+    #[must_use]
+    pub fn with_planes(self, planes: Vec<Option<SharedPlane>>) -> Self {
+        Self { planes, ..self }
+    }
+
+    /// The depths of a plane.
+    #[inline(always)]
+    pub(crate) fn plane(&self, number: u32) -> Option<&SharedPlane> {
+        self.planes.get(number as usize)?.as_ref()
     }
 
     /// Where samples lie in a pixel.

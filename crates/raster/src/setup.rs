@@ -89,6 +89,57 @@ impl DepthPlane {
     }
 }
 
+/// The depths of a plane of the world on the screen, shared by all facets in it: these have equal depths wherever they meet,
+/// whatever their corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedPlane {
+    z: f32,
+    dz_dx: f32,
+    dz_dy: f32,
+    origin: [i32; 2],
+    /// How much farther facets that face away are: more than what rounding adds anywhere in the picture.
+    behind: f32,
+}
+
+/// Change of depth over a pixel above which a plane is seen so much from the side that its facets keep to their corners.
+const STEEP: f64 = 1.0;
+
+impl SharedPlane {
+    /// The plane `a x + b y + c z + d = 0` of ndc (depth 1 near, 0 far), in a picture of this size; `None` if it is seen from
+    /// the side.
+    pub fn new([a, b, c, d]: [f64; 4], [width, height]: [u32; 2]) -> Option<Self> {
+        let [half_width, half_height] = [width, height].map(|side| f64::from(side) * 0.5);
+        let (z, dz_dx, dz_dy) = (-d / c, -a / c / half_width, b / c / half_height);
+        let slopes = [dz_dx.abs(), dz_dy.abs()];
+        let greatest = z.abs() + slopes[0] * half_width + slopes[1] * half_height;
+        let fits = greatest.is_finite() && slopes[0].max(slopes[1]) < STEEP;
+        let origin = [width, height].map(|side| side as i32 * (SUBPIXEL / 2));
+        // Four roundings to 24 bits for each of two facets, of numbers no larger than the sum.
+        let behind = (greatest * f64::from(f32::EPSILON) * 8.0) as f32;
+        fits.then_some(Self { z: z as f32, dz_dx: dz_dx as f32, dz_dy: dz_dy as f32, origin, behind })
+    }
+
+    /// For a facet with these corners on the screen. Between its corners it is never clamped.
+    #[inline(always)]
+    pub(crate) fn of_facet(&self, corners: &[CornerPosition], faces_away: bool) -> DepthPlane {
+        let z = if faces_away { self.z - self.behind } else { self.z };
+        let (mut z_min, mut z_max) = (f32::INFINITY, f32::NEG_INFINITY);
+        for corner in corners {
+            let away = |v: i32, k: usize| (v - self.origin[k]) as f32 / SUBPIXEL as f32;
+            let depth = z + away(corner.y, 1) * self.dz_dy + away(corner.x, 0) * self.dz_dx;
+            (z_min, z_max) = (z_min.min(depth), z_max.max(depth));
+        }
+        DepthPlane {
+            z,
+            dz_dx: self.dz_dx,
+            dz_dy: self.dz_dy,
+            origin: self.origin,
+            z_min: (z_min - self.behind).clamp(0.0, 1.0),
+            z_max: (z_max + self.behind).clamp(0.0, 1.0),
+        }
+    }
+}
+
 impl Setup {
     /// Its depths.
     #[cfg(any(test, feature = "forward"))]

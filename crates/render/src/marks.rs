@@ -450,8 +450,8 @@ impl Pen<'_, '_> {
         let corner = |i: usize| CornerPosition { x: snap(corners[i].x), y: snap(corners[i].y), z: depths[i].x };
         let [a, b, c, d] = [0, 1, 2, 3].map(corner);
         for batch in std::iter::once(&mut self.drawn.all).chain(hides.then_some(&mut self.drawn.hiding)) {
-            batch.add_corners([a, b, c], false, false, id, &self.view.screen);
-            batch.add_corners([a, c, d], false, false, id, &self.view.screen);
+            batch.add_corners([a, b, c], (false, false), None, id, &self.view.screen);
+            batch.add_corners([a, c, d], (false, false), None, id, &self.view.screen);
         }
     }
 }

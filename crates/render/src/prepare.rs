@@ -9,13 +9,16 @@ use crate::cull::opacity::is_layered;
 use crate::stats::CullCounters;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
+use vitral_exec::Workers;
 use vitral_light::Material;
 use vitral_math::lanes::Level;
 use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
 use vitral_raster::clip::{Polygon, clip};
 use vitral_raster::geometry::{Screen, flag, transform_point};
-use vitral_raster::{BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, Viewport};
-use vitral_scene::{Camera, Instance, ViewTransform, depth_range};
+use vitral_raster::{
+    BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane, Viewport,
+};
+use vitral_scene::{Camera, Instance, SharedPlanes, ViewTransform, depth_range};
 
 /// One instance's triangles, ready for the rasteriser.
 #[derive(Clone, Debug)]
@@ -84,7 +87,8 @@ impl<'a> PreparedView<'a> {
         let drops = |draw: &Draw<'_>| draw.back_faces != BackFaces::Kept;
         counters.back_face_culled_instances +=
             instances.iter().filter(|instance| instance.opaque.iter().any(drops)).count() as u64;
-        let screen = Screen::new(viewport, &pattern);
+        let planes = equal_planes(session.planes(&execution.workers), &clip_from_world, viewport, &execution.workers);
+        let screen = Screen::new(viewport, &pattern).with_planes(planes);
         let acceleration = settings.acceleration.unwrap_or_default();
         let layer_limit = layer_limit(viewport, settings.transparency.layer_memory);
         Self {
@@ -125,6 +129,8 @@ impl<'a> PreparedView<'a> {
         let level = Level::new();
         let (instance, corners, clip_from_model, vertices) = self.placed(level, facet);
         let triangle = (facet - instance.first_facet) as usize;
+        let planes = self.session.planes(&Workers::single());
+        let of_facet = planes.of(facet..facet + 1);
         let draw = Draw {
             positions: &corners,
             triangles: &[[0, 1, 2]],
@@ -132,6 +138,7 @@ impl<'a> PreparedView<'a> {
             clip_from_model,
             first_facet: facet,
             back_faces: if back_faces.drops(triangle as u32) { BackFaces::Dropped } else { BackFaces::Kept },
+            planes: of_facet,
             mirrored: mirrors(&instance.world_from_model),
         };
         let mut batch = Batch::default();
@@ -167,6 +174,28 @@ impl<'a> PreparedView<'a> {
         vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
         (instance, corners, clip_from_model, vertices)
     }
+}
+
+/// Planes in one piece of work.
+const PLANES_A_JOB: usize = 4096;
+
+/// The depths of planes that several facets lie in, as this view has them.
+fn equal_planes(
+    planes: &SharedPlanes,
+    clip_from_world: &DMat4,
+    viewport: Viewport,
+    workers: &Workers,
+) -> Vec<Option<SharedPlane>> {
+    let size = [viewport.width, viewport.height];
+    // A plane goes by the inverse, transposed.
+    let plane_from_world = (*clip_from_world * DMat4::from_translation(planes.center())).inverse().transpose();
+    let mut shared = vec![None; planes.equations().len()];
+    workers.for_each_chunk(&mut shared, PLANES_A_JOB, |chunk, shared| {
+        for (shared, equation) in shared.iter_mut().zip(&planes.equations()[chunk * PLANES_A_JOB..]) {
+            *shared = SharedPlane::new((plane_from_world * *equation).to_array(), size);
+        }
+    });
+    shared
 }
 
 /// Whether only the outside of an instance can be seen: its mesh is solid without a window, and the near plane does not cut it
@@ -245,6 +274,8 @@ impl<'a> Preparation<'_, 'a> {
     ) -> Vec<(Class, Draw<'a>)> {
         let mesh = &*instance.mesh;
         let (positions, clip_from_model) = self.session.placed_positions(instance, &self.clip_from_world);
+        let facets = instance.first_facet..instance.first_facet + mesh.triangles.len() as u32;
+        let planes = self.session.planes(&self.execution.workers).of(facets);
         let new_draw = |class: Class| Draw {
             positions,
             triangles: &mesh.triangles,
@@ -252,6 +283,7 @@ impl<'a> Preparation<'_, 'a> {
             clip_from_model,
             first_facet: instance.first_facet,
             back_faces: back_faces(class),
+            planes,
             mirrored: mirrors(&instance.world_from_model),
         };
         let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();

@@ -15,7 +15,7 @@ use vitral_math::{Aabb, DMat4, Mat4, Vec3};
 use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Attribute, Instance, Part, Scene, Solids, World, tangents};
+use vitral_scene::{Attribute, Instance, Part, Scene, SharedPlanes, Solids, World, tangents};
 
 /// A scene made ready for many frames. The scene cannot change under it: edit a copy and make a new session.
 #[derive(Debug)]
@@ -23,6 +23,7 @@ pub struct Session {
     pub(crate) scene: Arc<Scene>,
     pub(crate) world: World,
     meshes: Vec<MeshKnowledge>,
+    planes: OnceLock<SharedPlanes>,
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
     pub(crate) spare_batches: Mutex<Vec<Batch>>,
@@ -105,6 +106,7 @@ impl Session {
             scene,
             world,
             meshes,
+            planes: OnceLock::new(),
             grid: None,
             spare_vertices: Mutex::default(),
             spare_batches: Mutex::default(),
@@ -161,6 +163,11 @@ impl Session {
         (centred, (clip_from_model * DMat4::from_translation(middle.as_dvec3())).as_mat4())
     }
 
+    /// The planes that several facets lie in.
+    pub fn planes(&self, workers: &Workers) -> &SharedPlanes {
+        self.planes.get_or_init(|| SharedPlanes::new(&self.world, workers))
+    }
+
     /// Whether a mesh is closed, consistently wound and wound outwards, and which of its bodies are.
     pub fn solids(&self, mesh: u32, workers: &Workers) -> &Solids {
         let known = &self.meshes[mesh as usize].solids;
@@ -205,6 +212,7 @@ impl Session {
     /// other surfaces stays, which has no steps, and the background.
     pub(crate) fn forget(&mut self) {
         self.meshes.iter_mut().for_each(|known| *known = MeshKnowledge::default());
+        self.planes = OnceLock::new();
         self.cache.forget_frames();
     }
 

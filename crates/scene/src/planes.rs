@@ -367,12 +367,12 @@ mod tests {
     /// A square in z = 0 as a grid of `n` by `n` pairs of triangles, from `low` to `high`.
     fn square(low: f32, high: f32, n: u32) -> Mesh {
         let at = |i: u32| low + (high - low) * i as f32 / n as f32;
-        let positions = (0..=n).flat_map(|y| (0..=n).map(move |x| [at(x), at(y), 0.0])).collect();
+        let positions: Vec<_> = (0..=n).flat_map(|y| (0..=n).map(move |x| [at(x), at(y), 0.0])).collect();
         let cell = |x: u32, y: u32| {
             let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| y * (n + 1) + x);
             [[a, b, c], [a, c, d]]
         };
-        Mesh::new(positions, (0..n).flat_map(|y| (0..n).flat_map(move |x| cell(x, y))).collect())
+        Mesh::new(positions, (0..n).flat_map(|y| (0..n).flat_map(move |x| cell(x, y))).collect::<Vec<_>>())
     }
 
     #[test]
@@ -385,7 +385,7 @@ mod tests {
 
     #[test]
     fn decals_of_all_sizes_lie_in_the_plane_of_the_floor() {
-        let turned = DMat4::from_euler(vitral_math::EulerRot::XYZ, 0.4, 1.1, -2.0);
+        let turned = DMat4::from_rotation_x(0.4) * DMat4::from_rotation_y(1.1);
         let lifted = turned * DMat4::from_translation(DVec3::new(0.0, 0.0, 1e-3));
         let decals = vec![
             (square(-1.0, 1.0, 1), turned),

@@ -10,9 +10,12 @@ mod jobs;
 mod near_first;
 mod overdraw;
 pub mod painter;
+
 mod passing;
 mod peel;
 mod pieces;
+#[allow(dead_code, reason = "its users follow in the next steps")]
+mod polygons;
 mod priority_list;
 pub mod ray_cast;
 mod round_tiles;

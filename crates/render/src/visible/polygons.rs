@@ -1,0 +1,256 @@
+//! Convex polygons on the screen: the faces of the file as algorithms with lists of polygons know them.
+//!
+//! The front end sets up triangles. Those of a flat face lie in one plane of the world and have one depth function, as have
+//! the parts of a facet that was clipped: they are joined again, over the edges that they share, as long as the outline stays
+//! convex. That is asked exactly, of the corners on the grid of 1/256 pixel, so a polygon covers the samples that its
+//! triangles cover, no more and no less. A face that is flat but not convex comes out as a few polygons, one that is not flat as
+//! its triangles.
+//!
+//! In:   set-up triangles, those of a face one after the other (screen space). Out: polygons.
+//! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as.
+//! Source: the joining of triangles after [Hertel & Mehlhorn 1983].
+
+use crate::PreparedView;
+use std::ops::Range;
+use vitral_raster::Setup;
+
+/// The polygons of some triangles.
+pub(super) struct Polygons<'f> {
+    polygons: Vec<Polygon>,
+    /// Triangles, polygon by polygon.
+    triangles: Vec<&'f Setup>,
+    /// Outlines, polygon by polygon.
+    corners: Vec<[i32; 2]>,
+}
+
+/// One of them.
+#[derive(Clone, Debug)]
+struct Polygon {
+    /// Its depth function: the corners are those of its first triangle, the range of depths is that of all.
+    plane: Setup,
+    triangles: Range<u32>,
+    corners: Range<u32>,
+}
+
+/// A convex polygon.
+#[derive(Clone, Copy)]
+pub(super) struct ConvexPolygon<'p, 'f> {
+    plane: &'p Setup,
+    triangles: &'p [&'f Setup],
+    outline: &'p [[i32; 2]],
+}
+
+/// A polygon that is being joined.
+struct Growing<'f> {
+    triangles: Vec<&'f Setup>,
+    outline: Vec<[i32; 2]>,
+}
+
+impl<'f> Polygons<'f> {
+    /// Joins triangles to polygons; those of a face come one after the other.
+    pub(super) fn new(setups: impl IntoIterator<Item = &'f Setup>, view: &PreparedView<'_>) -> Self {
+        let world = view.session.world();
+        Self::joined(setups, |a, b| world.surface_of_facet(a) == world.surface_of_facet(b))
+    }
+
+    /// [`Self::new`]; `same_face` says whether two facets are of one face.
+    fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
+        let mut polygons = Self { polygons: Vec::new(), triangles: Vec::new(), corners: Vec::new() };
+        // The polygons of the face at hand.
+        let mut growing: Vec<Growing<'f>> = Vec::new();
+        let mut last: Option<&Setup> = None;
+        for setup in setups {
+            let goes_on = last.is_some_and(|last| {
+                same_plane(last, setup) && (last.facet == setup.facet || same_face(last.facet, setup.facet))
+            });
+            if !goes_on {
+                growing.drain(..).for_each(|done| polygons.push(&done));
+            }
+            if !growing.iter_mut().any(|polygon| polygon.join(setup)) {
+                growing.push(Growing { triangles: vec![setup], outline: corners(setup).to_vec() });
+            }
+            last = Some(setup);
+        }
+        growing.iter().for_each(|done| polygons.push(done));
+        polygons
+    }
+
+    fn push(&mut self, done: &Growing<'f>) {
+        let (triangles, corners) = (self.triangles.len() as u32, self.corners.len() as u32);
+        self.triangles.extend(&done.triangles);
+        self.corners.extend(&done.outline);
+        let mut plane = *done.triangles[0];
+        for setup in &done.triangles {
+            plane.z_min = plane.z_min.min(setup.z_min);
+            plane.z_max = plane.z_max.max(setup.z_max);
+        }
+        let (triangles, corners) = (triangles..self.triangles.len() as u32, corners..self.corners.len() as u32);
+        self.polygons.push(Polygon { plane, triangles, corners });
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.polygons.len()
+    }
+
+    /// The polygon of this number.
+    pub(super) fn get(&self, number: usize) -> ConvexPolygon<'_, 'f> {
+        let Polygon { plane, triangles, corners } = &self.polygons[number];
+        ConvexPolygon {
+            plane,
+            triangles: &self.triangles[triangles.start as usize..triangles.end as usize],
+            outline: &self.corners[corners.start as usize..corners.end as usize],
+        }
+    }
+
+    /// All, in the order of their first triangles.
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = ConvexPolygon<'_, 'f>> {
+        (0..self.polygons.len()).map(|number| self.get(number))
+    }
+
+    /// Bytes in memory.
+    pub(super) fn bytes(&self) -> u64 {
+        let bytes = [
+            size_of_val(self.polygons.as_slice()),
+            size_of_val(self.triangles.as_slice()),
+            size_of_val(self.corners.as_slice()),
+        ];
+        bytes.iter().sum::<usize>() as u64
+    }
+}
+
+impl<'p, 'f> ConvexPolygon<'p, 'f> {
+    /// Its name in lists and steps: the id of its first triangle. No two polygons have the same, but those of a facet that was
+    /// clipped and came out in parts.
+    pub(super) fn facet(self) -> u32 {
+        self.plane.facet
+    }
+
+    /// Its plane, with the depths of all corners as the range; the corners in it are those of its first triangle alone.
+    pub(super) fn plane(self) -> &'p Setup {
+        self.plane
+    }
+
+    /// Corners, clockwise on the screen, 1/256 pixel: all edge functions are positive or zero inside.
+    pub(super) fn outline(self) -> &'p [[i32; 2]] {
+        self.outline
+    }
+
+    /// Its triangles. Each sample that it covers is covered by one of them.
+    pub(super) fn triangles(self) -> &'p [&'f Setup] {
+        self.triangles
+    }
+
+    /// The facet that covers a sample, 1/256 pixel.
+    pub(super) fn facet_at(self, x: i32, y: i32) -> Option<u32> {
+        self.triangles.iter().find(|t| t.covers(x, y)).map(|t| t.facet)
+    }
+
+    /// The facet at a sample that it covers, 1/256 pixel.
+    pub(super) fn facet_within(self, x: i32, y: i32) -> u32 {
+        match self.triangles {
+            [only] => only.facet,
+            _ => self.facet_at(x, y).unwrap_or(self.plane.facet),
+        }
+    }
+
+    /// Depth at a sample, 1/256 pixel: that of the facet there.
+    pub(super) fn depth(self, x: i32, y: i32) -> f32 {
+        self.plane.depth(x, y)
+    }
+}
+
+impl<'f> Growing<'f> {
+    /// Adds a triangle, if it shares an edge and the outline stays convex.
+    fn join(&mut self, setup: &'f Setup) -> bool {
+        let [a, b, c] = corners(setup);
+        let count = self.outline.len();
+        for ([from, to], tip) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+            // Outlines turn one way: a shared edge is walked in both directions.
+            let Some(at) = (0..count).find(|&i| self.outline[i] == to && self.outline[(i + 1) % count] == from) else {
+                continue;
+            };
+            let (before, after) = (self.outline[(at + count - 1) % count], self.outline[(at + 2) % count]);
+            if turn(before, to, tip) >= 0 && turn(tip, from, after) >= 0 {
+                self.outline.insert(at + 1, tip);
+                self.triangles.push(setup);
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The corners of a triangle, 1/256 pixel.
+fn corners(setup: &Setup) -> [[i32; 2]; 3] {
+    [0, 1, 2].map(|i| [setup.x[i], setup.y[i]])
+}
+
+/// Twice the signed area of a triangle: positive if it turns clockwise on the screen, y downwards.
+fn turn(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
+    let to = |p: [i32; 2]| [0, 1].map(|k| i64::from(p[k]) - i64::from(a[k]));
+    let ([bx, by], [cx, cy]) = (to(b), to(c));
+    bx * cy - by * cx
+}
+
+/// Whether two facets have one depth function. That of facets in a shared plane is never clamped where they are; that of
+/// others begins at their first corner, and is the same only for parts of one.
+pub(super) fn same_plane(a: &Setup, b: &Setup) -> bool {
+    let plane = |s: &Setup| ([s.z, s.dz_dx, s.dz_dy].map(f32::to_bits), s.origin);
+    plane(a) == plane(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_raster::CornerPosition;
+
+    /// Triangles in the plane z = 0.5; corners in pixels.
+    fn setups(triangles: &[[[i32; 2]; 3]]) -> Vec<Setup> {
+        let setup = |(facet, corners): (usize, &[[i32; 2]; 3])| {
+            let [a, b, c] = corners.map(|[x, y]| CornerPosition { x: x * 256, y: y * 256, z: 0.5 });
+            Setup { origin: [0, 0], ..Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet as u32) }
+        };
+        triangles.iter().enumerate().map(setup).collect()
+    }
+
+    fn outlines(triangles: &[[[i32; 2]; 3]]) -> Vec<usize> {
+        let setups = setups(triangles);
+        let polygons = Polygons::joined(&setups, |_, _| true);
+        for y in (-3..40).map(|y| y * 128) {
+            for x in (-3..40).map(|x| x * 128) {
+                let of_triangles = setups.iter().find(|s| s.covers(x, y)).map(|s| s.facet);
+                let of_polygons = polygons.iter().find_map(|p| p.facet_at(x, y));
+                assert_eq!(of_triangles, of_polygons, "({x}, {y})");
+            }
+        }
+        polygons.iter().map(|p| p.outline().len()).collect()
+    }
+
+    #[test]
+    fn the_fan_of_a_convex_face_is_one_polygon() {
+        let hexagon = [[4, 0], [8, 0], [12, 6], [8, 12], [4, 12], [0, 6]];
+        let fan: Vec<_> = (1..5).map(|i| [hexagon[0], hexagon[i], hexagon[i + 1]]).collect();
+        assert_eq!(outlines(&fan), [6]);
+        // Triangles that turn the other way are turned by the setup.
+        let turned: Vec<_> = fan.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert_eq!(outlines(&turned), [6]);
+        assert_eq!(outlines(&[fan[0], fan[2], fan[1], fan[3]]), [4, 4], "the second fan has no edge in common yet");
+    }
+
+    #[test]
+    fn a_face_with_a_notch_is_a_few_polygons() {
+        // An L of two bars.
+        let (a, b, c, d, e, f) = ([0, 0], [4, 0], [4, 8], [12, 8], [12, 12], [0, 12]);
+        assert_eq!(outlines(&[[a, b, c], [a, c, f], [f, c, e], [c, d, e]]), [4, 4]);
+    }
+
+    #[test]
+    fn another_face_or_another_plane_is_another_polygon() {
+        let mut two = setups(&[[[0, 0], [8, 0], [8, 8]], [[0, 0], [8, 8], [0, 8]]]);
+        assert_eq!(Polygons::joined(&two, |_, _| true).len(), 1);
+        assert_eq!(Polygons::joined(&two, |_, _| false).len(), 2);
+        two[1].dz_dx += 1e-6;
+        assert_eq!(Polygons::joined(&two, |_, _| true).len(), 2);
+    }
+}

@@ -209,7 +209,9 @@ mod tests {
     fn setups(triangles: &[[[i32; 2]; 3]]) -> Vec<Setup> {
         let setup = |(facet, corners): (usize, &[[i32; 2]; 3])| {
             let [a, b, c] = corners.map(|[x, y]| CornerPosition { x: x * 256, y: y * 256, z: 0.5 });
-            Setup { origin: [0, 0], ..Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet as u32) }
+            let own = Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet as u32);
+            // The plane that all of them share.
+            Setup { origin: [0, 0], dz_dx: 0.0, dz_dy: 0.0, ..own }
         };
         triangles.iter().enumerate().map(setup).collect()
     }

@@ -7,6 +7,7 @@ mod cut_outs;
 mod defects;
 mod depth_cue;
 mod determinism;
+mod equal_planes;
 mod hidden_line;
 mod interpolation;
 mod lighting;

@@ -174,7 +174,7 @@ impl<'a> FrameContext<'a> {
         let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
         let t1 = clock();
-        let marks = marks::build(&view, settings, constants.fade, execution);
+        let marks = marks::build(&view, settings, constants.fade, execution)?;
         let t2 = clock();
 
         // Find what is visible, and shade each tile as it is finished.

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod checks;
+mod pixel;
 
 use crate::display::DecodeTables;
 use crate::global::Whitted;
@@ -17,6 +18,7 @@ use crate::visible::{NullSink, Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
 use assemble::Assembler;
 use checks::{check_indices, check_order, warnings};
+pub use pixel::{ExaminedPixel, examine_pixel};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_frame::{Frame, Plane};

@@ -165,7 +165,8 @@ fn needed_vertices(instance: &PreparedInstance<'_>, draw: &Draw<'_>) -> Vec<Rang
     let ranges = || instance.opaque.iter().chain(&instance.layered).flat_map(|d| d.ranges.iter().cloned());
     let drawn: usize = ranges().map(|range| range.len()).sum();
     if drawn > draw.triangles.len() / SPARSE {
-        return vec![0..vertices];
+        let all = 0..vertices;
+        return vec![all];
     }
 
     // Mark the blocks that hold a corner, and join neighbouring ones.

@@ -5,6 +5,7 @@ use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation,
     MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
@@ -168,10 +169,10 @@ pub(crate) struct AlgorithmArgs {
     /// Edges alone, the hidden ones too
     #[arg(long, group = "lines")]
     pub(crate) wireframe: bool,
-    /// Edges alone, the visible ones
+    /// Edges alone, the visible ones, and the lines in which faces penetrate each other
     #[arg(long, group = "lines")]
     pub(crate) wireframe_hidden_line: bool,
-    /// Surfaces with their edges
+    /// Surfaces with their edges, and the lines in which faces penetrate each other
     #[arg(long, group = "lines")]
     pub(crate) edges: bool,
     /// Which normals are used [default: file]
@@ -297,11 +298,15 @@ pub(crate) struct ReportArgs {
     /// The same into a file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats_file: Option<PathBuf>,
-    /// Explain a pixel on standard output: the surfaces over its centre, and what each algorithm decided; with --shading gouraud the
-    /// increments of the intensity, too, and with --global ray-trace its rays: what each meets, and how it goes on. An algorithm may
-    /// take 20 s, or what --time-limit says
+    /// Explain a pixel on standard output: the facets over it and what became of each, how its light adds up to its bytes, the
+    /// surfaces over its centre, and what the algorithm decided there; with --shading gouraud the increments of the intensity,
+    /// too, and with --global ray-trace its rays: what each meets, and how it goes on
     #[arg(long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true)]
     pub(crate) pixel: Option<[u32; 2]>,
+    /// With --pixel, what other algorithms decide, each with a picture of its own: a list, or all. Each may take 20 s, or what
+    /// --time-limit says [default: the --visibility algorithm, for the part of the picture round the pixel]
+    #[arg(long, value_name = "LIST", value_parser = values::deciders, requires = "pixel")]
+    pub(crate) pixel_algorithms: Option<Deciders>,
     /// Write the steps of the visibility algorithm into this file, a JSON object a line
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Option<PathBuf>,

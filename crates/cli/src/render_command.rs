@@ -13,12 +13,12 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use vitral::explain::{Explanation, explain};
+use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::frame::compare;
 use vitral::internals::render::trace::Observer;
 use vitral::{Camera, ColorSpace, EncodeOptions, Frame, Plane, Renderer, dump};
 
-/// What each algorithm may take for `--pixel`, if nothing else is said.
+/// What each algorithm may take for `--pixel`, if nothing else is said, in seconds.
 const SECONDS_TO_EXPLAIN: f64 = 20.0;
 
 /// Largest stored radiosity, in bytes.
@@ -144,7 +144,8 @@ fn explain_pixel(
     pixel: [u32; 2],
 ) -> Result<Explanation, Failure> {
     let limit = args.process.time_limit.unwrap_or(SECONDS_TO_EXPLAIN);
-    Ok(explain(renderer, camera, pixel, Some(limit))?)
+    let deciders = args.report.pixel_algorithms.as_ref().unwrap_or(&Deciders::Chosen);
+    Ok(explain(renderer, camera, pixel, deciders, Some(limit))?)
 }
 
 /// What came of the frames.

@@ -6,6 +6,8 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
+use vitral::bench::Entrant;
+use vitral::explain::Deciders;
 use vitral::internals::math::lanes::level_from_environment;
 use vitral::{Coherence, Culling, DVec3, Execution, MaterialOverride, Workers, execution, names};
 
@@ -192,6 +194,25 @@ pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
         (Ok(x), Ok(y)) => Ok([x, y]),
         _ => Err(wrong()),
     }
+}
+
+/// Algorithms for visible surfaces: a list of names, or `all`; those that cast rays with each structure.
+pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
+    let all = Entrant::all();
+    if text == "all" {
+        return Ok(Deciders::Named(all));
+    }
+    let mut named = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let of_name: Vec<_> = all.iter().filter(|e| e.algorithm.name == name).copied().collect();
+        if of_name.is_empty() {
+            let mut names: Vec<_> = all.iter().map(|e| e.algorithm.name).collect();
+            names.dedup();
+            return Err(format!("`{name}` is not one of all, {}", names.join(", ")));
+        }
+        named.extend(of_name);
+    }
+    Ok(Deciders::Named(named))
 }
 
 /// `on` or `off`.

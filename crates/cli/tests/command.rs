@@ -130,7 +130,23 @@ fn a_pixel_is_explained() {
     assert!(told["pixel"]["decisions"].as_array().unwrap().iter().all(|d| d["facet"] == *nearest), "{told}");
     let output = render(&folder, &["builtin:cubs", "--pixel", "32,20"]);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("surface(s) cover its centre") && text.contains("warnock: facet"), "{text}");
+    assert!(text.contains("surface(s) cover its centre") && text.contains("z-buffer: facet"), "{text}");
+    assert!(text.contains("a back face, culled") && !text.contains("warnock"), "{text}");
+    let asked = json(&render(&folder, &["builtin:cubs", "--pixel", "32,20", "--json", "--pixel-algorithms", "all"]));
+    let decisions = asked["pixel"]["decisions"].as_array().unwrap();
+    assert!(decisions.len() > 5 && decisions.iter().all(|d| d["facet"] == *nearest), "{asked}");
+    let one = render(&folder, &["builtin:cubs", "--pixel", "32,20", "--pixel-algorithms", "warnock,painter"]);
+    let text = String::from_utf8(one.stdout).unwrap();
+    assert!(
+        text.contains("warnock: facet") && text.contains("painter: facet") && !text.contains("z-buffer:"),
+        "{text}"
+    );
+    let refused = render(&folder, &["builtin:cubs", "--pixel", "32,20", "--pixel-algorithms", "best"]);
+    assert!(
+        code(&refused) == 2 && errors(&refused).contains("`best` is not one of all, z-buffer"),
+        "{}",
+        errors(&refused)
+    );
     assert_eq!(code(&render(&folder, &["builtin:cubs", "--pixel", "64,0"])), 2);
 }
 

@@ -110,6 +110,32 @@ pub fn cook_torrance<T: Lanes>(
     sum
 }
 
+/// The factors of one light's highlight at one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MicrofacetLobe {
+    /// The halfway vector.
+    pub h: [f32; 3],
+    /// `N·H`.
+    pub n_h: f32,
+    /// What a mirror of this material reflects at this angle, `F`.
+    pub fresnel: Rgb,
+    /// `π D G / (4 N·V)`; 0 where the light is behind the surface.
+    pub lobe: f32,
+}
+
+/// The factors of the highlight that light from the unit direction `l` makes.
+pub(crate) fn microfacet_lobe(s: &Surface<f32>, m: &Microfacet<f32>, l: V3<f32>) -> MicrofacetLobe {
+    let metallic = m.metallic.saturate();
+    let f0 = m.base_color.map(|channel| mix(DIELECTRIC_F0, channel, metallic));
+    let n_v = s.n.dot(s.v).clamp(LEAST_COSINE, 1.0);
+    let n_l = s.n.dot(l).saturate();
+    let h = (l + s.v).normalize();
+    let v_h = s.v.dot(h).clamp(LEAST_COSINE, 1.0);
+    let lobe = if n_l > 0.0 { Facets::new(m.roughness).mirrored(s.n, h, n_l, n_v, v_h) } else { 0.0 };
+    let fresnel = f0.map(|channel| schlick(channel, v_h)).to_array();
+    MicrofacetLobe { h: h.to_array(), n_h: s.n.dot(h), fresnel, lobe }
+}
+
 /// The statistics of the facets.
 #[derive(Clone, Copy)]
 struct Facets<T> {

@@ -18,6 +18,7 @@ mod phong;
 mod prepared;
 mod refraction;
 mod surface;
+mod terms;
 mod translucency;
 
 pub use cook_torrance::{DIELECTRIC_F0, LEAST_SLOPE, Microfacet, cook_torrance};
@@ -26,9 +27,10 @@ pub use light::{AreaShape, Attenuation, Light, LightKind};
 pub use mapping::{microfacet_from_phong, phong_from_microfacet};
 pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, constant_color};
 pub use phong::{Phong, phong};
-pub use prepared::{DIRECTION_ROUNDING, Incident, PreparedLight};
+pub use prepared::{Arrival, DIRECTION_ROUNDING, Incident, PreparedLight};
 pub use refraction::transmitted;
 pub use surface::{Reflected, Surface, reflect};
+pub use terms::{Highlight, LightTerms, ambient_term, microfacet_terms, phong_terms, sum_of_terms};
 pub use translucency::{scattered, scattering_exponent, transmitted_light};
 
 /// Linear RGB, each component usually in `0..=1`.

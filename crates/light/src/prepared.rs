@@ -38,6 +38,19 @@ pub struct Incident<T> {
     pub ambient_intensity: T,
 }
 
+/// The factors behind an [`Incident`] at one point: their product is its intensity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// How far away the light is, where it has a place.
+    pub distance: Option<f32>,
+    /// What the distance leaves of the light.
+    pub attenuation: f32,
+    /// The share that a spot sends in this direction.
+    pub spot: Option<f32>,
+    /// The cosine of emission of an area light, 0 behind it.
+    pub emission: Option<f32>,
+}
+
 /// A light, ready to illuminate points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedLight {
@@ -136,6 +149,25 @@ impl PreparedLight {
                 let intensity = attenuation * (-l.dot(V3::splat(zero, shape.normal))).positive();
                 Incident { l, intensity, ambient_intensity: intensity }
             }
+        }
+    }
+
+    /// The factors of what arrives at `position`, as [`Self::incident`] multiplies them.
+    pub fn arrival(&self, position: V3<f32>) -> Arrival {
+        let everywhere = Arrival { distance: None, attenuation: 1.0, spot: None, emission: None };
+        let at = match &self.source {
+            Source::Everywhere | Source::Infinity(_) => return everywhere,
+            Source::Point(at) | Source::Spot { position: at, .. } => *at,
+            Source::Area(shape) => shape.centroid,
+        };
+        let to = V3::splat(position.x, at) - position;
+        let (l, attenuation) = self.arrive(position, at);
+        let cosine = |axis: [f32; 3]| -l.dot(V3::splat(position.x, axis));
+        let arrival = Arrival { distance: Some(to.dot(to).sqrt()), attenuation, ..everywhere };
+        match &self.source {
+            Source::Spot { axis, cone, .. } => Arrival { spot: Some(cone.factor(cosine(*axis))), ..arrival },
+            Source::Area(shape) => Arrival { emission: Some(cosine(shape.normal).positive()), ..arrival },
+            _ => arrival,
         }
     }
 

@@ -14,16 +14,22 @@
 //! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
 //! the million.
 //!
+//! With edges come the lines in which faces penetrate each other ([`penetrations`]), which are edges of what is seen.
+//!
 //! In:   visible instances, model space. Out: [`Marks`] on the screen, and the colour of each.
 //! Cost: linear in lines and points.
 //! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
+pub mod penetrations;
+
 use crate::display::Fade;
 use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings};
+use penetrations::Penetrations;
+use vitral_exec::Limit;
 use vitral_light::{AlphaMode, Reflectance};
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};
-use vitral_math::{Mat4, Vec2, Vec3, Vec4};
+use vitral_math::{DMat4, Mat4, Vec2, Vec3, Vec4};
 use vitral_raster::geometry::transform_point;
 use vitral_raster::{Batch, CornerPosition, snap};
 use vitral_scene::{FreePart, Instance};
@@ -183,7 +189,7 @@ pub(crate) fn build(
     settings: &Settings,
     fade: Option<Fade>,
     execution: &Execution,
-) -> (Marks, MarkColors) {
+) -> Result<(Marks, MarkColors), Limit> {
     let (world, count) = (&view.session.world, view.pattern.len());
     let samples =
         if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
@@ -197,10 +203,13 @@ pub(crate) fn build(
     for prepared in &view.instances {
         drawing.instance(&world.instances[prepared.instance]);
     }
+    if matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine) {
+        drawing.penetrations(&*Penetrations::of(view.session, execution)?);
+    }
     let Drawing { pen: Pen { drawn: mut marks, .. }, colors, .. } = drawing;
     marks.all.finish(&view.screen);
     marks.hiding.finish(&view.screen);
-    (marks, colors)
+    Ok((marks, colors))
 }
 
 /// The marks of a view, while they are made.
@@ -243,13 +252,33 @@ impl Drawing<'_, '_> {
 
     /// Draws the edges of faces, as long as there are ids.
     fn edges(&mut self, subject: &Subject<'_>) {
+        let color = self.edge_color();
+        for edge in self.view.session.edges(subject.instance.mesh_index, &self.execution.workers) {
+            let Some(id) = self.colors.next(color) else { break };
+            if let Some(drawn) = self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id) {
+                self.colors.place(&drawn, edge.ends.map(|i| subject.depth(i)));
+            }
+        }
+    }
+
+    /// Colour of edges in the space of composition.
+    fn edge_color(&self) -> [f32; 4] {
         let raw = self.settings.picture.color_space == crate::ColorSpace::Raw;
         let color = edge_color(&self.settings.picture.background);
         let [r, g, b] = if raw { color } else { color.map(linear_from_srgb) };
-        for edge in self.view.session.edges(subject.instance.mesh_index, &self.execution.workers) {
-            let Some(id) = self.colors.next([r, g, b, 1.0]) else { break };
-            if let Some(drawn) = self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id) {
-                self.colors.place(&drawn, edge.ends.map(|i| subject.depth(i)));
+        [r, g, b, 1.0]
+    }
+
+    /// Draws the lines in which faces penetrate each other, as long as there are ids.
+    fn penetrations(&mut self, found: &Penetrations) {
+        let (view, moved) = (&self.view.view, DMat4::from_translation(found.center));
+        self.pen.clip_from_model = (view.clip_from_world() * moved).as_mat4();
+        let toward = (view.view_from_world * moved).row(2).as_vec4();
+        let color = self.edge_color();
+        for ends in &found.lines {
+            let Some(id) = self.colors.next(color) else { break };
+            if let Some(drawn) = self.pen.stroke(*ends, id) {
+                self.colors.place(&drawn, ends.map(|p| -toward.dot(Vec3::from(p).extend(1.0))));
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod checks;
+mod pixel;
 
 use crate::display::DecodeTables;
 use crate::global::Whitted;
@@ -17,6 +18,7 @@ use crate::visible::{NullSink, Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
 use assemble::Assembler;
 use checks::{check_indices, check_order, warnings};
+pub use pixel::{ExaminedPixel, examine_pixel};
 use std::sync::Arc;
 use vitral_exec::Limit;
 use vitral_frame::{Frame, Plane};
@@ -174,7 +176,7 @@ impl<'a> FrameContext<'a> {
         let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
         let t1 = clock();
-        let marks = marks::build(&view, settings, constants.fade, execution);
+        let marks = marks::build(&view, settings, constants.fade, execution)?;
         let t2 = clock();
 
         // Find what is visible, and shade each tile as it is finished.

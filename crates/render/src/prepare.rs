@@ -6,6 +6,7 @@
 
 use crate::cull::frustum::{self, VisibleInstance};
 use crate::cull::opacity::is_layered;
+use crate::cull::window::Window;
 use crate::stats::CullCounters;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
@@ -16,7 +17,7 @@ use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
 use vitral_raster::clip::{Polygon, clip};
 use vitral_raster::geometry::{Screen, flag, transform_point};
 use vitral_raster::{
-    BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane, Viewport,
+    BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane, TILE, Viewport,
 };
 use vitral_scene::{Camera, Instance, SharedPlanes, ViewTransform, depth_range};
 
@@ -56,6 +57,8 @@ pub struct PreparedView<'a> {
     layer_limit: usize,
     /// What may be visible, in scene order.
     pub instances: Vec<PreparedInstance<'a>>,
+    /// The only tile that is made; `None`: all are.
+    only_tile: Option<usize>,
 }
 
 /// What a material's triangles are to a visibility algorithm.
@@ -103,7 +106,34 @@ impl<'a> PreparedView<'a> {
             lists_layers: settings.transparency.order.needs_list,
             layer_limit,
             instances,
+            only_tile: None,
         }
+    }
+
+    /// Leaves the tile with this number alone to be made, of the facets that may touch it: it becomes what it is in the whole
+    /// picture, whatever the algorithm.
+    pub fn limit_to_tile(&mut self, tile: usize) {
+        let (columns, side) = (self.viewport.tiles_x(), TILE as u32);
+        let corner = [tile as u32 % columns * side, tile as u32 / columns * side];
+        // A pixel more than the tile covers what projecting and snapping round.
+        let window = Window::new(&self.view, self.viewport, corner, side, 1.0);
+        let (session, world) = (self.session, &self.session.world);
+        for prepared in &mut self.instances {
+            let instance = &world.instances[prepared.instance];
+            let pyramid = window.pyramid_of(instance);
+            for draw in prepared.opaque.iter_mut().chain(&mut prepared.layered) {
+                let runs = &session.world.run_bounds[instance.mesh_index as usize];
+                draw.ranges = pyramid.triangles(&instance.mesh, runs, &draw.ranges);
+            }
+            prepared.opaque.retain(|draw| !draw.ranges.is_empty());
+            prepared.layered.retain(|draw| !draw.ranges.is_empty());
+        }
+        self.only_tile = Some(tile);
+    }
+
+    /// Whether the tile with this number is made.
+    pub(crate) fn makes_tile(&self, tile: usize) -> bool {
+        self.only_tile.is_none_or(|only| only == tile)
     }
 
     /// An empty list for the layers of a tile.
@@ -126,6 +156,11 @@ impl<'a> PreparedView<'a> {
     /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports
     /// and algorithms that take facets one by one.
     pub fn setups(&self, facet: u32, back_faces: BackFaces<'_>) -> Vec<Setup> {
+        self.set_up(facet, back_faces).setups().to_vec()
+    }
+
+    /// A batch of one facet, which counts what became of it.
+    pub(crate) fn set_up(&self, facet: u32, back_faces: BackFaces<'_>) -> Batch {
         let level = Level::new();
         let (instance, corners, clip_from_model, vertices) = self.placed(level, facet);
         let triangle = (facet - instance.first_facet) as usize;
@@ -143,7 +178,12 @@ impl<'a> PreparedView<'a> {
         };
         let mut batch = Batch::default();
         batch.add(level, &draw, &vertices, 0..1, &self.screen);
-        batch.setups().to_vec()
+        batch
+    }
+
+    /// On which sides of the planes of the view the corners of a facet lie, see [`flag`].
+    pub(crate) fn corner_flags(&self, facet: u32) -> [u32; 3] {
+        self.placed(Level::new(), facet).3.map(|vertex| vertex.flags)
     }
 
     /// The polygon in clip space that clipping leaves of a facet, before the division by `w`, and whether it was cut; `None` if

@@ -24,6 +24,12 @@ pub struct Entrant {
     pub acceleration: Option<Acceleration>,
 }
 
+impl std::fmt::Debug for Entrant {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.name())
+    }
+}
+
 impl Entrant {
     /// All algorithms; those that cast rays once for each structure that is made for many triangles. The z-buffer comes first.
     pub fn all() -> Vec<Self> {

@@ -1,21 +1,31 @@
-//! One pixel explained: which surfaces cover it, how near each is, and what every algorithm decided and why.
+//! One pixel explained: which facets lie over it and what became of each, how its light adds up to its bytes, and what
+//! algorithms decided and why.
 //!
-//! What is explained is the sample at the pixel's centre, as in the channels of data. These look straight on, through what is
-//! transparent; with ray tracing, the pixel's rays tell what is seen in mirrors and through what bends light.
+//! Facets and light are those of the colour picture, with all its samples. Surfaces and decisions are those at the pixel's
+//! centre, as in the channels of data. These look straight on, through what is transparent; with ray tracing, the pixel's rays
+//! tell what is seen in mirrors and through what bends light.
+//!
+//! Only the tile that holds the pixel is made, of the facets that may touch it; it is what it is in the whole picture. Whole
+//! pictures are made for algorithms that are asked for by name ([`Deciders::Named`]), and where translucent materials are in view.
+
+mod text;
 
 use crate::bench::Entrant;
 use crate::{Error, Renderer};
 use serde::Serialize;
-use std::fmt;
 use std::sync::{Arc, Mutex};
 use vitral_exec::Budget;
-use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TileGrid};
+use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TILE, TileGrid};
+use vitral_render::registry::VISIBILITY;
 use vitral_render::shading::gouraud::{EdgeStep, ScreenIntensity, scan_convert};
+use vitral_render::shading::pixel_light::PixelLight;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, Step, Way};
 use vitral_render::visible::NullSink;
+use vitral_render::visible::fates::{Candidate, facets_at};
 use vitral_render::{
-    Channels, Execution, Global, PreparedView, Session, Settings, Shading, Shot, illuminate_corners, render,
+    Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading, Shot, examine_pixel,
+    illuminate_corners,
 };
 use vitral_scene::Camera;
 
@@ -30,15 +40,45 @@ const MOST_RAYS: usize = 2000;
 pub struct Explanation {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],
+    /// Its colour in the picture, display bytes with straight opacity.
+    pub bytes: [u8; 4],
+    /// The facets whose outlines hold it, and what became of each: those that cover samples first, from near to far.
+    pub candidates: Vec<Overlying>,
+    /// How its colour comes about. In a picture with ray tracing, or of translucent materials, light from behind them comes on top.
+    pub light: PixelLight,
     /// The surfaces that cover its centre, the nearest first.
     pub surfaces: Vec<Surface>,
     /// How Gouraud's shading gets the nearest surface's intensity, with that shading.
     pub gouraud: Option<Gouraud>,
-    /// What each algorithm decided.
+    /// What algorithms decided.
     pub decisions: Vec<Decision>,
     /// With ray tracing, the rays of the pixel, generation by generation, the eye's first; empty where the first surface is
     /// neither a mirror nor transparent, and all there is to see.
     pub rays: Vec<TracedRay>,
+}
+
+/// A facet whose outline holds the pixel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Overlying {
+    /// The facet, and what became of it.
+    #[serde(flatten)]
+    pub candidate: Candidate,
+    /// The face of the file that it is of, as in the channel `id`.
+    pub surface: u32,
+    /// Name of its mesh.
+    pub mesh: String,
+    /// Name of its material, if it has one.
+    pub material: Option<String>,
+}
+
+/// Which algorithms are asked to decide about a pixel.
+#[derive(Clone, Debug)]
+pub enum Deciders {
+    /// The one that the settings choose, of the pixel's tile.
+    Chosen,
+    /// These, each with the whole picture.
+    Named(Vec<Entrant>),
 }
 
 /// A ray that was followed for the pixel.
@@ -201,7 +241,7 @@ impl Observer for Onlooker {
     }
 }
 
-/// Explains a pixel of the picture that `camera` sees. Each algorithm may take `time_limit` seconds.
+/// Explains a pixel of the picture that `camera` sees. Each algorithm that is asked may take `time_limit` seconds.
 ///
 /// # Errors
 /// A pixel outside the picture, settings that cannot be, or a cancellation.
@@ -209,6 +249,7 @@ pub fn explain(
     renderer: &Renderer,
     camera: &Camera,
     pixel: [u32; 2],
+    deciders: &Deciders,
     time_limit: Option<f64>,
 ) -> Result<Explanation, Error> {
     let settings = &renderer.settings;
@@ -219,38 +260,66 @@ pub fn explain(
     }
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
-    let surfaces = surfaces(renderer, camera, pixel, &budget)?;
+    let examined = examined(renderer, camera, pixel, settings, &budget.clone().with_time_limit(time_limit), None)?;
+    let surfaces = surfaces(renderer, camera, pixel)?;
     let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
     let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
+    let (entrants, tile_only) = match deciders {
+        Deciders::Chosen => (chosen(settings), true),
+        Deciders::Named(entrants) => (entrants.clone(), false),
+    };
     let mut decisions = Vec::new();
-    for entrant in Entrant::all() {
-        decisions.push(decide(renderer, camera, pixel, &entrant, time_limit)?);
+    for entrant in entrants {
+        decisions.push(decide(renderer, camera, pixel, &entrant, tile_only, time_limit)?);
         budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
     }
     let rays = match settings.global.model {
         Global::RayTrace => rays(renderer, camera, pixel, &budget.with_time_limit(time_limit))?,
         Global::None | Global::Radiosity => Vec::new(),
     };
-    Ok(Explanation { pixel, surfaces, gouraud, decisions, rays })
+    let overlying = |candidate: Candidate| {
+        let (surface, mesh, material) = named(renderer.session(), candidate.facet);
+        Overlying { candidate, surface, mesh, material }
+    };
+    let ExaminedPixel { candidates, light, bytes } = examined;
+    let candidates = candidates.into_iter().map(overlying).collect();
+    Ok(Explanation { pixel, bytes, candidates, light, surfaces, gouraud, decisions, rays })
 }
 
-/// Traces the picture, a ray through each pixel's centre, and looks on at one of them.
+/// The algorithm that the settings choose.
+fn chosen(settings: &Settings) -> Vec<Entrant> {
+    let algorithms = VISIBILITY.iter().filter(|a| a.choice() == settings.visibility);
+    algorithms.map(|algorithm| Entrant { algorithm, acceleration: settings.acceleration }).collect()
+}
+
+/// Makes the pixel's tile and takes the pixel apart; `observer` looks on.
+fn examined(
+    renderer: &Renderer,
+    camera: &Camera,
+    pixel: [u32; 2],
+    settings: &Settings,
+    budget: &Budget,
+    observer: Option<Arc<dyn Observer>>,
+) -> Result<ExaminedPixel, Error> {
+    let execution = Execution { budget: budget.clone(), observer, ..renderer.execution().clone() };
+    let lights = renderer.frame_lights(camera);
+    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    Ok(examine_pixel(renderer.session(), &shot, settings, &execution, pixel)?)
+}
+
+/// Traces the rays through the centres of a tile's pixels, and looks on at one of them.
 fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<TracedRay>, Error> {
     let settings = renderer.settings.clone().with_samples(1).with_channels(Channels::default());
     let onlooker = Arc::new(RayOnlooker { pixel, rays: Mutex::default() });
     let observer = Some(Arc::clone(&onlooker) as Arc<dyn Observer>);
-    let execution = Execution { budget: budget.clone(), observer, ..renderer.execution().clone() };
-    let mut session = Session::with_workers(Arc::clone(renderer.scene()), &execution.workers)?;
-    let lights = renderer.frame_lights(camera);
-    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
-    render(&mut session, &shot, &settings, &execution)?;
+    examined(renderer, camera, pixel, &settings, budget, observer)?;
 
     let steps = std::mem::take(&mut *onlooker.rays.lock().expect("no thread panics while it keeps a ray"));
     let mut rays: Vec<TracedRay> = Vec::new();
     for step in steps {
         match step {
             Step::RayMeets { turns, facet, origin, direction, distance, weight, light, .. } => {
-                let meets = facet.zip(distance).map(|(facet, distance)| met(&session, facet, distance));
+                let meets = facet.zip(distance).map(|(facet, distance)| met(renderer.session(), facet, distance));
                 rays.push(TracedRay { turns, origin, direction, meets, weight, light, goes_on: Vec::new() });
             }
             Step::RayGoesOn { way, angles, indices, direction, weight, .. } => {
@@ -264,50 +333,30 @@ fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) 
 }
 
 fn met(session: &Session, facet: u32, distance: f64) -> MetSurface {
+    let (surface, mesh, material) = named(session, facet);
+    MetSurface { facet, surface, mesh, material, distance }
+}
+
+/// The face of a facet, and the names of its mesh and material.
+fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
     let world = session.world();
     let instance = &world.instances[world.instance_of_facet(facet)];
     let material = instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
-    MetSurface {
-        facet,
-        surface: world.surface_of_facet(facet),
-        mesh: instance.mesh.name.clone(),
-        material: material.and_then(|m| session.scene().materials.get(m as usize)).map(|m| m.name.clone()),
-        distance,
-    }
+    let material = material.and_then(|m| session.scene().materials.get(m as usize));
+    (world.surface_of_facet(facet), instance.mesh.name.clone(), material.map(|m| m.name.clone()))
 }
 
-/// Looks at every facet of the view.
-fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<Surface>, Error> {
+/// The surfaces over the pixel's centre.
+fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2]) -> Result<Vec<Surface>, Error> {
     let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
     let (culled, pattern) = (&mut CullCounters::default(), SamplePattern::new(1));
     let (session, execution) = (renderer.session(), renderer.execution());
     let view = PreparedView::new(session, camera, &renderer.settings, viewport, pattern, execution, culled);
-    let [x, y] = center(&view, pixel);
-    let (world, materials) = (session.world(), &session.scene().materials);
-    let mut found = Vec::new();
-    for prepared in &view.instances {
-        let instance = &world.instances[prepared.instance];
-        let opaque = prepared.opaque.iter().map(|d| (false, d));
-        for (layer, draw) in opaque.chain(prepared.layered.iter().map(|d| (true, d))) {
-            budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
-            for triangle in draw.ranges.iter().cloned().flatten() {
-                let facet = draw.first_facet + triangle;
-                let setups = view.setups(facet, draw.back_faces);
-                let Some(setup) = setups.iter().find(|s| s.covers(x, y)) else { continue };
-                let material = instance.mesh.material_of_triangle(triangle as usize);
-                found.push(Surface {
-                    facet,
-                    surface: world.surface_of_facet(facet),
-                    mesh: instance.mesh.name.clone(),
-                    material: material.and_then(|m| materials.get(m as usize)).map(|m| m.name.clone()),
-                    depth: setup.depth(x, y),
-                    layer,
-                });
-            }
-        }
-    }
-    found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.facet.cmp(&b.facet)));
-    Ok(found)
+    let surface = |(facet, depth, layer)| {
+        let (surface, mesh, material) = named(session, facet);
+        Surface { facet, surface, mesh, material, depth, layer }
+    };
+    Ok(facets_at(&view, center(&view, pixel)).into_iter().map(surface).collect())
 }
 
 /// Scan converts a facet; `None` if a clipping plane cuts it, so that its corners are not all on the screen.
@@ -368,12 +417,13 @@ fn center(view: &PreparedView<'_>, pixel: [u32; 2]) -> [i32; 2] {
     [0, 1].map(|k| pixel[k] as i32 * SUBPIXEL + offset[k])
 }
 
-/// Lets an algorithm make the picture, and looks on.
+/// Lets an algorithm make the picture, or the pixel's tile of it, and looks on.
 fn decide(
     renderer: &Renderer,
     camera: &Camera,
     pixel: [u32; 2],
     entrant: &Entrant,
+    tile_only: bool,
     time_limit: Option<f64>,
 ) -> Result<Decision, Error> {
     let settings = Settings { coherence: None, ..entrant.settings(&renderer.settings) };
@@ -384,7 +434,11 @@ fn decide(
     let execution = Execution { budget, observer: Some(Arc::clone(&onlooker) as Arc<dyn Observer>), ..own.clone() };
     let session: &Session = renderer.session();
     let culled = &mut CullCounters::default();
-    let view = PreparedView::new(session, camera, &settings, viewport, SamplePattern::new(1), &execution, culled);
+    let mut view = PreparedView::new(session, camera, &settings, viewport, SamplePattern::new(1), &execution, culled);
+    if tile_only {
+        let [column, row] = pixel.map(|v| v / TILE as u32);
+        view.limit_to_tile((row * viewport.tiles_x() + column) as usize);
+    }
     let mut grid = TileGrid::new(viewport, 1);
     let resolved = entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &NullSink);
     let (tile, at) = grid.locate(pixel[0], pixel[1]);
@@ -399,78 +453,6 @@ fn decide(
     })
 }
 
-impl fmt::Display for Explanation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y] = self.pixel;
-        writeln!(f, "pixel {x},{y}: {} surface(s) cover its centre, the nearest first", self.surfaces.len())?;
-        for s in &self.surfaces {
-            let material = s.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
-            let layer = if s.layer { ", transparent" } else { "" };
-            let (facet, surface) = (s.facet, s.surface);
-            writeln!(f, "  depth {:.7}  facet {facet} (surface {surface}, {}{material}{layer})", s.depth, s.mesh)?;
-        }
-        if let Some(gouraud) = &self.gouraud {
-            write!(f, "{gouraud}")?;
-        }
-        for d in &self.decisions {
-            match (&d.limit, d.facet, d.depth) {
-                (Some(limit), ..) => writeln!(f, "{}: {limit}", d.algorithm)?,
-                (None, Some(facet), Some(depth)) => writeln!(f, "{}: facet {facet} at depth {depth:.7}", d.algorithm)?,
-                _ => writeln!(f, "{}: background", d.algorithm)?,
-            }
-            for step in &d.steps {
-                writeln!(f, "  {step}")?;
-            }
-        }
-        if !self.rays.is_empty() {
-            writeln!(f, "ray tracing: {} ray(s)", self.rays.len())?;
-        }
-        self.rays.iter().try_for_each(|ray| write!(f, "{ray}"))
-    }
-}
-
-impl fmt::Display for TracedRay {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let three = |[x, y, z]: [f64; 3]| format!("({x:.4}, {y:.4}, {z:.4})");
-        let rgb = |color: [f32; 3]| three(color.map(f64::from));
-        let (from, towards) = (three(self.origin), three(self.direction));
-        write!(f, "  after {} turn(s), from {from} towards {towards}: ", self.turns)?;
-        match &self.meets {
-            Some(met) => {
-                let material = met.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
-                let (facet, surface, distance) = (met.facet, met.surface, met.distance);
-                write!(f, "facet {facet} (surface {surface}, {}{material}) at {distance:.4}", met.mesh)?;
-            }
-            None => write!(f, "background")?,
-        }
-        writeln!(f, "; counts {}, adds {}", rgb(self.weight), rgb(self.light))?;
-        for turn in &self.goes_on {
-            let ([before, after], [n1, n2]) = (turn.angles_degrees, turn.indices);
-            let bent = format!("at {before:.4} degrees in {n1}, goes on at {after:.4} in {n2}");
-            let (direction, weight) = (three(turn.direction), rgb(turn.weight));
-            writeln!(f, "    {} {bent}, towards {direction}; counts {weight}", turn.way.name())?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for Gouraud {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rgb = |[r, g, b]: [f64; 3]| format!("{r:.6} {g:.6} {b:.6}");
-        writeln!(f, "Gouraud shading of facet {}, on the screen:", self.facet)?;
-        for (number, ([x, y], intensity)) in self.corners.iter().zip(self.intensities).enumerate() {
-            writeln!(f, "  corner {number} at {x:.3},{y:.3}: I = {}", rgb(intensity))?;
-        }
-        for (side, edge) in ["left", "right"].iter().zip(&self.edges) {
-            let [u, v] = edge.corners;
-            let (py, at) = (rgb(edge.py), rgb(edge.intensity));
-            writeln!(f, "  {side} edge from corner {u} to {v}: py = {py}; I = {at} at x = {:.3}", edge.x)?;
-        }
-        let (px, intensity, direct) = (rgb(self.px), rgb(self.intensity), rgb(self.direct));
-        writeln!(f, "  span: px = {px}, added {} time(s): I = {intensity}; by weights {direct}", self.additions)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -482,16 +464,16 @@ mod tests {
         (renderer.settings.picture.width, renderer.settings.picture.height) = (64, 48);
         renderer.settings.cull.back_face = false;
         let camera = renderer.frame_camera();
-        let told = explain(&renderer, &camera, [32, 20], None).unwrap();
+        let told = explain(&renderer, &camera, [32, 20], &Deciders::Named(Entrant::all()), None).unwrap();
         assert!(told.surfaces.len() >= 2, "front and back of a cube: {told}");
         assert!(told.surfaces.windows(2).all(|w| w[0].depth >= w[1].depth));
         for d in &told.decisions {
             assert_eq!((d.facet, d.depth), (Some(told.surfaces[0].facet), Some(told.surfaces[0].depth)), "{told}");
             assert!(!d.steps.is_empty(), "{} says why: {told}", d.algorithm);
         }
-        let nothing = explain(&renderer, &camera, [0, 0], None).unwrap();
+        let nothing = explain(&renderer, &camera, [0, 0], &Deciders::Chosen, None).unwrap();
         assert!(nothing.surfaces.is_empty() && nothing.decisions.iter().all(|d| d.facet.is_none()));
-        assert!(explain(&renderer, &camera, [64, 0], None).is_err());
+        assert!(explain(&renderer, &camera, [64, 0], &Deciders::Chosen, None).is_err());
     }
 
     #[test]
@@ -506,7 +488,7 @@ mod tests {
         let picture = renderer.render().unwrap().frame.color.unwrap();
         let mut explained = 0;
         for pixel in [[20, 24], [26, 30], [32, 26], [38, 28], [44, 22]] {
-            let told = explain(&renderer, &camera, pixel, None).unwrap();
+            let told = explain(&renderer, &camera, pixel, &Deciders::Chosen, None).unwrap();
             let Some(g) = &told.gouraud else { continue };
             explained += 1;
             let [left, right] = &g.edges;
@@ -524,6 +506,6 @@ mod tests {
         }
         assert!(explained >= 3);
         renderer.settings.shading.model = Shading::Phong;
-        assert!(explain(&renderer, &camera, [32, 26], None).unwrap().gouraud.is_none());
+        assert!(explain(&renderer, &camera, [32, 26], &Deciders::Chosen, None).unwrap().gouraud.is_none());
     }
 }

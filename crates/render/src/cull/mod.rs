@@ -4,3 +4,4 @@ pub mod backface;
 pub mod bounds_tree;
 pub mod frustum;
 pub(crate) mod opacity;
+pub(crate) mod window;

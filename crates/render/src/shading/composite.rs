@@ -123,13 +123,7 @@ impl Composer {
                 _ => {
                     let mut below = [[0.0; 4]; MOST_SAMPLES];
                     let below = &mut below[..samples];
-                    match source {
-                        Source::Point(point) => below.fill(behind(point)),
-                        Source::Mixed(start) => {
-                            let points = &points.mixed[start as usize..][..samples];
-                            below.iter_mut().zip(points).for_each(|(sample, &point)| *sample = behind(point));
-                        }
-                    }
+                    opaque_of_pixel(source, points, behind, below);
                     if !mine.is_empty() {
                         fragments.clear();
                         fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, constants, marks)));
@@ -148,7 +142,24 @@ impl Composer {
     }
 }
 
-fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4] {
+/// The colours of a pixel's samples without what lies in front: `behind` gives that of a point.
+pub(super) fn opaque_of_pixel(
+    source: Source,
+    points: &Points,
+    behind: impl Fn(u32) -> [f32; 4],
+    below: &mut [[f32; 4]],
+) {
+    match source {
+        Source::Point(point) => below.fill(behind(point)),
+        Source::Mixed(start) => {
+            let points = &points.mixed[start as usize..][..below.len()];
+            below.iter_mut().zip(points).for_each(|(sample, &point)| *sample = behind(point));
+        }
+    }
+}
+
+/// The colour of a pixel with these samples.
+pub(super) fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4] {
     let (count, mut sum) = (samples.len() as f32, [0.0; 4]);
     for color in samples {
         for k in 0..4 {

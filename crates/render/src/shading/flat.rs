@@ -7,7 +7,7 @@
 //! Source: [Foley et al. 1990], 16.2.1.
 
 use super::face_table::FaceTable;
-use super::geometry::{Surface, affine, gather, linear};
+use super::geometry::{Placed, Surface, affine, gather, linear};
 use super::instance_constants::InstanceConstants;
 use super::lighting::{Coefficients, Lighting};
 use super::slots::Slots;
@@ -27,10 +27,23 @@ pub(crate) fn shade<S: Simd>(
     lighting: &Lighting<'_>,
     coefficients: &Coefficients<F32x8<S>>,
 ) -> Reflected<F32x8<S>> {
+    let Placed { position, normal } = placed(simd, (mesh, faces), instance, slots, surface);
+    lighting.reflect(simd, &position, &normal, coefficients)
+}
+
+/// Where each point's face has its centre, and how it is turned.
+#[inline(always)]
+pub(super) fn placed<S: Simd>(
+    simd: S,
+    (mesh, faces): (&Mesh, &FaceTable),
+    instance: &InstanceConstants,
+    slots: &Slots,
+    surface: &Surface<F32x8<S>>,
+) -> Placed<F32x8<S>> {
     let [a, b, c] = surface.positions;
     if faces.centers_and_normals.is_empty() {
         let third = a.x.splat(1.0 / 3.0);
-        return lighting.reflect(simd, &(a + b + c).scale(third), &surface.facet_normal, coefficients);
+        return Placed { position: (a + b + c).scale(third), normal: surface.facet_normal };
     }
     let [center, normal] = gather(
         simd,
@@ -44,5 +57,5 @@ pub(crate) fn shade<S: Simd>(
     let normal = linear(&instance.view_from_model_normal, &normal).normalize();
     // The facet's own normal has been turned to the viewer where both sides are seen: follow it.
     let behind = normal.dot(surface.facet_normal).lt(a.x.splat(0.0));
-    lighting.reflect(simd, &position, &V3::select(behind, -normal, normal), coefficients)
+    Placed { position, normal: V3::select(behind, -normal, normal) }
 }

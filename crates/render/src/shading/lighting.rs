@@ -35,6 +35,15 @@ impl<T: Lanes> Coefficients<T> {
         }
     }
 
+    /// The part of light from everywhere that is reflected diffusely.
+    #[inline(always)]
+    pub(super) fn diffuse_part(&self) -> V3<T> {
+        match self {
+            Self::Empirical(k) => k.kd,
+            Self::Microfacet(m) => m.base_color.scale(-m.metallic + 1.0),
+        }
+    }
+
     /// The way back.
     #[inline(always)]
     pub(super) fn from_numbers(model: Model, n: [T; NUMBERS]) -> Self {

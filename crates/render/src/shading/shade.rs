@@ -7,7 +7,7 @@ use super::face_table::FaceTable;
 use super::facets::FacetTable;
 use super::geometry::{F, Record, Surface, surface};
 use super::hits::Hit;
-use super::lighting::{Coefficients, lighting};
+use super::lighting::lighting;
 use super::material_constants::MaterialConstants;
 use super::model::Model;
 use super::points::Points;
@@ -149,10 +149,7 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     // Reflect the lights, and the light of other surfaces.
     let mut reflected = reflect_lights(simd, eight, &parameters, &surface, constants);
     if let (Some(solution), true) = (constants.radiosity, is_lit) {
-        let kd = match parameters.coefficients(simd, material, parameters.base) {
-            Coefficients::Empirical(k) => k.kd,
-            Coefficients::Microfacet(m) => m.base_color.scale(-m.metallic + 1.0),
-        };
+        let kd = parameters.coefficients(simd, material, parameters.base).diffuse_part();
         reflected.diffuse = reflected.diffuse + kd.times(irradiance(simd, solution, subject, slots, &surface));
     }
 
@@ -274,7 +271,7 @@ fn put_bounces<S: Simd>(
 
 /// What arrives at eight points from other surfaces.
 #[inline(always)]
-fn irradiance<S: Simd>(
+pub(super) fn irradiance<S: Simd>(
     simd: S,
     solution: &Solution,
     subject: &Subject<'_>,

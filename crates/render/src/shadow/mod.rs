@@ -11,6 +11,7 @@
 //! [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
 //! coloured by its filter where transparency is filtered; a cut-out one lets light through its holes.
 
+mod blocker;
 mod casters;
 mod facet;
 mod hash;
@@ -25,6 +26,7 @@ pub mod scan_line;
 mod sources;
 pub mod volume;
 
+pub(crate) use blocker::blocker;
 pub(crate) use facet::{facet, weighted, weights};
 pub(crate) use hash::hash;
 pub(crate) use occluders::{Occluders, texel};

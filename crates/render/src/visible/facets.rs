@@ -187,14 +187,15 @@ pub(super) fn fill_with(
     budget.begin("tiles", grid.tiles.len() as u64);
     facets.execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
         // After a limit, the rest of the pieces are passed over.
-        if outcome.is_limit() {
+        let wanted = |tile: usize| facets.view.makes_tile(tile);
+        if outcome.is_limit() || !(piece * chunk..piece * chunk + tiles.len()).any(wanted) {
             return;
         }
         tiles.iter_mut().for_each(Tile::clear);
         let (first, mut counters) = (piece * chunk, VisibilityCounters::default());
         let filled = fill(facets, first, tiles, &mut counters);
         if filled.is_ok() {
-            for (i, tile) in tiles.iter_mut().enumerate() {
+            for (i, tile) in tiles.iter_mut().enumerate().filter(|(i, _)| wanted(first + i)) {
                 facets.finish(first + i, tile, marks, sink, collect);
                 budget.advance();
             }

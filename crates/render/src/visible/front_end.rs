@@ -10,6 +10,7 @@
 
 use super::jobs::{Job, jobs, rounds};
 use super::near_first::near_first;
+use crate::prepare::PreparedInstance;
 use crate::stats::GeometryStats;
 use crate::{Execution, PreparedView, Session};
 use std::ops::Range;
@@ -18,6 +19,12 @@ use vitral_raster::{Batch, Draw, ScreenVertex, Setup, TileLists, transform};
 
 /// Vertices in one piece of work.
 const VERTICES_A_JOB: usize = 4096;
+
+/// Vertices of which all or none are transformed, where few triangles of a mesh are drawn.
+const VERTICES_A_BLOCK: usize = 128;
+
+/// Where less than this part of a mesh's triangles is drawn, its vertices are searched for those that are needed.
+const SPARSE: usize = 2;
 
 /// Bytes of a triangle: its setup, its entry in a tile's list, and what becomes of that when the lists are sorted.
 pub(super) const BYTES_A_TRIANGLE: u64 = size_of::<Setup>() as u64 + 16;
@@ -73,16 +80,24 @@ impl<'v, 'a> FrontEnd<'v, 'a> {
             }
         }
 
-        // Cut their vertices into pieces. Pages of new memory are first touched by the threads that fill them.
+        // Cut the vertices that their triangles need into pieces. Pages of new memory are first touched by the threads that fill
+        // them; vertices between the pieces are never looked at.
         let mut spare = self.view.session.spare_vertices.lock().expect("spare vertices");
         let mut work = Vec::new();
-        for (draw, out) in needed.iter().zip(self.vertices.iter_mut()) {
+        for (item, (draw, out)) in needed.iter().zip(self.vertices.iter_mut()).enumerate() {
             let Some(draw) = draw else { continue };
             *out = spare.pop().unwrap_or_else(|| bytemuck::zeroed_vec(draw.positions.len()));
             out.resize(draw.positions.len(), ScreenVertex::default());
-            self.stats.vertices += draw.positions.len() as u64;
-            let chunks = draw.positions.chunks(VERTICES_A_JOB).zip(out.chunks_mut(VERTICES_A_JOB));
-            work.extend(chunks.map(|(positions, out)| (positions, &draw.clip_from_model, out)));
+            let mut rest = (0, out.as_mut_slice());
+            for piece in needed_vertices(&self.view.instances[item], draw) {
+                let (start, end) = (piece.start, piece.end);
+                let (_, behind) = rest.1.split_at_mut(start - rest.0);
+                let (own, behind) = behind.split_at_mut(end - start);
+                rest = (end, behind);
+                self.stats.vertices += (end - start) as u64;
+                let chunks = draw.positions[piece].chunks(VERTICES_A_JOB).zip(own.chunks_mut(VERTICES_A_JOB));
+                work.extend(chunks.map(|(positions, out)| (positions, &draw.clip_from_model, out)));
+            }
         }
         drop(spare);
 
@@ -141,6 +156,33 @@ impl Drop for FrontEnd<'_, '_> {
             spare.extend(self.vertices.drain(..).filter(|v| v.capacity() > 0));
         }
     }
+}
+
+/// The vertices, in pieces, that an instance's draws need; `draw` is one of them. All where most triangles are drawn: the
+/// search would cost more than it saves.
+fn needed_vertices(instance: &PreparedInstance<'_>, draw: &Draw<'_>) -> Vec<Range<usize>> {
+    let vertices = draw.positions.len();
+    let ranges = || instance.opaque.iter().chain(&instance.layered).flat_map(|d| d.ranges.iter().cloned());
+    let drawn: usize = ranges().map(|range| range.len()).sum();
+    if drawn > draw.triangles.len() / SPARSE {
+        let all = 0..vertices;
+        return vec![all];
+    }
+
+    // Mark the blocks that hold a corner, and join neighbouring ones.
+    let mut marked = vec![false; vertices.div_ceil(VERTICES_A_BLOCK)];
+    for triangles in ranges().map(|range| &draw.triangles[range.start as usize..range.end as usize]) {
+        triangles.as_flattened().iter().for_each(|&corner| marked[corner as usize / VERTICES_A_BLOCK] = true);
+    }
+    let mut pieces: Vec<Range<usize>> = Vec::new();
+    for (block, _) in marked.iter().enumerate().filter(|(_, marked)| **marked) {
+        let (start, end) = (block * VERTICES_A_BLOCK, ((block + 1) * VERTICES_A_BLOCK).min(vertices));
+        match pieces.last_mut() {
+            Some(last) if last.end == start => last.end = end,
+            _ => pieces.push(start..end),
+        }
+    }
+    pieces
 }
 
 /// All triangles of a view, set up and sorted by tiles: whether they are layers, in order. `None` if there are too many to be

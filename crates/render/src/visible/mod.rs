@@ -5,6 +5,7 @@ pub mod brute_force;
 pub mod bsp;
 mod cut;
 mod facets;
+pub mod fates;
 mod front_end;
 mod jobs;
 mod near_first;

@@ -50,7 +50,7 @@ pub(super) fn each_tile(
     let outcome = Outcome::new();
     execution.budget.begin("tiles", grid.tiles.len() as u64);
     execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tiles| {
-        if outcome.is_limit() {
+        if outcome.is_limit() || !view.makes_tile(index) {
             return;
         }
         let (tile, mut layers) = (&mut tiles[0], view.layer_list());

@@ -53,6 +53,9 @@ impl VisibleSurface for ZBuffer {
             // Draw them, tile by tile; the last round finishes the tiles.
             let round = Round { batches, is_first: number == 0, is_last: number + 1 == rounds.len() };
             execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tile| {
+                if !view.makes_tile(index) {
+                    return;
+                }
                 if sink.keeps_tiles() || rounds.len() > 1 {
                     tiles.draw(&round, index, &mut tile[0]);
                 } else {

@@ -78,6 +78,21 @@ fn p10_one_test_rejects_a_million_triangles() {
 }
 
 #[test]
+fn p10_a_close_up_of_a_large_mesh_transforms_the_vertices_near_by_alone() {
+    let mut renderer = exact(Scene::from_mesh(solids::grid_torus(100_000)), 120, 90);
+    renderer.settings.picture.samples = 4;
+    for (distance, most) in [(0.05, 20_000), (0.2, 30_000), (4.0, 60_000)] {
+        let position = DVec3::new(1.0, 0.0, 0.3 + distance);
+        renderer.camera = Some(Camera { position, focal_point: DVec3::new(1.0, 0.05, 0.0), ..on_z(1.0, 0.4) });
+        let near = culled(&mut renderer, true, true);
+        let all = culled(&mut renderer, false, true);
+        assert!(near.frame == all.frame, "{distance}");
+        let vertices = near.stats.geometry.vertices;
+        assert!(vertices > 0 && vertices <= most && vertices <= all.stats.geometry.vertices, "{distance}: {vertices}");
+    }
+}
+
+#[test]
 fn p14_about_half_of_a_closed_mesh_faces_away() {
     for mesh in [solids::sphere(1.0, 64, 32), solids::torus(1.0, 0.4, 64, 32), solids::cuboid(DVec3::ONE)] {
         let name = mesh.name.clone();

@@ -13,6 +13,7 @@ mod interpolation;
 mod lighting;
 mod marks;
 mod normal_maps;
+mod pixel_light;
 mod ray_trace;
 mod realism;
 mod robust;

@@ -2,7 +2,7 @@
 
 use super::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
 use std::sync::{Arc, Mutex};
-use vitral::explain::explain;
+use vitral::explain::{Deciders, explain};
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
 use vitral::internals::render::stats::TracingCounters;
 use vitral::internals::render::trace::{Observer, Step, Way};
@@ -66,7 +66,7 @@ fn t4_refraction_changes_which_polygon_is_seen_in_p_and_q() {
 fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
     let ids = |r: &Renderer, point: DVec3| {
         let p = project(r, point);
-        let told = explain(r, &r.frame_camera(), [p.x as u32, p.y as u32], None).unwrap();
+        let told = explain(r, &r.frame_camera(), [p.x as u32, p.y as u32], &Deciders::Chosen, None).unwrap();
         let behind = told.surfaces.iter().find(|s| !s.layer).expect("something opaque lies straight on");
         (behind.surface, behind.material.clone(), told)
     };

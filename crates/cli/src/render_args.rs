@@ -196,8 +196,8 @@ pub(crate) struct LightArgs {
     /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::checked)]
     pub(crate) light: Vec<String>,
-    /// Multiplies all lights [default: 1, and what brings a model's own lights to where a picture shows them: files have
-    /// them in candela and lux]
+    /// Multiplies all lights [default: 1, and for a model's photometric lights, which glTF has in candela and lux, the
+    /// exposure that a picture shows well]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f32>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]

@@ -35,6 +35,10 @@ fn rows<T: Row + Sync>() -> impl TypedValueParser<Value = Choice<T>> {
     of(Choice::<T>::all().map(|choice| (choice, choice.name(), choice.description())))
 }
 
+pub(crate) fn exercise() -> impl TypedValueParser<Value = &'static str> {
+    of(vitral::EXERCISES.map(|exercise| (exercise.number, exercise.number, exercise.task)))
+}
+
 pub(crate) fn visibility() -> impl TypedValueParser<Value = Visibility> {
     rows()
 }

@@ -15,7 +15,7 @@ use vitral::{
 #[derive(Args, Debug, Default)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct RenderArgs {
-    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
+    #[arg(required_unless_present_any = ["load_state", "exercise"], value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
@@ -27,6 +27,8 @@ pub(crate) struct RenderArgs {
     pub(crate) light: LightArgs,
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
+    #[command(flatten)]
+    pub(crate) lab: LabArgs,
     #[command(flatten)]
     pub(crate) process: ProcessArgs,
     #[command(flatten)]
@@ -197,8 +199,8 @@ pub(crate) struct LightArgs {
     /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::checked)]
     pub(crate) light: Vec<String>,
-    /// Multiplies all lights [default: 1, and what brings a model's own lights to where a picture shows them: files have
-    /// them in candela and lux]
+    /// Multiplies all lights [default: 1, and for a model's photometric lights, which glTF has in candela and lux, the
+    /// exposure that a picture shows well]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f32>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
@@ -257,6 +259,30 @@ pub(crate) struct CameraArgs {
     #[arg(long)]
     pub(crate) camera_orthographic: bool,
 }
+
+/// The course's program Lab3D.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Lab3D")]
+pub(crate) struct LabArgs {
+    /// Start from the scene, lights and settings of an exercise of the course; models and options override them
+    #[arg(long, value_name = "NUMBER", value_parser = choices::exercise())]
+    pub(crate) exercise: Option<&'static str>,
+    /// Turn the eye, which looks along -z at first: degrees about x, then y, then z. Alone it frames the model
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
+    pub(crate) eye_rotation: Option<DVec3>,
+    /// Where the eye is
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
+    pub(crate) eye_translation: Option<DVec3>,
+    /// Turn all objects together, not the lights: degrees about x, then y, then z
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) all_rotation: Option<DVec3>,
+    /// Move all objects together after that
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) all_translation: Option<DVec3>,
+}
+
+/// Options that place a camera as the eye of Lab3D does.
+const OTHER_CAMERAS: [&str; 5] = ["view", "camera_index", "camera_position", "camera_focal_point", "camera_direction"];
 
 /// Files and limits.
 #[derive(Args, Debug, Default)]

@@ -183,7 +183,7 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Came
         drawn.different |= wanted && plan.reference.is_some();
         for output in plan.outputs.iter().filter(|_| wanted) {
             let path = output.path(&model, number)?;
-            output.write(&path, &rendered.frame, &options)?;
+            output.write(&path, &rendered.frame, &EncodeOptions { exposure: rendered.exposure, ..options })?;
             drawn.written.push(path.to_string_lossy().into_owned());
             if args.report.verbose && !output.is_standard() {
                 report::line(&format!("wrote {}", path.display()));
@@ -192,6 +192,7 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Came
         if args.report.stats || args.report.stats_file.is_some() {
             let mut stats = serde_json::to_value(&rendered.stats).map_err(|e| Failure::other(e.to_string()))?;
             stats["frame"] = json!(number);
+            stats["exposure"] = json!(rendered.exposure);
             stats["seconds"]["encode"] = json!(encode_start.elapsed().as_secs_f64());
             drawn.frames.push(stats);
         }

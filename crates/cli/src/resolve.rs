@@ -3,7 +3,7 @@
 use crate::compare_command;
 use crate::light_spec;
 use crate::outputs::{Output, model_name};
-use crate::render_args::{AlgorithmArgs, CameraArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
+use crate::render_args::{AlgorithmArgs, CameraArgs, LabArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::{self, Failure};
 use crate::values;
 use std::io::ErrorKind;
@@ -74,6 +74,9 @@ fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     if !args.models.is_empty() {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }
+    if let Some(number) = args.lab.exercise {
+        state.start_exercise(number)?;
+    }
     set_picture(state, &args.picture);
     set_algorithms(state, &args.algorithms)?;
     let files = [("--save-radiosity", &args.output.save_radiosity), ("--load-radiosity", &args.output.load_radiosity)];
@@ -84,6 +87,7 @@ fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     }
     set_lights(state, &args.light)?;
     set_viewpoint(&mut state.viewpoint, &args.camera);
+    set_lab(state, &args.lab);
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
@@ -354,6 +358,16 @@ fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
     state.light_intensity = args.light_intensity.or(state.light_intensity);
     state.materials.extend(args.material.iter().cloned());
     Ok(())
+}
+
+/// The eye and the objects of Lab3D.
+fn set_lab(state: &mut State, args: &LabArgs) {
+    let viewpoint = &mut state.viewpoint;
+    viewpoint.eye_rotation = args.eye_rotation.map(|v| v.to_array()).or(viewpoint.eye_rotation);
+    viewpoint.eye_translation = args.eye_translation.map(|v| v.to_array()).or(viewpoint.eye_translation);
+    let objects = &mut state.objects;
+    objects.rotation = args.all_rotation.map_or(objects.rotation, |v| v.to_array());
+    objects.translation = args.all_translation.map_or(objects.translation, |v| v.to_array());
 }
 
 fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {

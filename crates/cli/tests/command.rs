@@ -444,6 +444,35 @@ fn paths_in_a_state_file_begin_in_its_folder() {
 }
 
 #[test]
+fn exercises_of_the_course_start_from_their_scenes() {
+    let folder = Folder::new("exercises");
+    let picture = |number: &str, more: &[&str]| {
+        let arguments = [&["--exercise", number, "-o", "a.png", "--save-state", "s.json"], more].concat();
+        let output = render(&folder, &arguments);
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        folder.read("a.png")
+    };
+    let pictures = ["4.1", "4.2", "4.3", "5.1", "5.2"].map(|number| picture(number, &[]));
+    for (i, one) in pictures.iter().enumerate() {
+        assert!(!pictures[..i].contains(one), "exercise {i} looks like another");
+    }
+    // The state holds what the exercise set, and options override it.
+    let again = render(&folder, &["--load-state", "s.json", "-o", "b.png"]);
+    assert_eq!((code(&again), folder.read("b.png")), (0, pictures[4].clone()), "{}", errors(&again));
+    assert_ne!(picture("4.3", &["--lighting", "on"]), pictures[2]);
+    for option in
+        ["--eye-rotation=-20,30,0", "--eye-translation=1,1,20", "--all-rotation=0,30,0", "--all-translation=0,3,0"]
+    {
+        let moved = picture("4.1", &[option, "--background-color", "black"]);
+        assert_ne!(moved, picture("4.1", &["--background-color", "black"]), "{option}");
+    }
+    let unknown = render(&folder, &["--exercise", "6.1", "-o", "b.png"]);
+    let listed = ["4.1", "4.2", "4.3", "5.1", "5.2"].iter().all(|number| errors(&unknown).contains(number));
+    assert!(code(&unknown) == 2 && listed, "{}", errors(&unknown));
+    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "b.png", "--view", "top", "--eye-rotation", "0,0,0"])), 2);
+}
+
+#[test]
 fn comparing_pictures() {
     let folder = Folder::new("compare");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.png"])), 0);

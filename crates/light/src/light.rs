@@ -26,6 +26,8 @@ pub struct Light {
     pub enabled: bool,
     /// Casts shadows, where a shadow algorithm is chosen.
     pub shadow: bool,
+    /// Intensities are candela or lux, divided by pi, not shares of white: pictures are exposed for them.
+    pub photometric: bool,
 }
 
 impl Default for Light {
@@ -39,6 +41,7 @@ impl Default for Light {
             attenuation: Attenuation::None,
             enabled: true,
             shadow: true,
+            photometric: false,
         }
     }
 }

@@ -1,70 +1,92 @@
-//! How far a scene's own lights are dimmed for a picture: files have them in candela and lux, often tens of thousands, and a
-//! picture shows 0 to 1.
+//! Exposure of photometric lights: files have them in candela and lux, often tens of thousands, and a picture shows 0 to 1.
 //!
-//! Idea: a light meter held to the model. Some thousand places, spread evenly over its triangles, tell what Lambert surfaces
-//! get there; the light that nine tenths of the surface do not exceed is brought between 1/2 and 1. That is a power of two, as
-//! cameras count stops, and it depends on scene and lights alone: pictures from all sides of a turntable agree. Lights that a
-//! picture shows well enough are left as they are.
+//! Idea: a light meter held to the model. Some thousand points, spread evenly over its triangles, tell the light that white
+//! Lambert surfaces get there. The mean of its logarithm, weighted by area and by the square root of the light itself, is the
+//! reading: unlit parts have no weight, and a spot next to a lamp has little. The reading is brought between 1/8 and 1/2; one
+//! that lies there is left alone. Every step is continuous, so a lamp that moves a little changes the picture a little.
 //!
-//! In:   instances and lights in world space. What lies between them is not looked at.
-//! Out:  the factor for all lights.
-//! Cost: linear in the places times the lights.
-//! Source: places by the sequence of [Roberts 2018]; exposure by a percentile is photographers' practice; the numbers are ours.
+//! Only lights marked as photometric are scaled. All other light, ambient light included, is shown by its numbers, and leaves
+//! the photometric lights that much less room. The reading depends on scene and lights alone: pictures from all sides of a
+//! turntable agree.
+//!
+//! In:   instances and lights in world space. Occlusion is not considered.
+//! Out:  the factor for the photometric lights.
+//! Cost: linear in the points times the lights.
+//! Source: points by the sequence of [Roberts 2018]; log-average metering is photographers' practice; the numbers are ours.
 
 use crate::{Instance, World};
-use vitral_light::PreparedLight;
+use vitral_light::{PreparedLight, Rgb};
 use vitral_math::lanes::V3;
-use vitral_math::{DMat4, DVec3};
+use vitral_math::{DMat4, DVec3, func};
 
-/// Places at which light is measured.
-const PLACES: u32 = 4096;
-/// The part of the surface that gets no more light than what counts.
-const PART: f64 = 0.9;
-/// Lights whose measure lies between these are left as they are: a white surface is a dark grey, or much of it is white.
-const SHOWN: [f32; 2] = [1.0 / 16.0, 2.0];
+/// Points at which light is measured.
+const POINTS: u32 = 4096;
+/// Readings between these need no exposure: half-lit white surfaces are a dark grey, or the best lit ones are just white.
+const SHOWN: [f64; 2] = [0.125, 0.5];
 /// Multiples of these, less their whole parts, fill a square evenly: the inverses of the root of `x³ = x + 1` and of its square.
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 /// Shares of red, green and blue in the brightness of linear colours ([sRGB]).
 const BRIGHTNESS: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-/// What to multiply the lights of a world with; 1 where pictures show them well, or where they reach nothing.
-pub fn exposure(world: &World) -> f32 {
-    let measured = measure(world);
-    if measured < f32::MIN_POSITIVE || (SHOWN[0]..=SHOWN[1]).contains(&measured) {
-        return 1.0;
-    }
-    // The whole number not below the logarithm, read off the bits: the same on every machine.
-    let bits = measured.to_bits();
-    let stops = (bits >> 23).cast_signed() - 127 + i32::from(bits & 0x007f_ffff != 0);
-    f32::from_bits(((127 - stops).clamp(1, 254) as u32) << 23)
+/// Light on the surfaces of a world, measured once and good for any ambient light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LightMeter {
+    /// Reading of the photometric lights alone; 0 where they reach nothing.
+    photometric: f64,
+    /// Reading of all other lights.
+    other: f64,
 }
 
-/// The light that [`PART`] of the surface do not exceed.
-fn measure(world: &World) -> f32 {
-    let lights: Vec<_> = world.lights.iter().filter_map(|light| PreparedLight::new(light, &DMat4::IDENTITY)).collect();
+impl LightMeter {
+    /// Measures the lights of a world.
+    pub fn read(world: &World) -> Self {
+        // Most scenes have no photometric lights, and then nothing is to be measured.
+        if !world.lights.iter().any(|light| light.photometric) {
+            return Self::default();
+        }
+        Self { photometric: reading(world, true), other: reading(world, false) }
+    }
+
+    /// The factor for the photometric lights under `ambient` light; 1 without such lights, or where they reach nothing.
+    pub fn exposure(&self, ambient: Rgb) -> f32 {
+        if self.photometric <= 0.0 {
+            return 1.0;
+        }
+        let other = self.other + (0..3).map(|k| f64::from(BRIGHTNESS[k] * ambient[k])).sum::<f64>();
+        // Other light leaves less room, but never less than the dark end: lights that are there must be seen.
+        let least = (SHOWN[0] - other).max(0.0);
+        let most = (SHOWN[1] - other).max(SHOWN[0]);
+        let factor = self.photometric.clamp(least, most) / self.photometric;
+        factor.clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX)) as f32
+    }
+}
+
+/// The reading of the lights that are photometric, or of those that are not.
+fn reading(world: &World, photometric: bool) -> f64 {
+    let chosen = world.lights.iter().filter(|light| light.photometric == photometric);
+    let lights: Vec<_> = chosen.filter_map(|light| PreparedLight::new(light, &DMat4::IDENTITY)).collect();
     if lights.is_empty() || world.facet_count == 0 {
         return 0.0;
     }
-    let mut found: Vec<(f32, f64)> = (0..PLACES)
-        .filter_map(|number| {
-            let facet = (u64::from(number) * u64::from(world.facet_count) / u64::from(PLACES)) as u32;
-            let instance = &world.instances[world.instance_of_facet(facet)];
-            let (place, normal, area) = place(instance, facet - instance.first_facet, number)?;
-            let light: f32 = lights.iter().map(|light| brightness(light, place, normal)).sum();
-            light.is_finite().then_some((light, area))
-        })
-        .collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut rest = found.iter().map(|(_, area)| area).sum::<f64>() * PART;
-    let reached = found.iter().find(|(_, area)| {
-        rest -= area;
-        rest <= 0.0
-    });
-    reached.map_or(0.0, |(light, _)| *light)
+    let [mut weights, mut sum] = [0.0; 2];
+    for number in 0..POINTS {
+        let facet = (u64::from(number) * u64::from(world.facet_count) / u64::from(POINTS)) as u32;
+        let instance = &world.instances[world.instance_of_facet(facet)];
+        let Some((point, normal, area)) = surface_point(instance, facet - instance.first_facet, number) else {
+            continue;
+        };
+        let light: f64 = lights.iter().map(|light| f64::from(brightness(light, point, normal))).sum();
+        if light.is_finite() && light > 0.0 {
+            let weight = area * light.sqrt();
+            weights += weight;
+            sum += weight * func::ln(light);
+        }
+    }
+    if weights > 0.0 { func::exp(sum / weights) } else { 0.0 }
 }
 
-/// A place in an instance's triangle with the unit normal there and the triangle's area, world space; none if it has no area.
-fn place(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
+/// A point in an instance's triangle with the unit normal there and the triangle's area, world space; none if it has no area.
+fn surface_point(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
     let [a, b, c] = instance.mesh.triangles[triangle as usize].map(|corner| {
         let position = DVec3::from_array(instance.mesh.positions[corner as usize].map(f64::from));
         instance.world_from_model.transform_point3(position)
@@ -80,22 +102,24 @@ fn place(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec
 }
 
 /// What a white Lambert surface gets from a light, on the side that faces it: files wind triangles either way.
-fn brightness(light: &PreparedLight, place: DVec3, normal: DVec3) -> f32 {
-    let [x, y, z] = place.as_vec3().to_array();
+fn brightness(light: &PreparedLight, point: DVec3, normal: DVec3) -> f32 {
+    let [x, y, z] = point.as_vec3().to_array();
     let [nx, ny, nz] = normal.as_vec3().to_array();
-    let (place, n) = (V3::new(x, y, z), V3::new(nx, ny, nz));
-    let incident = light.incident(place);
+    let (point, n) = (V3::new(x, y, z), V3::new(nx, ny, nz));
+    let incident = light.incident(point);
     let facing = n.dot(incident.l);
     let n = if facing < 0.0 { n.scale(-1.0) } else { n };
-    let arriving = light.irradiance(place, n).unwrap_or(incident.intensity * facing.abs());
+    let arriving = light.irradiance(point, n).unwrap_or(incident.intensity * facing.abs());
     (0..3).map(|k| BRIGHTNESS[k] * light.diffuse[k]).sum::<f32>() * arriving
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Scene, builtin, default_lights, framing, lab};
+    use crate::{Scene, builtin, lab};
     use vitral_light::{Attenuation, Light, LightKind};
+
+    const DARK: Rgb = [0.0; 3];
 
     fn world(name: &str, lights: Vec<Light>) -> World {
         let mut scene: Scene = builtin::scene(name).unwrap();
@@ -106,61 +130,99 @@ mod tests {
 
     fn sun(lux: f32) -> Light {
         let kind = LightKind::Directional { direction: DVec3::new(-1.0, -2.0, -3.0) };
-        Light { kind, diffuse: [lux; 3], specular: [lux; 3], ..Light::default() }
+        Light { kind, diffuse: [lux; 3], specular: [lux; 3], photometric: true, ..Light::default() }
+    }
+
+    fn lamp(candela: f32, position: DVec3) -> Light {
+        Light { kind: LightKind::Point { position }, attenuation: Attenuation::InverseSquare, ..sun(candela) }
+    }
+
+    fn exposure(lights: Vec<Light>, ambient: Rgb) -> f32 {
+        LightMeter::read(&world("teapot", lights)).exposure(ambient)
     }
 
     #[test]
     fn daylight_and_starlight_are_brought_to_what_pictures_show() {
         for lux in [1e-6, 0.01, 3.0, 400.0, 30_000.0, 1e9] {
-            let factor = exposure(&world("teapot", vec![sun(lux)]));
-            let shown = measure(&world("teapot", vec![sun(lux * factor)]));
-            assert!(factor.to_bits() & 0x007f_ffff == 0 && shown > 0.5 && shown <= 1.0, "{lux} lux: {factor}, {shown}");
+            let factor = exposure(vec![sun(lux)], DARK);
+            let shown = reading(&world("teapot", vec![sun(lux * factor)]), true);
+            let end = if lux < 1.0 { SHOWN[0] } else { SHOWN[1] };
+            assert!((shown / end - 1.0).abs() < 1e-4, "{lux} lux: {factor}, {shown}");
         }
-        let lamp = |candela, position| {
-            let kind = LightKind::Point { position };
-            Light { kind, attenuation: Attenuation::InverseSquare, ..sun(candela) }
-        };
-        let box_ = world("teapot", Vec::new()).bounds;
-        let inside = exposure(&world("teapot", vec![lamp(54_000.0, box_.center())]));
-        let far = exposure(&world("teapot", vec![lamp(54_000.0, box_.center() + DVec3::X * 100.0)]));
-        assert!(inside < 1e-3 && far < 1.0 && far > 100.0 * inside, "{inside} {far}");
+        let center = world("teapot", Vec::new()).bounds.center();
+        let inside = exposure(vec![lamp(54_000.0, center)], DARK);
+        let far = exposure(vec![lamp(54_000.0, center + DVec3::X * 100.0)], DARK);
+        assert!(inside < 1e-3 && far > 100.0 * inside, "{inside} {far}");
     }
 
     #[test]
-    fn lights_that_pictures_show_stay_as_they_are() {
-        for lux in [0.1, 0.5, 1.0, 1.9] {
-            assert_eq!(exposure(&world("teapot", vec![sun(lux)])), 1.0, "{lux} lux");
-        }
+    fn a_small_step_of_a_lamp_or_its_strength_is_a_small_step_of_exposure() {
         let bounds = world("teapot", Vec::new()).bounds;
-        let camera = framing::frame(&bounds, crate::View::Iso, crate::Axis::PlusY, crate::Lens::default(), 1.0);
-        assert_eq!(exposure(&world("teapot", default_lights(&camera))), 1.0);
-        assert_eq!(exposure(&world("teapot", lab::lights())), 1.0);
-        // Nothing to dim: no light, none that shines, none that reaches anything, no surface.
-        let off = Light { enabled: false, ..sun(1e5) };
-        let elsewhere = Light {
-            kind: LightKind::Spot {
-                position: DVec3::X * 50.0,
-                direction: DVec3::X,
-                cutoff: 0.3,
-                inner: 0.0,
-                exponent: 0.0,
-            },
-            ..sun(1e5)
+        let size = bounds.max - bounds.min;
+        let walk = |i: u32| {
+            let position = bounds.center() + DVec3::X * size.length() * (1.0 + 0.01 * f64::from(i));
+            exposure(vec![lamp(100.0, position)], DARK)
         };
-        for lights in [vec![], vec![off], vec![elsewhere]] {
-            assert_eq!(exposure(&world("teapot", lights)), 1.0);
+        let strengthen = |i: u32| exposure(vec![sun(1.02_f32.powi(i as i32) * 0.05)], DARK);
+        let brighten = |i: u32| exposure(vec![sun(30.0)], [i as f32 * 0.005; 3]);
+        for step in [&walk as &dyn Fn(u32) -> f32, &strengthen, &brighten] {
+            let factors: Vec<f32> = (0..300).map(step).collect();
+            for pair in factors.windows(2) {
+                // The largest step is that of the ambient light, 0.005 of 0.125.
+                assert!((pair[1] / pair[0]).ln().abs() < 0.042, "{pair:?}");
+            }
+            assert!(factors[0] != factors[299], "the exposure followed");
+        }
+    }
+
+    #[test]
+    fn a_cone_that_slides_off_the_model_does_not_make_the_exposure_jump() {
+        let bounds = world("teapot", Vec::new()).bounds;
+        let reach = (bounds.max - bounds.min).length();
+        let slide = |i: u32| {
+            let position = bounds.center() + DVec3::new(reach * 0.002 * f64::from(i), 0.0, reach * 2.0);
+            let kind = LightKind::Spot { position, direction: DVec3::NEG_Z, cutoff: 0.1, inner: 0.0, exponent: 0.0 };
+            exposure(vec![Light { kind, ..sun(1e5) }], DARK)
+        };
+        let factors: Vec<f32> = (0..200).map(slide).collect();
+        assert!(factors.windows(2).all(|p| (p[1] / p[0]).ln().abs() < 0.3), "{factors:?}");
+    }
+
+    #[test]
+    fn ambient_and_other_light_leaves_less_room() {
+        let alone = exposure(vec![sun(1e4)], DARK);
+        let half = exposure(vec![sun(1e4)], [0.25; 3]);
+        let bright = exposure(vec![sun(1e4)], [7.0; 3]);
+        assert!((half / alone - 0.5).abs() < 1e-3 && (bright / alone - 0.25).abs() < 1e-3, "{alone} {half} {bright}");
+        // Faint lights beside enough other light stay faint.
+        assert_eq!(exposure(vec![sun(1e-3)], [0.3; 3]), 1.0);
+        let other = Light { photometric: false, ..sun(0.3) };
+        assert!(exposure(vec![sun(1e4), other], DARK) < alone);
+    }
+
+    #[test]
+    fn only_photometric_lights_are_exposed() {
+        for intensity in [1e-9, 0.1, 1.0, 1e9] {
+            assert_eq!(exposure(vec![Light { photometric: false, ..sun(intensity) }], DARK), 1.0);
+        }
+        assert_eq!(exposure(lab::lights(), DARK), 1.0);
+        for &(name, _) in builtin::names() {
+            let world = World::new(&builtin::scene(name).unwrap()).unwrap();
+            assert_eq!(LightMeter::read(&world).exposure(DARK), 1.0, "builtin:{name}");
+        }
+    }
+
+    #[test]
+    fn lights_that_reach_nothing_are_not_exposed() {
+        let off = Light { enabled: false, ..sun(1e5) };
+        let (position, direction) = (DVec3::X * 50.0, DVec3::X);
+        let kind = LightKind::Spot { position, direction, cutoff: 0.3, inner: 0.0, exponent: 0.0 };
+        for lights in [vec![], vec![off], vec![Light { kind, ..sun(1e5) }]] {
+            assert_eq!(exposure(lights, DARK), 1.0);
         }
         let mut empty = world("teapot", vec![sun(1e5)]);
         empty.instances.clear();
         empty.facet_count = 0;
-        assert_eq!(exposure(&empty), 1.0);
-    }
-
-    #[test]
-    fn built_in_scenes_are_shown_as_they_are() {
-        for &(name, _) in builtin::names() {
-            let world = World::new(&builtin::scene(name).unwrap()).unwrap();
-            assert_eq!(exposure(&world), 1.0, "builtin:{name}: {}", measure(&world));
-        }
+        assert_eq!(LightMeter::read(&empty).exposure(DARK), 1.0);
     }
 }

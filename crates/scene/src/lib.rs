@@ -37,7 +37,7 @@ pub use axis::{Axis, AxisError};
 pub use camera::{Camera, Projection, ViewTransform};
 pub use default_lights::default_lights;
 pub use edges::{Edge, EdgeKind};
-pub use exposure::exposure;
+pub use exposure::LightMeter;
 pub use extent::{Extent1, Extent2};
 pub use framing::{Lens, View, depth_range, frame};
 pub use mesh::{Attribute, Corners, Faces, FreePart, Mesh, Part, TRIANGLES_A_RUN};

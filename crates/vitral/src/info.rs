@@ -7,7 +7,7 @@ use std::fmt;
 use vitral_exec::Workers;
 use vitral_light::{AlphaMode, Material, Reflectance};
 use vitral_math::{Aabb, DVec3};
-use vitral_scene::{Instance, Mesh, Node, Scene, Topology, World};
+use vitral_scene::{Instance, LightMeter, Mesh, Node, Scene, Topology, World};
 
 pub use lights::{CameraInfo, LightInfo};
 
@@ -41,6 +41,8 @@ pub struct Info {
     pub textures: Vec<TextureInfo>,
     /// The lights, world space.
     pub lights: Vec<LightInfo>,
+    /// The factor of photometric lights in a picture without further ambient light; 1 without such lights.
+    pub exposure: f32,
     /// The scene has no light at all: a picture is lit by default ones.
     pub default_lights: bool,
     /// The cameras.
@@ -235,6 +237,7 @@ pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         materials: scene.materials.iter().map(MaterialInfo::of).collect(),
         textures: scene.textures.iter().map(|t| texture_info(t)).collect(),
         lights: world.lights.iter().map(LightInfo::of).collect(),
+        exposure: LightMeter::read(&world).exposure(scene.ambient),
         default_lights: world.lights.is_empty() && scene.ambient == [0.0; 3],
         cameras: world.cameras.iter().map(CameraInfo::of).collect(),
         ambient: scene.ambient,
@@ -343,6 +346,9 @@ impl fmt::Display for Info {
             writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
         }
         self.lights.iter().try_for_each(|light| writeln!(f, "{light}"))?;
+        if self.exposure != 1.0 {
+            writeln!(f, "exposure: photometric lights are multiplied by {:.4e}", self.exposure)?;
+        }
         if self.default_lights {
             writeln!(f, "no lights: default ones are used, which follow the camera")?;
         }

@@ -49,6 +49,7 @@
 pub mod bench;
 pub mod dump;
 mod error;
+mod exercise;
 pub mod explain;
 mod files;
 pub mod info;
@@ -65,6 +66,7 @@ mod system_clock;
 mod viewpoint;
 
 pub use error::Error;
+pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, read};
 pub use load::{
     LoadOptions, Normals, builtin_names, default_camera, load, load_builtin, load_bytes, load_bytes_with, load_on,
@@ -75,7 +77,7 @@ pub use panels::panels;
 pub use picture::{Channel, EncodeOptions, Picture, PictureFormat};
 pub use renderer::{Moves, Renderer, execution, open};
 pub use shadow_polygons::shadow_polygons;
-pub use state::State;
+pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 

@@ -29,12 +29,15 @@ pub struct Picture {
     pub warnings: Vec<String>,
     /// What the colour bytes mean.
     pub color_space: ColorSpace,
+    /// The factor of the scene's photometric lights ([`Renderer::exposure`](crate::Renderer::exposure)); PNG files name it
+    /// unless it is 1.
+    pub exposure: f32,
 }
 
 impl From<Frame> for Picture {
     /// A frame that was put together by hand, in sRGB.
     fn from(frame: Frame) -> Self {
-        Self { frame, stats: Stats::default(), warnings: Vec::new(), color_space: ColorSpace::Srgb }
+        Self { frame, stats: Stats::default(), warnings: Vec::new(), color_space: ColorSpace::Srgb, exposure: 1.0 }
     }
 }
 
@@ -42,7 +45,7 @@ impl Picture {
     /// What the renderer made in this colour space.
     pub(crate) fn new(rendered: Rendered, color_space: ColorSpace) -> Self {
         let Rendered { frame, stats, warnings } = rendered;
-        Self { frame, stats, warnings, color_space }
+        Self { frame, stats, warnings, color_space, exposure: 1.0 }
     }
 
     /// Width in pixels.
@@ -98,7 +101,8 @@ impl Picture {
 
     /// The options that fit the colour space.
     fn encode_options(&self) -> EncodeOptions {
-        EncodeOptions { srgb: self.color_space == ColorSpace::Srgb, ..EncodeOptions::default() }
+        let srgb = self.color_space == ColorSpace::Srgb;
+        EncodeOptions { srgb, exposure: self.exposure, ..EncodeOptions::default() }
     }
 }
 
@@ -241,17 +245,19 @@ impl PictureFormat {
 }
 
 /// Details of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncodeOptions {
     /// The colour bytes are sRGB; false for the raw colour space, whose PNG names no colour space.
     pub srgb: bool,
     /// 1 (small) to 100 (good).
     pub jpeg_quality: u8,
+    /// The factor of the scene's photometric lights; a PNG of sRGB colours names it unless it is 1.
+    pub exposure: f32,
 }
 
 impl Default for EncodeOptions {
     fn default() -> Self {
-        Self { srgb: true, jpeg_quality: 92 }
+        Self { srgb: true, jpeg_quality: 92, exposure: 1.0 }
     }
 }
 
@@ -338,6 +344,10 @@ fn picture(
     options: &EncodeOptions,
 ) -> Result<Vec<u8>, Error> {
     Ok(match format {
+        // Ids and normals do not depend on lights.
+        PictureFormat::Png if options.exposure != 1.0 && png.srgb => {
+            encode::png_with_text(plane, png, &[("Exposure", &options.exposure.to_string())])?
+        }
         PictureFormat::Png => encode::png(plane, png)?,
         PictureFormat::Jpeg => encode::jpeg(plane, options.jpeg_quality)?,
         PictureFormat::Ppm => encode::ppm(plane)?,

@@ -7,7 +7,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::{DQuat, DVec3};
 use vitral_render::{ColorSpace, Execution, Global, Session, Settings, Shot, radiosity, render};
-use vitral_scene::{Axis, Camera, Lens, Scene, View, World, default_lights, exposure, framing};
+use vitral_scene::{Axis, Camera, Lens, LightMeter, Scene, View, World, default_lights, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
 ///
@@ -35,14 +35,14 @@ pub struct Renderer {
     /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has neither
     /// lights nor ambient light.
     pub lights: Option<Vec<Light>>,
-    /// Multiplies all lights; `None`: 1, and for the scene's own lights what brings them to where pictures show them
-    /// ([`exposure`]), with a warning; not in raw colours.
+    /// Multiplies all lights; `None`: 1, but for the scene's own photometric lights (candela and lux, as in glTF) the
+    /// [exposure](Self::exposure).
     pub light_intensity: Option<f32>,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
     session: Session,
-    /// What brings the scene's own lights to where pictures show them.
-    exposure: f32,
+    /// Light on the scene's surfaces, for the exposure of its photometric lights.
+    meter: LightMeter,
     execution: Execution,
 }
 
@@ -139,7 +139,7 @@ impl Renderer {
             lights: None,
             light_intensity: None,
             ambient: [0.0; 3],
-            exposure: exposure(session.world()),
+            meter: LightMeter::read(session.world()),
             session,
             execution,
         })
@@ -176,7 +176,7 @@ impl Renderer {
     /// A scene whose parts do not fit together; the old one stays.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), Error> {
         self.session = Session::with_workers(Arc::new(scene), &self.execution.workers)?;
-        self.exposure = exposure(self.session.world());
+        self.meter = LightMeter::read(self.session.world());
         Ok(())
     }
 
@@ -219,8 +219,10 @@ impl Renderer {
             None if self.world().lights.is_empty() => default_lights(camera),
             None => self.world().lights.clone(),
         };
-        let factor = self.light_intensity.unwrap_or(self.frame_exposure());
+        let exposure = self.exposure();
         for light in &mut lights {
+            let exposed = if light.photometric { exposure } else { 1.0 };
+            let factor = self.light_intensity.unwrap_or(exposed);
             for color in [&mut light.ambient, &mut light.diffuse, &mut light.specular] {
                 *color = color.map(|c| c * factor);
             }
@@ -228,11 +230,13 @@ impl Renderer {
         lights
     }
 
-    /// What the lights of a picture are multiplied with where no intensity was chosen: 1 unless they are the scene's own.
-    fn frame_exposure(&self) -> f32 {
-        // Raw colours are made of the numbers of the file.
-        let own = self.lights.is_none() && self.light_intensity.is_none();
-        if own && self.settings.picture.color_space != ColorSpace::Raw { self.exposure } else { 1.0 }
+    /// The factor that brings the scene's photometric lights to where pictures show them, for the ambient light of the next
+    /// picture ([`LightMeter`]). 1 for scenes without such lights, for chosen [`lights`](Self::lights) or a chosen
+    /// [`light_intensity`](Self::light_intensity), for unlit pictures, and for raw colours, which are made of the file's numbers.
+    pub fn exposure(&self) -> f32 {
+        let chosen = self.lights.is_some() || self.light_intensity.is_some();
+        let raw = self.settings.picture.color_space == ColorSpace::Raw;
+        if chosen || raw || !self.settings.shading.lighting { 1.0 } else { self.meter.exposure(self.frame_ambient()) }
     }
 
     /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
@@ -271,15 +275,13 @@ impl Renderer {
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
         let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;
-        let exposure = self.frame_exposure();
-        if exposure != 1.0 && self.settings.shading.lighting {
-            let (what, change, factor) =
-                if exposure < 1.0 { ("bright", "dimmed", 1.0 / exposure) } else { ("dark", "brightened", exposure) };
+        let exposure = self.exposure();
+        if exposure != 1.0 {
             rendered.warnings.push(format!(
-                "the scene's lights are too {what} for a picture, {change} {factor} times (--light-intensity 1 leaves them)"
+                "the scene's photometric lights are multiplied by {exposure:.4e} for the picture (--light-intensity 1 leaves them)"
             ));
         }
-        Ok(Picture::new(rendered, self.settings.picture.color_space))
+        Ok(Picture { exposure, ..Picture::new(rendered, self.settings.picture.color_space) })
     }
 
     /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every

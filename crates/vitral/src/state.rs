@@ -8,7 +8,9 @@ use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settin
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
+use vitral_math::DVec3;
 use vitral_render::{Background, ColorSpace};
+use vitral_scene::lab::LabView;
 
 /// The version of the form.
 pub const VERSION: u32 = 1;
@@ -32,6 +34,8 @@ pub struct State {
     pub load: LoadOptions,
     /// Changes of materials, in order.
     pub materials: Vec<MaterialOverride>,
+    /// Where all objects together are moved.
+    pub objects: Objects,
     /// From where the scene is seen.
     pub viewpoint: Viewpoint,
     /// The lights, world space; `null`: the scene's, or default ones.
@@ -46,6 +50,17 @@ pub struct State {
     pub turntable: Option<usize>,
 }
 
+/// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then z, then moved. Lights and
+/// cameras of the scene stay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Objects {
+    /// `allUx, allUy, allUz`, degrees.
+    pub rotation: [f64; 3],
+    /// `allTx, allTy, allTz`.
+    pub translation: [f64; 3],
+}
+
 impl Default for State {
     fn default() -> Self {
         Self {
@@ -53,6 +68,7 @@ impl Default for State {
             models: Vec::new(),
             load: LoadOptions::default(),
             materials: Vec::new(),
+            objects: Objects::default(),
             viewpoint: Viewpoint::default(),
             lights: None,
             light_intensity: None,
@@ -166,7 +182,7 @@ impl State {
         }
     }
 
-    /// Reads the models into one scene and changes its materials.
+    /// Reads the models into one scene, changes its materials and moves its objects.
     ///
     /// # Errors
     /// A model that cannot be read; an override that names what is not there; no model at all.
@@ -188,6 +204,10 @@ impl State {
         let raw = self.settings.picture.color_space == ColorSpace::Raw;
         for change in &self.materials {
             if raw { change.raw().apply(&mut scene)? } else { change.apply(&mut scene)? }
+        }
+        if self.objects != Objects::default() {
+            let [all_u, all_t] = [self.objects.rotation, self.objects.translation].map(DVec3::from_array);
+            LabView { all_u, all_t, ..LabView::default() }.move_objects(&mut scene);
         }
         if let ([up, other, ..], None) = (&scene.ups[..], self.viewpoint.up) {
             let warning =
@@ -272,6 +292,20 @@ mod tests {
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
         assert_eq!(State::from_json(&state.to_json(), "s").unwrap(), state);
         assert_eq!(State::from_json("{}", "s").unwrap(), State::default());
+    }
+
+    #[test]
+    fn l16_objects_are_turned_and_moved_and_lights_stay() {
+        let text = r#"{"models": ["builtin:cubs"], "objects": {"rotation": [0, 90, 0], "translation": [10, 0, 0]}}"#;
+        let moved = State::from_json(text, "s").unwrap();
+        let plain = State { objects: Objects::default(), ..moved.clone() };
+        let [moved, plain] = [moved, plain].map(|s| vitral_scene::World::new(&s.load_scene().unwrap()).unwrap());
+        assert_eq!(moved.lights, plain.lights);
+        let expected = vitral_math::DMat4::from_translation(DVec3::X * 10.0)
+            * vitral_math::DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2);
+        for (a, b) in moved.instances.iter().zip(&plain.instances) {
+            assert!(a.world_from_model.abs_diff_eq(expected * b.world_from_model, 1e-12));
+        }
     }
 
     #[test]

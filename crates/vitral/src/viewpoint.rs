@@ -4,6 +4,7 @@ use crate::names::{serde_axis, serde_view};
 use crate::{Axis, Camera, Error, Lens, Moves, Projection, Renderer, View};
 use serde::{Deserialize, Serialize};
 use vitral_math::{Aabb, DVec3};
+use vitral_scene::lab::LabView;
 
 /// The choices behind a camera. Without any, the model is framed from the default side. Angles are in degrees here,
 /// because people write this.
@@ -18,6 +19,11 @@ pub struct Viewpoint {
     pub up: Option<Axis>,
     /// Start with this camera of the scene, counted from 0, instead of framing.
     pub camera_index: Option<usize>,
+    /// The eye of the course's program Lab3D: turned about x, then y, then z, in degrees; unturned it looks along -z. Alone it frames
+    /// the model. Not beside `camera_index`, `position`, `focal_point` or `direction`.
+    pub eye_rotation: Option<[f64; 3]>,
+    /// Where that eye is, world space.
+    pub eye_translation: Option<[f64; 3]>,
     /// The viewer, world space.
     pub position: Option<[f64; 3]>,
     /// The point looked at, world space.
@@ -50,6 +56,8 @@ impl Default for Viewpoint {
             view: View::default(),
             up: None,
             camera_index: None,
+            eye_rotation: None,
+            eye_translation: None,
             position: None,
             focal_point: None,
             view_up: None,
@@ -151,7 +159,15 @@ impl Viewpoint {
             let hint = if count == 0 { "it has none".to_owned() } else { format!("it has {count}, counted from 0") };
             return Err(Error::usage(format!("the scene has no camera {index}"), hint));
         }
-        let points = [self.position, self.focal_point, self.view_up, self.direction];
+        let has_eye = self.eye_rotation.is_some() || self.eye_translation.is_some();
+        let other = [self.position, self.focal_point, self.direction];
+        if has_eye && (self.camera_index.is_some() || other.iter().any(Option::is_some)) {
+            let hint =
+                "leave out the eye's rotation and translation, or camera-index, position, focal-point and direction";
+            return Err(Error::usage("the camera is given twice", hint));
+        }
+        let eye = [self.eye_rotation, self.eye_translation];
+        let points = [self.position, self.focal_point, self.view_up, self.direction, eye[0], eye[1]];
         let clip = self.clip.map_or([0.0, 1.0], |(near, far)| [near, far]);
         let numbers = [self.zoom_factor, self.azimuth_degrees, self.elevation_degrees, clip[0], clip[1]];
         if !points.iter().flatten().flatten().chain(&numbers).all(|n| n.is_finite()) {
@@ -168,10 +184,22 @@ impl Viewpoint {
         Ok(())
     }
 
+    /// The camera of Lab3D's eye. Its focal point is the point on its axis that is nearest to the scene's middle.
+    fn eye(&self, renderer: &Renderer) -> Camera {
+        let [eye_u, eye_t] =
+            [self.eye_rotation, self.eye_translation].map(|v| DVec3::from_array(v.unwrap_or_default()));
+        let eye = LabView { eye_u, eye_t, ..LabView::default() }.camera(renderer.frame_camera().projection);
+        if self.eye_translation.is_none() {
+            return renderer.framed_from(eye.position - eye.focal_point, eye.view_up);
+        }
+        aimed_at(&renderer.world().bounds, eye)
+    }
+
     /// The camera: a framed one or the scene's, its parts replaced, then moved.
     fn camera(&self, renderer: &Renderer) -> Camera {
         let point = DVec3::from_array;
         let mut camera = match self.camera_index {
+            None if self.eye_rotation.is_some() || self.eye_translation.is_some() => self.eye(renderer),
             Some(index) => aimed_at(&renderer.world().bounds, renderer.world().cameras[index]),
             None => match self.direction {
                 Some(direction) if self.position.is_none() && self.focal_point.is_none() => {
@@ -237,6 +265,28 @@ mod tests {
         let moved = camera(Viewpoint { azimuth_degrees: 90.0, zoom_factor: 2.0, ..place }).unwrap();
         assert!(moved.position.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-12), "{moved:?}");
         assert_eq!(moved.projection, plain.zoomed(2.0).projection);
+    }
+
+    #[test]
+    fn l16_the_eye_of_lab3d_is_turned_and_placed() {
+        let eye = Viewpoint {
+            eye_rotation: Some([10.0, -35.0, 7.0]),
+            eye_translation: Some([1.0, 2.0, 9.0]),
+            ..Viewpoint::default()
+        };
+        let lab =
+            LabView { eye_u: DVec3::new(10.0, -35.0, 7.0), eye_t: DVec3::new(1.0, 2.0, 9.0), ..LabView::default() };
+        let found = camera(eye.clone()).unwrap();
+        let axis = found.focal_point - found.position;
+        let view = lab.view_from_world();
+        assert!(view.transform_point3(found.position).length() < 1e-12);
+        assert!(view.transform_vector3(axis).normalize().abs_diff_eq(DVec3::NEG_Z, 1e-12));
+        assert!(view.transform_vector3(found.view_up).abs_diff_eq(DVec3::Y, 1e-12));
+        // A rotation alone frames the model, and half a camera beside it is a mistake.
+        let framed = camera(Viewpoint { eye_translation: None, ..eye.clone() }).unwrap();
+        assert!((framed.focal_point - framed.position).normalize().abs_diff_eq(axis.normalize(), 1e-9));
+        assert!(camera(Viewpoint { position: Some([0.0; 3]), ..eye.clone() }).is_err());
+        assert!(camera(Viewpoint { camera_index: Some(0), ..eye }).is_err());
     }
 
     #[test]

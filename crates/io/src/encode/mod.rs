@@ -18,7 +18,7 @@ mod ppm;
 
 pub use jpeg::jpeg;
 pub use npy::{npy_f32, npy_f32x3, npy_u32};
-pub use png::{PngOptions, png, png16_gray};
+pub use png::{PngOptions, png, png_with_text, png16_gray};
 pub use ppm::ppm;
 
 use crate::Error;

@@ -30,11 +30,20 @@ impl Default for PngOptions {
 /// # Errors
 /// [`Error::Encode`] if the picture has no pixels or more than 2³¹ - 1 a side.
 pub fn png(picture: &Plane<[u8; 4]>, options: PngOptions) -> Result<Vec<u8>, Error> {
+    png_with_text(picture, options, &[])
+}
+
+/// [`png()`] with text chunks, each a keyword and its text in Latin-1.
+///
+/// # Errors
+/// As [`png()`]; [`Error::Encode`] for a text that PNG cannot hold.
+pub fn png_with_text(picture: &Plane<[u8; 4]>, options: PngOptions, texts: &[(&str, &str)]) -> Result<Vec<u8>, Error> {
+    let size = [picture.width(), picture.height()];
     if let Some(rgb) = without_alpha(picture.data()) {
-        return write(picture.width(), picture.height(), ColorType::Rgb, BitDepth::Eight, &rgb, options);
+        return write(size, (ColorType::Rgb, BitDepth::Eight), &rgb, options, texts);
     }
     let data = picture.data().as_flattened();
-    write(picture.width(), picture.height(), ColorType::Rgba, BitDepth::Eight, data, options)
+    write(size, (ColorType::Rgba, BitDepth::Eight), data, options, texts)
 }
 
 /// Red, green and blue of pixels that are all opaque; four a step.
@@ -62,16 +71,16 @@ fn without_alpha(pixels: &[[u8; 4]]) -> Option<Vec<u8>> {
 pub fn png16_gray(plane: &Plane<u16>) -> Result<Vec<u8>, Error> {
     let data: Vec<[u8; 2]> = plane.data().iter().map(|v| v.to_be_bytes()).collect();
     let options = PngOptions { srgb: false };
-    write(plane.width(), plane.height(), ColorType::Grayscale, BitDepth::Sixteen, data.as_flattened(), options)
+    let (size, form) = ([plane.width(), plane.height()], (ColorType::Grayscale, BitDepth::Sixteen));
+    write(size, form, data.as_flattened(), options, &[])
 }
 
 fn write(
-    width: u32,
-    height: u32,
-    color: ColorType,
-    depth: BitDepth,
+    [width, height]: [u32; 2],
+    (color, depth): (ColorType, BitDepth),
     data: &[u8],
     options: PngOptions,
+    texts: &[(&str, &str)],
 ) -> Result<Vec<u8>, Error> {
     check_sides(width, height, i32::MAX as u32, "PNG")?;
     let failed = |e: png::EncodingError| Error::Encode { what: format!("PNG: {e}") };
@@ -85,6 +94,9 @@ fn write(
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
     encoder.add_text_chunk("Software".to_owned(), "vitral".to_owned()).map_err(failed)?;
+    for &(keyword, text) in texts {
+        encoder.add_text_chunk(keyword.to_owned(), text.to_owned()).map_err(failed)?;
+    }
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(data).map_err(failed)?;
     writer.finish().map_err(failed)?;

@@ -227,7 +227,7 @@ pub(crate) fn light(source: &Source<'_>, json: &JsonLight, index: usize, warning
         _ => Attenuation::InverseSquare,
     };
     let name = json.name.clone().unwrap_or_default();
-    Some(Light { name, kind, diffuse: color, specular: color, attenuation, ..Light::default() })
+    Some(Light { name, kind, diffuse: color, specular: color, attenuation, photometric: true, ..Light::default() })
 }
 
 #[cfg(test)]

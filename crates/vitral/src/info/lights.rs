@@ -54,6 +54,8 @@ pub struct LightInfo {
     pub enabled: bool,
     /// Casts shadows.
     pub shadow: bool,
+    /// Intensities are candela or lux: pictures are exposed for them.
+    pub photometric: bool,
 }
 
 impl LightInfo {
@@ -67,6 +69,7 @@ impl LightInfo {
             attenuation: light.attenuation,
             enabled: light.enabled,
             shadow: light.shadow,
+            photometric: light.photometric,
             ..Self::default()
         };
         match &light.kind {
@@ -125,6 +128,7 @@ impl fmt::Display for LightInfo {
             Attenuation::Range { range } => write!(f, ", attenuation range,{}", short(range))?,
         }
         let no_shadow = if self.shadow || self.kind == "ambient" { "" } else { ", no shadow" };
+        f.write_str(if self.photometric { ", photometric" } else { "" })?;
         write!(f, "{no_shadow}{}", if self.enabled { "" } else { ", off" })
     }
 }

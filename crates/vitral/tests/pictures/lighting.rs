@@ -6,9 +6,9 @@ use super::common::{
 use std::collections::{BTreeMap, HashSet};
 use vitral::internals::math::DVec2;
 use vitral::{
-    Attribute, Camera, ColorSpace, DMat4, DQuat, DVec3, Encoding, Frame, Illumination, Light, LightKind, Material,
-    Mesh, NodeTransform, Part, Plane, Projection, Reflectance, Renderer, Scene, Shading, Texture, TextureRef, View,
-    lab, load_builtin, solids,
+    Attenuation, Attribute, Camera, ColorSpace, DMat4, DQuat, DVec3, Encoding, Frame, Illumination, Light, LightKind,
+    Material, Mesh, NodeTransform, Part, Plane, Projection, Reflectance, Renderer, Scene, Shading, Texture, TextureRef,
+    View, lab, load_builtin, solids,
 };
 
 const BLACK: [u8; 4] = [0, 0, 0, 255];
@@ -393,34 +393,56 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
     }
 }
 
-/// Files have lights in candela and lux.
+/// glTF files have lights in candela and lux.
 #[test]
-fn lights_beyond_what_a_picture_shows_are_brought_there_unless_an_intensity_is_asked_for() {
-    let picture = |strength: f32, intensity: Option<f32>| {
+fn photometric_lights_are_exposed_unless_an_intensity_is_asked_for_and_the_picture_says_so() {
+    let picture = |strength: f32, photometric: bool, intensity: Option<f32>| {
         let mut scene = load_builtin("sphere").unwrap();
         for light in &mut scene.lights {
-            [&mut light.ambient, &mut light.diffuse, &mut light.specular]
-                .into_iter()
-                .flatten()
-                .for_each(|c| *c *= strength);
+            light.photometric = photometric;
+            let colors = [&mut light.ambient, &mut light.diffuse, &mut light.specular];
+            colors.into_iter().flatten().for_each(|c| *c *= strength);
         }
         let mut renderer = exact(scene, 60, 45);
         renderer.settings.picture.color_space = ColorSpace::Srgb;
         renderer.light_intensity = intensity;
-        let rendered = renderer.render().unwrap();
-        (rendered.frame.color.unwrap().into_data(), rendered.warnings)
+        renderer.render().unwrap()
     };
-    let (white, silent) = picture(4096.0, Some(1.0));
-    assert!(silent.is_empty() && white.iter().filter(|c| c[..3] == [255; 3]).count() > 500);
-    for (strength, what) in
-        [(4096.0, "too bright for a picture, dimmed"), (1.0 / 4096.0, "too dark for a picture, bright")]
-    {
-        let (shown, warnings) = picture(strength, None);
-        assert!(warnings.len() == 1 && warnings[0].contains(what), "{warnings:?}");
-        let most = shown.iter().flat_map(|c| c[..3].iter().copied()).filter(|&c| c > 60 && c < 250).count();
-        assert!(most > 500, "{what}: {most}");
+    let named = |file: &[u8]| file.windows(13).any(|w| w == b"tEXtExposure\0");
+    for (strength, photometric, intensity) in [(4096.0, true, Some(1.0)), (4096.0, false, None), (1.0, false, None)] {
+        let shown = picture(strength, photometric, intensity);
+        assert!(shown.warnings.is_empty() && shown.exposure == 1.0, "{:?}", shown.warnings);
+        assert!(!named(&shown.encode(vitral::PictureFormat::Png).unwrap()));
+        let same = picture(strength, false, Some(1.0));
+        assert_eq!(shown.frame.color, same.frame.color, "shown as written");
     }
-    assert_eq!(picture(1.0, None), picture(1.0, Some(1.0)));
+    for strength in [4096.0, 1.0 / 4096.0] {
+        let shown = picture(strength, true, None);
+        let factor = shown.exposure;
+        assert!(factor * strength > 0.1 && factor * strength < 10.0, "{factor}");
+        assert!(shown.warnings.len() == 1 && shown.warnings[0].contains("photometric"), "{:?}", shown.warnings);
+        assert!(named(&shown.encode(vitral::PictureFormat::Png).unwrap()));
+        let pixels = shown.frame.color.unwrap().into_data();
+        let most = pixels.iter().flat_map(|c| c[..3].iter().copied()).filter(|&c| c > 60 && c < 250).count();
+        assert!(most > 500, "{strength}: {most}");
+    }
+}
+
+/// A lamp that moves by a step changes the picture by a step: a white plane under a lamp of the `1 / d²` law.
+#[test]
+fn a_lamp_of_a_scene_file_that_moves_away_gets_darker_by_the_law() {
+    let shade = |d: f64| {
+        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let mut scene = one(solids::plane(0.4, 0.4, 1, 1), Material { reflectance, ..Material::default() });
+        let kind = LightKind::Point { position: DVec3::Y * d };
+        scene.lights = vec![Light { kind, attenuation: Attenuation::InverseSquare, ..Light::default() }];
+        let mut renderer = exact(scene, 20, 20);
+        renderer.settings.picture.color_space = ColorSpace::Srgb;
+        renderer.view = View::Top;
+        renderer.render().unwrap().frame.color.unwrap().at(10, 10)[0]
+    };
+    // sRGB of 1/3.9² = 0.0657 and 1/4.1² = 0.0595.
+    assert_eq!([3.9, 4.1].map(shade), [73, 69]);
 }
 
 /// Raw colours are made of the numbers of the file, however dark or bright its lights are.

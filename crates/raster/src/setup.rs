@@ -97,8 +97,10 @@ pub struct SharedPlane {
     dz_dx: f32,
     dz_dy: f32,
     origin: [i32; 2],
-    /// How much farther facets that face away are: more than what rounding adds anywhere in the picture.
-    behind: f32,
+    /// How much nearer facets are that face the viewer, and how much farther those that face away. Corners move by half of
+    /// 1/256 pixel as they are snapped, so that near an outline a facet's plane may be nearer than that of the facet in front,
+    /// with which it has the outline in common: by what both planes change over so much, and by rounding.
+    apart: f32,
 }
 
 /// Change of depth over a pixel above which a plane is seen so much from the side that its facets keep to their corners.
@@ -115,14 +117,15 @@ impl SharedPlane {
         let fits = greatest.is_finite() && slopes[0].max(slopes[1]) < STEEP;
         let origin = [width, height].map(|side| side as i32 * (SUBPIXEL / 2));
         // Four roundings to 24 bits for each of two facets, of numbers no larger than the sum.
-        let behind = (greatest * f64::from(f32::EPSILON) * 8.0) as f32;
-        fits.then_some(Self { z: z as f32, dz_dx: dz_dx as f32, dz_dy: dz_dy as f32, origin, behind })
+        let rounding = greatest * f64::from(f32::EPSILON) * 4.0;
+        let apart = ((slopes[0] + slopes[1]) / f64::from(2 * SUBPIXEL) + rounding) as f32;
+        fits.then_some(Self { z: z as f32, dz_dx: dz_dx as f32, dz_dy: dz_dy as f32, origin, apart })
     }
 
     /// For a facet with these corners on the screen. Between its corners it is never clamped.
     #[inline(always)]
     pub(crate) fn of_facet(&self, corners: &[CornerPosition], faces_away: bool) -> DepthPlane {
-        let z = if faces_away { self.z - self.behind } else { self.z };
+        let z = if faces_away { self.z - self.apart } else { self.z + self.apart };
         let (mut z_min, mut z_max) = (f32::INFINITY, f32::NEG_INFINITY);
         for corner in corners {
             let away = |v: i32, k: usize| (v - self.origin[k]) as f32 / SUBPIXEL as f32;
@@ -134,8 +137,8 @@ impl SharedPlane {
             dz_dx: self.dz_dx,
             dz_dy: self.dz_dy,
             origin: self.origin,
-            z_min: (z_min - self.behind).clamp(0.0, 1.0),
-            z_max: (z_max + self.behind).clamp(0.0, 1.0),
+            z_min: (z_min - self.apart).clamp(0.0, 1.0),
+            z_max: (z_max + self.apart).clamp(0.0, 1.0),
         }
     }
 }

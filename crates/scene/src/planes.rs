@@ -48,7 +48,6 @@ struct Piece {
     distance: f64,
     first_facet: u32,
     facets: u32,
-    instance: u32,
     /// Power of two of its height; below [`LEVELS`] it is too small to have a plane.
     level: u32,
 }
@@ -56,8 +55,8 @@ struct Piece {
 /// A plane that is being gathered.
 #[derive(Clone, Copy, Debug)]
 struct Gathered {
-    normal: DVec3,
-    distance: f64,
+    /// The piece that it is the plane of.
+    piece: u32,
     facets: u32,
     /// The plane before it in its cell of the grid.
     next: u32,
@@ -94,7 +93,8 @@ impl SharedPlanes {
                 if plane.facets < 2 {
                     return NO_PLANE;
                 }
-                equations.push(plane.normal.extend(-plane.distance));
+                let piece = &pieces[plane.piece as usize];
+                equations.push(piece.normal.extend(-piece.distance));
                 equations.len() as u32 - 1
             })
             .collect();
@@ -138,7 +138,9 @@ impl World64<'_> {
             faces.clone().for_each(|face| self.face(*instance, face, &mut pieces));
             pieces
         });
-        pieces.concat()
+        let mut all = Vec::with_capacity(pieces.iter().map(Vec::len).sum());
+        pieces.into_iter().for_each(|some| all.extend(some));
+        all
     }
 
     /// Adds a face: whole if it is flat, by its triangles otherwise.
@@ -146,7 +148,7 @@ impl World64<'_> {
         let instance = &self.world.instances[index];
         let triangles = instance.mesh.face_triangles(face);
         let start = pieces.len();
-        pieces.extend(triangles.map(|t| self.triangle(index, instance.first_facet + t as u32)));
+        pieces.extend(triangles.map(|t| self.triangle(instance, instance.first_facet + t as u32)));
         let own = &pieces[start..];
         if own.len() < 2 {
             return;
@@ -161,26 +163,26 @@ impl World64<'_> {
     }
 
     /// A facet.
-    fn triangle(&self, instance: usize, facet: u32) -> Piece {
+    fn triangle(&self, instance: &Instance, facet: u32) -> Piece {
         let [a, b, c] = self.corners(instance, facet);
         let (normal, longest) = ((b - a).cross(c - a), (b - a).length_squared().max((c - a).length_squared()));
         let longest = longest.max((c - b).length_squared()).sqrt();
         let area = normal.length();
         let height = area / longest / self.tolerance;
-        // Below 1, or not a number: no level.
-        let level = if height >= 1.0 { (height.log2() as u32).min(LEVELS.end - 1) } else { 0 };
+        // Its power of two; below 1, or not a number: no level.
+        let whole = height.min(f64::from(u32::MAX)) as u32;
+        let level = whole.checked_ilog2().unwrap_or(0).min(LEVELS.end - 1);
         let mut normal = normal / area;
         // Any direction will do that models seldom have a plane along.
         if normal.dot(DVec3::new(0.8137, 0.4391, 0.3803)) < 0.0 {
             normal = -normal;
         }
         let distance = normal.dot((a + b + c) / 3.0);
-        Piece { normal, distance, first_facet: facet, facets: 1, instance: instance as u32, level }
+        Piece { normal, distance, first_facet: facet, facets: 1, level }
     }
 
     /// Corners of a facet, relative to the world's centre.
-    fn corners(&self, instance: usize, facet: u32) -> [DVec3; 3] {
-        let instance = &self.world.instances[instance];
+    fn corners(&self, instance: &Instance, facet: u32) -> [DVec3; 3] {
         instance.mesh.triangles[(facet - instance.first_facet) as usize].map(|i| self.place(instance, i))
     }
 
@@ -204,14 +206,15 @@ impl World64<'_> {
             }
             let mut grid = Grid::new(level, self.size, planes.len() + members.len());
             for (i, plane) in planes.iter_mut().enumerate() {
-                plane.next = grid.enter(plane.normal, plane.distance, i as u32);
+                let piece = &pieces[plane.piece as usize];
+                plane.next = grid.enter(piece.normal, piece.distance, i as u32);
             }
             for &member in members {
                 let piece = &pieces[member as usize];
-                let number = self.plane_of(piece, &grid, &planes).unwrap_or_else(|| {
+                let number = self.plane_of(piece, &grid, &planes, pieces).unwrap_or_else(|| {
                     let number = planes.len() as u32;
                     let next = grid.enter(piece.normal, piece.distance, number);
-                    planes.push(Gathered { normal: piece.normal, distance: piece.distance, facets: 0, next });
+                    planes.push(Gathered { piece: member, facets: 0, next });
                     number
                 });
                 planes[number as usize].facets += piece.facets;
@@ -222,39 +225,45 @@ impl World64<'_> {
     }
 
     /// The first plane that a piece lies in.
-    fn plane_of(&self, piece: &Piece, grid: &Grid, planes: &[Gathered]) -> Option<u32> {
+    fn plane_of(&self, piece: &Piece, grid: &Grid, planes: &[Gathered], pieces: &[Piece]) -> Option<u32> {
         let mut found: Option<u32> = None;
         grid.near(piece.normal, piece.distance, |mut candidate| {
             while candidate != NO_PLANE {
-                let plane = &planes[candidate as usize];
+                let Gathered { piece: first, next, .. } = planes[candidate as usize];
+                let plane = &pieces[first as usize];
                 let close = (plane.normal - piece.normal).length_squared() <= grid.turn * grid.turn
                     && (plane.distance - piece.distance).abs() <= grid.turn * self.size;
                 if close && found.is_none_or(|f| candidate < f) && self.lies_in(piece, plane) {
                     found = Some(candidate);
                 }
-                candidate = plane.next;
+                candidate = next;
             }
         });
         found
     }
 
+    /// The instance that a piece is of.
+    fn instance(&self, piece: &Piece) -> &Instance {
+        &self.world.instances[self.world.instance_of_facet(piece.first_facet)]
+    }
+
     /// Whether all corners of a piece are in a plane.
-    fn lies_in(&self, piece: &Piece, plane: &Gathered) -> bool {
+    fn lies_in(&self, piece: &Piece, plane: &Piece) -> bool {
+        let instance = self.instance(piece);
         let facets = piece.first_facet..piece.first_facet + piece.facets;
-        let mut corners = facets.flat_map(|f| self.corners(piece.instance as usize, f));
-        corners.all(|p| (plane.normal.dot(p) - plane.distance).abs() <= self.tolerance)
+        plane.holds(facets.flat_map(|f| self.corners(instance, f)), self.tolerance)
     }
 
     /// Gathers facets too small to have a plane by their corners.
     fn gather_equal(&self, pieces: &[Piece], planes: &mut Vec<Gathered>, of_facet: &mut [u32]) {
         let mut by_corners: HashMap<[[u64; 3]; 3], u32> = HashMap::new();
-        for piece in pieces.iter().filter(|piece| piece.level < LEVELS.start && piece.normal.is_finite()) {
-            let mut key =
-                self.corners(piece.instance as usize, piece.first_facet).map(|p| p.to_array().map(f64::to_bits));
+        let is_small = |piece: &Piece| piece.level < LEVELS.start && piece.normal.is_finite();
+        for (i, piece) in pieces.iter().enumerate().filter(|(_, piece)| is_small(piece)) {
+            let corners = self.corners(self.instance(piece), piece.first_facet);
+            let mut key = corners.map(|p| p.to_array().map(f64::to_bits));
             key.sort_unstable();
             let number = *by_corners.entry(key).or_insert_with(|| {
-                let (normal, distance) = (piece.normal, piece.distance);
-                planes.push(Gathered { normal, distance, facets: 0, next: NO_PLANE });
+                planes.push(Gathered { piece: i as u32, facets: 0, next: NO_PLANE });
                 planes.len() as u32 - 1
             });
             planes[number as usize].facets += 1;

@@ -11,7 +11,6 @@ mod jobs;
 mod near_first;
 mod overdraw;
 pub mod painter;
-
 mod passing;
 mod peel;
 mod pieces;

@@ -65,7 +65,7 @@ fn of_a_decal_and_a_floor_the_first_is_seen_whole_and_without_a_speck() {
         let place = tilted * DMat4::from_rotation_y(0.4);
         add(&mut alone, solids::plane(0.7, 0.5, 9, 4), [0.0, 1.0, 0.0], place);
         let [_, whole] = seen(alone, "z-buffer");
-        assert!(whole > 100, "{whole}");
+        assert!(whole > 10, "{whole}");
         for algorithm in VISIBILITY {
             let [_, green] = seen(floor_with_decal(true), algorithm.name);
             assert_eq!(green, whole, "{}, {:?}", algorithm.name, camera.position);

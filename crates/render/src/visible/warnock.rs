@@ -8,7 +8,7 @@
 //! handed down, so lists become shorter; surrounders stay surrounders and need no further test. A window of one pixel
 //! is not cut: the nearest facet at each of the pixel's samples is taken.
 //!
-//! In:   set-up triangles (screen space). Out: the samples of each tile (screen space).
+//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
 //! Cost: windows (about the length of visible edges in pixels) times the polygons in them.
 //! Source: [Warnock 1969]. Departs from it: the first cuts are those of the picture into tiles of 64x64 pixels, whose
 //! lists of polygons there are already; a window's corners are those of the box round its samples. The four-corner test
@@ -17,6 +17,7 @@
 
 use super::agreement::nearer;
 use super::facets::{Facets, fill_tiles};
+use super::polygons::{ConvexPolygon, Polygons, same_plane};
 use super::sink::TileSink;
 use super::tiles::{extent, put};
 use super::{Resolved, VisibleSurface};
@@ -43,8 +44,9 @@ impl VisibleSurface for Warnock {
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
         fill_tiles(view, marks, grid, execution, sink, 1, &|facets, index, tiles, counters| {
-            let mut subdivision = Subdivision::new(facets, index, &mut tiles[0], counters);
-            let bytes = (subdivision.polygons.len() * BYTES_A_POLYGON) as u64;
+            let polygons = Polygons::new(facets.in_tile(index), facets.view());
+            let mut subdivision = Subdivision::new(facets, &polygons, &mut tiles[0], counters);
+            let bytes = polygons.bytes() + (polygons.len() * BYTES_A_POLYGON) as u64;
             let budget = &facets.execution().budget;
             budget.charge(bytes, "area subdivision")?;
             let all = 0..subdivision.stack.len();
@@ -85,8 +87,8 @@ struct Entry {
     surrounds: bool,
 }
 
-/// A tile's triangle, and its entries on the lists of windows that are being looked at.
-const BYTES_A_POLYGON: usize = size_of::<&Setup>() + 7 * size_of::<Entry>();
+/// A polygon's entries on the lists of windows that are being looked at.
+const BYTES_A_POLYGON: usize = 7 * size_of::<Entry>();
 
 /// The subdivision of one tile.
 struct Subdivision<'t, 'f> {
@@ -97,7 +99,7 @@ struct Subdivision<'t, 'f> {
     extent: [[i32; 2]; 2],
     /// The tile's pixels inside the picture.
     size: [usize; 2],
-    polygons: Vec<&'f Setup>,
+    polygons: &'f Polygons<'f>,
     /// Lists of the windows from the tile down to the present one, one after the other.
     stack: Vec<Entry>,
     tile: &'t mut Tile,
@@ -105,9 +107,13 @@ struct Subdivision<'t, 'f> {
 }
 
 impl<'t, 'f> Subdivision<'t, 'f> {
-    fn new(facets: &'f Facets<'_, '_>, index: usize, tile: &'t mut Tile, counters: &'t mut VisibilityCounters) -> Self {
+    fn new(
+        facets: &'f Facets<'_, '_>,
+        polygons: &'f Polygons<'f>,
+        tile: &'t mut Tile,
+        counters: &'t mut VisibilityCounters,
+    ) -> Self {
         let view = facets.view();
-        let polygons: Vec<_> = facets.in_tile(index).collect();
         let stack = (0..polygons.len() as u32).map(|polygon| Entry { polygon, surrounds: false }).collect();
         let size = [view.viewport.width - tile.x, view.viewport.height - tile.y].map(|s| TILE.min(s as usize));
         let (pattern, extent) = (&view.pattern, extent(&view.pattern));
@@ -173,7 +179,7 @@ impl<'t, 'f> Subdivision<'t, 'f> {
             _ if window.side == 1 => (WindowVerdict::Pixel, None),
             _ => (WindowVerdict::Cut, None),
         };
-        let facet = drawn.map(|entry| self.polygons[entry.polygon as usize].facet);
+        let facet = drawn.map(|entry| self.polygons.get(entry.polygon as usize).facet());
         Step::Window { pixels, polygons: list.len() as u32, verdict, facet }
     }
 
@@ -195,7 +201,7 @@ impl<'t, 'f> Subdivision<'t, 'f> {
                 self.counters.saved_by_area += 1;
             } else {
                 self.counters.window_tests += 1;
-                match relation(self.polygons[entry.polygon as usize], samples) {
+                match relation(self.polygons.get(entry.polygon as usize).outline(), samples) {
                     Relation::Disjoint => continue,
                     Relation::ContainedOrIntersecting => {}
                     Relation::Surrounding => entry.surrounds = true,
@@ -213,25 +219,29 @@ impl<'t, 'f> Subdivision<'t, 'f> {
         let surrounders = self.stack[start..].iter().filter(|e| e.surrounds).map(|e| e.polygon);
         let farthest = |p: u32| {
             let [near, far] = [f32::max, f32::min].map(|pick| {
-                let depths = corners(samples).map(|[x, y]| self.polygons[p as usize].depth(x, y));
+                let depths = corners(samples).map(|[x, y]| self.polygons.get(p as usize).depth(x, y));
                 depths.into_iter().reduce(pick).unwrap_or(0.0)
             });
             (far, near, p)
         };
         let front = surrounders.map(farthest).reduce(|a, b| match (b.0, b.1).partial_cmp(&(a.0, a.1)) {
             Some(Ordering::Greater) => b,
-            Some(Ordering::Equal) if self.polygons[b.2 as usize].facet < self.polygons[a.2 as usize].facet => b,
+            Some(Ordering::Equal)
+                if self.polygons.get(b.2 as usize).facet() < self.polygons.get(a.2 as usize).facet() =>
+            {
+                b
+            }
             _ => a,
         });
         let Some((_, _, front)) = front else { return };
-        let (polygons, counters) = (&self.polygons, &mut *self.counters);
-        let plane = CornerDepths::new(polygons[front as usize], samples);
+        let (polygons, counters) = (self.polygons, &mut *self.counters);
+        let plane = CornerDepths::new(polygons.get(front as usize).plane(), samples);
         let mut kept = start;
         for i in start..self.stack.len() {
             let entry = self.stack[i];
             let hidden = entry.polygon != front && {
                 counters.depth_comparisons += 1;
-                plane.hides(&CornerDepths::new(polygons[entry.polygon as usize], samples))
+                plane.hides(&CornerDepths::new(polygons.get(entry.polygon as usize).plane(), samples))
             };
             if !hidden {
                 self.stack[kept] = entry;
@@ -244,14 +254,14 @@ impl<'t, 'f> Subdivision<'t, 'f> {
 
     /// Fills a window with a surrounder, or draws the one polygon in it.
     fn draw(&mut self, window: Window, entry: Entry) {
-        let setup = self.polygons[entry.polygon as usize];
+        let polygon = self.polygons.get(entry.polygon as usize);
         let (columns, rows) = self.pixels(window);
         for s in 0..self.pattern.len() {
             for row in rows.clone() {
                 for column in columns.clone() {
                     let [x, y] = self.sample(column, row, s);
-                    if entry.surrounds || setup.covers(x, y) {
-                        put(self.tile, s * TILE_PIXELS + row * TILE + column, (setup.depth(x, y), setup.facet));
+                    if let Some(facet) = facet_at(polygon, entry.surrounds, [x, y]) {
+                        put(self.tile, s * TILE_PIXELS + row * TILE + column, (polygon.depth(x, y), facet));
                     }
                 }
             }
@@ -265,11 +275,9 @@ impl<'t, 'f> Subdivision<'t, 'f> {
             let [x, y] = self.sample(window.x, window.y, s);
             let mut seen: Option<(f32, u32)> = None;
             for entry in &self.stack[start..] {
-                let setup = self.polygons[entry.polygon as usize];
-                if !entry.surrounds && !setup.covers(x, y) {
-                    continue;
-                }
-                let candidate = (setup.depth(x, y), setup.facet);
+                let polygon = self.polygons.get(entry.polygon as usize);
+                let Some(facet) = facet_at(polygon, entry.surrounds, [x, y]) else { continue };
+                let candidate = (polygon.depth(x, y), facet);
                 self.counters.depth_comparisons += u64::from(seen.is_some());
                 if seen.is_none_or(|seen| nearer(candidate, seen)) {
                     seen = Some(candidate);
@@ -295,27 +303,32 @@ impl<'t, 'f> Subdivision<'t, 'f> {
     }
 }
 
+/// The facet of a polygon at a sample, if it covers it, as a surrounder does.
+fn facet_at(polygon: ConvexPolygon<'_, '_>, surrounds: bool, [x, y]: [i32; 2]) -> Option<u32> {
+    if surrounds { Some(polygon.facet_within(x, y)) } else { polygon.facet_at(x, y) }
+}
+
 fn corners(samples: SampleBox) -> [[i32; 2]; 4] {
     let ([x0, x1], [y0, y1]) = (samples.x, samples.y);
     [[x0, y0], [x1, y0], [x0, y1], [x1, y1]]
 }
 
-/// Tests a polygon against the box round a window's samples. Disjoint polygons past a corner of the box may pass for
-/// intersecting.
-fn relation(setup: &Setup, samples: SampleBox) -> Relation {
-    let outside = |v: [i32; 3], [low, high]: [i32; 2]| v.iter().all(|&v| v < low) || v.iter().all(|&v| v > high);
-    if outside(setup.x, samples.x) || outside(setup.y, samples.y) {
+/// Tests a polygon, given by its outline, against the box round a window's samples: one of the box's sides or of the
+/// outline's edges has the other on its outer side, if they are disjoint.
+fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
+    let outside =
+        |k: usize, [low, high]: [i32; 2]| outline.iter().all(|v| v[k] < low) || outline.iter().all(|v| v[k] > high);
+    if outside(0, samples.x) || outside(1, samples.y) {
         return Relation::Disjoint;
     }
     // An edge function is largest and smallest at two corners of the box.
     let mut surrounds = true;
-    for i in 0..3 {
-        let j = (i + 1) % 3;
-        let (dx, dy) = (i64::from(setup.x[j] - setup.x[i]), i64::from(setup.y[j] - setup.y[i]));
+    for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+        let (dx, dy) = (i64::from(b[0] - a[0]), i64::from(b[1] - a[1]));
         // Positive inside, y downwards: left edges go up, top edges go right; on these, 0 is inside.
         let inside = if dy < 0 || (dy == 0 && dx > 0) { 0 } else { 1 };
-        let down = samples.y.map(|y| dx * i64::from(y - setup.y[i]));
-        let across = samples.x.map(|x| -dy * i64::from(x - setup.x[i]));
+        let down = samples.y.map(|y| dx * i64::from(y - a[1]));
+        let across = samples.x.map(|x| -dy * i64::from(x - a[0]));
         if down[0].max(down[1]) + across[0].max(across[1]) < inside {
             return Relation::Disjoint;
         }
@@ -368,12 +381,6 @@ impl<'f> CornerDepths<'f> {
     }
 }
 
-/// Whether two facets have the same depth wherever they are both seen.
-fn same_plane(a: &Setup, b: &Setup) -> bool {
-    let plane = |s: &Setup| ([s.z, s.dz_dx, s.dz_dy, s.z_min, s.z_max].map(f32::to_bits), s.origin);
-    plane(a) == plane(b)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -388,7 +395,10 @@ mod tests {
 
     #[test]
     fn p20_the_relations_of_a_polygon_to_a_window() {
-        let relation = |corners| relation(&triangle(corners, [0.5; 3], 0), WINDOW);
+        let relation = |corners| {
+            let setup = triangle(corners, [0.5; 3], 0);
+            relation(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]), WINDOW)
+        };
         assert_eq!(relation([[3000, 0], [4000, 0], [3000, 900]]), Relation::Disjoint);
         // Its box overlaps the window, but an edge has the window on its outer side.
         assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), Relation::Disjoint);

@@ -30,8 +30,8 @@ fn floor_with_decal(decal_first: bool) -> Scene {
 /// From around and above.
 fn cameras() -> Vec<Camera> {
     let around = (0..12).map(|i| {
-        let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
-        let position = DVec3::new(cos * 2.0, 0.9 + 0.2 * sin, sin * 2.0);
+        let turn = DMat4::from_rotation_y(f64::from(i) * 0.55);
+        let position = turn.transform_point3(DVec3::new(2.0, 0.75 + 0.03 * f64::from(i), 0.0));
         let projection = match i % 3 {
             0 => Projection::Parallel { height: 2.5 },
             _ => Projection::Perspective { view_angle: 0.9 },

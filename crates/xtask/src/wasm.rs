@@ -1,9 +1,8 @@
 //! The WebAssembly test: one picture, drawn natively and by the same code under Node, must have the same bytes.
 //!
 //! The probe (`crates/wasm-probe`) is built without threads, once plain and once with simd128, and each time the hash of
-//! its bytes is compared with that of the native program. Crates are compiled once for each variant, without optimisation: the
-//! bytes do not depend on it, and compilers spend minutes on the kernels of a machine without vector registers. The native
-//! program is what the tests have built.
+//! its bytes is compared with that of the native program. Crates are compiled once for each variant; the native program is what
+//! the tests have built.
 
 use crate::prepare::WASM_TARGET;
 use crate::shell::{cargo, command, output, run, target_folder};
@@ -11,9 +10,6 @@ use crate::test::PROFILE;
 use std::path::PathBuf;
 
 const PACKAGE: &str = "vitral-wasm-probe";
-
-/// The profile of the modules.
-const MODULE_PROFILE: &str = "module";
 
 /// How one check ended.
 pub(crate) enum CheckResult {
@@ -84,7 +80,7 @@ fn opengl() -> CheckResult {
         "check",
         "--quiet",
         "--profile",
-        MODULE_PROFILE,
+        PROFILE,
         "--package",
         "vitral-gl",
         "--target",
@@ -106,17 +102,8 @@ fn hash_under_node(variant: &Variant) -> Result<String, String> {
     let folder: PathBuf = target_folder().join(variant.folder);
     let mut build = cargo();
     build.env("RUSTFLAGS", variant.flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
-    build.args([
-        "build",
-        "--quiet",
-        "--profile",
-        MODULE_PROFILE,
-        "--lib",
-        "--package",
-        PACKAGE,
-        "--no-default-features",
-    ]);
+    build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--package", PACKAGE, "--no-default-features"]);
     run(build.args(["--target", WASM_TARGET, "--target-dir"]).arg(&folder))?;
-    let module = folder.join(WASM_TARGET).join(MODULE_PROFILE).join("vitral_wasm_probe.wasm");
+    let module = folder.join(WASM_TARGET).join(PROFILE).join("vitral_wasm_probe.wasm");
     output(command("node").arg("crates/wasm-probe/run.mjs").arg(module)).map(|hash| hash.trim().to_owned())
 }

@@ -273,7 +273,7 @@ pub(crate) struct LabArgs {
     /// Where the eye is
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
     pub(crate) eye_translation: Option<DVec3>,
-    /// Turn all objects together, not the lights: degrees about x, then y, then z
+    /// Turn all objects together, not the scene's own lights: degrees about x, then y, then z
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) all_rotation: Option<DVec3>,
     /// Move all objects together after that

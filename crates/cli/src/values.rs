@@ -9,7 +9,9 @@ use std::str::FromStr;
 use vitral::bench::Entrant;
 use vitral::explain::Deciders;
 use vitral::internals::math::lanes::level_from_environment;
-use vitral::{Coherence, Culling, DVec3, Execution, MaterialOverride, Workers, execution, names};
+use vitral::{
+    Coherence, Culling, DVec3, Execution, MaterialOverride, UnknownName, Visibility, Workers, execution, names,
+};
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
@@ -196,7 +198,8 @@ pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Algorithms for visible surfaces: a list of names, or `all`; those that cast rays with each structure.
+/// The entrants that names of visibility algorithms stand for, separated by commas, or `all`: an algorithm that casts rays enters
+/// once with each acceleration structure.
 pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
     let all = Entrant::all();
     if text == "all" {
@@ -204,13 +207,8 @@ pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
     }
     let mut named = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let of_name: Vec<_> = all.iter().filter(|e| e.algorithm.name == name).copied().collect();
-        if of_name.is_empty() {
-            let mut names: Vec<_> = all.iter().map(|e| e.algorithm.name).collect();
-            names.dedup();
-            return Err(format!("`{name}` is not one of all, {}", names.join(", ")));
-        }
-        named.extend(of_name);
+        let chosen: Visibility = name.parse().map_err(|unknown: UnknownName| unknown.to_string())?;
+        named.extend(all.iter().filter(|entrant| entrant.algorithm.name == chosen.name));
     }
     Ok(Deciders::Named(named))
 }

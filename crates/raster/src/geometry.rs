@@ -257,7 +257,7 @@ impl Batch {
             let corners = [a.corner(), b.corner(), c.corner()];
             let cull_back = draw.back_faces.drops(facet - draw.first_facet);
             let plane = draw.plane(facet, screen);
-            self.add_corners(corners, (cull_back, draw.mirrored), plane, facet, screen);
+            self.add_corners(corners, cull_back, draw.mirrored, plane, facet, screen);
         } else {
             let corners = corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
             self.add_clipped(draw, corners, facet, screen);
@@ -269,7 +269,8 @@ impl Batch {
     pub fn add_corners(
         &mut self,
         corners: [CornerPosition; 3],
-        (cull_back, mirrored): (bool, bool),
+        cull_back: bool,
+        mirrored: bool,
         plane: Option<&SharedPlane>,
         facet: u32,
         screen: &Screen,
@@ -318,11 +319,15 @@ impl Batch {
             self.counters.degenerate += 1;
             return;
         };
+
+        // Drop it if it faces away.
         let faces_away = (total > 0) != draw.mirrored;
         if faces_away && draw.back_faces.drops(facet - draw.first_facet) {
             self.counters.back_facing += 1;
             return;
         }
+
+        // All pieces have the plane that the facet shares with others, or that of the largest.
         let own_plane = || {
             let [a, b, c] = fan(largest);
             let mut plane = DepthPlane::new(a, b, c, areas(largest));

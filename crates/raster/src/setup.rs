@@ -97,9 +97,10 @@ pub struct SharedPlane {
     dz_dx: f32,
     dz_dy: f32,
     origin: [i32; 2],
-    /// How much nearer facets are that face the viewer, and how much farther those that face away. Corners move by half of
-    /// 1/256 pixel as they are snapped, so that near an outline a facet's plane may be nearer than that of the facet in front,
-    /// with which it has the outline in common: by what both planes change over so much, and by rounding.
+    /// Added to the depth of facets that face the viewer, taken from that of facets that face away. A front and a back facet
+    /// may have an edge of the outline in common, and snapping moves its corners by up to half of 1/256 pixel: beside the
+    /// edge the back one's plane may be the nearer of the two by as much as both planes change over that distance. Rounding is
+    /// in it, too.
     apart: f32,
 }
 
@@ -110,12 +111,14 @@ impl SharedPlane {
     /// The plane `a x + b y + c z + d = 0` of ndc (depth 1 near, 0 far), in a picture of this size; `None` if it is seen from
     /// the side.
     pub fn new([a, b, c, d]: [f64; 4], [width, height]: [u32; 2]) -> Option<Self> {
+        // Solve for the depth in the middle of the picture and its change over a pixel.
         let [half_width, half_height] = [width, height].map(|side| f64::from(side) * 0.5);
         let (z, dz_dx, dz_dy) = (-d / c, -a / c / half_width, b / c / half_height);
         let slopes = [dz_dx.abs(), dz_dy.abs()];
         let greatest = z.abs() + slopes[0] * half_width + slopes[1] * half_height;
         let fits = greatest.is_finite() && slopes[0].max(slopes[1]) < STEEP;
         let origin = [width, height].map(|side| side as i32 * (SUBPIXEL / 2));
+
         // Four roundings to 24 bits for each of two facets, of numbers no larger than the sum.
         let rounding = greatest * f64::from(f32::EPSILON) * 4.0;
         let apart = ((slopes[0] + slopes[1]) / f64::from(2 * SUBPIXEL) + rounding) as f32;
@@ -126,6 +129,8 @@ impl SharedPlane {
     #[inline(always)]
     pub(crate) fn of_facet(&self, corners: &[CornerPosition], faces_away: bool) -> DepthPlane {
         let z = if faces_away { self.z - self.apart } else { self.z + self.apart };
+
+        // Take the plane's depths at the snapped corners as the range: those of the corners themselves may be off the plane.
         let (mut z_min, mut z_max) = (f32::INFINITY, f32::NEG_INFINITY);
         for corner in corners {
             let away = |v: i32, k: usize| (v - self.origin[k]) as f32 / SUBPIXEL as f32;

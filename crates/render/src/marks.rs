@@ -14,7 +14,7 @@
 //! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
 //! the million.
 //!
-//! With edges come the lines in which faces penetrate each other ([`penetrations`]), which are edges of what is seen.
+//! Pictures with edges also show the lines in which faces penetrate each other ([`penetrations`]).
 //!
 //! In:   visible instances, model space. Out: [`Marks`] on the screen, and the colour of each.
 //! Cost: linear in lines and points.
@@ -479,8 +479,8 @@ impl Pen<'_, '_> {
         let corner = |i: usize| CornerPosition { x: snap(corners[i].x), y: snap(corners[i].y), z: depths[i].x };
         let [a, b, c, d] = [0, 1, 2, 3].map(corner);
         for batch in std::iter::once(&mut self.drawn.all).chain(hides.then_some(&mut self.drawn.hiding)) {
-            batch.add_corners([a, b, c], (false, false), None, id, &self.view.screen);
-            batch.add_corners([a, c, d], (false, false), None, id, &self.view.screen);
+            batch.add_corners([a, b, c], false, false, None, id, &self.view.screen);
+            batch.add_corners([a, c, d], false, false, None, id, &self.view.screen);
         }
     }
 }

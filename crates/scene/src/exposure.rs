@@ -87,10 +87,7 @@ fn reading(world: &World, photometric: bool) -> f64 {
 
 /// A point in an instance's triangle with the unit normal there and the triangle's area, world space; none if it has no area.
 fn surface_point(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
-    let [a, b, c] = instance.mesh.triangles[triangle as usize].map(|corner| {
-        let position = DVec3::from_array(instance.mesh.positions[corner as usize].map(f64::from));
-        instance.world_from_model.transform_point3(position)
-    });
+    let [a, b, c] = instance.corners(triangle);
     let twice = (b - a).cross(c - a);
     let area = twice.length();
     let normal = twice.try_normalize().filter(|_| area.is_finite())?;

@@ -154,7 +154,7 @@ impl World64<'_> {
             return;
         }
         let Some(&largest) = own.iter().max_by_key(|piece| piece.level) else { return };
-        let corners = instance.mesh.face_corners(face).iter().map(|&c| self.place(instance, c));
+        let corners = instance.mesh.face_corners(face).iter().map(|&c| instance.place(c) - self.center);
         if LEVELS.contains(&largest.level) && largest.holds(corners, self.tolerance) {
             let whole = Piece { first_facet: own[0].first_facet, facets: own.len() as u32, ..largest };
             pieces.truncate(start);
@@ -164,6 +164,7 @@ impl World64<'_> {
 
     /// A facet.
     fn triangle(&self, instance: &Instance, facet: u32) -> Piece {
+        // Measure its height, the least of the three.
         let [a, b, c] = self.corners(instance, facet);
         let (normal, longest) = ((b - a).cross(c - a), (b - a).length_squared().max((c - a).length_squared()));
         let longest = longest.max((c - b).length_squared()).sqrt();
@@ -172,8 +173,9 @@ impl World64<'_> {
         // Its power of two; below 1, or not a number: no level.
         let whole = height.min(f64::from(u32::MAX)) as u32;
         let level = whole.checked_ilog2().unwrap_or(0).min(LEVELS.end - 1);
+
+        // Turn the normal to one side: any direction will do that models seldom have a plane along.
         let mut normal = normal / area;
-        // Any direction will do that models seldom have a plane along.
         if normal.dot(DVec3::new(0.8137, 0.4391, 0.3803)) < 0.0 {
             normal = -normal;
         }
@@ -183,17 +185,12 @@ impl World64<'_> {
 
     /// Corners of a facet, relative to the world's centre.
     fn corners(&self, instance: &Instance, facet: u32) -> [DVec3; 3] {
-        instance.mesh.triangles[(facet - instance.first_facet) as usize].map(|i| self.place(instance, i))
-    }
-
-    /// A vertex, relative to the world's centre.
-    fn place(&self, instance: &Instance, vertex: u32) -> DVec3 {
-        let position = instance.mesh.positions[vertex as usize].map(f64::from);
-        instance.world_from_model.transform_point3(DVec3::from_array(position)) - self.center
+        instance.corners(facet - instance.first_facet).map(|p| p - self.center)
     }
 
     /// Gathers pieces by plane, large ones first.
     fn gather(&self, pieces: &[Piece], of_facet: &mut [u32]) -> Vec<Gathered> {
+        // Sort them by height.
         let mut by_level: Vec<Vec<u32>> = vec![Vec::new(); LEVELS.end as usize];
         for (i, piece) in pieces.iter().enumerate() {
             by_level[piece.level as usize].push(i as u32);
@@ -204,11 +201,15 @@ impl World64<'_> {
             if members.is_empty() {
                 continue;
             }
+
+            // Put the planes of larger pieces on this level's coarser grid.
             let mut grid = Grid::new(level, self.size, planes.len() + members.len());
             for (i, plane) in planes.iter_mut().enumerate() {
                 let piece = &pieces[plane.piece as usize];
                 plane.next = grid.enter(piece.normal, piece.distance, i as u32);
             }
+
+            // Let each piece join the first plane that it lies in, or begin one.
             for &member in members {
                 let piece = &pieces[member as usize];
                 let number = self.plane_of(piece, &grid, &planes, pieces).unwrap_or_else(|| {

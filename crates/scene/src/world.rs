@@ -83,6 +83,19 @@ pub enum WorldError {
     TooManyFacets,
 }
 
+impl Instance {
+    /// The corners of a triangle, world space.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.mesh.triangles[triangle as usize].map(|vertex| self.place(vertex))
+    }
+
+    /// The position of a vertex, world space.
+    pub fn place(&self, vertex: u32) -> DVec3 {
+        let position = self.mesh.positions[vertex as usize].map(f64::from);
+        self.world_from_model.transform_point3(DVec3::from_array(position))
+    }
+}
+
 impl World {
     /// Walks the graph from its roots. Bounds of each mesh are computed once, however many instances it has.
     ///

@@ -50,8 +50,8 @@ pub struct State {
     pub turntable: Option<usize>,
 }
 
-/// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then z, then moved. Lights and
-/// cameras of the scene stay.
+/// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then z, then moved. Lights in
+/// nodes move along; the scene's own lights and cameras stay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Objects {

@@ -141,7 +141,7 @@ mod tests {
         triangles.extend(triangles_at(&triangles, 90 * SUBPIXEL));
         for t in &triangles {
             let corner = |k: usize| CornerPosition { x: t.x[k], y: t.y[k], z: t.z };
-            batch.add_corners([corner(0), corner(1), corner(2)], (false, false), None, t.facet, &screen);
+            batch.add_corners([corner(0), corner(1), corner(2)], false, false, None, t.facet, &screen);
         }
         let mut entries = Vec::new();
         batch.finish_with_boxes(&screen, |place, packed, setup| entries.push((place, packed, *setup)));

@@ -400,7 +400,7 @@ mod tests {
                 } else {
                     let corners = [a, b, c].map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
                     let cull_back = back_faces.drops(facet as u32);
-                    reference.add_corners(corners, (cull_back, mirrored), None, facet as u32, &screen);
+                    reference.add_corners(corners, cull_back, mirrored, None, facet as u32, &screen);
                 }
             }
             let draw = Draw {

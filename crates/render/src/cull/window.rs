@@ -6,7 +6,7 @@
 //! rejected by their boxes first.
 //!
 //! In:   a mesh with the boxes of its runs, model space. Out: runs of triangles.
-//! Cost: a box test for each run of triangles, and three inner products for each triangle in those that are left and plane.
+//! Cost: a box test for each run of triangles; for each triangle of the runs that are kept, its corners' distances from the sides.
 //! Source: [Clark 1976]; clipping after [Sutherland & Hodgman 1974].
 
 use std::ops::Range;

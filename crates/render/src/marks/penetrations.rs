@@ -1,8 +1,8 @@
 //! The lines in which faces penetrate each other: where a triangle of the scene passes through another one.
 //!
 //! A tree of boxes over all triangles finds the pairs that may meet: it is gone through against itself, two boxes at a time.
-//! Of such a pair, each triangle must have corners on both sides of the other's plane; then both cut the line in which the
-//! planes meet, and what their pieces of it have in common is the line of penetration. Corners in a plane count as before it, so
+//! Each triangle of a pair must have corners on both sides of the other's plane. Then both triangles cut the line in which the
+//! planes meet, and the part of it that lies in both is the line of penetration. A corner in a plane counts as in front of it, so
 //! that a body whose edge lies in a face is cut once. Neighbours along an edge share that line already, and coplanar
 //! triangles have none.
 //!
@@ -71,8 +71,7 @@ impl Penetrations {
             execution.budget.check("lines of penetration")?;
             let mut lines = Vec::new();
             let [a, b] = tasks[i];
-            let checked = |_: usize| execution.budget.check("lines of penetration");
-            tree.meet(a, b, &triangles, &mut lines, &checked)?;
+            tree.meet(a, b, &triangles, &mut lines, &|| execution.budget.check("lines of penetration"))?;
             Ok(lines)
         });
         let mut lines = Vec::new();
@@ -152,7 +151,7 @@ struct Tree {
     /// Triangles in the order of the leaves, and their boxes.
     order: Vec<u32>,
     boxes: Vec<Bounds>,
-    /// What is shorter is rounding.
+    /// Greatest distance, world space, that counts as rounding.
     noise: f64,
 }
 
@@ -215,7 +214,7 @@ impl Tree {
         b: usize,
         triangles: &[[DVec3; 3]],
         lines: &mut Vec<[[f32; 3]; 2]>,
-        check: &dyn Fn(usize) -> Result<(), Limit>,
+        check: &dyn Fn() -> Result<(), Limit>,
     ) -> Result<(), Limit> {
         let (mut stack, mut leaves) = (vec![[a, b]], 0usize);
         while let Some([a, b]) = stack.pop() {
@@ -228,7 +227,7 @@ impl Tree {
             }
             leaves += 1;
             if leaves.is_multiple_of(4096) {
-                check(leaves)?;
+                check()?;
             }
             for i in self.nodes[a].items.clone() {
                 let others = if a == b { i + 1..self.nodes[a].items.end } else { self.nodes[b].items.clone() };
@@ -304,8 +303,8 @@ fn penetration(a: &[DVec3; 3], b: &[DVec3; 3], noise: f64) -> Option<[DVec3; 2]>
     (along.dot(end - start) > noise).then_some([start, end])
 }
 
-/// Signed distances, times the length of `normal`, of the corners of `t` from the plane through `point`; corners that lie in the
-/// plane, up to `noise`, count as before it. `None` if all are on one side.
+/// Signed distances, times the length of `normal`, of the corners of `t` from the plane through `point`; a corner nearer to the
+/// plane than `noise` counts as in front of it. `None` if all corners are on one side.
 fn distances(point: DVec3, normal: DVec3, t: &[DVec3; 3], noise: f64) -> Option<[f64; 3]> {
     let least = normal.length() * noise;
     let d = t.map(|p| {

@@ -14,7 +14,7 @@ use crate::{Error, Execution, Global, Lines, Session, Settings};
 use std::sync::Mutex;
 use vitral_raster::{Layer, LayerList, SamplePattern, TILE, Tile, TileGrid};
 
-/// What is known of a pixel of a colour picture.
+/// A pixel of a colour picture: the facets over it, its light, and its colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExaminedPixel {
     /// The facets whose outlines hold it, the nearest first, and what became of each.

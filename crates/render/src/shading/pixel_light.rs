@@ -1,8 +1,8 @@
 //! How the colour of one pixel comes about, in numbers that add up to its bytes.
 //!
 //! A pixel is the mean of its samples. A sample shows a point of an opaque surface or the background, and the layers in front.
-//! A point is illuminated once, or at the corners of its facet, and every light adds its terms. All numbers are those that the
-//! picture was made with: what is written here as a sum is that sum, in single precision and in this order.
+//! Phong's shading illuminates the point itself, Gouraud's the corners of its facet, and every light adds its terms there. The
+//! picture was made with these very numbers: a sum given here was added up in single precision and in this order.
 
 use serde::Serialize;
 use vitral_light::{LightTerms, Rgb};

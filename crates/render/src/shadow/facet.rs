@@ -1,23 +1,15 @@
 //! A facet in the world: its corners and normal as rays see them, and the way between points and barycentric weights.
 
 use crate::prepare::mirrors;
-use vitral_math::{DVec3, Vec3, dvec3};
+use vitral_math::{DVec3, Vec3};
 use vitral_scene::Instance;
 
 /// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
 /// on the side from which they run counter-clockwise in the model; zero without area.
 pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
-    let mirrored = mirrors(&instance.world_from_model);
-    let mesh = &instance.mesh;
-    let corner = |i: u32| {
-        let [x, y, z] = mesh.positions[i as usize];
-        let p = dvec3(f64::from(x), f64::from(y), f64::from(z));
-        (instance.world_from_model.transform_point3(p) - center).as_vec3().as_dvec3()
-    };
-    let [a, b, c] = mesh.triangles[triangle as usize];
-    let corners = [corner(a), corner(b), corner(c)];
+    let corners = instance.corners(triangle).map(|p| (p - center).as_vec3().as_dvec3());
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-    (corners, if mirrored { -normal } else { normal })
+    (corners, if mirrors(&instance.world_from_model) { -normal } else { normal })
 }
 
 /// The point with these weights of the corners.
@@ -41,7 +33,7 @@ pub(crate) fn weights(corners: &[Vec3; 3], point: DVec3) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vitral_math::vec3;
+    use vitral_math::{dvec3, vec3};
 
     #[test]
     fn weights_bring_the_point_back() {

@@ -9,7 +9,7 @@ use crate::cull::window::Window;
 use serde::Serialize;
 use vitral_math::{DVec3, DVec4};
 use vitral_raster::geometry::flag;
-use vitral_raster::{BackFaces, Draw, Layer, NO_FACET, SUBPIXEL, Setup, TILE, TILE_PIXELS, Tile};
+use vitral_raster::{Draw, Layer, NO_FACET, SUBPIXEL, Setup, TILE, TILE_PIXELS, Tile};
 use vitral_scene::Instance;
 
 /// A plane of the view volume.
@@ -274,8 +274,7 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
         for (is_layer, draw) in opaque.chain(prepared.layered.iter().map(|draw| (true, draw))) {
             for triangle in pyramid.triangles(&instance.mesh, bounds, &draw.ranges).into_iter().flatten() {
                 let facet = draw.first_facet + triangle;
-                let back_faces: BackFaces<'_> = draw.back_faces;
-                let setups = view.setups(facet, back_faces);
+                let setups = view.setups(facet, draw.back_faces);
                 if let Some(setup) = setups.iter().find(|setup| setup.covers(x, y)) {
                     found.push((facet, setup.depth(x, y), is_layer));
                 }

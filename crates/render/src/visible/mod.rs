@@ -14,7 +14,6 @@ pub mod painter;
 mod passing;
 mod peel;
 mod pieces;
-#[allow(dead_code, reason = "its users follow in the next steps")]
 mod polygons;
 mod priority_list;
 pub mod ray_cast;

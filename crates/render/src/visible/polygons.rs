@@ -103,11 +103,6 @@ impl<'f> Polygons<'f> {
         }
     }
 
-    /// All, in the order of their first triangles.
-    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = ConvexPolygon<'_, 'f>> {
-        (0..self.polygons.len()).map(|number| self.get(number))
-    }
-
     /// Bytes in memory.
     pub(super) fn bytes(&self) -> u64 {
         let bytes = [
@@ -134,11 +129,6 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
     /// Corners, clockwise on the screen, 1/256 pixel: all edge functions are positive or zero inside.
     pub(super) fn outline(self) -> &'p [[i32; 2]] {
         self.outline
-    }
-
-    /// Its triangles. Each sample that it covers is covered by one of them.
-    pub(super) fn triangles(self) -> &'p [&'f Setup] {
-        self.triangles
     }
 
     /// The facet that covers a sample, 1/256 pixel.
@@ -218,7 +208,8 @@ mod tests {
 
     fn outlines(triangles: &[[[i32; 2]; 3]]) -> Vec<usize> {
         let setups = setups(triangles);
-        let polygons = Polygons::joined(&setups, |_, _| true);
+        let joined = Polygons::joined(&setups, |_, _| true);
+        let polygons: Vec<_> = (0..joined.len()).map(|number| joined.get(number)).collect();
         for y in (-3..40).map(|y| y * 128) {
             for x in (-3..40).map(|x| x * 128) {
                 let of_triangles = setups.iter().find(|s| s.covers(x, y)).map(|s| s.facet);

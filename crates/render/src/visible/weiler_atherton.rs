@@ -20,6 +20,7 @@ mod region;
 
 use super::agreement::nearer;
 use super::facets::{Facets, fill_tiles};
+use super::polygons::same_plane;
 use super::sink::TileSink;
 use super::tiles::put;
 use super::{Resolved, VisibleSurface};
@@ -316,12 +317,6 @@ fn line_of_gap(front: &Polygon<'_>, back: &Polygon<'_>, margin: f64) -> Option<L
     let slack = f64::from(1 << 15);
     let fits = scale.is_finite() && c.abs() < 1e12;
     fits.then_some(Line { a: a as i64, b: b as i64, c: (c - slack) as i64 })
-}
-
-/// Whether two facets have the same depth wherever they are both seen.
-fn same_plane(a: &Setup, b: &Setup) -> bool {
-    let plane = |s: &Setup| ([s.z, s.dz_dx, s.dz_dy, s.z_min, s.z_max].map(f32::to_bits), s.origin);
-    plane(a) == plane(b)
 }
 
 /// Fills the samples of a visible polygon.

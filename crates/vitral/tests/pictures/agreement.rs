@@ -13,7 +13,7 @@ use vitral::internals::render::stats::{CullCounters, VisibilityCounters};
 use vitral::internals::render::visible::TileSink;
 use vitral::{
     Budget, Camera, Clock, Coherence, DVec3, Execution, Frame, Limit, Projection, Renderer, Workers, load_builtin,
-    override_material,
+    load_bytes, override_material,
 };
 
 const WIDTH: u32 = 96;
@@ -340,6 +340,17 @@ fn p7_without_a_kind_of_coherence_every_sample_of_the_traps_is_the_same() {
             assert!(sum > 0, "{}: {} saves work", algorithm.name, kind.name());
         }
     }
+}
+
+#[test]
+fn p20_three_flat_squares_are_cut_into_the_windows_that_a_hand_finds() {
+    let scene = load_bytes(include_bytes!("../fixtures/three-flat-squares.json"), "three-flat-squares.json").unwrap();
+    let mut renderer = exact(scene, 64, 64);
+    renderer.camera = Some(renderer.world().cameras[0]);
+    let warnock = VISIBILITY.iter().find(|row| row.name == "warnock").unwrap();
+    let counters = find(&renderer, warnock, 1, renderer.execution()).unwrap().counters;
+    // 10 cut, 28 surrounded, 2 empty, 1 with one square; the seams within the squares cut none.
+    assert_eq!((counters.windows, counters.pixel_windows), (41, 0), "{counters:?}");
 }
 
 #[test]

@@ -207,7 +207,10 @@ pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
     }
     let mut named = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let chosen: Visibility = name.parse().map_err(|unknown: UnknownName| unknown.to_string())?;
+        let chosen: Visibility = name.parse().map_err(|unknown: UnknownName| {
+            let nearest = unknown.suggestion.map(|name| format!("; did you mean `{name}`?")).unwrap_or_default();
+            format!("`{name}` is not one of all, {}{nearest}", unknown.choices)
+        })?;
         named.extend(all.iter().filter(|entrant| entrant.algorithm.name == chosen.name));
     }
     Ok(Deciders::Named(named))

@@ -21,6 +21,7 @@ mod render_args;
 mod render_command;
 mod report;
 mod resolve;
+mod step_pictures;
 mod tables;
 mod trace_file;
 mod unbuilt;

@@ -41,11 +41,21 @@ pub(crate) struct RenderArgs {
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
     /// repeatable, one for each --channel
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel", "export_shadow_polygons"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel", "export_shadow_polygons", "steps_video"])]
     pub(crate) output: Vec<PathBuf>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
     pub(crate) channel: Vec<Channel>,
+    /// For --channel steps: the picture as it is after this step of the algorithm, counted from 0 as in --trace, with one sample a
+    /// pixel; what the step is about is outlined [default: all steps over the finished picture]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) step: Option<u32>,
+    /// Write the picture after one step after the other into these files; {frame} or {frame:4} expands
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["turntable", "panels"])]
+    pub(crate) steps_video: Option<PathBuf>,
+    /// The most pictures of --steps-video, over all steps evenly, the last one among them; 0 makes one for each step [default: 240]
+    #[arg(long, value_name = "N", requires = "steps_video", allow_negative_numbers = true)]
+    pub(crate) steps_frames: Option<u32>,
     /// N views around the model; --output needs {frame} [default: one picture]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=1_000_000u32), allow_negative_numbers = true)]
     pub(crate) turntable: Option<u32>,

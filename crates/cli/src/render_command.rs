@@ -7,15 +7,14 @@ use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
 use crate::resolve::{Plan, resolve};
+use crate::step_pictures;
 use crate::trace_file::TraceFile;
 use crate::values;
 use serde_json::{Value, json};
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::frame::compare;
-use vitral::internals::render::trace::Observer;
 use vitral::{Camera, ColorSpace, EncodeOptions, Frame, Plane, Renderer, dump};
 
 /// What each algorithm may take for `--pixel`, if nothing else is said, in seconds.
@@ -117,21 +116,26 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
 
 /// Draws the pictures, if any are wanted, with a trace of the steps if one is; saves the solution of radiosity.
 fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
-    let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
-    renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
-    let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
+    let (watched, has_frames) = (args.report.pixel, plan.frames.end() > plan.frames.start());
+    let trace = args.report.trace.as_deref();
+    let mut tracing = trace.map(|path| TraceFile::create(path, renderer, watched, has_frames)).transpose()?;
+    let mut drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
-        draw(args, plan, renderer, cameras)?
+        draw(args, plan, renderer, cameras, tracing.as_mut())?
     };
+    if let Some(output) = &plan.steps_video {
+        let camera = &cameras[*plan.frames.start() as usize];
+        let options = encode_options(plan);
+        drawn.written.extend(step_pictures::video(args, output, &model_of(plan), renderer, camera, &options)?);
+    }
     if let Some(file) = &args.output.save_radiosity
         && let Some(bytes) = renderer.session().save_radiosity()
     {
         vitral::picture::write(file, &bytes)?;
     }
-    renderer.execution_mut().observer = None;
     if let Some(file) = tracing {
-        file.finish()?;
+        file.finish(renderer)?;
     }
     Ok(drawn)
 }
@@ -161,17 +165,27 @@ struct Drawn {
     different: bool,
 }
 
-fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
-    let model = model_name(plan.state.models.first().map_or("", String::as_str));
-    let srgb = plan.state.settings.picture.color_space == ColorSpace::Srgb;
-    let options = EncodeOptions { srgb, ..EncodeOptions::default() };
+fn draw(
+    args: &RenderArgs,
+    plan: &Plan,
+    renderer: &mut Renderer,
+    cameras: &[Camera],
+    mut tracing: Option<&mut TraceFile>,
+) -> Result<Drawn, Failure> {
+    let (model, options) = (model_of(plan), encode_options(plan));
     let count = u64::from(plan.frames.end() - plan.frames.start() + 1);
     let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count);
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
         let camera = &cameras[number as usize];
-        let rendered =
+        let mut rendered =
             if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };
+        if let Some(file) = &mut tracing {
+            file.write_frame(number)?;
+        }
+        if let Some(step) = args.output.step {
+            step_pictures::after_step(renderer, camera, step, &mut rendered.frame)?;
+        }
         // A turntable's frames mostly share their warnings.
         let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
         if !args.report.quiet {
@@ -201,6 +215,17 @@ fn draw(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Came
     }
     progress.finish();
     Ok(drawn)
+}
+
+/// The model's name in names of files.
+fn model_of(plan: &Plan) -> String {
+    model_name(plan.state.models.first().map_or("", String::as_str))
+}
+
+/// How pictures are encoded.
+fn encode_options(plan: &Plan) -> EncodeOptions {
+    let srgb = plan.state.settings.picture.color_space == ColorSpace::Srgb;
+    EncodeOptions { srgb, ..EncodeOptions::default() }
 }
 
 /// Whether the colour picture is farther from the reference than allowed.

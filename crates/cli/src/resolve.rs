@@ -5,7 +5,7 @@ use crate::light_spec;
 use crate::outputs::{Output, model_name};
 use crate::render_args::{AlgorithmArgs, CameraArgs, LabArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
 use crate::report::{self, Failure};
-use crate::values;
+use crate::{step_pictures, values};
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -29,6 +29,8 @@ pub(crate) struct Plan {
     pub(crate) frames: RangeInclusive<u32>,
     /// Views of the whole turn; 1 without a turntable.
     pub(crate) views: u32,
+    /// Where the pictures after one step after the other go.
+    pub(crate) steps_video: Option<Output>,
     /// The picture that others are compared with.
     pub(crate) reference: Option<Plane<[u8; 4]>>,
 }
@@ -50,12 +52,15 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     state.settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
     check_standard_output(args, &outputs)?;
     check_background_and_pixel(args, &state, &outputs)?;
+    step_pictures::check(args, &outputs)?;
+    let video = args.output.steps_video.as_deref();
+    let steps_video = video.map(|pattern| Output::sequence("--steps-video", pattern)).transpose()?;
 
     let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
     let frames = frames_of(args, views, &outputs)?;
-    check_files(args, &state, &outputs, &frames)?;
+    check_files(args, &state, outputs.iter().chain(&steps_video), &frames)?;
     let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
-    Ok(Plan { state, outputs, frames, views, reference })
+    Ok(Plan { state, outputs, frames, views, steps_video, reference })
 }
 
 /// Lays the configuration file and the state file over the state.
@@ -164,14 +169,14 @@ fn frames_of(args: &RenderArgs, views: u32, outputs: &[Output]) -> Result<RangeI
 }
 
 /// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours of work.
-fn check_files(
+fn check_files<'o>(
     args: &RenderArgs,
     state: &State,
-    outputs: &[Output],
+    mut outputs: impl Iterator<Item = &'o Output>,
     frames: &RangeInclusive<u32>,
 ) -> Result<(), Failure> {
     let model = model_name(state.models.first().map_or("", String::as_str));
-    outputs.iter().try_for_each(|output| output.check_places(&model, frames.clone()))?;
+    outputs.try_for_each(|output| output.check_places(&model, frames.clone()))?;
     let stats = args.report.stats_file.as_ref().filter(|file| !report::is_standard(file));
     let files = [stats, args.output.save_radiosity.as_ref(), args.output.export_shadow_polygons.as_ref()];
     files.into_iter().flatten().try_for_each(|file| Ok(vitral::picture::check_place(file)?))

@@ -1,57 +1,66 @@
 //! `--trace FILE`: the steps of the algorithm, a JSON object a line.
 
 use crate::report::{Failure, is_standard};
+use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use vitral::internals::render::trace::{Observer, Step};
+use std::sync::Arc;
+use vitral::Renderer;
+use vitral::internals::render::trace::numbered::{Collector, NumberedStep};
 
-/// A file, or standard output, that steps are written to as they are done.
+/// A file, or standard output, that the steps of each frame are written to when it is done.
 pub(crate) struct TraceFile {
     path: PathBuf,
-    /// Where they go, or why that cannot be written.
-    file: Mutex<std::io::Result<BufWriter<Box<dyn Write + Send>>>>,
+    out: BufWriter<Box<dyn Write + Send>>,
+    collector: Arc<Collector>,
+    /// Whether several frames are traced.
+    has_frames: bool,
 }
 
-impl std::fmt::Debug for TraceFile {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("TraceFile").field("path", &self.path).finish_non_exhaustive()
-    }
+/// A line of the file.
+#[derive(Serialize)]
+struct Line {
+    /// The frame of a turntable.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<u32>,
+    #[serde(flatten)]
+    step: NumberedStep,
 }
 
 impl TraceFile {
-    /// Makes the file.
-    pub(crate) fn create(path: &Path) -> Result<Arc<Self>, Failure> {
+    /// Makes the file, and lets `renderer` be watched; each comparison of the z-buffer at the pixel `watched` is written.
+    pub(crate) fn create(
+        path: &Path,
+        renderer: &mut Renderer,
+        watched: Option<[u32; 2]>,
+        has_frames: bool,
+    ) -> Result<Self, Failure> {
         let out: Box<dyn Write + Send> = if is_standard(path) {
             Box::new(std::io::stdout())
         } else {
             Box::new(File::create(path).map_err(|e| failure(path, &e))?)
         };
-        Ok(Arc::new(Self { path: path.to_owned(), file: Mutex::new(Ok(BufWriter::new(out))) }))
+        let execution = renderer.execution_mut();
+        let collector = Arc::new(Collector::new(execution.budget.clone(), watched));
+        execution.observer = Some(collector.clone());
+        Ok(Self { path: path.to_owned(), out: BufWriter::new(out), collector, has_frames })
     }
 
-    /// Writes what is left, and tells if something could not be written.
-    pub(crate) fn finish(&self) -> Result<(), Failure> {
-        let mut file = self.file.lock().expect("no thread panics while it writes a step");
-        match &mut *file {
-            Ok(file) => file.flush().map_err(|e| failure(&self.path, &e)),
-            Err(e) => Err(failure(&self.path, e)),
+    /// Writes the steps of a frame.
+    pub(crate) fn write_frame(&mut self, frame: u32) -> Result<(), Failure> {
+        let frame = self.has_frames.then_some(frame);
+        for step in self.collector.take()? {
+            let written = serde_json::to_writer(&mut self.out, &Line { frame, step }).map_err(std::io::Error::from);
+            written.and_then(|()| self.out.write_all(b"\n")).map_err(|e| failure(&self.path, &e))?;
         }
+        Ok(())
     }
-}
 
-impl Observer for TraceFile {
-    fn step(&self, step: &Step) {
-        let mut file = self.file.lock().expect("no thread panics while it writes a step");
-        // After an error nothing more is written; the end tells it.
-        if let Ok(out) = &mut *file {
-            let written =
-                serde_json::to_writer(&mut *out, step).map_err(Into::into).and_then(|()| out.write_all(b"\n"));
-            if let Err(e) = written {
-                *file = Err(e);
-            }
-        }
+    /// Writes what is left, and ends watching.
+    pub(crate) fn finish(mut self, renderer: &mut Renderer) -> Result<(), Failure> {
+        renderer.execution_mut().observer = None;
+        self.out.flush().map_err(|e| failure(&self.path, &e))
     }
 }
 

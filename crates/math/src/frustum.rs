@@ -35,26 +35,34 @@ impl Frustum {
         Self { planes }
     }
 
+    /// Names of [`Self::planes`], in their order.
+    pub const NAMES: [&'static str; 6] = ["left", "right", "bottom", "top", "far", "near"];
+
     /// Tests a box by the corner farthest along each plane's normal, and the nearest.
     pub fn test_box(&self, b: &Aabb) -> Containment {
+        self.find_box(b).0
+    }
+
+    /// [`test_box`](Self::test_box), with the index of the first plane that the box lies beyond, if it is outside.
+    pub fn find_box(&self, b: &Aabb) -> (Containment, Option<usize>) {
         if b.is_empty() {
-            return Containment::Outside;
+            return (Containment::Outside, None);
         }
         let (center, half) = ((b.min + b.max) * 0.5, (b.max - b.min) * 0.5);
         let mut result = Containment::Inside;
-        for plane in &self.planes {
+        for (number, plane) in self.planes.iter().enumerate() {
             let normal = plane.truncate();
             let (distance, reach) = (normal.dot(center) + plane.w, normal.abs().dot(half));
             // A hair of slack: rounding must never cull what a clipper would keep.
             let slack = 1e-9 * (distance.abs() + reach);
             if distance + reach < -slack {
-                return Containment::Outside;
+                return (Containment::Outside, Some(number));
             }
             if distance - reach < slack {
                 result = Containment::Crossing;
             }
         }
-        result
+        (result, None)
     }
 }
 
@@ -69,6 +77,7 @@ mod tests {
         let cube = |c: DVec3, h: f64| Aabb { min: c - h, max: c + h };
         assert_eq!(f.test_box(&cube(DVec3::new(0.0, 0.0, 0.5), 0.1)), Containment::Inside);
         assert_eq!(f.test_box(&cube(DVec3::new(1.0, 0.0, 0.5), 0.1)), Containment::Crossing);
-        assert_eq!(f.test_box(&cube(DVec3::new(2.0, 0.0, 0.5), 0.1)), Containment::Outside);
+        assert_eq!(f.find_box(&cube(DVec3::new(2.0, 0.0, 0.5), 0.1)), (Containment::Outside, Some(1)));
+        assert_eq!(Frustum::NAMES[1], "right");
     }
 }

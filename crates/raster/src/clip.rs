@@ -64,8 +64,16 @@ impl Polygon {
     }
 }
 
+/// The planes that cut, in their order: near, far, and the sides of the guard band.
+pub const PLANES: [&str; 6] = ["near", "far", "right", "left", "top", "bottom"];
+
 /// Clips against near, far and the guard band `guard` (how many times wider than the view, per axis).
 pub fn clip(polygon: Polygon, guard: Vec2) -> Polygon {
+    clip_watched(polygon, guard, |_, _, _| ())
+}
+
+/// [`clip`], which tells `cut` each time that a plane cuts: its index in [`PLANES`], the polygon before and after.
+pub fn clip_watched(polygon: Polygon, guard: Vec2, mut cut: impl FnMut(usize, &Polygon, &Polygon)) -> Polygon {
     let planes: [&dyn Fn(Vec4) -> f32; 6] = [
         &|p| p.w - p.z,
         &|p| p.z,
@@ -75,9 +83,11 @@ pub fn clip(polygon: Polygon, guard: Vec2) -> Polygon {
         &|p| guard.y * p.w + p.y,
     ];
     let mut polygon = polygon;
-    for plane in planes {
+    for (number, plane) in planes.into_iter().enumerate() {
         if polygon.corners().iter().any(|&c| plane(c) < 0.0) {
-            polygon = polygon.cut(plane);
+            let before = polygon;
+            polygon = before.cut(plane);
+            cut(number, &before, &polygon);
         }
     }
     polygon

@@ -3,6 +3,7 @@
 mod assemble;
 mod checks;
 mod pixel;
+mod steps;
 
 use crate::display::DecodeTables;
 use crate::global::Whitted;
@@ -13,13 +14,13 @@ use crate::shading::{
 };
 use crate::shadow::{self, Shadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
-use crate::trace::{Observer, picture::Recorder};
-use crate::visible::{NullSink, Resolved, VisibleSurface};
+use crate::visible::{Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
 use assemble::Assembler;
 use checks::{check_indices, check_order, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
 use std::sync::Arc;
+pub use steps::watch_steps;
 use vitral_exec::Limit;
 use vitral_frame::{Frame, Plane};
 use vitral_light::{Light, Rgb};
@@ -267,26 +268,6 @@ impl<'a> FrameContext<'a> {
         drop(shadows);
         drop(view);
         session.grid = Some(grid);
-        Ok(())
-    }
-
-    /// The steps of the algorithm with one sample a pixel, over the colour picture, which goes if it was not asked for.
-    fn render_steps(&self, session: &mut Session, frame: &mut Frame) -> Result<(), Error> {
-        let Viewport { width, height, .. } = self.viewport;
-        self.execution.budget.charged(Recorder::bytes(width, height), "the picture of the steps", || {
-            let recorder = Arc::new(Recorder::new(width, height));
-            let observer = Arc::clone(&recorder) as Arc<dyn Observer>;
-            let watched = Execution { observer: Some(observer), ..self.execution.clone() };
-            let watched_context = FrameContext { execution: &watched, ..*self };
-            let mut grid = TileGrid::new(self.viewport, 1);
-            let view = watched_context.view(session, SamplePattern::new(1), &mut CullCounters::default());
-            self.visibility().resolve(&view, None, &mut grid, &watched, &NullSink)?;
-            frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
-            Ok(())
-        })?;
-        if !self.settings.picture.channels.color {
-            frame.color = None;
-        }
         Ok(())
     }
 

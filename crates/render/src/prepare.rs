@@ -8,13 +8,14 @@ use crate::cull::frustum::{self, VisibleInstance};
 use crate::cull::opacity::is_layered;
 use crate::cull::window::Window;
 use crate::stats::CullCounters;
+use crate::trace::Step;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
 use std::ops::Range;
 use vitral_exec::Workers;
 use vitral_light::Material;
 use vitral_math::lanes::Level;
 use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
-use vitral_raster::clip::{Polygon, clip};
+use vitral_raster::clip::{PLANES, Polygon, clip, clip_watched};
 use vitral_raster::geometry::{Screen, flag, transform_point};
 use vitral_raster::{
     BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane, TILE, Viewport,
@@ -84,7 +85,7 @@ impl<'a> PreparedView<'a> {
         let clip_from_world = view.clip_from_world();
         let coherence = settings.coherence();
         let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
-        let visible = frustum::cull(session, &clip_from_world, cull_objects, counters);
+        let visible = frustum::cull(session, &clip_from_world, cull_objects, execution, counters);
         let preparation = Preparation { session, camera, settings, view: &view, clip_from_world, execution };
         let instances: Vec<_> = visible.into_iter().map(|visible| preparation.instance(&visible)).collect();
         let drops = |draw: &Draw<'_>| draw.back_faces != BackFaces::Kept;
@@ -129,6 +130,11 @@ impl<'a> PreparedView<'a> {
             prepared.layered.retain(|draw| !draw.ranges.is_empty());
         }
         self.only_tile = Some(tile);
+    }
+
+    /// Whether all tiles are.
+    pub(crate) fn makes_all_tiles(&self) -> bool {
+        self.only_tile.is_none()
     }
 
     /// Whether the tile with this number is made.
@@ -201,6 +207,29 @@ impl<'a> PreparedView<'a> {
         }
         let polygon = clip(Polygon::triangle(corners), self.screen.transform().guard());
         (polygon.corners().len() >= 3).then(|| (polygon.corners().to_vec(), true))
+    }
+
+    /// Tells the planes that cut the facets in view, facet by facet: the polygon before and after each.
+    pub(crate) fn tell_clipping(&self, execution: &Execution) {
+        let draws = || self.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
+        let facets_of = |draw: &Draw<'_>| {
+            let triangles = draw.ranges.iter().cloned().flatten();
+            triangles.map(|triangle| draw.first_facet + triangle).collect::<Vec<_>>()
+        };
+        let points = |polygon: &Polygon| polygon.corners().iter().map(|corner| corner.to_array()).collect();
+        for facet in draws().flat_map(facets_of) {
+            let (_, corners, clip_from_model, vertices) = self.placed(Level::new(), facet);
+            let flags = vertices.iter().fold(0, |all, vertex| all | vertex.flags);
+            let beyond = vertices.iter().fold(flag::FRUSTUM, |common, vertex| common & vertex.flags);
+            if flags & flag::NOT_FINITE != 0 || flags & flag::CLIP == 0 || beyond != 0 {
+                continue;
+            }
+            let triangle = Polygon::triangle(corners.map(|p| transform_point(&clip_from_model, p)));
+            clip_watched(triangle, self.screen.transform().guard(), |plane, before, after| {
+                let (plane, before, after) = (PLANES[plane], points(before), points(after));
+                execution.tell(|| Step::Clipped { facet, plane, before, after });
+            });
+        }
     }
 
     /// A facet's instance, its corners, the matrix from their space to clip space, and where that brings them.

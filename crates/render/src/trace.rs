@@ -6,8 +6,12 @@
 //!
 //! [`picture`] draws the steps over the image.
 
+mod canvas;
 pub mod legend;
+pub mod numbered;
 pub mod picture;
+pub mod quadtree;
+pub mod replay;
 pub mod tables;
 
 use serde::Serialize;
@@ -17,6 +21,12 @@ use tables::{Bucket, Crossing, TablePolygon};
 pub trait Observer: std::fmt::Debug + Send + Sync {
     /// A step was done.
     fn step(&self, step: &Step);
+
+    /// Whether each comparison of the z-buffer at a pixel is to be told.
+    fn watches(&self, pixel: [u32; 2]) -> bool {
+        let _ = pixel;
+        false
+    }
 }
 
 /// What was found about a window of Warnock's.
@@ -33,6 +43,18 @@ pub enum WindowVerdict {
     Pixel,
     /// Not simple: cut in four.
     Cut,
+}
+
+/// Where a box lies with respect to the view volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BoxVerdict {
+    /// Beyond a plane: all that is in it is culled.
+    Outside,
+    /// Partly beyond: what is in it is looked at.
+    Crossing,
+    /// All of it is in view.
+    Inside,
 }
 
 /// How a span of a line was decided.
@@ -150,22 +172,77 @@ impl Way {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "step", rename_all = "kebab-case")]
 pub enum Step {
-    /// Z-buffer: a tile is done; for each of its pixels, row by row, how many opaque facets cover its first sample.
-    Tile {
-        /// Left, top, width, height.
-        pixels: [u32; 4],
-        /// Facets a pixel.
-        facets: Vec<u32>,
+    /// Culling: a box was tested against the view volume.
+    Box {
+        /// The instance whose triangles it holds; none for a box round whole instances.
+        instance: Option<u32>,
+        /// The first of these, and the one behind the last.
+        items: [u32; 2],
+        /// Smallest x, y, z: world space for instances, model space for triangles.
+        min: [f64; 3],
+        /// Largest x, y, z.
+        max: [f64; 3],
+        /// Where it lies.
+        verdict: BoxVerdict,
+        /// The plane of the view volume that it lies beyond, if it is outside.
+        beyond: Option<&'static str>,
+    },
+    /// Clipping: a plane cut a facet.
+    Clipped {
+        /// The facet.
+        facet: u32,
+        /// Near, far, or a side of the guard band, which is wider than the view.
+        plane: &'static str,
+        /// The polygon before, in clip space: x, y, z, w.
+        before: Vec<[f32; 4]>,
+        /// What is left of it; nothing with fewer than three corners.
+        after: Vec<[f32; 4]>,
+    },
+    /// Z-buffer: a facet came, in the order of the scene, and its depth was compared at the first samples that it covers.
+    Drawn {
+        /// The facet.
+        facet: u32,
+        /// Where it is nearer than what was there, and stays: runs of pixels, each by its row, its first and the one behind its
+        /// last.
+        stays: Vec<[u32; 3]>,
+        /// Where it is hidden by what was there.
+        hidden: Vec<[u32; 3]>,
+    },
+    /// Z-buffer: what happened at a watched pixel when a facet came.
+    Compared {
+        /// The pixel.
+        pixel: [u32; 2],
+        /// The facet that came.
+        facet: u32,
+        /// Its depth at the first sample: 1 on the near plane, 0 on the far one.
+        depth: f32,
+        /// The facet that was there; none for the background.
+        there: Option<u32>,
+        /// Its depth.
+        there_depth: Option<f32>,
+        /// Which of the two is there now.
+        stays: u32,
     },
     /// Warnock: a window was looked at.
     Window {
         /// Left, top, width, height.
         pixels: [u32; 4],
-        /// Polygons left on its list.
-        polygons: u32,
+        /// The way down from the whole picture: for each cut the quarter, `0` top left, `1` top right, `2` bottom left, `3`
+        /// bottom right. Its parent is the window without the last digit.
+        path: String,
+        /// How many polygons of the list that was handed down have no sample in it.
+        disjoint: u32,
+        /// Facets of the polygons that are left and lie within it.
+        contained: Vec<u32>,
+        /// Of those that are partly in it.
+        intersecting: Vec<u32>,
+        /// Of those that cover it.
+        surrounding: Vec<u32>,
+        /// Of those that are taken off the list, as one that surrounds the window hides them in all of it.
+        hidden: Vec<u32>,
         /// What that means.
         verdict: WindowVerdict,
-        /// The facet that is drawn, where it is one.
+        /// The facet of the polygon that is drawn, where it is one.
         facet: Option<u32>,
     },
     /// Scan-line: the tables of a band of rows, before it is swept.
@@ -310,31 +387,43 @@ impl Step {
     /// Whether a pixel's first sample is in what the step is about.
     pub fn concerns(&self, [x, y]: [u32; 2]) -> bool {
         match self {
-            Self::Tile { pixels: [left, top, width, height], .. }
-            | Self::Window { pixels: [left, top, width, height], .. }
+            Self::Drawn { stays, hidden, .. } => {
+                stays.iter().chain(hidden).any(|&[row, from, to]| row == y && (from..to).contains(&x))
+            }
+            Self::Compared { pixel, .. } | Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => {
+                *pixel == [x, y]
+            }
+            Self::Window { pixels: [left, top, width, height], .. }
             | Self::Rays { pixels: [left, top, width, height], .. } => {
                 (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
             }
             Self::Line { row, sample, .. } => *row == y && *sample == 0,
-            Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => *pixel == [x, y],
             Self::Piece { outline, .. } => {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 holds(edges.map(|(a, b)| [*a, *b]), [x, y])
             }
             Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
             Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::Clip { .. } | Self::Space { .. } | Self::EdgeTable { .. } => false,
+            Self::Clip { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
+            Self::Clipped { .. } => false,
         }
     }
 
     /// The step in words, for one of the pixels it concerns.
     pub fn tell(&self, [x, y]: [u32; 2]) -> String {
         match self {
-            Self::Tile { pixels: [left, top, width, _], facets } => {
-                let count = facets.get(((y - top) * width + (x - left)) as usize).copied().unwrap_or(0);
-                format!("{count} opaque facet(s) of the tile cover it; the nearest depth stayed")
+            Self::Drawn { facet, stays, .. } => {
+                let stays = stays.iter().any(|&[row, from, to]| row == y && (from..to).contains(&x));
+                format!("facet {facet} comes: {}", if stays { "nearer than what is there" } else { "hidden" })
             }
-            Self::Window { pixels: [left, top, width, height], polygons, verdict, .. } => {
+            Self::Compared { facet, depth, there, there_depth, stays, .. } => {
+                let was = match there.zip(*there_depth) {
+                    Some((there, depth)) => format!("facet {there} is there with depth {depth}"),
+                    None => "nothing is there".to_owned(),
+                };
+                format!("facet {facet} comes with depth {depth}, {was}: facet {stays} stays")
+            }
+            Self::Window { pixels: [left, top, width, height], verdict, .. } => {
                 let what = match verdict {
                     WindowVerdict::Empty => "empty",
                     WindowVerdict::One => "one polygon is drawn",
@@ -342,7 +431,7 @@ impl Step {
                     WindowVerdict::Pixel => "one pixel, the nearest at each sample",
                     WindowVerdict::Cut => "cut in four",
                 };
-                format!("window {left},{top} of {width} x {height}, {polygons} polygon(s) left: {what}")
+                format!("window {left},{top} of {width} x {height}, {}: {what}", self.relations())
             }
             Self::Line { active_edges, spans, .. } => {
                 let line = format!("{} active edge(s)", active_edges.len());
@@ -378,6 +467,53 @@ impl Step {
     }
 }
 
+impl Step {
+    /// About how many bytes it takes in memory.
+    pub fn bytes(&self) -> u64 {
+        fn of<T>(list: &[T]) -> usize {
+            size_of_val(list)
+        }
+        let listed = match self {
+            Self::Drawn { stays, hidden, .. } => of(stays) + of(hidden),
+            Self::Window { path, contained, intersecting, surrounding, hidden, .. } => {
+                path.len() + of(contained) + of(intersecting) + of(surrounding) + of(hidden)
+            }
+            Self::EdgeTable { polygons, buckets, .. } => {
+                of(polygons) + buckets.iter().map(|b| size_of_val(b) + of(&b.edges)).sum::<usize>()
+            }
+            Self::Line { active_edges, spans, .. } => {
+                of(active_edges) + spans.iter().map(|s| size_of_val(s) + of(&s.inside)).sum::<usize>()
+            }
+            Self::Clipped { before, after, .. } => of(before) + of(after),
+            Self::Rays { through, .. } => 24 * through.len(),
+            Self::Circle { facets } => of(facets),
+            Self::Piece { outline, .. } => of(outline),
+            Self::Visible { edges, .. } => of(edges),
+            Self::Compared { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
+            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Split { .. } | Self::Clip { .. } | Self::Box { .. } => {
+                0
+            }
+        };
+        (size_of::<Self>() + listed) as u64
+    }
+
+    /// Of a window's polygons, how many are left and what they are to it.
+    fn relations(&self) -> String {
+        let Self::Window { contained, intersecting, surrounding, hidden, .. } = self else { return String::new() };
+        let left = contained.len() + intersecting.len() + surrounding.len();
+        let kinds = [
+            (surrounding, "surrounding"),
+            (intersecting, "intersecting"),
+            (contained, "contained"),
+            (hidden, "hidden"),
+        ];
+        let told = kinds.iter().filter(|(facets, _)| !facets.is_empty());
+        let told: Vec<_> = told.map(|(facets, kind)| format!("{kind} {}", few(facets))).collect();
+        let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
+        format!("{left} polygon(s) left{told}")
+    }
+}
+
 /// The first few of some facets.
 fn few(facets: &[u32]) -> String {
     const MOST: usize = 8;
@@ -396,13 +532,31 @@ fn holds(edges: impl Iterator<Item = [[f32; 2]; 2]>, [x, y]: [u32; 2]) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// A window without polygons.
+    pub(super) fn window(pixels: [u32; 4], verdict: WindowVerdict) -> Step {
+        let none = Vec::new;
+        Step::Window {
+            pixels,
+            path: String::new(),
+            disjoint: 0,
+            contained: none(),
+            intersecting: none(),
+            surrounding: none(),
+            hidden: none(),
+            verdict,
+            facet: None,
+        }
+    }
 
     #[test]
     fn a_step_knows_its_pixels() {
-        let window = Step::Window { pixels: [8, 4, 4, 2], polygons: 2, verdict: WindowVerdict::Cut, facet: None };
+        let window = window([8, 4, 4, 2], WindowVerdict::Cut);
         assert!(window.concerns([8, 4]) && window.concerns([11, 5]));
+        let drawn = Step::Drawn { facet: 0, stays: vec![[2, 1, 3]], hidden: vec![[2, 3, 4]] };
+        assert!(drawn.concerns([1, 2]) && drawn.concerns([3, 2]) && !drawn.concerns([4, 2]) && !drawn.concerns([1, 1]));
         assert!(!window.concerns([12, 4]) && !window.concerns([8, 6]) && !window.concerns([7, 4]));
         let outline = vec![[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]];
         let piece = Step::Piece { order: 1, facet: 2, cuts: 0, outline };

@@ -232,12 +232,17 @@ impl Observer for RayOnlooker {
 
 impl Observer for Onlooker {
     fn step(&self, step: &Step) {
-        if step.concerns(self.pixel) {
+        // The comparisons of the pixel say it all.
+        if step.concerns(self.pixel) && !matches!(step, Step::Drawn { .. }) {
             let mut steps = self.steps.lock().expect("no thread panics while it keeps a step");
             if steps.len() < MOST_STEPS {
                 steps.push(step.tell(self.pixel));
             }
         }
+    }
+
+    fn watches(&self, pixel: [u32; 2]) -> bool {
+        pixel == self.pixel
     }
 }
 

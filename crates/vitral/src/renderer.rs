@@ -6,7 +6,8 @@ use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::{DQuat, DVec3};
-use vitral_render::{ColorSpace, Execution, Global, Session, Settings, Shot, radiosity, render};
+use vitral_render::trace::replay::WatchedSteps;
+use vitral_render::{ColorSpace, Execution, Global, Session, Settings, Shot, radiosity, render, watch_steps};
 use vitral_scene::{Axis, Camera, Lens, LightMeter, Scene, View, World, default_lights, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -282,6 +283,17 @@ impl Renderer {
             ));
         }
         Ok(Picture { exposure, ..Picture::new(rendered, self.settings.picture.color_space) })
+    }
+
+    /// Renders the picture that `camera` sees, and keeps the steps of its visibility algorithm, with one sample a pixel:
+    /// [`Replay`](crate::internals::render::trace::replay::Replay) shows what it was like after each.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render); the memory limit if there are too many steps.
+    pub fn watch_steps(&mut self, camera: &Camera) -> Result<WatchedSteps, Error> {
+        let lights = self.frame_lights(camera);
+        let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
+        Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
     }
 
     /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every

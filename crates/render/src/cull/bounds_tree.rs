@@ -11,6 +11,22 @@ use vitral_math::Aabb;
 use vitral_math::frustum::{Containment, Frustum};
 use vitral_scene::TRIANGLES_A_RUN;
 
+/// A box that was tested against the view volume.
+#[derive(Clone, Debug)]
+pub struct BoxTest {
+    /// The box.
+    pub bounds: Aabb,
+    /// What it holds.
+    pub items: Range<u32>,
+    /// Where it lies.
+    pub containment: Containment,
+    /// Index of the plane that it lies beyond, if it is outside.
+    pub beyond: Option<usize>,
+}
+
+/// Is told each test of a box.
+pub type BoxTested<'f> = dyn FnMut(&BoxTest) + 'f;
+
 /// A complete binary tree: node `i` has the children `2 i + 1` and `2 i + 2`; leaves fill the last places.
 #[derive(Clone, Debug)]
 pub struct BoundsTree {
@@ -43,11 +59,11 @@ impl BoundsTree {
         Self { nodes, leaves, first_leaf, items, items_a_leaf }
     }
 
-    /// The runs of items whose boxes reach into the frustum, in order and joined where they meet; adds the number of
-    /// box tests to `tests`.
-    pub fn visible(&self, frustum: &Frustum, tests: &mut u64) -> Vec<Range<u32>> {
+    /// The runs of items whose boxes reach into the frustum, in order and joined where they meet; tells `tested` each box that is
+    /// tested, with the items in it.
+    pub fn visible(&self, frustum: &Frustum, tested: &mut BoxTested<'_>) -> Vec<Range<u32>> {
         let mut runs = Vec::new();
-        self.visit(0, 0, self.leaves, frustum, tests, &mut runs);
+        self.visit(0, 0, self.leaves, frustum, tested, &mut runs);
         runs
     }
 
@@ -57,20 +73,20 @@ impl BoundsTree {
         first: usize,
         count: usize,
         frustum: &Frustum,
-        tests: &mut u64,
+        tested: &mut BoxTested<'_>,
         runs: &mut Vec<Range<u32>>,
     ) {
         if self.nodes[node].is_empty() {
             return;
         }
-        *tests += 1;
-        let containment = frustum.test_box(&self.nodes[node]);
+        let start = (first * self.items_a_leaf) as u32;
+        let end = ((first + count) * self.items_a_leaf).min(self.items) as u32;
+        let (containment, beyond) = frustum.find_box(&self.nodes[node]);
+        tested(&BoxTest { bounds: self.nodes[node], items: start..end, containment, beyond });
         if containment == Containment::Outside {
             return;
         }
         if containment == Containment::Inside || node >= self.first_leaf {
-            let start = (first * self.items_a_leaf) as u32;
-            let end = ((first + count) * self.items_a_leaf).min(self.items) as u32;
             match runs.last_mut() {
                 Some(last) if last.end == start => last.end = end,
                 _ => runs.push(start..end),
@@ -78,8 +94,8 @@ impl BoundsTree {
             return;
         }
         let half = count / 2;
-        self.visit(2 * node + 1, first, half, frustum, tests, runs);
-        self.visit(2 * node + 2, first + half, half, frustum, tests, runs);
+        self.visit(2 * node + 1, first, half, frustum, tested, runs);
+        self.visit(2 * node + 2, first + half, half, frustum, tested, runs);
     }
 }
 
@@ -97,7 +113,7 @@ mod tests {
         let frustum = Frustum::from_matrix(&DMat4::IDENTITY);
         let tree = BoundsTree::new(&(0..1000).map(|i| unit(5.0 + f64::from(i))).collect::<Vec<_>>());
         let mut tests = 0;
-        assert!(tree.visible(&frustum, &mut tests).is_empty());
+        assert!(tree.visible(&frustum, &mut |_| tests += 1).is_empty());
         assert_eq!(tests, 1);
     }
 
@@ -106,7 +122,10 @@ mod tests {
         let frustum = Frustum::from_matrix(&DMat4::IDENTITY);
         let boxes: Vec<_> = (0..37).map(|i| unit(f64::from(i) * 0.3 - 4.0)).collect();
         let tree = BoundsTree::new(&boxes);
-        let runs = tree.visible(&frustum, &mut 0);
+        let mut told = Vec::new();
+        let runs = tree.visible(&frustum, &mut |test| told.push(test.clone()));
+        assert_eq!((told[0].items.clone(), told[0].containment), (0..37, Containment::Crossing));
+        assert!(told.iter().all(|test| (test.containment == Containment::Outside) == test.beyond.is_some()));
         for (i, b) in boxes.iter().enumerate() {
             let inside = runs.iter().any(|r| r.contains(&(i as u32)));
             assert_eq!(inside, frustum.test_box(b) != Containment::Outside, "box {i}");

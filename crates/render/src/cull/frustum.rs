@@ -5,9 +5,10 @@
 //! Cost: one box test for whatever is wholly outside or inside; the tests in between go with the border.
 //! Source: [Clark 1976].
 
-use super::bounds_tree::BoundsTree;
-use crate::Session;
+use super::bounds_tree::{BoundsTree, BoxTest};
 use crate::stats::CullCounters;
+use crate::trace::{BoxVerdict, Step};
+use crate::{Execution, Session};
 use std::ops::Range;
 use vitral_math::DMat4;
 use vitral_math::frustum::{Containment, Frustum};
@@ -27,6 +28,7 @@ pub fn cull(
     session: &Session,
     clip_from_world: &DMat4,
     enabled: bool,
+    execution: &Execution,
     counters: &mut CullCounters,
 ) -> Vec<VisibleInstance> {
     let instances = &session.world.instances;
@@ -42,7 +44,11 @@ pub fn cull(
     let runs = if boxes.is_empty() {
         Vec::new()
     } else {
-        BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut counters.box_tests)
+        let tests = &mut counters.box_tests;
+        BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut |test| {
+            *tests += 1;
+            execution.tell(|| step(test, None));
+        })
     };
 
     let trees = session.per_mesh::<BoundsTree>();
@@ -55,8 +61,14 @@ pub fn cull(
         let ranges = if instance.mesh.triangles.len() <= 4 * TRIANGLES_A_RUN {
             vec![all(i)]
         } else {
-            counters.box_tests += 1;
-            match frustum.test_box(&instance.model_bounds) {
+            let mut tested = |test: &BoxTest| {
+                counters.box_tests += 1;
+                execution.tell(|| step(test, Some(i as u32)));
+            };
+            let (bounds, items) = (instance.model_bounds, all(i));
+            let (containment, beyond) = frustum.find_box(&bounds);
+            tested(&BoxTest { bounds, items, containment, beyond });
+            match containment {
                 Containment::Outside => Vec::new(),
                 Containment::Inside => vec![all(i)],
                 Containment::Crossing => {
@@ -64,7 +76,7 @@ pub fn cull(
                         let runs = &session.world.run_bounds[instance.mesh_index as usize];
                         BoundsTree::over_runs(runs, instance.mesh.triangles.len())
                     });
-                    tree.visible(&frustum, &mut counters.box_tests)
+                    tree.visible(&frustum, &mut tested)
                 }
             }
         };
@@ -76,4 +88,21 @@ pub fn cull(
     let kept: u64 = visible.iter().flat_map(|v| &v.ranges).map(|r| u64::from(r.end - r.start)).sum();
     counters.triangles_culled = counters.triangles - kept;
     visible
+}
+
+/// A test of a box round objects, or round triangles of one, as a step.
+fn step(test: &BoxTest, instance: Option<u32>) -> Step {
+    let verdict = match test.containment {
+        Containment::Outside => BoxVerdict::Outside,
+        Containment::Crossing => BoxVerdict::Crossing,
+        Containment::Inside => BoxVerdict::Inside,
+    };
+    Step::Box {
+        instance,
+        items: [test.items.start, test.items.end],
+        min: test.bounds.min.to_array(),
+        max: test.bounds.max.to_array(),
+        verdict,
+        beyond: test.beyond.map(|plane| Frustum::NAMES[plane]),
+    }
 }

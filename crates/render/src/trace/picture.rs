@@ -10,6 +10,7 @@
 //! [`super::legend`] tells that to users. Steps are added as they come and not kept, so a large model takes no more than the picture. Sums and maxima do not
 //! depend on the order of threads.
 
+use super::canvas::Canvas;
 use super::{Observer, Step, WindowVerdict};
 use std::sync::Mutex;
 use vitral_frame::Plane;
@@ -17,8 +18,7 @@ use vitral_frame::Plane;
 /// Draws steps.
 #[derive(Debug)]
 pub struct Recorder {
-    width: u32,
-    height: u32,
+    canvas: Canvas,
     planes: Mutex<Planes>,
 }
 
@@ -49,7 +49,7 @@ impl Recorder {
         let count = width as usize * height as usize;
         let planes =
             Planes { cost: vec![0; count], order: vec![0; count], outline: vec![0; count], mark: vec![0; count] };
-        Self { width, height, planes: Mutex::new(planes) }
+        Self { canvas: Canvas { width, height }, planes: Mutex::new(planes) }
     }
 
     /// Bytes that it takes.
@@ -93,48 +93,12 @@ impl Recorder {
         Plane::from_rows(image.width(), image.height(), data).expect("as many pixels as before")
     }
 
-    fn index(&self, x: i64, y: i64) -> Option<usize> {
-        let inside = x >= 0 && y >= 0 && x < i64::from(self.width) && y < i64::from(self.height);
-        inside.then(|| y as usize * self.width as usize + x as usize)
-    }
-
     /// Adds the same cost to all pixels of a rectangle.
     fn spend(&self, planes: &mut Planes, [left, top, width, height]: [u32; 4], cost: u64) {
-        for y in top..(top + height).min(self.height) {
-            let row = y as usize * self.width as usize;
-            let (from, to) = (row + left as usize, row + (left + width).min(self.width) as usize);
+        for y in top..(top + height).min(self.canvas.height) {
+            let row = y as usize * self.canvas.width as usize;
+            let (from, to) = (row + left as usize, row + (left + width).min(self.canvas.width) as usize);
             planes.cost[from..to].iter_mut().for_each(|c| *c += cost);
-        }
-    }
-
-    /// Calls `f` with the pixels along a line.
-    fn line(&self, [a, b]: [[f32; 2]; 2], mut f: impl FnMut(usize)) {
-        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-        // What lies far outside the picture is not walked through.
-        let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, 65_536.0);
-        for i in 0..=steps as u32 {
-            let t = i as f32 / steps;
-            let (x, y) = (a[0] + dx * t, a[1] + dy * t);
-            if let Some(at) = self.index(x.floor() as i64, y.floor() as i64) {
-                f(at);
-            }
-        }
-    }
-
-    /// Calls `f` with the pixels whose centres a convex outline holds.
-    fn fill(&self, outline: &[[f32; 2]], mut f: impl FnMut(usize)) {
-        let (low, high) =
-            outline.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
-        for y in low.max(0.0) as i64..=(high.min(self.height as f32) as i64) {
-            let middle = y as f32 + 0.5;
-            let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-            let crossed = edges.filter(|(a, b)| (a[1] > middle) != (b[1] > middle));
-            let at = crossed.map(|(a, b)| a[0] + (middle - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-            let (from, to) = at.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            if from <= to {
-                let columns = (from - 0.5).ceil().max(0.0) as i64..(to - 0.5).ceil().min(self.width as f32) as i64;
-                columns.filter_map(|x| self.index(x, y)).for_each(&mut f);
-            }
         }
     }
 
@@ -152,7 +116,7 @@ impl Recorder {
         let across = (left..left + width).map(|x| (x, top));
         let down = (top..top + height).map(|y| (left, y));
         for (x, y) in across.chain(down) {
-            if let Some(at) = self.index(x.into(), y.into()) {
+            if let Some(at) = self.canvas.index(x.into(), y.into()) {
                 planes.mark[at] = mark;
             }
         }
@@ -163,15 +127,12 @@ impl Observer for Recorder {
     fn step(&self, step: &Step) {
         let planes = &mut *self.planes.lock().expect("no thread panics while it draws steps");
         match step {
-            Step::Tile { pixels: [left, top, width, _], facets } => {
-                for (row, facets) in facets.chunks((*width).max(1) as usize).enumerate() {
-                    for (x, &count) in (i64::from(*left)..).zip(facets) {
-                        if let Some(at) = self.index(x, i64::from(*top) + row as i64) {
-                            planes.cost[at] += u64::from(count);
-                        }
-                    }
+            Step::Drawn { stays, hidden, .. } => {
+                for &[row, from, to] in stays.iter().chain(hidden) {
+                    self.spend(planes, [from, row, to - from, 1], 1);
                 }
             }
+            Step::Compared { .. } | Step::Box { .. } | Step::Clipped { .. } => {}
             Step::Window { pixels, verdict, .. } => self.window(planes, *pixels, *verdict),
             Step::Line { row, spans, .. } => {
                 for span in spans {
@@ -183,16 +144,16 @@ impl Observer for Recorder {
                 self.spend(planes, *pixels, boxes + facets);
             }
             Step::Piece { order, cuts, outline, .. } => {
-                self.fill(outline, |at| planes.order[at] = planes.order[at].max(order + 1));
+                self.canvas.fill(outline, |at| planes.order[at] = planes.order[at].max(order + 1));
                 if *cuts > 0 {
                     for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
-                        self.line([*a, *b], |at| planes.outline[at] = planes.outline[at].max(order + 1));
+                        self.canvas.line([*a, *b], |at| planes.outline[at] = planes.outline[at].max(order + 1));
                     }
                 }
             }
             Step::Visible { edges, .. } => {
                 for edge in edges {
-                    self.line(*edge, |at| planes.mark[at] = 1);
+                    self.canvas.line(*edge, |at| planes.mark[at] = 1);
                 }
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
@@ -218,6 +179,7 @@ fn ramp(t: f32) -> [u8; 3] {
 mod tests {
     use super::super::Passed;
     use super::super::legend::Legend;
+    use super::super::tests::window;
     use super::*;
 
     #[test]
@@ -240,8 +202,9 @@ mod tests {
         let recorder = Recorder::new(4, 2);
         let through = Passed::Cells(vec![[0; 3]; 5]);
         recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2, through });
-        recorder.step(&Step::Tile { pixels: [0, 0, 4, 1], facets: vec![0, 1, 1, 3] });
-        recorder.step(&Step::Window { pixels: [0, 0, 4, 2], polygons: 1, verdict: WindowVerdict::One, facet: Some(0) });
+        recorder.step(&Step::Drawn { facet: 0, stays: vec![[0, 1, 4]], hidden: vec![[0, 3, 4]] });
+        recorder.step(&Step::Drawn { facet: 1, stays: vec![], hidden: vec![[0, 3, 9]] });
+        recorder.step(&window([0, 0, 4, 2], WindowVerdict::One));
         let planes = recorder.planes.lock().unwrap();
         assert_eq!(planes.cost, [0, 1, 8, 10, 0, 0, 7, 7]);
         assert_eq!(planes.mark, [2, 2, 2, 2, 2, 0, 0, 0]);

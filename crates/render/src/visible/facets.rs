@@ -87,6 +87,11 @@ impl<'v, 'a> Facets<'v, 'a> {
         self.opaque.iter().flat_map(move |batch| batch.tile(tile))
     }
 
+    /// All opaque triangles, those of a face one after the other.
+    pub(super) fn opaque(&self) -> impl Iterator<Item = &Setup> {
+        self.opaque.iter().flat_map(Batch::setups)
+    }
+
     /// The triangles that take part in a list by depth, those of a clipped facet one after the other, and how many of them are
     /// opaque: these come first, then the layers, where they are to be drawn by a list.
     pub(super) fn listed(&self) -> (Vec<&Setup>, usize) {

@@ -56,6 +56,9 @@ pub(super) struct FrontEnd<'v, 'a> {
 
 impl<'v, 'a> FrontEnd<'v, 'a> {
     pub(super) fn new(view: &'v PreparedView<'a>, execution: &'v Execution) -> Self {
+        if execution.observer.is_some() {
+            view.tell_clipping(execution);
+        }
         let vertices = view.instances.iter().map(|_| Vec::new()).collect();
         Self { view, execution, jobs: jobs(view), vertices, stats: GeometryStats::default() }
     }

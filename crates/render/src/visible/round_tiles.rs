@@ -55,7 +55,7 @@ impl<'a> RoundTiles<'a> {
         }
         let (view, level, passes) = (self.view, self.execution.level, self.sink.takes_passes());
         let mut layers = self.layers[index].lock().expect("no thread panics while it holds layers");
-        self.overdraw.count(view, &round.batches, index, tile);
+        self.overdraw.come(view, self.execution, &round.batches, index, tile);
 
         // Let marks hide what is behind them, then walk the triangles. Layers that are asked for in passes wait.
         let marks = self.marks.filter(|_| round.is_last);
@@ -69,7 +69,6 @@ impl<'a> RoundTiles<'a> {
 
         // Hand the finished tile on.
         if round.is_last {
-            self.overdraw.report(view, self.execution, index, tile);
             if passes {
                 let here = round.batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
                 let layered = self.kept.batches.iter().chain(here).chain(marks.map(|marks| &marks.all));

@@ -1,12 +1,13 @@
 //! The steps of the visibility algorithm, with one sample a pixel: drawn over the picture, or one after the other.
 
 use super::{FrameContext, Shot, render};
+use crate::display::BackgroundRows;
 use crate::stats::CullCounters;
 use crate::trace::numbered::Collector;
 use crate::trace::replay::WatchedSteps;
 use crate::trace::{Observer, Step, picture::Recorder};
 use crate::visible::{NullSink, TileSink};
-use crate::{Channels, Error, Execution, Session, Settings};
+use crate::{Channels, ColorSpace, Error, Execution, Session, Settings};
 use std::sync::{Arc, Mutex};
 use vitral_frame::{Frame, Plane};
 use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, Tile, TileGrid, Viewport};
@@ -76,7 +77,10 @@ pub fn watch_steps(
     };
     let drawn = steps.iter().map(|numbered| drawn(&numbered.step)).collect();
     let seen = seen.facets().into_iter().map(|facet| (facet != NO_FACET).then(|| surface(facet))).collect();
-    Ok(WatchedSteps { steps, image, seen, drawn })
+    let picture = &settings.picture;
+    let background = (picture.background, viewport.height, picture.color_space == ColorSpace::Raw);
+    let background = BackgroundRows::new(&background).bytes;
+    Ok(WatchedSteps { steps, image, background, seen, drawn })
 }
 
 /// Keeps the opaque facet that is seen at each pixel.

@@ -19,6 +19,8 @@ pub struct WatchedSteps {
     pub steps: Vec<NumberedStep>,
     /// The finished picture, display colour.
     pub image: Plane<[u8; 4]>,
+    /// The background of each row, display colour.
+    pub background: Vec<[u8; 4]>,
     /// The surface that is seen at each pixel, row by row; none for the background.
     pub seen: Vec<Option<u32>>,
     /// The surface of the facet that a step draws, where it may be drawn over; by the step's number.
@@ -40,6 +42,8 @@ pub struct Replay<'w> {
 enum Shown {
     /// Nothing yet.
     Paper,
+    /// The background, as long as nothing is drawn over it.
+    Background,
     /// What it shows in the end.
     Final,
     /// A surface that may be drawn over.
@@ -57,11 +61,8 @@ impl<'w> Replay<'w> {
     pub fn new(watched: &'w WatchedSteps) -> Self {
         let canvas = Canvas { width: watched.image.width(), height: watched.image.height() };
         let overwrites = watched.drawn.iter().any(Option::is_some);
-        let at_first = |seen: &Option<u32>| match (overwrites, seen) {
-            (true, None) => Shown::Final,
-            _ => Shown::Paper,
-        };
-        Self { watched, canvas, shown: watched.seen.iter().map(at_first).collect(), taken: 0 }
+        let at_first = if overwrites { Shown::Background } else { Shown::Paper };
+        Self { watched, canvas, shown: vec![at_first; watched.seen.len()], taken: 0 }
     }
 
     /// Takes the steps up to the one with this number, that one too. Steps are not taken back.
@@ -74,7 +75,8 @@ impl<'w> Replay<'w> {
         }
         // Nothing is left to decide after the last.
         if self.taken == steps.len() {
-            self.shown.iter_mut().filter(|s| **s == Shown::Paper).for_each(|s| *s = Shown::Final);
+            let open = |shown: &&mut Shown| matches!(**shown, Shown::Paper | Shown::Background);
+            self.shown.iter_mut().filter(open).for_each(|shown| *shown = Shown::Final);
         }
     }
 
@@ -82,6 +84,7 @@ impl<'w> Replay<'w> {
     pub fn picture(&self) -> Plane<[u8; 4]> {
         let pixel = |(i, shown): (usize, &Shown)| match *shown {
             Shown::Paper => opaque(PAPER),
+            Shown::Background => self.watched.background[i / self.canvas.width as usize],
             Shown::Final => self.watched.image.data()[i],
             Shown::Surface(surface) if self.watched.seen[i] == Some(surface) => self.watched.image.data()[i],
             Shown::Surface(surface) => opaque(pale(surface)),
@@ -206,9 +209,10 @@ mod tests {
         let steps = numbered(vec![drawn(0, 0), drawn(1, 2)]);
         let image = Plane::from_rows(4, 1, vec![RED; 4]).unwrap();
         let seen = vec![Some(7), Some(7), Some(8), Some(8)];
-        let watched = WatchedSteps { steps, image, seen, drawn: vec![Some(7), Some(8)] };
+        let (background, drawn) = (vec![[9; 4]], vec![Some(7), Some(8)]);
+        let watched = WatchedSteps { steps, image, background, seen, drawn };
         let mut replay = Replay::new(&watched);
-        assert_eq!(replay.picture().data(), [opaque(PAPER); 4]);
+        assert_eq!(replay.picture().data(), [[9; 4]; 4]);
         replay.go_to(0);
         assert_eq!(replay.shown, [Shown::Surface(7); 4]);
         replay.go_to(1);
@@ -225,7 +229,8 @@ mod tests {
         let steps = vec![window([0, 0, 4, 4], WindowVerdict::Cut), window([0, 0, 2, 4], WindowVerdict::Empty)];
         let steps = steps.into_iter().zip(0..).map(|(step, number)| NumberedStep { number, parent: None, step });
         let image = Plane::from_rows(4, 4, vec![RED; 16]).unwrap();
-        let watched = WatchedSteps { steps: steps.collect(), image, seen: vec![None; 16], drawn: vec![None; 2] };
+        let (steps, background, seen, drawn) = (steps.collect(), vec![[9; 4]; 4], vec![None; 16], vec![None; 2]);
+        let watched = WatchedSteps { steps, image, background, seen, drawn };
         let mut replay = Replay::new(&watched);
         replay.go_to(0);
         assert!(replay.shown.iter().all(|s| *s == Shown::Paper), "a window that is cut decides nothing");

@@ -1,9 +1,12 @@
 //! The steps of algorithms in whole pictures, by hand.
 
 use super::common::{exact, on_z, one};
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
+use vitral::internals::render::trace::numbered::NumberedStep;
+use vitral::internals::render::trace::replay::Replay;
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
-use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility};
+use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -36,7 +39,8 @@ fn p19_tables_of_two_triangles_that_overlap() {
     let steps = Arc::new(Steps::default());
     renderer.execution_mut().observer = Some(Arc::clone(&steps) as Arc<dyn Observer>);
     renderer.render().unwrap();
-    let steps = std::mem::take(&mut *steps.0.lock().unwrap());
+    let mut steps = std::mem::take(&mut *steps.0.lock().unwrap());
+    steps.retain(|step| !matches!(step, Step::Box { .. }));
 
     // Both tables come before all lines.
     let Step::EdgeTable { rows, polygons, buckets } = &steps[0] else { panic!("{:?}", steps[0]) };
@@ -74,6 +78,89 @@ fn p19_tables_of_two_triangles_that_overlap() {
     );
     assert_eq!(line(9), (vec![(4.0, 1), (11.5, 1)], vec![only([4, 11], 1)]));
     assert_eq!(line(10), (vec![], vec![]));
+}
+
+#[test]
+fn steps_do_not_depend_on_threads_or_on_what_a_session_knows() {
+    for row in Visibility::all() {
+        let mut told: Vec<Vec<NumberedStep>> = Vec::new();
+        for threads in [1, 2, 3] {
+            let mut renderer = Renderer::with_execution(load_builtin("cubs").unwrap(), execution(threads)).unwrap();
+            (renderer.settings.picture.width, renderer.settings.picture.height) = (150, 110);
+            renderer.settings.visibility = row;
+            let camera = renderer.frame_camera();
+            // The second picture is made with what the first one found out.
+            for _ in 0..2 {
+                told.push(renderer.watch_steps(&camera).unwrap().steps);
+            }
+        }
+        let first = &told[0];
+        assert!(first.len() > 5, "{}", row.name);
+        for (number, step) in first.iter().enumerate() {
+            assert_eq!(step.number as usize, number, "{}", row.name);
+            assert!(step.parent.is_none_or(|parent| parent < step.number), "{}: {step:?}", row.name);
+        }
+        for other in &told[1..] {
+            let differing = first.iter().zip(other).find(|(a, b)| a != b);
+            assert_eq!(differing, None, "{}", row.name);
+            assert_eq!(first.len(), other.len(), "{}", row.name);
+        }
+    }
+}
+
+#[test]
+fn the_last_step_leaves_the_picture() {
+    for row in Visibility::all() {
+        let mut renderer = exact(load_builtin("cubs").unwrap(), 90, 70);
+        renderer.settings.visibility = row;
+        let camera = renderer.frame_camera();
+        let watched = renderer.watch_steps(&camera).unwrap();
+        let (mut replay, picture) = (Replay::new(&watched), renderer.render().unwrap().frame.color.unwrap());
+        let shown = |replay: &Replay<'_>| {
+            let after = replay.picture();
+            after.data().iter().zip(picture.data()).filter(|(a, b)| a == b).count()
+        };
+        let before = shown(&replay);
+        replay.go_to(watched.steps.len());
+        // What the last step is about is outlined.
+        let after = shown(&replay);
+        assert!(after > 90 * 70 * 9 / 10 && after > before, "{}: {before} of 6300 pixels, then {after}", row.name);
+    }
+}
+
+/// Adds the names in a JSON value, at any depth.
+fn names_in(value: &serde_json::Value, names: &mut BTreeSet<String>) {
+    match value {
+        serde_json::Value::Object(fields) => {
+            for (name, value) in fields {
+                names.insert(name.clone());
+                names_in(value, names);
+            }
+        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| names_in(value, names)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_page_about_traces_names_every_step_and_field() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/trace.md")).unwrap();
+    let mut names = BTreeSet::new();
+    for scene in ["cubs", "scene0"] {
+        for row in Visibility::all() {
+            let mut renderer = exact(load_builtin(scene).unwrap(), 40, 30);
+            renderer.settings.visibility = row;
+            let camera = renderer.frame_camera();
+            for step in renderer.watch_steps(&camera).unwrap().steps {
+                let value = serde_json::to_value(&step).unwrap();
+                names.insert(value["step"].as_str().unwrap().to_owned());
+                names_in(&value, &mut names);
+            }
+        }
+    }
+    for name in names {
+        assert!(page.contains(&format!("`{name}`")), "docs/trace.md says nothing of `{name}`");
+    }
 }
 
 /// With `UPDATE_DOCS=1` the page is written.

@@ -17,7 +17,7 @@ use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use std::sync::OnceLock;
-use vitral_exec::Limit;
+use vitral_exec::{Limit, Workers};
 use vitral_raster::{Batch, LayerList, SUBPIXEL, Setup, TILE, Tile, TileGrid, TileLists};
 
 /// The set-up triangles of a view. A facet that was clipped has several, with one depth plane.
@@ -156,7 +156,8 @@ pub(super) type Collect<'f> = dyn Fn(&Facets<'_, '_>, usize, &Tile, &mut LayerLi
 pub(super) type Fill<'f> =
     dyn Fn(&Facets<'_, '_>, usize, &mut [Tile], &mut VisibilityCounters) -> Result<(), Limit> + Sync + 'f;
 
-/// Calls `fill` for each `chunk` tiles, on all threads, and hands the tiles on.
+/// Calls `fill` for each `chunk` tiles, on all threads, and hands the tiles on. If somebody looks on, one thread goes from tile
+/// to tile, so that the steps are told in the same order each time.
 pub(super) fn fill_tiles(
     view: &PreparedView<'_>,
     marks: Option<&Marks>,
@@ -185,7 +186,9 @@ pub(super) fn fill_with(
     let outcome = Outcome::new();
     let budget = &facets.execution.budget;
     budget.begin("tiles", grid.tiles.len() as u64);
-    facets.execution.workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
+    let alone = facets.execution.observer.as_ref().map(|_| Workers::single());
+    let workers = alone.as_ref().unwrap_or(&facets.execution.workers);
+    workers.for_each_chunk(&mut grid.tiles, chunk, |piece, tiles| {
         // After a limit, the rest of the pieces are passed over.
         let wanted = |tile: usize| facets.view.makes_tile(tile);
         if outcome.is_limit() || !(piece * chunk..piece * chunk + tiles.len()).any(wanted) {

@@ -3,7 +3,7 @@
 use super::common::{exact, on_z, one};
 use std::sync::{Arc, Mutex};
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
-use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility};
+use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility, Workers, load_bytes};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -74,6 +74,46 @@ fn p19_tables_of_two_triangles_that_overlap() {
     );
     assert_eq!(line(9), (vec![(4.0, 1), (11.5, 1)], vec![only([4, 11], 1)]));
     assert_eq!(line(10), (vec![], vec![]));
+}
+
+#[test]
+fn p19_a_flat_convex_face_is_one_polygon_and_all_is_told_in_one_order() {
+    let bytes = include_bytes!("../fixtures/three-flat-squares.json");
+    let told = |threads: usize| {
+        let mut renderer = exact(load_bytes(bytes, "three-flat-squares.json").unwrap(), 192, 192);
+        renderer.camera = Some(renderer.world().cameras[0]);
+        renderer.settings.visibility = Visibility::SCAN_LINE;
+        let steps = Arc::new(Steps::default());
+        let execution = renderer.execution_mut();
+        execution.observer = Some(Arc::clone(&steps) as Arc<dyn Observer>);
+        execution.workers = Workers::new(threads);
+        renderer.render().unwrap();
+        std::mem::take(&mut *steps.0.lock().unwrap())
+    };
+    let steps = told(1);
+    let tables = steps.iter().filter_map(|step| match step {
+        Step::EdgeTable { polygons, buckets, .. } => {
+            let edges = buckets.iter().flat_map(|b| &b.edges).map(|e| (e.polygon, e.edge)).collect::<Vec<_>>();
+            Some((polygons.iter().map(|p| p.surface).collect::<Vec<_>>(), edges.len()))
+        }
+        _ => None,
+    });
+    // Three bands: the square at the upper right is in two, the large one at the lower left in two, the small one in one.
+    let tables: Vec<_> = tables.collect();
+    assert_eq!(tables, [(vec![1], 2), (vec![0, 1], 4), (vec![0, 2], 4)]);
+    // A line through two squares crosses four edges, upright ones, and is cut in three spans.
+    let line = steps.iter().find_map(|step| match step {
+        Step::Line { active_edges, spans, .. } if spans.len() == 3 => Some((active_edges, spans)),
+        _ => None,
+    });
+    let (active, spans) = line.unwrap();
+    let crossed: Vec<_> = active.iter().map(|edge| (edge.x, edge.polygon)).collect();
+    assert_eq!(crossed.len(), 4, "{crossed:?}");
+    assert!(crossed.is_sorted_by(|a, b| a.0 < b.0) && crossed[1].1 == crossed[2].1, "{crossed:?}");
+    assert_eq!(spans.iter().map(|s| s.inside.len()).collect::<Vec<_>>(), [1, 2, 1]);
+    for threads in [2, 5] {
+        assert!(told(threads) == steps, "{threads} threads");
+    }
 }
 
 /// With `UPDATE_DOCS=1` the page is written.

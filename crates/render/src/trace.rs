@@ -1,8 +1,8 @@
 //! The steps of the algorithms, for whoever wants to look on.
 //!
-//! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done. Scan-line, Warnock, Weiler–Atherton
-//! and lists tell theirs in one order, tile by tile or band by band. Those of the z-buffer and of rays come from any thread:
-//! in one tile they are in order, those of different tiles mix. Nobody listening costs nothing that can be measured: the
+//! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done. Scan-line, Warnock and
+//! Weiler–Atherton tell theirs in one order, band by band or tile by tile. Those of others may come from any thread: in one
+//! tile they are in order, those of different tiles mix. Nobody listening costs nothing that can be measured: the
 //! question is asked once for a window, a line, a polygon of a list, a ray or a block of rays, never in a loop within.
 //!
 //! [`picture`] draws the steps over the image.

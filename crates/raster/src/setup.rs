@@ -187,6 +187,12 @@ impl Setup {
         }
     }
 
+    /// Its corners, 1/256 pixel.
+    #[inline]
+    pub fn corners(&self) -> [[i32; 2]; 3] {
+        [0, 1, 2].map(|i| [self.x[i], self.y[i]])
+    }
+
     /// Depth at `(x, y)` in 1/256 pixel.
     #[inline]
     pub fn depth(&self, x: i32, y: i32) -> f32 {

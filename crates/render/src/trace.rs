@@ -1,7 +1,7 @@
 //! The steps of the algorithms, for whoever wants to look on.
 //!
 //! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any thread: in one tile or
-//! band they come in order, those of different tiles mix. Nobody listening costs nothing that can be measured: the
+//! band they come in order, those of different tiles mix ([`numbered`] puts them in the algorithm's own). Nobody listening costs nothing that can be measured: the
 //! question is asked once for a window, a line, a polygon of a list, a ray or a block of rays, never in a loop within.
 //!
 //! [`picture`] draws the steps over the image.
@@ -76,11 +76,11 @@ pub enum SpanVerdict {
 pub struct Span {
     /// First pixel, and the one behind the last.
     pub pixels: [u32; 2],
-    /// Facets of the polygons whose in-out flag is in, the lowest first.
+    /// The first facet of each polygon whose in-out flag is in, the lowest first.
     pub inside: Vec<u32>,
     /// How it was decided.
     pub verdict: SpanVerdict,
-    /// The facet that fills it, where one does.
+    /// The first facet of the polygon that fills it, where one does.
     pub facet: Option<u32>,
 }
 

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-/// An entry of the polygon table: a triangle on the screen. A facet that was clipped has several.
+/// An entry of the polygon table: a convex polygon on the screen, of a face that is flat. A face that is not flat, or not
+/// convex, has several.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TablePolygon {
-    /// The facet.
+    /// The first of its facets.
     pub facet: u32,
     /// The face of the file that it is of.
     pub surface: u32,
@@ -30,10 +31,10 @@ pub struct Bucket {
 pub struct TableEdge {
     /// Index into the polygon table.
     pub polygon: u32,
-    /// The polygon's facet.
+    /// The first of the polygon's facets.
     pub facet: u32,
     /// From this corner of the polygon on the screen to the next.
-    pub edge: u8,
+    pub edge: u32,
     /// Where it crosses the bucket's line, in pixels from the left.
     pub x: f64,
     /// What is added to `x` for a pixel down.
@@ -49,8 +50,8 @@ pub struct Crossing {
     pub x: f64,
     /// Index into the polygon table.
     pub polygon: u32,
-    /// The polygon's facet, whose in-out flag turns there.
+    /// The first facet of the polygon, whose in-out flag turns there.
     pub facet: u32,
     /// From this corner of the polygon on the screen to the next.
-    pub edge: u8,
+    pub edge: u32,
 }

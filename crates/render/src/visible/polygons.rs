@@ -7,12 +7,16 @@
 //! its triangles.
 //!
 //! In:   set-up triangles, those of a face one after the other (screen space). Out: polygons.
-//! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as.
+//! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as, the last [`RECENT`] at most.
 //! Source: the joining of triangles after [Hertel & Mehlhorn 1983].
 
 use crate::PreparedView;
 use std::ops::Range;
 use vitral_raster::Setup;
+
+/// A triangle is joined to one of the polygons that its face has come out as, of these the last so many: more would take time
+/// that grows with the square of the triangles, and triangulations put neighbours close together.
+const RECENT: usize = 32;
 
 /// The polygons of some triangles.
 pub(super) struct Polygons<'f> {
@@ -44,43 +48,63 @@ pub(super) struct ConvexPolygon<'p, 'f> {
 struct Growing<'f> {
     triangles: Vec<&'f Setup>,
     outline: Vec<[i32; 2]>,
+    /// The corner of the outline that was added last: in a fan or a strip, the next triangle has an edge beside it.
+    tip: usize,
 }
 
 impl<'f> Polygons<'f> {
     /// Joins triangles to polygons; those of a face come one after the other.
     pub(super) fn new(setups: impl IntoIterator<Item = &'f Setup>, view: &PreparedView<'_>) -> Self {
         let world = view.session.world();
-        Self::joined(setups, |a, b| world.surface_of_facet(a) == world.surface_of_facet(b))
+        Self::joined(setups, |facet| world.surface_of_facet(facet))
     }
 
-    /// [`Self::new`]; `same_face` says whether two facets are of one face.
-    fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
+    /// [`Self::new`]; `face` is the face that a facet is of.
+    pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, face: impl Fn(u32) -> u32) -> Self {
         let mut polygons = Self { polygons: Vec::new(), triangles: Vec::new(), corners: Vec::new() };
-        // The polygons of the face at hand.
-        let mut growing: Vec<Growing<'f>> = Vec::new();
-        let mut last: Option<&Setup> = None;
+        // The triangles of the face at hand, and its number, once it was asked for.
+        let (mut at_hand, mut number): (Vec<&'f Setup>, Option<u32>) = (Vec::new(), None);
         for setup in setups {
-            let goes_on = last.is_some_and(|last| {
-                same_plane(last, setup) && (last.facet == setup.facet || same_face(last.facet, setup.facet))
-            });
-            if !goes_on {
-                growing.drain(..).for_each(|done| polygons.push(&done));
+            if let Some(last) = at_hand.last().copied() {
+                let goes_on = same_plane(last, setup)
+                    && (last.facet == setup.facet || {
+                        let before = number.unwrap_or_else(|| face(last.facet));
+                        *number.insert(face(setup.facet)) == before
+                    });
+                if !goes_on {
+                    polygons.join(&mut at_hand);
+                    number = None;
+                }
             }
-            if !growing.iter_mut().any(|polygon| polygon.join(setup)) {
-                growing.push(Growing { triangles: vec![setup], outline: corners(setup).to_vec() });
-            }
-            last = Some(setup);
+            at_hand.push(setup);
         }
-        growing.iter().for_each(|done| polygons.push(done));
+        polygons.join(&mut at_hand);
         polygons
     }
 
-    fn push(&mut self, done: &Growing<'f>) {
+    /// Adds the polygons of a face, and takes its triangles.
+    fn join(&mut self, face: &mut Vec<&'f Setup>) {
+        if let [only] = face[..] {
+            self.push(face, &only.corners());
+        } else {
+            let mut growing: Vec<Growing<'f>> = Vec::new();
+            for setup in face.iter() {
+                let recent = growing.len().saturating_sub(RECENT);
+                if !growing[recent..].iter_mut().any(|polygon| polygon.join(setup)) {
+                    growing.push(Growing { triangles: vec![setup], outline: setup.corners().to_vec(), tip: 0 });
+                }
+            }
+            growing.iter().for_each(|done| self.push(&done.triangles, &done.outline));
+        }
+        face.clear();
+    }
+
+    fn push(&mut self, of_polygon: &[&'f Setup], outline: &[[i32; 2]]) {
         let (triangles, corners) = (self.triangles.len() as u32, self.corners.len() as u32);
-        self.triangles.extend(&done.triangles);
-        self.corners.extend(&done.outline);
-        let mut plane = *done.triangles[0];
-        for setup in &done.triangles {
+        self.triangles.extend(of_polygon);
+        self.corners.extend(outline);
+        let mut plane = *of_polygon[0];
+        for setup in of_polygon {
             plane.z_min = plane.z_min.min(setup.z_min);
             plane.z_max = plane.z_max.max(setup.z_max);
         }
@@ -102,6 +126,10 @@ impl<'f> Polygons<'f> {
             outline: &self.corners[corners.start as usize..corners.end as usize],
         }
     }
+
+    /// Bytes for a triangle in memory, at most.
+    pub(super) const BYTES_A_TRIANGLE: u64 =
+        (size_of::<Polygon>() + size_of::<&Setup>() + 3 * size_of::<[i32; 2]>()) as u64;
 
     /// Bytes in memory.
     pub(super) fn bytes(&self) -> u64 {
@@ -131,6 +159,11 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         self.outline
     }
 
+    /// Its triangles.
+    pub(super) fn triangles(self) -> &'p [&'f Setup] {
+        self.triangles
+    }
+
     /// The facet that covers a sample, 1/256 pixel.
     pub(super) fn facet_at(self, x: i32, y: i32) -> Option<u32> {
         self.triangles.iter().find(|t| t.covers(x, y)).map(|t| t.facet)
@@ -153,27 +186,22 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
 impl<'f> Growing<'f> {
     /// Adds a triangle, if it shares an edge and the outline stays convex.
     fn join(&mut self, setup: &'f Setup) -> bool {
-        let [a, b, c] = corners(setup);
+        let [a, b, c] = setup.corners();
         let count = self.outline.len();
         for ([from, to], tip) in [([a, b], c), ([b, c], a), ([c, a], b)] {
             // Outlines turn one way: a shared edge is walked in both directions.
-            let Some(at) = (0..count).find(|&i| self.outline[i] == to && self.outline[(i + 1) % count] == from) else {
-                continue;
-            };
+            let shared = |&i: &usize| self.outline[i] == to && self.outline[(i + 1) % count] == from;
+            let Some(at) = (self.tip..count).chain(0..self.tip).find(shared) else { continue };
             let (before, after) = (self.outline[(at + count - 1) % count], self.outline[(at + 2) % count]);
             if turn(before, to, tip) >= 0 && turn(tip, from, after) >= 0 {
                 self.outline.insert(at + 1, tip);
+                self.tip = at + 1;
                 self.triangles.push(setup);
                 return true;
             }
         }
         false
     }
-}
-
-/// The corners of a triangle, 1/256 pixel.
-fn corners(setup: &Setup) -> [[i32; 2]; 3] {
-    [0, 1, 2].map(|i| [setup.x[i], setup.y[i]])
 }
 
 /// Twice the signed area of a triangle: positive if it turns clockwise on the screen, y downwards.
@@ -208,7 +236,7 @@ mod tests {
 
     fn outlines(triangles: &[[[i32; 2]; 3]]) -> Vec<usize> {
         let setups = setups(triangles);
-        let joined = Polygons::joined(&setups, |_, _| true);
+        let joined = Polygons::joined(&setups, |_| 0);
         let polygons: Vec<_> = (0..joined.len()).map(|number| joined.get(number)).collect();
         for y in (-3..40).map(|y| y * 128) {
             for x in (-3..40).map(|x| x * 128) {
@@ -241,9 +269,9 @@ mod tests {
     #[test]
     fn another_face_or_another_plane_is_another_polygon() {
         let mut two = setups(&[[[0, 0], [8, 0], [8, 8]], [[0, 0], [8, 8], [0, 8]]]);
-        assert_eq!(Polygons::joined(&two, |_, _| true).len(), 1);
-        assert_eq!(Polygons::joined(&two, |_, _| false).len(), 2);
+        assert_eq!(Polygons::joined(&two, |_| 0).len(), 1);
+        assert_eq!(Polygons::joined(&two, |facet| facet).len(), 2);
         two[1].dz_dx += 1e-6;
-        assert_eq!(Polygons::joined(&two, |_, _| true).len(), 2);
+        assert_eq!(Polygons::joined(&two, |_| 0).len(), 2);
     }
 }

@@ -13,9 +13,10 @@
 //! Each row of samples is a line, so a picture with four samples a pixel has four lines a row of pixels. Bands of 64
 //! rows of pixels are swept independently, by as many threads as there are.
 //!
-//! In:   set-up triangles (screen space). Out: the samples of each tile (screen space).
+//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
 //! Cost: edges crossed on all lines, plus spans times the polygons that are in, plus covered samples.
-//! Source: [Wylie et al. 1967], [Bouknight 1970], [Watkins 1970]. Departs from them: where an edge crosses a line is
+//! Source: [Wylie et al. 1967], [Bouknight 1970], [Watkins 1970]. Departs from them: a flat face is entered as convex
+//! polygons, mostly one, and a sample keeps the triangle of the polygon that covers it; where an edge crosses a line is
 //! kept as an exact fraction (a whole number and a remainder), so that spans begin and end where the integer edge
 //! functions say; depth is not added up along the span but taken from the facet's one depth function.
 //! Coherence: of edges (the sorted table is carried from line to line, crossings are stepped), of spans (the winner of the
@@ -29,13 +30,14 @@ mod report;
 mod spans;
 
 use super::facets::{Facets, fill_tiles};
+use super::polygons::Polygons;
 use super::sink::TileSink;
 use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::{Coherence, Execution, PreparedView};
-use edges::{ActiveEdge, ActiveEdges, Edge, Polygon, edge_table, lines, spacing};
+use edges::{ActiveEdge, ActiveEdges, Edge, Polygon, edge_table, lines, polygon_table, spacing};
 use spans::Spans;
 use vitral_exec::Limit;
 use vitral_raster::{TILE, Tile, TileGrid};
@@ -56,7 +58,7 @@ impl VisibleSurface for ScanLine {
         let tiles_a_row = view.viewport.tiles_x() as usize;
         fill_tiles(view, marks, grid, execution, sink, tiles_a_row, &|facets, first, tiles, counters| {
             let row = first / tiles_a_row;
-            let bytes = facets.in_row(row).len() as u64 * BYTES_A_POLYGON;
+            let bytes = facets.in_row(row).len() as u64 * BYTES_A_TRIANGLE;
             let budget = &facets.execution().budget;
             budget.charge(bytes, "scan-line")?;
             let swept = sweep(facets, row, tiles, counters);
@@ -66,10 +68,10 @@ impl VisibleSurface for ScanLine {
     }
 }
 
-/// Entries of the tables for one polygon.
-const BYTES_A_POLYGON: u64 = (size_of::<Polygon<'_>>()
-    + 2 * (size_of::<Edge>() + size_of::<Option<ActiveEdge>>())
-    + size_of::<ActiveEdge>()) as u64;
+/// Entries of the tables for a polygon that is one triangle; the more triangles a polygon has, the fewer there are for each.
+const BYTES_A_TRIANGLE: u64 = Polygons::BYTES_A_TRIANGLE
+    + (size_of::<Polygon<'_>>() + 2 * (size_of::<Edge>() + size_of::<Option<ActiveEdge>>()) + size_of::<ActiveEdge>())
+        as u64;
 
 /// Sweeps one row of tiles.
 fn sweep(
@@ -84,7 +86,8 @@ fn sweep(
     let height = TILE.min(view.viewport.height as usize - row * TILE);
     let lines = lines(&view.pattern, row * TILE, height);
     let spacing = if view.coherence.has(Coherence::Edge) { spacing(&lines) } else { 0 };
-    let mut polygons: Vec<_> = facets.in_row(row).map(Polygon::new).collect();
+    let joined = Polygons::new(facets.in_row(row), view);
+    let mut polygons = polygon_table(&joined);
     let edges = edge_table(&polygons, &lines);
     report::tables(execution, view, [row * TILE, row * TILE + height], (&polygons, &edges), &lines)?;
 

@@ -354,6 +354,50 @@ fn p20_three_flat_squares_are_cut_into_the_windows_that_a_hand_finds() {
 }
 
 #[test]
+fn p19_three_flat_squares_have_the_edges_and_spans_that_a_hand_finds() {
+    let scene = load_bytes(include_bytes!("../fixtures/three-flat-squares.json"), "three-flat-squares.json").unwrap();
+    let mut renderer = exact(scene, 64, 64);
+    renderer.camera = Some(renderer.world().cameras[0]);
+    let scan = VISIBILITY.iter().find(|row| row.name == "scan-line").unwrap();
+    let counters = find(&renderer, scan, 1, renderer.execution()).unwrap().counters;
+    // 16 lines cross one square, 32 another, and 8 of these a third one, which cuts the other's span in three.
+    assert_eq!(counters.active_edges, 2 * (16 + 32 + 8), "{counters:?}");
+    assert_eq!((counters.spans, counters.penetrated_spans), (16 + 24 + 8 * 3, 0), "{counters:?}");
+}
+
+#[test]
+fn p19_p20_faces_of_many_corners_with_notches_and_warped_ones_agree() {
+    // A disc of 300 corners, a comb, and a square with a corner lifted, each through the others.
+    let mut positions: Vec<[f64; 3]> = (0..300)
+        .map(|i| f64::from(i) / 300.0 * std::f64::consts::TAU)
+        .map(|turn| [func::cos(turn), func::sin(turn), 0.4 * func::cos(turn)])
+        .collect();
+    let comb = (0..9).map(|i| f64::from(i) * 0.2 - 0.8);
+    positions.extend(comb.clone().map(|x| [x, -0.9, 0.1]));
+    positions.extend(comb.rev().enumerate().map(|(i, x)| [x, if i % 2 == 0 { 0.8 } else { -0.6 }, 0.1]));
+    positions.extend([[-0.9, -0.2, -0.3], [0.7, -0.3, 0.3], [0.8, 0.3, -0.5], [-0.6, 0.3, 0.6]]);
+    let faces = [(0..300).collect::<Vec<u32>>(), (300..318).collect(), (318..322).collect()];
+    let text = format!(r#"{{"vitral-scene": 1, "meshes": [{{"positions": {positions:?}, "faces": {faces:?}}}]}}"#);
+    let mut renderer = exact(load_bytes(text.as_bytes(), "faces.json").unwrap(), WIDTH, HEIGHT);
+    renderer.settings.cull.back_face = false;
+    for (camera, from) in cameras(DVec3::ZERO, 2.2) {
+        renderer.camera = Some(camera);
+        for samples in [1, 3] {
+            let find = |name: &str| {
+                let algorithm = VISIBILITY.iter().find(|row| row.name == name).unwrap();
+                find(&renderer, algorithm, samples, renderer.execution()).unwrap()
+            };
+            let expected = find("z-buffer").samples;
+            let hit = expected.iter().map(|(_, facet, _)| renderer.world().surface_of_facet(*facet));
+            assert!(hit.collect::<std::collections::BTreeSet<_>>().len() == 3, "{from}");
+            for name in ["scan-line", "warnock"] {
+                assert!(find(name).samples == expected, "{name}, {from}, {samples} samples");
+            }
+        }
+    }
+}
+
+#[test]
 fn p7_p19_p20_counters_tell_the_work_and_what_coherence_saved() {
     let renderer = exact_builtin("teapot", WIDTH, HEIGHT);
     let counters = |name: &str| {

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex};
 use vitral::internals::render::trace::numbered::NumberedStep;
 use vitral::internals::render::trace::replay::Replay;
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
-use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin};
+use vitral::{
+    Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin, load_bytes,
+};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -161,6 +163,35 @@ fn the_page_about_traces_names_every_step_and_field() {
     for name in names {
         assert!(page.contains(&format!("`{name}`")), "docs/trace.md says nothing of `{name}`");
     }
+}
+
+#[test]
+fn p19_a_flat_convex_face_is_one_polygon() {
+    let bytes = include_bytes!("../fixtures/three-flat-squares.json");
+    let mut renderer = exact(load_bytes(bytes, "three-flat-squares.json").unwrap(), 192, 192);
+    renderer.settings.visibility = Visibility::SCAN_LINE;
+    let camera = renderer.world().cameras[0];
+    let steps = renderer.watch_steps(&camera).unwrap().steps;
+    let tables = steps.iter().filter_map(|numbered| match &numbered.step {
+        Step::EdgeTable { polygons, buckets, .. } => {
+            let edges = buckets.iter().flat_map(|b| &b.edges).map(|e| (e.polygon, e.edge)).collect::<Vec<_>>();
+            Some((polygons.iter().map(|p| p.surface).collect::<Vec<_>>(), edges.len()))
+        }
+        _ => None,
+    });
+    // Three bands: the square at the upper right is in two, the large one at the lower left in two, the small one in one.
+    let tables: Vec<_> = tables.collect();
+    assert_eq!(tables, [(vec![1], 2), (vec![0, 1], 4), (vec![0, 2], 4)]);
+    // A line through two squares crosses four edges, upright ones, and is cut in three spans.
+    let line = steps.iter().find_map(|numbered| match &numbered.step {
+        Step::Line { active_edges, spans, .. } if spans.len() == 3 => Some((active_edges, spans)),
+        _ => None,
+    });
+    let (active, spans) = line.unwrap();
+    let crossed: Vec<_> = active.iter().map(|edge| (edge.x, edge.polygon)).collect();
+    assert_eq!(crossed.len(), 4, "{crossed:?}");
+    assert!(crossed.is_sorted_by(|a, b| a.0 < b.0) && crossed[1].1 == crossed[2].1, "{crossed:?}");
+    assert_eq!(spans.iter().map(|s| s.inside.len()).collect::<Vec<_>>(), [1, 2, 1]);
 }
 
 /// With `UPDATE_DOCS=1` the page is written.

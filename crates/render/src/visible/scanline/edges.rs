@@ -1,11 +1,12 @@
 //! The tables of the scan-line algorithm: lines, polygons, edges, and the edges that a line crosses.
 //!
-//! In:   set-up triangles (screen space). Out: for each line its crossings, from left to right.
+//! In:   convex polygons (screen space). Out: for each line its crossings, from left to right.
 //! Cost: linear in edges and crossings; sorting is nearly so.
 //! Source: [Wylie et al. 1967]. Departs from it: a crossing is an exact fraction, a whole number and a remainder.
 
 use super::face::OnLine;
 use crate::stats::VisibilityCounters;
+use crate::visible::polygons::{ConvexPolygon, Polygons};
 use std::ops::Range;
 use vitral_raster::{SUBPIXEL, SamplePattern, Setup};
 
@@ -24,7 +25,7 @@ pub(super) struct Line {
 
 /// An entry of the polygon table.
 pub(super) struct Polygon<'f> {
-    pub(super) setup: &'f Setup,
+    pub(super) shape: ConvexPolygon<'f, 'f>,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     pub(super) slot: u32,
     /// The last line to which the face's depth was brought, and the depth there: [`Setup::depth_of_line`].
@@ -37,21 +38,27 @@ pub(super) const OUT: u32 = u32::MAX;
 
 impl<'f> Polygon<'f> {
     /// One that is out, on no line yet.
-    pub(super) fn new(setup: &'f Setup) -> Self {
-        Self { setup, slot: OUT, line: i32::MIN, start: 0.0 }
+    fn new(shape: ConvexPolygon<'f, 'f>) -> Self {
+        Self { shape, slot: OUT, line: i32::MIN, start: 0.0 }
+    }
+
+    /// Its depth plane.
+    #[inline(always)]
+    pub(super) fn plane(&self) -> &'f Setup {
+        self.shape.plane()
     }
 
     /// On the line to which it was brought.
     #[inline(always)]
     pub(super) fn on_line(&self) -> OnLine<'f> {
-        OnLine { setup: self.setup, start: self.start }
+        OnLine { setup: self.plane(), start: self.start }
     }
 }
 
 /// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
 pub(super) struct Edge {
     pub(super) polygon: u32,
-    pub(super) corner: u8,
+    pub(super) corner: u32,
     pub(super) lines: Range<u16>,
 }
 
@@ -59,7 +66,7 @@ pub(super) struct Edge {
 #[derive(Clone, Copy)]
 pub(super) struct ActiveEdge {
     pub(super) polygon: u32,
-    pub(super) corner: u8,
+    pub(super) corner: u32,
     /// The first line that it does not cross.
     pub(super) end: u16,
     pub(super) x: i32,
@@ -69,6 +76,11 @@ pub(super) struct ActiveEdge {
     pub(super) step: [i32; 2],
     /// The first pixel whose sample lies at the crossing or right of it.
     pub(super) column: u32,
+}
+
+/// The polygon table.
+pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> {
+    (0..polygons.len()).map(|number| Polygon::new(polygons.get(number))).collect()
 }
 
 /// The lines of `height` rows of pixels, from top to bottom.
@@ -97,12 +109,15 @@ pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> 
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
     for (p, polygon) in polygons.iter().enumerate() {
-        let places = polygon.setup.y.map(first_at);
-        for corner in 0..3u8 {
-            let (a, b) = (places[usize::from(corner)], places[(usize::from(corner) + 1) % 3]);
+        let outline = polygon.shape.outline();
+        let first = first_at(outline[0][1]);
+        let mut a = first;
+        for corner in 0..outline.len() {
+            let b = outline.get(corner + 1).map_or(first, |next| first_at(next[1]));
             if a != b {
-                edges.push(Edge { polygon: p as u32, corner, lines: a.min(b)..a.max(b) });
+                edges.push(Edge { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
             }
+            a = b;
         }
     }
     edges.sort_by_key(|e| e.lines.start);
@@ -127,28 +142,25 @@ fn sort(active: &mut [ActiveEdge], joined: bool) {
 }
 
 impl ActiveEdge {
-    pub(super) fn new(edge: &Edge, setup: &Setup, y: i32, spacing: i32) -> Self {
-        let (dx, dy, _) = downwards(setup, edge.corner);
+    pub(super) fn new(edge: &Edge, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
+        let (dx, dy, _) = downwards(outline, edge.corner);
         let step = i64::from(dx) * i64::from(spacing);
         let step = [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
         let (polygon, corner, end) = (edge.polygon, edge.corner, edge.lines.end);
         let mut edge = Self { polygon, corner, end, x: 0, remainder: 0, dy, step, column: 0 };
-        edge.cross(setup, y);
+        edge.cross(outline, y);
         edge
     }
 
     /// Finds the crossing with the line at `y` from the edge's corners.
-    fn cross(&mut self, setup: &Setup, y: i32) {
-        let (dx, dy, [x0, y0]) = downwards(setup, self.corner);
-        let along = i64::from(dx) * i64::from(y - y0);
-        self.x = x0 + along.div_euclid(i64::from(dy)) as i32;
-        self.remainder = along.rem_euclid(i64::from(dy)) as i32;
+    fn cross(&mut self, outline: &[[i32; 2]], y: i32) {
+        [self.x, self.remainder] = crossing(downwards(outline, self.corner), y);
     }
 
     /// Moves the crossing one line down, to `y`.
-    fn advance(&mut self, spacing: i32, setup: &Setup, y: i32) {
+    fn advance(&mut self, spacing: i32, outline: &[[i32; 2]], y: i32) {
         if spacing == 0 {
-            return self.cross(setup, y);
+            return self.cross(outline, y);
         }
         self.x += self.step[0];
         self.remainder += self.step[1];
@@ -158,12 +170,37 @@ impl ActiveEdge {
         }
     }
 
-    /// The first pixel whose sample on this line is not left of the crossing, at most `width`. A sample on a left edge
-    /// is in and one on a right edge is out, so the same pixel begins what is right of either.
+    /// [`column`], at most `width`.
     fn column_on(&self, line: &Line, width: u32) -> u32 {
-        let first_x = self.x + i32::from(self.remainder > 0);
-        ((first_x - line.sample_x + SUBPIXEL - 1) >> 8).clamp(0, width as i32) as u32
+        column([self.x, self.remainder], line).clamp(0, width as i32) as u32
     }
+}
+
+/// Where an edge, given by its extent and its upper end, crosses the line at `y`: a whole number and a remainder.
+fn crossing((dx, dy, [x0, y0]): (i32, i32, [i32; 2]), y: i32) -> [i32; 2] {
+    let (along, dy) = (i64::from(dx) * i64::from(y - y0), i64::from(dy));
+    [x0 + along.div_euclid(dy) as i32, along.rem_euclid(dy) as i32]
+}
+
+/// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in and one on a right edge
+/// is out, so the same pixel begins what is right of either.
+fn column([x, remainder]: [i32; 2], line: &Line) -> i32 {
+    (x + i32::from(remainder > 0) - line.sample_x + SUBPIXEL - 1) >> 8
+}
+
+/// Which of these pixels of a line a triangle covers.
+pub(super) fn covered(triangle: &Setup, line: &Line, pixels: &Range<usize>) -> Range<usize> {
+    let outline = triangle.corners();
+    let [first, last] = [pixels.start, pixels.end].map(|pixel| pixel as i32);
+    let (mut from, mut to) = (last, first);
+    for corner in 0..3 {
+        let ends = [outline[corner][1], outline[(corner + 1) % 3][1]];
+        if (ends[0] <= line.y) != (ends[1] <= line.y) {
+            let crossed = column(crossing(downwards(&outline, corner as u32), line.y), line).clamp(first, last);
+            (from, to) = (from.min(crossed), to.max(crossed));
+        }
+    }
+    from as usize..to.max(from) as usize
 }
 
 /// The active edge table, from line to line.
@@ -207,7 +244,7 @@ impl<'e> ActiveEdges<'e> {
             self.starting = self.edges;
         }
         for edge in &mut self.active {
-            edge.advance(self.spacing, polygons[edge.polygon as usize].setup, line.y);
+            edge.advance(self.spacing, polygons[edge.polygon as usize].shape.outline(), line.y);
         }
         let kept = self.active.len() as u64;
         counters.saved_by_scan_line += kept;
@@ -235,15 +272,15 @@ impl<'e> ActiveEdges<'e> {
         let joining = self.starting.partition_point(|e| usize::from(e.lines.start) <= number);
         let (begun, later) = self.starting.split_at(joining);
         for (i, edge) in begun.iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number) {
-            let setup = polygons[edge.polygon as usize].setup;
+            let outline = polygons[edge.polygon as usize].shape.outline();
             self.active.push(match self.crossings.get_mut(i) {
                 Some(Some(known)) => {
-                    known.advance(self.spacing, setup, line.y);
+                    known.advance(self.spacing, outline, line.y);
                     counters.saved_by_edge += 1;
                     *known
                 }
                 none => {
-                    let new = ActiveEdge::new(edge, setup, line.y, self.spacing);
+                    let new = ActiveEdge::new(edge, outline, line.y, self.spacing);
                     none.into_iter().for_each(|crossing| *crossing = Some(new));
                     new
                 }
@@ -254,11 +291,12 @@ impl<'e> ActiveEdges<'e> {
     }
 }
 
-/// `dx`, `dy > 0` and the upper end of a triangle's edge that is not horizontal.
-pub(super) fn downwards(setup: &Setup, corner: u8) -> (i32, i32, [i32; 2]) {
-    let (i, j) = (usize::from(corner), (usize::from(corner) + 1) % 3);
-    let (i, j) = if setup.y[i] < setup.y[j] { (i, j) } else { (j, i) };
-    (setup.x[j] - setup.x[i], setup.y[j] - setup.y[i], [setup.x[i], setup.y[i]])
+/// `dx`, `dy > 0` and the upper end of a polygon's edge that is not horizontal.
+pub(super) fn downwards(outline: &[[i32; 2]], corner: u32) -> (i32, i32, [i32; 2]) {
+    let from = outline[corner as usize];
+    let to = outline.get(corner as usize + 1).copied().unwrap_or(outline[0]);
+    let (upper, lower) = if from[1] < to[1] { (from, to) } else { (to, from) };
+    (lower[0] - upper[0], lower[1] - upper[1], upper)
 }
 
 #[cfg(test)]
@@ -271,18 +309,25 @@ pub(super) mod tests {
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
     }
 
+    /// The polygons that are triangles, each alone.
+    pub(in crate::visible::scanline) fn apart(setups: &[Setup]) -> Polygons<'_> {
+        Polygons::joined(setups, |facet| facet)
+    }
+
     /// Pixels of a line that the active edges say are covered.
-    fn covered(setup: &Setup, pattern: &SamplePattern, width: u32) -> Vec<(i32, Range<u32>)> {
+    fn columns(setup: &Setup, pattern: &SamplePattern, width: u32) -> Vec<(i32, Range<u32>)> {
         let lines = lines(pattern, 0, 16);
         let spacing = spacing(&lines);
-        let edges = edge_table(&[Polygon::new(setup)], &lines);
+        let polygons = apart(std::slice::from_ref(setup));
+        let outline = polygons.get(0).outline();
+        let edges = edge_table(&polygon_table(&polygons), &lines);
         let mut active: Vec<ActiveEdge> = Vec::new();
         let mut spans = Vec::new();
         for (number, line) in lines.iter().enumerate() {
             active.retain(|e| usize::from(e.end) > number);
-            active.iter_mut().for_each(|e| e.advance(spacing, setup, line.y));
+            active.iter_mut().for_each(|e| e.advance(spacing, outline, line.y));
             let joining = edges.iter().filter(|e| usize::from(e.lines.start) == number);
-            active.extend(joining.map(|e| ActiveEdge::new(e, setup, line.y, spacing)));
+            active.extend(joining.map(|e| ActiveEdge::new(e, outline, line.y, spacing)));
             let mut columns: Vec<_> = active.iter().map(|e| e.column_on(line, width)).collect();
             columns.sort_unstable();
             assert!(columns.is_empty() || columns.len() == 2, "a line crosses two edges of a triangle, or none");
@@ -305,7 +350,11 @@ pub(super) mod tests {
                 let grid = if round % 2 == 0 { 32 } else { 1 };
                 let corners = [0; 3].map(|_| [0; 2].map(|_| (next() % 6000 - 900) / grid * grid));
                 let setup = triangle(corners, [0.5; 3]);
-                for (line, (y, span)) in lines(&pattern, 0, 16).iter().zip(covered(&setup, &pattern, 16)) {
+                for (line, (y, span)) in lines(&pattern, 0, 16).iter().zip(columns(&setup, &pattern, 16)) {
+                    assert!(covered(&setup, line, &(0..16)).eq(span.start as usize..span.end as usize));
+                    let part = covered(&setup, line, &(5..9));
+                    assert!((5..=9).contains(&part.start) && (5..=9).contains(&part.end));
+                    assert!(part.eq((5..9).filter(|&x| span.contains(&x)).map(|x| x as usize)));
                     for x in 0..16 {
                         let covers = setup.covers(x as i32 * SUBPIXEL + line.sample_x, y);
                         assert_eq!(covers, span.contains(&x), "{corners:?}, pixel {x}, y {y}");

@@ -4,7 +4,7 @@
 //! the same for all spans of the face on the line: it is gone once, and each depth, at a sample or at the end of a span,
 //! is one step from there: [`Setup::depth_of_line`] and [`Setup::depth_along`], which make up [`Setup::depth`].
 //!
-//! In:   a set-up triangle and a line (screen space). Out: depths.
+//! In:   the plane of a polygon and a line (screen space). Out: depths.
 //! Cost: a product and a sum a depth, once the face is on the line.
 //! Source: face coherence after [Foley et al. 1990], section 15.2. Departs from it: the step along the line is a product,
 //!       since adding up steps would round otherwise.

@@ -8,13 +8,14 @@
 //! samples: as wide as the planes need to come farther apart than all that can differ from them. Beyond it, the winner
 //! is the one that the depth function would find at each sample.
 //!
-//! In:   two set-up triangles (screen space) and a span that both cover. Out: the part where depths decide, and who is
+//! In:   two convex polygons (screen space) and a span that both cover. Out: the part where depths decide, and who is
 //!       nearer left and right of it.
 //! Cost: some 60 operations for a pair, one product and one sum on each line after that.
 //! Source: implied edge coherence after [Foley et al. 1990], section 15.2. Departs from it: the strip.
 
+use crate::visible::polygons::ConvexPolygon;
 use std::ops::Range;
-use vitral_raster::{SUBPIXEL, Setup, TILE};
+use vitral_raster::{SUBPIXEL, TILE};
 
 /// The edge's second point lies this far below the first, 1/256 pixel: the farther apart, the better they fix the line.
 const APART: i32 = TILE as i32 * SUBPIXEL;
@@ -58,7 +59,7 @@ impl ImpliedEdges {
     pub(super) fn divide(
         &mut self,
         polygons: [u32; 2],
-        setups: [&Setup; 2],
+        shapes: [ConvexPolygon<'_, '_>; 2],
         pixels: Range<usize>,
         sample_x: i32,
         y: i32,
@@ -71,7 +72,7 @@ impl ImpliedEdges {
             Some(known) if known.polygons == polygons => known,
             _ => {
                 self.found += 1;
-                *self.places[place as usize].insert(ImpliedEdge::new(polygons, setups, y))
+                *self.places[place as usize].insert(ImpliedEdge::new(polygons, shapes, y))
             }
         };
         DividedSpan { undecided: edge.undecided(pixels, sample_x, y), first_on_left: edge.first_on_left }
@@ -80,7 +81,7 @@ impl ImpliedEdges {
 
 impl ImpliedEdge {
     /// Finds the edge by its crossings with the line at `y` and one farther down.
-    fn new(polygons: [u32; 2], [p, q]: [&Setup; 2], y: i32) -> Self {
+    fn new(polygons: [u32; 2], [p, q]: [ConvexPolygon<'_, '_>; 2], y: i32) -> Self {
         let [p, q] = [p, q].map(Plane::of);
         // The part for needed rounding is generous; the last factor is for slopes that are raised.
         let margin = (p.rounding + q.rounding + p.beyond + q.beyond) * 1.0625;
@@ -111,30 +112,30 @@ impl ImpliedEdge {
     }
 }
 
-/// The plane of a facet's depths, not clamped to the facet's, and by how much the depth function may differ from it.
+/// The plane of a polygon's depths, not clamped to the polygon's, and by how much the depth function may differ from it.
 struct Plane {
     origin: [f64; 2],
     z: f64,
     /// For 1/256 pixel to the right and downwards.
     slope: [f64; 2],
-    /// The most that rounding does to a depth within the triangle.
+    /// The most that rounding does to a depth within the polygon.
     rounding: f64,
-    /// How far the plane leaves the facet's range of depths within the triangle.
+    /// How far the plane leaves the polygon's range of depths within the polygon.
     beyond: f64,
 }
 
 impl Plane {
-    fn of(setup: &Setup) -> Self {
+    fn of(shape: ConvexPolygon<'_, '_>) -> Self {
+        let setup = shape.plane();
         let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
         let (origin, z) = (setup.origin.map(f64::from), f64::from(setup.z));
         let mut plane = Self { origin, z, slope, rounding: 0.0, beyond: 0.0 };
         // Four roundings to 24 bits, of numbers no larger than the sum; or of numbers that are too small for 24 bits.
-        let longest =
-            |corners: &[i32; 3], from: i32| f64::from(corners.map(|v| (v - from).abs()).into_iter().max().unwrap_or(0));
-        let [across, down] = [longest(&setup.x, setup.origin[0]), longest(&setup.y, setup.origin[1])];
+        let away = |k: usize| shape.outline().iter().map(move |corner| (corner[k] - setup.origin[k]).abs());
+        let [across, down] = [0, 1].map(|k| f64::from(away(k).max().unwrap_or(0)));
         let sum = z.abs() + across * slope[0].abs() + down * slope[1].abs();
         plane.rounding = sum * f64::from(f32::EPSILON) * 4.0 + f64::from(f32::MIN_POSITIVE);
-        for (x, y) in setup.x.into_iter().zip(setup.y) {
+        for &[x, y] in shape.outline() {
             let depth = plane.at(f64::from(x), f64::from(y));
             plane.beyond = plane.beyond.max(f64::from(setup.z_min) - depth).max(depth - f64::from(setup.z_max));
         }
@@ -150,7 +151,8 @@ impl Plane {
 mod tests {
     use super::*;
     use crate::visible::agreement::nearer;
-    use crate::visible::scanline::edges::tests::triangle;
+    use crate::visible::scanline::edges::tests::{apart, triangle};
+    use vitral_raster::Setup;
 
     /// Two faces that are equally near where `x + y` is 20 pixels.
     fn crossing() -> [Setup; 2] {
@@ -160,23 +162,25 @@ mod tests {
 
     #[test]
     fn p7_two_points_tell_where_every_line_is_crossed() {
-        let ([p, q], mut edges) = (crossing(), ImpliedEdges::default());
+        let (setups, mut edges) = (crossing(), ImpliedEdges::default());
+        let shapes = apart(&setups);
+        let [p, q] = [shapes.get(0), shapes.get(1)];
         let at = |line: i32| line * 256 + 128;
         // Samples are in the middle of pixels, so each line has one on the edge.
         for line in 0..18 {
-            let parts = edges.divide([1, 2], [&p, &q], 0..30, 128, at(line));
+            let parts = edges.divide([1, 2], [p, q], 0..30, 128, at(line));
             let middle = 19 - line as usize;
             assert_eq!(parts, DividedSpan { undecided: middle..middle + 1, first_on_left: false }, "line {line}");
         }
         assert_eq!(edges.found, 1);
         // A span beside the edge has no undecided part, at one end of it or the other.
-        let beside = edges.divide([1, 2], [&p, &q], 22..25, 128, at(0)).undecided;
+        let beside = edges.divide([1, 2], [p, q], 22..25, 128, at(0)).undecided;
         assert_eq!((beside.start, beside.end), (22, 22));
-        let beside = edges.divide([1, 2], [&p, &q], 3..9, 128, at(0)).undecided;
+        let beside = edges.divide([1, 2], [p, q], 3..9, 128, at(0)).undecided;
         assert_eq!((beside.start, beside.end), (9, 9));
         // Other polygons have an edge of their own, whatever their place.
         for other in 3..2000 {
-            assert!(edges.divide([1, other], [&q, &p], 0..30, 128, at(0)).first_on_left);
+            assert!(edges.divide([1, other], [q, p], 0..30, 128, at(0)).first_on_left);
         }
         assert_eq!((edges.found, edges.places.len()), (1998, PLACES));
     }
@@ -204,12 +208,14 @@ mod tests {
             }
             let [p, q] = [(triangle(corners, a), 3), (triangle(others, b), 4)].map(|(s, facet)| Setup { facet, ..s });
             let mut edges = ImpliedEdges::default();
+            let setups = [p, q];
+            let shapes = apart(&setups);
             for line in 0..24 {
                 let y = line * 256 + 128;
                 let both = |x: usize| [p, q].iter().all(|s| s.covers(x as i32 * 256 + 128, y));
                 let Some(start) = (0..24).find(|&x| both(x)) else { continue };
                 let end = (start..24).find(|&x| !both(x)).unwrap_or(24);
-                let parts = edges.divide([0, 1], [&p, &q], start..end, 128, y);
+                let parts = edges.divide([0, 1], [0, 1].map(|number| shapes.get(number)), start..end, 128, y);
                 for x in start..end {
                     if parts.undecided.contains(&x) {
                         undecided += 1;
@@ -229,7 +235,10 @@ mod tests {
     fn planes_without_numbers_and_equal_planes_decide_nothing() {
         let [p, q] = crossing();
         for odd in [Setup { dz_dx: f32::NAN, ..p }, Setup { dz_dy: f32::INFINITY, ..p }, Setup { facet: 9, ..q }] {
-            let parts = ImpliedEdges::default().divide([0, 1], [&odd, &q], 2..30, 128, 128);
+            let setups = [odd, q];
+            let shapes = apart(&setups);
+            let shapes = [shapes.get(0), shapes.get(1)];
+            let parts = ImpliedEdges::default().divide([0, 1], shapes, 2..30, 128, 128);
             assert_eq!(parts.undecided, 2..30, "{odd:?}");
         }
     }

@@ -26,14 +26,15 @@ pub(super) fn tables(
     execution.budget.charge(bytes as u64, "the edge table that is told")?;
     let rows = rows.map(|row| row as u32);
     let world = view.session.world();
-    let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.setup.facet))).collect();
+    let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.shape.facet()))).collect();
     let buckets = buckets(polygons, edges, lines, rows[0]);
     execution.tell(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
     execution.budget.release(bytes as u64);
     Ok(())
 }
 
-fn polygon(Polygon { setup, .. }: &Polygon<'_>, surface: u32) -> TablePolygon {
+fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
+    let setup = polygon.plane();
     let [dx, dy] = [setup.dz_dx, setup.dz_dy].map(f64::from);
     let [x, y] = setup.origin.map(pixels);
     TablePolygon { facet: setup.facet, surface, plane: [dx, dy, f64::from(setup.z) - x * dx - y * dy] }
@@ -43,12 +44,12 @@ fn polygon(Polygon { setup, .. }: &Polygon<'_>, surface: u32) -> TablePolygon {
 fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -> Vec<Bucket> {
     let place = |line: &Line| [top + line.row as u32, line.sample as u32];
     let entry = |edge: &Edge| {
-        let (setup, line) = (polygons[edge.polygon as usize].setup, &lines[usize::from(edge.lines.start)]);
-        let active = ActiveEdge::new(edge, setup, line.y, 0);
-        let (dx, dy, _) = downwards(setup, edge.corner);
+        let (shape, line) = (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
+        let active = ActiveEdge::new(edge, shape.outline(), line.y, 0);
+        let (dx, dy, _) = downwards(shape.outline(), edge.corner);
         TableEdge {
             polygon: edge.polygon,
-            facet: setup.facet,
+            facet: shape.facet(),
             edge: edge.corner,
             x: active.place(),
             dx: f64::from(dx) / f64::from(dy),
@@ -62,15 +63,17 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
     edges.chunk_by(|a, b| a.lines.start == b.lines.start).map(bucket).collect()
 }
 
-/// The active edge table.
+/// The active edge table, from left to right; edges that cross the line at one place in the order of the polygon table.
 pub(super) fn crossings(active: &[ActiveEdge], polygons: &[Polygon<'_>]) -> Vec<Crossing> {
     let crossing = |edge: &ActiveEdge| Crossing {
         x: edge.place(),
         polygon: edge.polygon,
-        facet: polygons[edge.polygon as usize].setup.facet,
+        facet: polygons[edge.polygon as usize].shape.facet(),
         edge: edge.corner,
     };
-    active.iter().map(crossing).collect()
+    let mut crossings: Vec<_> = active.iter().map(crossing).collect();
+    crossings.sort_by(|a, b| a.x.total_cmp(&b.x).then((a.polygon, a.edge).cmp(&(b.polygon, b.edge))));
+    crossings
 }
 
 impl ActiveEdge {
@@ -86,8 +89,8 @@ fn pixels(v: i32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::edges::tests::triangle;
-    use super::super::edges::{edge_table, lines};
+    use super::super::edges::tests::{apart, triangle};
+    use super::super::edges::{edge_table, lines, polygon_table};
     use super::*;
     use vitral_raster::{SamplePattern, Setup};
 
@@ -101,7 +104,8 @@ mod tests {
     #[test]
     fn p19_edge_table_of_two_triangles_by_hand() {
         let setups = overlapping();
-        let polygons: Vec<_> = setups.iter().map(Polygon::new).collect();
+        let shapes = apart(&setups);
+        let polygons = polygon_table(&shapes);
         let lines = lines(&SamplePattern::new(1), 0, 16);
         let table = buckets(&polygons, &edge_table(&polygons, &lines), &lines, 0);
         // The line through the middle of row 1 is the first that meets a triangle whose top is at 1; tops have no entry.
@@ -124,8 +128,9 @@ mod tests {
 
     #[test]
     fn p19_edges_from_above_a_band_begin_on_its_first_line() {
-        let setup = triangle([[0, -2560], [0, 2560], [5120, 2560]], [0.5; 3]);
-        let polygons = [Polygon::new(&setup)];
+        let setups = [triangle([[0, -2560], [0, 2560], [5120, 2560]], [0.5; 3])];
+        let shapes = apart(&setups);
+        let polygons = polygon_table(&shapes);
         let lines = lines(&SamplePattern::new(1), 0, 4);
         let table = buckets(&polygons, &edge_table(&polygons, &lines), &lines, 0);
         assert_eq!((table.len(), table[0].row, table[0].edges.len()), (1, 0, 2));

@@ -4,7 +4,7 @@
 //! Cost: spans times the polygons that are in, plus covered samples.
 //! Source: [Watkins 1970] for the decisions, [Bouknight 1970] for the in-out flags.
 
-use super::edges::{ActiveEdge, Line, OUT, Polygon};
+use super::edges::{ActiveEdge, Line, OUT, Polygon, covered};
 use super::face::OnLine;
 use super::implied_edge::ImpliedEdges;
 use crate::stats::VisibilityCounters;
@@ -78,9 +78,9 @@ impl<'s, 'f> Spans<'s, 'f> {
     /// Notes how a span was decided.
     fn report(&mut self, pixels: &Range<usize>, verdict: SpanVerdict, winner: Option<u32>) {
         if let Some(reported) = &mut self.reported {
-            let facet = winner.map(|p| self.polygons[p as usize].setup.facet);
+            let facet = winner.map(|p| self.polygons[p as usize].shape.facet());
             let pixels = [pixels.start, pixels.end].map(|x| x as u32);
-            let mut inside: Vec<u32> = self.inside.iter().map(|&p| self.polygons[p as usize].setup.facet).collect();
+            let mut inside: Vec<u32> = self.inside.iter().map(|&p| self.polygons[p as usize].shape.facet()).collect();
             inside.sort_unstable();
             reported.push(Span { pixels, inside, verdict, facet });
         }
@@ -138,8 +138,8 @@ impl<'s, 'f> Spans<'s, 'f> {
             rivals.swap(0, 1);
         }
         let pair = [rivals[0].1, rivals[1].1];
-        let setups = pair.map(|p| self.polygons[p as usize].setup);
-        let parts = self.implied.divide(pair, setups, pixels.clone(), line.sample_x, line.y);
+        let shapes = pair.map(|p| self.polygons[p as usize].shape);
+        let parts = self.implied.divide(pair, shapes, pixels.clone(), line.sample_x, line.y);
         let (left, right) = (pixels.start..parts.undecided.start, parts.undecided.end..pixels.end);
         self.counters.saved_by_implied_edge += (left.len() + right.len()) as u64;
         // Beside the edge, the farther one is no rival.
@@ -159,12 +159,15 @@ impl<'s, 'f> Spans<'s, 'f> {
         self.counters.depth_comparisons += (pixels.len() * (rivals.len() - 1)) as u64;
         for x in pixels {
             let sample_x = x as i32 * SUBPIXEL + line.sample_x;
-            let seen = rivals.iter().map(|&(_, p)| {
-                let face = self.polygons[p as usize].on_line();
-                (face.depth(sample_x), face.setup.facet)
+            let facet = |p: u32| self.polygons[p as usize].shape.facet_within(sample_x, line.y);
+            let depths = rivals.iter().map(|&(_, p)| (self.polygons[p as usize].on_line().depth(sample_x), p));
+            let nearest = depths.reduce(|a, b| {
+                // The facets matter where depths are equal.
+                let [fa, fb] = if a.0 == b.0 { [a.1, b.1].map(facet) } else { [0; 2] };
+                if nearer((b.0, fb), (a.0, fa)) { b } else { a }
             });
-            let Some(seen) = seen.reduce(|a, b| if nearer(b, a) { b } else { a }) else { continue };
-            put(&mut self.tiles[x / TILE], place(x, line), seen);
+            let Some((depth, p)) = nearest else { continue };
+            put(&mut self.tiles[x / TILE], place(x, line), (depth, facet(p)));
         }
     }
 
@@ -175,7 +178,7 @@ impl<'s, 'f> Spans<'s, 'f> {
         if polygon.line == line.y && self.coherence.has(Coherence::Face) {
             self.counters.saved_by_face += 1;
         } else {
-            (polygon.line, polygon.start) = (line.y, polygon.setup.depth_of_line(line.y));
+            (polygon.line, polygon.start) = (line.y, polygon.plane().depth_of_line(line.y));
         }
         polygon.on_line()
     }
@@ -194,7 +197,7 @@ impl<'s, 'f> Spans<'s, 'f> {
             if p == lucky {
                 continue;
             }
-            if by_depth && self.polygons[p as usize].setup.z_max < floor {
+            if by_depth && self.polygons[p as usize].plane().z_max < floor {
                 self.counters.saved_by_depth += 1;
                 continue;
             }
@@ -208,15 +211,24 @@ impl<'s, 'f> Spans<'s, 'f> {
         self.rivals.retain(|&(near, _)| near >= floor);
     }
 
-    /// Fills a span with one polygon.
+    /// Fills a span with one polygon; its triangles have their facets.
     fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
         let face = self.bring(polygon, line);
+        let triangles = self.polygons[polygon as usize].shape.triangles();
         let mut x = pixels.start;
         while x < pixels.end {
             let end = pixels.end.min((x / TILE + 1) * TILE);
             let (tile, at) = (&mut self.tiles[x / TILE], place(x, line));
             tile.touched = true;
-            tile.facet[at..at + (end - x)].fill(face.setup.facet);
+            match triangles {
+                [only] => tile.facet[at..at + (end - x)].fill(only.facet),
+                several => {
+                    for triangle in several {
+                        let columns = covered(triangle, line, &(x..end));
+                        tile.facet[at + (columns.start - x)..at + (columns.end - x)].fill(triangle.facet);
+                    }
+                }
+            }
             for (depth, x) in tile.depth[at..].iter_mut().zip(x..end) {
                 *depth = face.depth(x as i32 * SUBPIXEL + line.sample_x);
             }

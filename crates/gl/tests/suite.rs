@@ -4,6 +4,7 @@ mod clients;
 mod common;
 mod course;
 mod course_surfaces;
+mod equal_planes;
 mod errors;
 mod extensions;
 mod facets;

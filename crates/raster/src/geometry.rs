@@ -211,7 +211,7 @@ impl Batch {
             // A short last chunk repeats its first triangle.
             let corners = eight.try_into().unwrap_or_else(|_| padded(eight));
             sieve.culls[usize::from(!draw.mirrored)] = draw.back_faces.eight(first);
-            let sifted = sift(simd, screen, &sieve, vertices, &corners);
+            let sifted = sift::<S, false>(simd, screen, &sieve, vertices, &corners);
             let whole = 0xff >> (LANES - eight.len());
             let count = |set: u32| u64::from((set & whole).count_ones());
             let c = &mut self.counters;

@@ -29,7 +29,16 @@ pub mod flag {
     pub const USER: u32 = 256;
     /// All bits of the user's planes.
     pub const USERS: u32 = 63 * USER;
+    /// What snapping took from x: the bits from this one on, as [`super::ScreenVertex::residue`].
+    pub const RESIDUE_X: u32 = 14;
+    /// What it took from y: the bits from this one on, which are the last.
+    pub const RESIDUE_Y: u32 = RESIDUE_X + RESIDUE_BITS;
+    /// Bits of each of the two.
+    pub const RESIDUE_BITS: u32 = 9;
 }
+
+/// The unit of [`ScreenVertex::residue`], in 1/256 pixel.
+pub(crate) const RESIDUE: f32 = 1.0 / (1 << flag::RESIDUE_BITS) as f32;
 
 /// A vertex on the screen. Coordinates are only meaningful without [`flag::CLIP`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -49,6 +58,14 @@ impl ScreenVertex {
     /// Its position, for setup.
     pub(crate) fn corner(self) -> CornerPosition {
         CornerPosition { x: self.x, y: self.y, z: self.z }
+    }
+
+    /// How far right of and below its snapped place it lies, in units of [`RESIDUE`], -256 to 255; 0 from those who keep none.
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn residue(self) -> [i32; 2] {
+        let kept = self.flags.cast_signed();
+        [kept << flag::RESIDUE_BITS >> flag::RESIDUE_Y, kept >> flag::RESIDUE_Y]
     }
 }
 

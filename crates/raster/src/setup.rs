@@ -7,6 +7,8 @@
 //! Source: edge functions after [Pineda 1988].
 
 use crate::SUBPIXEL;
+#[cfg(any(test, feature = "forward"))]
+use crate::screen::RESIDUE;
 use bytemuck::{Pod, Zeroable};
 
 /// A corner on the screen: `x`, `y` in 1/256 pixel from the top left, `z` is depth, 1 near, 0 far.
@@ -73,6 +75,42 @@ impl DepthPlane {
             z: a.z,
             dz_dx: (dz1 * dy2 - dz2 * dy1) * scale,
             dz_dy: (dz2 * dx1 - dz1 * dx2) * scale,
+            origin: [a.x, a.y],
+            z_min: a.z.min(b.z).min(c.z),
+            z_max: a.z.max(b.z).max(c.z),
+        }
+    }
+
+    /// The plane through `a`, `b`, `c` where they lay before they were snapped: `residues` are [`ScreenVertex::residue`]'s.
+    /// Triangles in one plane get one plane so, up to rounding, however their corners were snapped.
+    ///
+    /// [`ScreenVertex::residue`]: crate::ScreenVertex::residue
+    #[cfg(any(test, feature = "forward"))]
+    #[inline(always)]
+    pub(crate) fn unsnapped(corners: [CornerPosition; 3], residues: [[i32; 2]; 3], area: i64) -> Self {
+        let [a, b, c] = corners;
+        let rest = |k: usize, axis: usize| (residues[k][axis] - residues[0][axis]) as f32 * RESIDUE;
+        let (ex1, ey1, ex2, ey2) = (rest(1, 0), rest(1, 1), rest(2, 0), rest(2, 1));
+        let (dx1, dy1) = ((b.x - a.x) as f32, (b.y - a.y) as f32);
+        let (dx2, dy2) = ((c.x - a.x) as f32, (c.y - a.y) as f32);
+
+        // The area of the snapped corners is exact, and the rest is small: no digits cancel out.
+        let (x1, y1, x2, y2) = (dx1 + ex1, dy1 + ey1, dx2 + ex2, dy2 + ey2);
+        let (snapped, rest) = (area as f32, (dx1 * ey2 + ex1 * y2) - (dx2 * ey1 + ex2 * y1));
+        if rest.abs() > snapped.abs() * 0.5 {
+            // A sliver that snapping made or turned over.
+            return Self::new(a, b, c, area);
+        }
+        let (dz1, dz2) = (b.z - a.z, c.z - a.z);
+        let scale = SUBPIXEL as f32 / (snapped + rest);
+        let (dz_dx, dz_dy) = ((dz1 * y2 - dz2 * y1) * scale, (dz2 * x1 - dz1 * x2) * scale);
+
+        // The first corner's depth is that of its own place: go back to where it was snapped to.
+        let back = |axis: usize| residues[0][axis] as f32 * (RESIDUE / SUBPIXEL as f32);
+        Self {
+            z: a.z - (back(0) * dz_dx + back(1) * dz_dy),
+            dz_dx,
+            dz_dy,
             origin: [a.x, a.y],
             z_min: a.z.min(b.z).min(c.z),
             z_max: a.z.max(b.z).max(c.z),
@@ -339,6 +377,46 @@ mod tests {
         let slanting = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
         assert!(!slanting.reaches([[40 * 256, 8 * 256], [47 * 256, 15 * 256]]));
         assert!(slanting.reaches([[8 * 256, 8 * 256], [15 * 256, 15 * 256]]));
+    }
+
+    #[test]
+    fn planes_through_unsnapped_corners_are_the_plane_that_the_corners_lie_in() {
+        // Corners in 1/131072 pixel, in the plane 0.2 + 0.011 x - 0.007 y of pixels.
+        let mut state = 3u32;
+        let mut random = |range: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as i32 % range as i32
+        };
+        let depth = |[x, y]: [f64; 2]| 0.2 + 0.011 * x - 0.007 * y;
+        let (mut worst, mut worst_snapped, mut count) = (0.0f64, 0.0f64, 0);
+        for _ in 0..2000 {
+            let exact = [(); 3].map(|()| [random(5 << 17), random(5 << 17)]);
+            let snapped = exact.map(|p| p.map(|v| (v + 256) >> 9));
+            let residues = [0, 1, 2].map(|i| [0, 1].map(|k| exact[i][k] - (snapped[i][k] << 9)));
+            let places = exact.map(|p| p.map(|v| f64::from(v) / 131_072.0));
+            let corners =
+                [0, 1, 2].map(|i| CornerPosition { x: snapped[i][0], y: snapped[i][1], z: depth(places[i]) as f32 });
+            let [a, b, c] = corners;
+            let area = Setup::doubled_area(a, b, c);
+            if area.abs() < 256 * 256 {
+                continue;
+            }
+            let off = |plane: &DepthPlane| {
+                let setup = Setup::with_plane(corners, area, plane, 0);
+                let middle = [0, 1].map(|k| (snapped[0][k] + snapped[1][k] + snapped[2][k]) / 3);
+                let expected = depth(middle.map(|v| f64::from(v) / f64::from(SUBPIXEL)));
+                (f64::from(setup.depth(middle[0], middle[1])) - expected).abs()
+            };
+            worst = worst.max(off(&DepthPlane::unsnapped(corners, residues, area)));
+            worst_snapped = worst_snapped.max(off(&DepthPlane::new(a, b, c, area)));
+            count += 1;
+        }
+        assert!(count > 1000 && worst < 1e-7 && worst_snapped > 1e-5, "{count} {worst} {worst_snapped}");
+        // A sliver that snapping turned over keeps to its corners.
+        let (a, b, c) = (corner(0, 0, 0.2), corner(9, 0, 0.6), CornerPosition { x: 1000, y: 1, z: 0.4 });
+        let residues = [[0; 2], [0; 2], [0, -256 - 255]];
+        let area = Setup::doubled_area(a, b, c);
+        assert_eq!(DepthPlane::unsnapped([a, b, c], residues, area), DepthPlane::new(a, b, c, area));
     }
 
     #[test]

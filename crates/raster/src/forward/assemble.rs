@@ -342,8 +342,7 @@ impl<'a> Assembler<'a> {
         if any & CUT != 0 {
             return self.clipped(&corners, provoking, None);
         }
-        let position = |v: ScreenVertex| CornerPosition { x: v.x, y: v.y, z: v.z };
-        let positions = [position(a), position(b), position(c)];
+        let positions = [a.corner(), b.corner(), c.corner()];
         let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
         if area == 0 {
             return;
@@ -353,7 +352,7 @@ impl<'a> Assembler<'a> {
             return;
         }
         let Some(pixels) = self.pixels(&positions) else { return };
-        let plane = self.plane(positions, area, 2);
+        let plane = self.plane([a, b, c], area);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
         self.push(positions, area, &plane, pixels, slots, FacetAttributes::polygon(provoking, back));
@@ -386,10 +385,12 @@ impl<'a> Assembler<'a> {
         (x0 <= x1 && y0 <= y1).then_some([x0 as u32, y0 as u32, x1 as u32, y1 as u32])
     }
 
-    /// The depth plane, with the polygon offset of points, lines or filled polygons.
+    /// The depth plane of a filled polygon, with its offset.
     #[inline(always)]
-    fn plane(&self, [a, b, c]: [CornerPosition; 3], area: i64, offset: usize) -> DepthPlane {
-        self.offset(DepthPlane::new(a, b, c, area), offset)
+    fn plane(&self, corners: [ScreenVertex; 3], area: i64) -> DepthPlane {
+        let [a, b, c] = corners;
+        let residues = [a.residue(), b.residue(), c.residue()];
+        self.offset(DepthPlane::unsnapped([a.corner(), b.corner(), c.corner()], residues, area), 2)
     }
 
     #[inline(always)]
@@ -450,12 +451,12 @@ impl<'a> Assembler<'a> {
         if (v[0].flags | v[1].flags | v[2].flags) & CUT != 0 {
             return self.clipped(&corners, provoking, Some(boundary));
         }
-        let own = v.map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
+        let own = v.map(ScreenVertex::corner);
         let area = Setup::doubled_area(own[0], own[1], own[2]);
         if area == 0 {
             return;
         }
-        let plane = self.plane(own, area, 2);
+        let plane = self.plane(v, area);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
         self.push_smooth(own, area, &plane, boundary, slots, provoking, back);

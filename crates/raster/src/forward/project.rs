@@ -1,11 +1,11 @@
 //! Clip space to window space, eight vertices at a time or one.
 
 use crate::kernel::transform::{bit, whole};
-use crate::screen::{ScreenVertex, flag};
+use crate::screen::{RESIDUE, ScreenVertex, flag};
 use crate::setup::{CornerPosition, DepthPlane};
 use crate::{GUARD_BAND, SUBPIXEL};
 use vitral_math::lanes::prelude::*;
-use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Simd, U32x8, dispatch};
+use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Mask8, Simd, U32x8, dispatch};
 
 /// The viewport and depth range as a map from normalised device coordinates. Row 0 is the lowest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,6 +208,21 @@ fn to_window<S: Simd>(
     let sy = y / safe_w * window.scale[1] + window.center[1];
     let sz = z / safe_w * window.z_scale + window.z_center;
     let sz = lanes::Lanes::saturate(sz);
-    let sub = SUBPIXEL as f32;
-    (whole(in_band, sx * sub + 0.5), whole(in_band, sy * sub + 0.5), sz, flags)
+    let (gx, gy) = (sx * SUBPIXEL as f32 + 0.5, sy * SUBPIXEL as f32 + 0.5);
+    (whole(in_band, gx), whole(in_band, gy), sz, flags | residues(in_band, gx, gy))
 }
+
+/// What is left of places on the grid, half a step to the right and below, when they are snapped: as the bits of flags.
+#[inline(always)]
+fn residues<S: Simd>(in_band: Mask8<S>, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
+    let kept = lanes::inlined(
+        #[inline(always)]
+        |v: F32x8<S>| -> U32x8<S> { whole(in_band, (v - v.floor()) * (1.0 / RESIDUE)).bitcast() },
+    );
+    // Half a step is in them: to take it off is to turn the highest bit over.
+    let halves = in_band.select(U32x8::splat(in_band.token(), HALVES), U32x8::splat(in_band.token(), 0));
+    (kept(x) << flag::RESIDUE_X | kept(y) << flag::RESIDUE_Y) ^ halves
+}
+
+/// Half a step in both residues.
+const HALVES: u32 = (1 << flag::RESIDUE_X | 1 << flag::RESIDUE_Y) << (flag::RESIDUE_BITS - 1);

@@ -4,12 +4,13 @@
 //! are tested themselves: many triangles of a fine mesh lie between them, and one that is dropped here is neither set up nor sorted
 //! into a tile nor walked. Triangles that clipping must cut and those that extend over more than a tile are left to the caller.
 //!
-//! In:   corners on the screen. Out: [`CullResult8`], the same bits as [`DepthPlane::new`] and [`Setup::covers`](crate::Setup::covers).
+//! In:   corners on the screen. Out: [`CullResult8`], the same bits as [`DepthPlane::new`], or as [`DepthPlane::unsnapped`] if vertices
+//!       keep what snapping took from them, and [`Setup::covers`](crate::Setup::covers).
 //! Cost: constant for eight triangles; a few operations for each sample of a small box.
 
 use super::traverse::{SMALL, biases};
 use crate::SUBPIXEL;
-use crate::screen::{Screen, ScreenVertex, flag};
+use crate::screen::{RESIDUE, Screen, ScreenVertex, flag};
 use crate::setup::{CornerPosition, DepthPlane};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Mask8, Simd};
@@ -36,6 +37,7 @@ pub(crate) struct CullResult8 {
     pub area: [i32; LANES],
     /// The pixels they may cover: x0, y0, x1, y1.
     pub pixels: [[i32; LANES]; 4],
+    z: [f32; LANES],
     dz_dx: [f32; LANES],
     dz_dy: [f32; LANES],
     z_min: [f32; LANES],
@@ -59,7 +61,7 @@ impl CullResult8 {
     #[inline(always)]
     pub(crate) fn plane(&self, lane: usize, first: CornerPosition) -> DepthPlane {
         DepthPlane {
-            z: first.z,
+            z: self.z[lane],
             dz_dx: self.dz_dx[lane],
             dz_dy: self.dz_dy[lane],
             origin: [first.x, first.y],
@@ -77,9 +79,9 @@ impl CullResult8 {
 }
 
 /// Looks at eight triangles of `vertices`. A function of its own: all in one would be a function over which compilers take
-/// minutes, where they must do without vectors.
+/// minutes, where they must do without vectors. `UNSNAPPED`: depth planes go through the corners' own places.
 #[inline(never)]
-pub(crate) fn sift<S: Simd>(
+pub(crate) fn sift<S: Simd, const UNSNAPPED: bool>(
     simd: S,
     screen: &Screen,
     sieve: &Sieve,
@@ -88,7 +90,7 @@ pub(crate) fn sift<S: Simd>(
 ) -> CullResult8 {
     simd.vectorize(
         #[inline(always)]
-        || sift_inlined(simd, screen, sieve, vertices, triangles),
+        || sift_inlined::<S, UNSNAPPED>(simd, screen, sieve, vertices, triangles),
     )
 }
 
@@ -97,7 +99,7 @@ type Corner8<S> = [I32x8<S>; 4];
 
 /// [`sift`], for a caller that has entered the level's instruction set.
 #[inline(always)]
-fn sift_inlined<S: Simd>(
+fn sift_inlined<S: Simd, const UNSNAPPED: bool>(
     simd: S,
     screen: &Screen,
     sieve: &Sieve,
@@ -140,7 +142,7 @@ fn sift_inlined<S: Simd>(
         }
     }
 
-    let [dz_dx, dz_dy, z_min, z_max] = depth_planes(simd, &corners, &edges);
+    let [z, dz_dx, dz_dy, z_min, z_max] = depth_planes::<S, UNSNAPPED>(simd, &corners, &edges);
     let bits = lanes::inlined(
         #[inline(always)]
         |mask: Mask8<S>| mask.to_bitmask() as u32 & 0xff,
@@ -148,6 +150,7 @@ fn sift_inlined<S: Simd>(
     CullResult8 {
         area: edges.area.to_array(),
         pixels: [pixels[0].to_array(), pixels[1].to_array(), pixels[2].to_array(), pixels[3].to_array()],
+        z: z.to_array(),
         dz_dx: dz_dx.to_array(),
         dz_dy: dz_dy.to_array(),
         z_min: z_min.to_array(),
@@ -225,21 +228,68 @@ fn shown<S: Simd>(simd: S, culls: [u32; 2], area: I32x8<S>) -> Mask8<S> {
     shown
 }
 
-/// The depth planes' slopes along x and y, least and greatest depths: the operations of [`DepthPlane::new`], in their order.
+/// The depth planes' depths at the first corners, slopes along x and y, least and greatest depths: the operations of
+/// [`DepthPlane::new`] or [`DepthPlane::unsnapped`], in their order.
 #[inline(always)]
-fn depth_planes<S: Simd>(simd: S, [a, b, c]: &[Corner8<S>; 3], edges: &Edges8<S>) -> [F32x8<S>; 4] {
+fn depth_planes<S: Simd, const UNSNAPPED: bool>(
+    simd: S,
+    [a, b, c]: &[Corner8<S>; 3],
+    edges: &Edges8<S>,
+) -> [F32x8<S>; 5] {
     let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) = (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
     let (dz1, dz2) = (z1 - z0, z2 - z0);
     let real = lanes::inlined(
         #[inline(always)]
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
-    let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / real(edges.area);
-    let dz_dx = (dz1 * real(edges.dy2) - dz2 * real(edges.dy1)) * scale;
-    let dz_dy = (dz2 * real(edges.dx1) - dz1 * real(edges.dx2)) * scale;
+    let mut spanned = [real(edges.dx1), real(edges.dy1), real(edges.dx2), real(edges.dy2), real(edges.area)];
+    let mut back = None;
+    if UNSNAPPED {
+        let first;
+        (spanned, first) = unsnapped(simd, [a[3], b[3], c[3]], spanned);
+        back = Some(first);
+    }
+    let [x1, y1, x2, y2, area] = spanned;
+    let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / area;
+    let dz_dx = (dz1 * y2 - dz2 * y1) * scale;
+    let dz_dy = (dz2 * x1 - dz1 * x2) * scale;
     let z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
     let z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
-    [dz_dx, dz_dy, z_min, z_max]
+    let z = back.map_or(z0, |[x, y]| z0 - (x * dz_dx + y * dz_dy));
+    [z, dz_dx, dz_dy, z_min, z_max]
+}
+
+/// The edges from the first corner, x and y of one and the other, and twice the area that they span, before the corners were
+/// snapped, of those after; and by how many pixels the first corner was moved. Slivers keep to their snapped corners.
+#[inline(always)]
+fn unsnapped<S: Simd>(
+    simd: S,
+    [a, b, c]: [I32x8<S>; 3],
+    [dx1, dy1, dx2, dy2, area]: [F32x8<S>; 5],
+) -> ([F32x8<S>; 5], [F32x8<S>; 2]) {
+    let residue = lanes::inlined(
+        #[inline(always)]
+        |flags: I32x8<S>| [flags << flag::RESIDUE_BITS >> flag::RESIDUE_Y, flags >> flag::RESIDUE_Y],
+    );
+    let real = lanes::inlined(
+        #[inline(always)]
+        |v: I32x8<S>| -> F32x8<S> { v.to_float() },
+    );
+    let ([ax, ay], [bx, by], [cx, cy]) = (residue(a), residue(b), residue(c));
+    let (ex1, ey1) = (real(bx - ax) * RESIDUE, real(by - ay) * RESIDUE);
+    let (ex2, ey2) = (real(cx - ax) * RESIDUE, real(cy - ay) * RESIDUE);
+    let (x1, y1, x2, y2) = (dx1 + ex1, dy1 + ey1, dx2 + ex2, dy2 + ey2);
+    let rest = (dx1 * ey2 + ex1 * y2) - (dx2 * ey1 + ex2 * y1);
+
+    let kept = rest.abs().simd_le(area.abs() * 0.5);
+    let select = lanes::inlined(
+        #[inline(always)]
+        |[own, snapped]: [F32x8<S>; 2]| kept.select(own, snapped),
+    );
+    let spanned = [[x1, dx1], [y1, dy1], [x2, dx2], [y2, dy2], [area + rest, area]];
+    let spanned = [select(spanned[0]), select(spanned[1]), select(spanned[2]), select(spanned[3]), select(spanned[4])];
+    let (zero, unit) = (F32x8::splat(simd, 0.0), RESIDUE / SUBPIXEL as f32);
+    (spanned, [select([real(ax) * unit, zero]), select([real(ay) * unit, zero])])
 }
 
 /// The side, in pixels, of boxes whose samples are tested themselves.
@@ -335,7 +385,7 @@ mod tests {
     use super::*;
     use crate::{BackFaces, Batch, Draw, SamplePattern, Setup, Viewport};
     use vitral_math::Mat4;
-    use vitral_math::lanes::available_levels;
+    use vitral_math::lanes::{available_levels, dispatch};
 
     const VIEWPORT: Viewport = Viewport { width: 100, height: 70 };
 
@@ -370,6 +420,34 @@ mod tests {
                 near(setup.x, place[0]) && near(setup.y, place[1]) && setup.covers(place[0], place[1])
             })
         })
+    }
+
+    #[test]
+    fn planes_through_the_corners_own_places_are_the_same_eight_at_a_time() {
+        const COUNT: usize = 800;
+        let mut vertices = vertices(COUNT);
+        for (i, vertex) in vertices.iter_mut().enumerate() {
+            vertex.flags |= (i as u32).wrapping_mul(0x9e37_79b9) & !0 << flag::RESIDUE_X;
+        }
+        let screen = Screen::new(VIEWPORT, &SamplePattern::new(1));
+        let clip = [0, 0, VIEWPORT.width as i32, VIEWPORT.height as i32];
+        let sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls: [0; 2], clip };
+        let (mut compared, mut moved) = (0, 0);
+        for first in (0..COUNT as u32).step_by(LANES) {
+            let corners = std::array::from_fn(|lane| [0, 1, 2].map(|k| 3 * (first + lane as u32) + k));
+            for (name, level) in available_levels() {
+                let eight = dispatch!(level, simd => sift::<_, true>(simd, &screen, &sieve, &vertices, &corners));
+                for lane in (0..LANES).filter(|lane| eight.seen >> lane & 1 == 1) {
+                    let own = corners[lane].map(|i: u32| vertices[i as usize]);
+                    let (places, area) = (own.map(ScreenVertex::corner), i64::from(eight.area[lane]));
+                    let one = DepthPlane::unsnapped(places, own.map(ScreenVertex::residue), area);
+                    assert_eq!(eight.plane(lane, places[0]), one, "{name}: {own:?}");
+                    compared += 1;
+                    moved += usize::from(one != DepthPlane::new(places[0], places[1], places[2], area));
+                }
+            }
+        }
+        assert!(compared > 300 && moved > compared / 2, "{compared} {moved}");
     }
 
     #[test]

@@ -19,7 +19,7 @@ impl Assembler<'_> {
         let sieve = Sieve { outside: self.outside(), cut: CUT, culls, clip: self.state.clip };
         let (eights, rest) = triangles.as_chunks::<LANES>();
         for corners in eights {
-            let eight = sift(simd, self.screen, &sieve, self.vertices.screen, corners);
+            let eight = sift::<S, true>(simd, self.screen, &sieve, self.vertices.screen, corners);
             let mut left = eight.seen | eight.others;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % LANES;

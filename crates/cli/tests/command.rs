@@ -96,6 +96,8 @@ fn steps_are_traced_and_drawn() {
         let text = String::from_utf8(folder.read("t.jsonl")).unwrap();
         let steps: Vec<serde_json::Value> = text.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
         assert!(!steps.is_empty() && steps.iter().all(|s| s["step"].is_string()), "{name}");
+        let numbers = steps.iter().map(|s| s["number"].as_u64().unwrap());
+        assert!(numbers.eq(0..steps.len() as u64), "{name}");
         let untraced = render(&folder, &["builtin:cubs", "-o", "b.png", "--samples", "1"]);
         assert_eq!((code(&untraced), folder.read("a.png") == folder.read("b.png")), (0, true), "{name}");
         let drawn = render(&folder, &[&arguments[..], &["--channel", "steps"]].concat());
@@ -103,6 +105,39 @@ fn steps_are_traced_and_drawn() {
         assert_ne!(folder.read("a.png"), folder.read("b.png"), "{name} shows its steps");
     }
     assert_eq!(code(&render(&folder, &["builtin:cubs", "--pixel", "1,1", "--trace", "t.jsonl"])), 2);
+}
+
+#[test]
+fn pictures_after_steps_are_drawn_one_by_one() {
+    let folder = Folder::new("after-steps");
+    let cubs = ["builtin:cubs", "--visibility", "warnock"];
+    let steps = |more: &[&str]| render(&folder, &[&cubs[..], more].concat());
+    let last = steps(&["-o", "last.png", "--channel", "steps", "--step", "99999"]);
+    let told = errors(&last);
+    assert_eq!(code(&last), 2, "{told}");
+    let count: u32 = told.split("takes ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    for (name, number) in [("early.png", 1), ("late.png", count - 1)] {
+        let output = steps(&["-o", name, "--channel", "steps", "--step", &number.to_string()]);
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+    }
+    assert_ne!(folder.read("early.png"), folder.read("late.png"));
+
+    // Seven of the steps' pictures, the last of which is that after the last step.
+    let output = steps(&["--steps-video", "s-{frame:2}.png", "--steps-frames", "7"]);
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert!(folder.has("s-00.png") && folder.has("s-06.png") && !folder.has("s-07.png"));
+    assert_eq!(folder.read("s-06.png"), folder.read("late.png"));
+
+    for (arguments, told) in [
+        (&["-o", "a.png", "--step", "3"][..], "--step 3: no picture of steps is made"),
+        (&["--steps-video", "s.png"], "put {frame} or {frame:4} into its name"),
+        (&["--steps-video", "nowhere/{frame}.png"], "nowhere"),
+        (&["-o", "a.png", "--steps-frames", "3"], "--steps-video"),
+    ] {
+        let output = steps(arguments);
+        assert_ne!(code(&output), 0, "{arguments:?}");
+        assert!(errors(&output).contains(told), "{arguments:?}: {}", errors(&output));
+    }
 }
 
 #[test]

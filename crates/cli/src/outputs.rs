@@ -36,9 +36,9 @@ impl Output {
         outputs.iter().zip(channels).map(make).collect()
     }
 
-    /// A file for each picture of a sequence, which shows colours.
+    /// A file for each picture of a sequence that shows steps.
     pub(crate) fn sequence(option: &str, pattern: &Path) -> Result<Self, Failure> {
-        let output = Self::pair(&[pattern.to_owned()], &[])?.remove(0);
+        let output = Self::pair(&[pattern.to_owned()], &[Channel::Steps])?.remove(0);
         if !output.names_frames() {
             let what = format!("{option} {}: several pictures need names of their own", pattern.display());
             return Err(Failure::usage(what).with_hint("put {frame} or {frame:4} into its name"));

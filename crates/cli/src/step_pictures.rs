@@ -58,7 +58,7 @@ pub(crate) fn video(
         // The last picture is that after the last step.
         replay.go_to(((number + 1) * steps / count).saturating_sub(1));
         let (width, height) = (watched.image.width(), watched.image.height());
-        let frame = Frame { width, height, color: Some(replay.picture()), ..Frame::default() };
+        let frame = Frame { width, height, steps: Some(replay.picture()), ..Frame::default() };
         let path = output.path(model, number as u32)?;
         output.write(&path, &frame, options)?;
         written.push(path.to_string_lossy().into_owned());

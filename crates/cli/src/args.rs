@@ -1,7 +1,7 @@
 //! The command line as typed: verbs, and the options of all verbs but `render`.
 
 use crate::help::{EXIT_CODES, model_help};
-use crate::render_args::RenderArgs;
+use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
 use crate::values;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
@@ -100,7 +100,7 @@ pub(crate) struct BenchArgs {
     pub(crate) models: Vec<PathBuf>,
     /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
     /// with its plots into this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["models", "json", "resolution", "samples", "visibility"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["models", "json", "resolution", "samples", "visibility", "CameraArgs", "EyeArgs"])]
     pub(crate) report: Option<PathBuf>,
     /// Only these algorithms, and the z-buffer; repeatable [default: all]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
@@ -132,6 +132,10 @@ pub(crate) struct BenchArgs {
     /// No warnings and no progress
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
+    #[command(flatten)]
+    pub(crate) eye: EyeArgs,
 }
 
 /// Options of the lists.

@@ -3,8 +3,10 @@
 use crate::args::BenchArgs;
 use crate::bench_report;
 use crate::bench_rows::{Row, differing, rows};
+use crate::command_line;
 use crate::interrupt::{self, INTERRUPTED};
 use crate::report::{self, Failure};
+use crate::resolve::set_viewpoint;
 use crate::values;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -29,6 +31,7 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     let models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     let mut state = State { models, ..State::default() };
     state.load.allow_external = args.allow_external;
+    set_viewpoint(&mut state.viewpoint, &args.camera, &args.eye);
     let settings = &mut state.settings;
     ([settings.picture.width, settings.picture.height], settings.picture.samples) = (args.resolution, args.samples);
     settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
@@ -62,7 +65,8 @@ fn counters(measured: &Measured) -> Vec<(String, u64)> {
 fn table(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> String {
     let [width, height] = args.resolution;
     let mut text = format!(
-        "{} triangles, {width} x {height} pixels, {} sample(s) a pixel, {} thread(s)\n\n{:<18} {:<14} {:>11} {:>11} {:>12} {:>10}\n",
+        "{}\n{} triangles, {width} x {height} pixels, {} sample(s) a pixel, {} thread(s)\n\n{:<18} {:<14} {:>11} {:>11} {:>12} {:>10}\n",
+        command_line::typed(),
         renderer.world().facet_count,
         args.samples,
         renderer.execution().workers.threads(),
@@ -118,6 +122,7 @@ fn as_json(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> Value {
         value
     };
     json!({
+        "command": command_line::typed(),
         "models": args.models,
         "triangles": renderer.world().facet_count,
         "resolution": args.resolution,

@@ -7,6 +7,7 @@
 use crate::args::BenchArgs;
 use crate::bench_plot::{Curve, exponent, svg};
 use crate::bench_rows::{Row, differing, rows};
+use crate::command_line;
 use crate::report::{self, Failure};
 use std::fmt::Write;
 use std::path::Path;
@@ -125,7 +126,7 @@ fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pi
     let [width, height] = PIXELS[2];
     format!(
         "# Image precision and object precision, measured\n\n\
-         Written by `vitral bench --report docs --threads {threads} --frames {frames} --time-limit {limit}`, and not by hand.\n\n\
+         Written by `{command}`, and not by hand.\n\n\
          The scene is a heap of eight rings, cut ever finer, so that the picture stays what it is while the polygons grow. One\n\
          sample a pixel, {threads} thread(s). Times are finding the visible surface of every sample, without shading: the fastest\n\
          of {frames} pictures after a first one, which also builds trees (other processes can only add to it). An exponent `e` says that the time grows like `size^e`;\n\
@@ -148,7 +149,7 @@ fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pi
         table(over_pixels, pixels, "pixels"),
         over_polygons.last().map_or(0, polygons),
         over_polygons.last().map_or(String::new(), memory),
+        command = command_line::typed(),
         frames = args.frames,
-        limit = args.time_limit,
     )
 }

@@ -15,8 +15,8 @@
 //! `gl,constant,linear,quadratic`, or `range,distance`.
 
 use crate::fields::Fields;
-use crate::values::{direction, not_negative, number, numbers, positive, switch, vector};
-use vitral::{AreaShape, Attenuation, DVec3, Light, LightKind, names};
+use vitral::light_text::{attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector};
+use vitral::{AreaShape, Attenuation, Light, LightKind};
 
 /// Half angle of a spot light's cone in degrees where none is given.
 const CUTOFF: f64 = 30.0;
@@ -117,55 +117,10 @@ impl LightFields<'_> {
     }
 }
 
-/// One number for grey light, red, green and blue, or a colour's name.
-fn intensity(text: &str, raw: bool) -> Result<[f32; 3], String> {
-    if let Some(named) = if raw { names::color(text) } else { names::linear_color(text) } {
-        return Ok(named);
-    }
-    let rgb = if text.contains(',') { numbers::<3>(text)? } else { [number(text)?; 3] };
-    if rgb.iter().any(|&c| c < 0.0) {
-        return Err("intensities of at least 0 are required".to_owned());
-    }
-    let single = rgb.map(|c| c as f32);
-    if single.iter().all(|c| c.is_finite()) { Ok(single) } else { Err("finite intensities are required".to_owned()) }
-}
-
-fn half_angle(text: &str) -> Result<f64, String> {
-    let degrees = number(text)?;
-    if !(0.0..=90.0).contains(&degrees) {
-        return Err("a half angle from 0 to 90 degrees is required".to_owned());
-    }
-    Ok(degrees.to_radians())
-}
-
-fn corners(text: &str) -> Result<Vec<DVec3>, String> {
-    let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
-    let (corners, rest) = values.as_chunks::<3>();
-    if corners.len() < 3 || !rest.is_empty() {
-        return Err(format!("three numbers for each of at least three corners are required, not {}", values.len()));
-    }
-    Ok(corners.iter().map(|&c| DVec3::from_array(c)).collect())
-}
-
-fn attenuation(text: &str) -> Result<Attenuation, String> {
-    let (form, rest) = text.split_once(',').unwrap_or((text, ""));
-    let terms = |text: &str| -> Result<[f64; 3], String> {
-        let terms = numbers::<3>(text)?;
-        let sound = terms.iter().all(|&t| t >= 0.0) && terms.iter().any(|&t| t > 0.0);
-        if sound { Ok(terms) } else { Err("three terms of at least 0, not all 0, are required".to_owned()) }
-    };
-    match form {
-        "none" if rest.is_empty() => Ok(Attenuation::None),
-        "inverse-square" if rest.is_empty() => Ok(Attenuation::InverseSquare),
-        "gl" => terms(rest).map(|[constant, linear, quadratic]| Attenuation::Gl { constant, linear, quadratic }),
-        "range" => positive(rest).map(|range| Attenuation::Range { range }),
-        _ => terms(text).map(|[c1, c2, c3]| Attenuation::Clamped { c1, c2, c3 }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral::DVec3;
 
     #[test]
     fn the_example_of_the_contract() {

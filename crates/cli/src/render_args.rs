@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
-    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation,
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
     MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
@@ -114,6 +114,10 @@ pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
     #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
     pub(crate) visibility: Option<Visibility>,
+    /// Integer depths of N bits, 8 to 32, with --visibility z-buffer: what is nearly as near comes to the same depth, and faces
+    /// fight for the pixels [default: floating point]
+    #[arg(long, value_name = "N", value_parser = values::whole(8..=32u32), allow_negative_numbers = true)]
+    pub(crate) depth_bits: Option<u32>,
     /// What finds the triangles near a ray: of --visibility ray-cast, --shadows ray, --global ray-trace [default: bvh]
     #[arg(long, value_name = "NAME", value_parser = choices::acceleration())]
     pub(crate) acceleration: Option<Acceleration>,
@@ -209,12 +213,24 @@ pub(crate) struct LightArgs {
     /// fall-off begins, cutoff if left out), exponent, center, normal, radius, corners
     #[arg(long, value_name = "SPEC", value_parser = light_spec::checked)]
     pub(crate) light: Vec<String>,
+    #[arg(long, value_name = "LIGHT.FIELD=VALUE", value_parser = values::light_edit, help = light_edit_help())]
+    pub(crate) light_edit: Vec<LightEdit>,
     /// Multiplies all lights [default: 1, and for a model's photometric lights, which glTF has in candela and lux, the
     /// exposure that a picture shows well]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f32>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// The help of `--light-edit`.
+fn light_edit_help() -> String {
+    let fields: Vec<&str> = vitral::light_fields().map(|(name, _)| name).collect();
+    format!(
+        "Change one field of one light, such as LIGHT0.diffuse=1,0,0, and keep its others; repeatable. LIGHT is a light's name, or \
+         its number from 0 (2 or LIGHT2), * for all; FIELD is one of {} (docs/materials.md tells what they mean)",
+        fields.join(", ")
+    )
 }
 
 /// The help of `--material`.
@@ -229,7 +245,9 @@ fn material_help() -> String {
 
 /// The viewer.
 #[derive(Args, Debug, Default)]
-#[command(next_help_heading = "Camera (without any, the model is framed; a built-in figure has its own)")]
+#[command(
+    next_help_heading = "Camera (without any, the model is framed; a scene file with one camera and a built-in figure have their own)"
+)]
 pub(crate) struct CameraArgs {
     /// The side from which the model is framed [default: iso]
     #[arg(long, value_name = "SIDE", value_parser = choices::view())]
@@ -277,18 +295,26 @@ pub(crate) struct LabArgs {
     /// Start from the scene, lights and settings of an exercise of the course; models and options override them
     #[arg(long, value_name = "NUMBER", value_parser = choices::exercise())]
     pub(crate) exercise: Option<&'static str>,
-    /// Turn the eye, which looks along -z at first: degrees about x, then y, then z. Alone it frames the model
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
-    pub(crate) eye_rotation: Option<DVec3>,
-    /// Where the eye is
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
-    pub(crate) eye_translation: Option<DVec3>,
+    #[command(flatten)]
+    pub(crate) eye: EyeArgs,
     /// Turn all objects together, not the scene's own lights: degrees about x, then y, then z
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) all_rotation: Option<DVec3>,
     /// Move all objects together after that
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) all_translation: Option<DVec3>,
+}
+
+/// The eye of Lab3D.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Lab3D")]
+pub(crate) struct EyeArgs {
+    /// Turn the eye, which looks along -z at first: degrees about x, then y, then z. Alone it frames the model
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
+    pub(crate) eye_rotation: Option<DVec3>,
+    /// Where the eye is
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, conflicts_with_all = OTHER_CAMERAS)]
+    pub(crate) eye_translation: Option<DVec3>,
 }
 
 /// Options that place a camera as the eye of Lab3D does.
@@ -328,7 +354,8 @@ pub(crate) struct ProcessArgs {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Reports")]
 pub(crate) struct ReportArgs {
-    /// Counters and times of each stage as JSON on standard error
+    /// Counters and times as JSON on standard error: the seconds of each stage of each frame, and of loading, dumps and the
+    /// explained pixel
     #[arg(long)]
     pub(crate) stats: bool,
     /// The same into a file

@@ -2,6 +2,7 @@
 
 use crate::compare_command;
 use crate::interrupt::{self, INTERRUPTED};
+use crate::no_effect;
 use crate::outputs::model_name;
 use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
@@ -10,7 +11,7 @@ use crate::resolve::{Plan, resolve};
 use crate::step_pictures;
 use crate::trace_file::TraceFile;
 use crate::values;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Deciders, Explanation, explain};
@@ -54,7 +55,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
 
 /// Renders the frames of the plan, and reports about them.
 fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: Instant) -> Result<u8, Failure> {
-    let (mut renderer, mut warnings) = load(args, plan, execution)?;
+    let mut seconds = Map::new();
+    let loaded = timed(&mut seconds, "load", || load(args, plan, execution));
+    let (mut renderer, mut warnings) = loaded?;
     let load_seconds = start.elapsed().as_secs_f64();
     if args.report.verbose {
         let triangles = renderer.world().facet_count;
@@ -66,17 +69,20 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     };
     let first = &cameras[*plan.frames.start() as usize];
     if let Some(folder) = &args.output.dump {
-        dump::dump_to_folder(&mut renderer, first, folder)?;
+        timed(&mut seconds, "dump", || dump::dump_to_folder(&mut renderer, first, folder))?;
     }
     if let Some(file) = &args.output.export_shadow_polygons {
-        vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes())?;
+        let write = || vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes());
+        timed(&mut seconds, "shadow-polygons", write)?;
     }
-    let drawn = draw_traced(args, plan, &mut renderer, &cameras)?;
-    let explained = args.report.pixel.map(|pixel| explain_pixel(args, &renderer, first, pixel)).transpose()?;
+    let drawn = timed(&mut seconds, "frames", || draw_traced(args, plan, &mut renderer, &cameras))?;
+    let explain = |pixel| timed(&mut seconds, "pixel", || explain_pixel(args, &renderer, first, pixel));
+    let explained = args.report.pixel.map(explain).transpose()?;
 
     warnings.extend(drawn.warnings);
     let stats = json!({
         "load-seconds": load_seconds,
+        "seconds": seconds,
         "frames": drawn.frames,
         "total-seconds": start.elapsed().as_secs_f64(),
     });
@@ -96,16 +102,29 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
     Ok(if drawn.different { DIFFERENT } else { 0 })
 }
 
+/// What `work` gives; its seconds go into `seconds` under this name.
+fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let done = work();
+    seconds.insert(name.to_owned(), json!(start.elapsed().as_secs_f64()));
+    done
+}
+
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
     let scene = plan.state.load_scene_on(&execution.workers)?;
-    let warnings = scene.warnings.clone();
+    let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);
     }
     execution.budget.check("loading")?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     plan.state.apply(&mut renderer)?;
+    let idle = no_effect::warnings(args, &plan.state, &renderer);
+    if !args.report.quiet {
+        report::warnings(&idle);
+    }
+    warnings.extend(idle);
     if let Some(file) = &args.output.load_radiosity {
         let bytes = vitral::read(file, MOST_RADIOSITY_BYTES)?;
         let loaded = renderer.session().load_radiosity(&bytes);
@@ -178,6 +197,7 @@ fn draw(
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
         let camera = &cameras[number as usize];
+        let render_start = Instant::now();
         let mut rendered =
             if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };
         if let Some(file) = &mut tracing {
@@ -193,6 +213,7 @@ fn draw(
         }
         drawn.warnings.extend(news);
         let encode_start = Instant::now();
+        let render_seconds = (encode_start - render_start).as_secs_f64();
         let wanted = plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
         drawn.different |= wanted && plan.reference.is_some();
         for output in plan.outputs.iter().filter(|_| wanted) {
@@ -207,6 +228,10 @@ fn draw(
             let mut stats = serde_json::to_value(&rendered.stats).map_err(|e| Failure::other(e.to_string()))?;
             stats["frame"] = json!(number);
             stats["exposure"] = json!(rendered.exposure);
+            if args.output.panels {
+                // The stages are those of the last panel.
+                stats["seconds"]["panels"] = json!(render_seconds);
+            }
             stats["seconds"]["encode"] = json!(encode_start.elapsed().as_secs_f64());
             drawn.frames.push(stats);
         }

@@ -3,7 +3,9 @@
 use crate::compare_command;
 use crate::light_spec;
 use crate::outputs::{Output, model_name};
-use crate::render_args::{AlgorithmArgs, CameraArgs, LabArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs};
+use crate::render_args::{
+    AlgorithmArgs, CameraArgs, EyeArgs, LabArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs,
+};
 use crate::report::{self, Failure};
 use crate::{step_pictures, values};
 use std::io::ErrorKind;
@@ -12,7 +14,6 @@ use std::path::{Path, PathBuf};
 use vitral::internals::render::registry;
 use vitral::{
     Background, Channel, Channels, ColorSpace, Global, Lines, Normals, Plane, Settings, State, Transparency, Viewpoint,
-    default_camera,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -91,7 +92,7 @@ fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
         return Err(no_radiosity(option));
     }
     set_lights(state, &args.light)?;
-    set_viewpoint(&mut state.viewpoint, &args.camera);
+    set_viewpoint(&mut state.viewpoint, &args.camera, &args.lab.eye);
     set_lab(state, &args.lab);
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
@@ -101,14 +102,6 @@ fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     }
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
-    }
-
-    // A figure is seen from its own camera, unless anything is said about the view.
-    if let [model] = &state.models[..]
-        && (args.camera.view, state.turntable) == (None, None)
-        && state.viewpoint == Viewpoint::default()
-    {
-        state.viewpoint.camera_index = default_camera(model);
     }
     Ok(())
 }
@@ -263,6 +256,7 @@ fn set_algorithms(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure
 /// Which surfaces are seen, and how they are shaded.
 fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
     settings.visibility = args.visibility.unwrap_or(settings.visibility);
+    settings.depth_bits = args.depth_bits.or(settings.depth_bits);
     settings.acceleration = args.acceleration.or(settings.acceleration);
     if let Some(values::CoherenceList(kinds)) = &args.coherence {
         settings.coherence.clone_from(kinds);
@@ -360,23 +354,22 @@ fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
         let lights = args.light.iter().map(|text| light_spec::parse(text, raw)).collect::<Result<_, _>>();
         state.lights = Some(lights.map_err(|e| Failure::usage(format!("--light: {e}")))?);
     }
+    state.light_edits.extend(args.light_edit.iter().cloned());
     state.light_intensity = args.light_intensity.or(state.light_intensity);
     state.materials.extend(args.material.iter().cloned());
     Ok(())
 }
 
-/// The eye and the objects of Lab3D.
+/// The objects of Lab3D.
 fn set_lab(state: &mut State, args: &LabArgs) {
-    let viewpoint = &mut state.viewpoint;
-    viewpoint.eye_rotation = args.eye_rotation.map(|v| v.to_array()).or(viewpoint.eye_rotation);
-    viewpoint.eye_translation = args.eye_translation.map(|v| v.to_array()).or(viewpoint.eye_translation);
     let objects = &mut state.objects;
     objects.rotation = args.all_rotation.map_or(objects.rotation, |v| v.to_array());
     objects.translation = args.all_translation.map_or(objects.translation, |v| v.to_array());
 }
 
-fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {
-    viewpoint.view = args.view.unwrap_or(viewpoint.view);
+/// The viewer, by the options that `render` and `bench` share.
+pub(crate) fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs, eye: &EyeArgs) {
+    viewpoint.view = args.view.or(viewpoint.view);
     viewpoint.up = args.up.or(viewpoint.up);
     viewpoint.camera_index = args.camera_index.or(viewpoint.camera_index);
     viewpoint.position = args.camera_position.map(|p| p.to_array()).or(viewpoint.position);
@@ -388,4 +381,6 @@ fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs) {
     viewpoint.zoom_factor = args.camera_zoom_factor.unwrap_or(viewpoint.zoom_factor);
     viewpoint.azimuth_degrees = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_degrees);
     viewpoint.elevation_degrees = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_degrees);
+    viewpoint.eye_rotation = eye.eye_rotation.map(|v| v.to_array()).or(viewpoint.eye_rotation);
+    viewpoint.eye_translation = eye.eye_translation.map(|v| v.to_array()).or(viewpoint.eye_translation);
 }

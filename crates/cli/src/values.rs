@@ -9,27 +9,10 @@ use std::str::FromStr;
 use vitral::bench::Entrant;
 use vitral::explain::Deciders;
 use vitral::internals::math::lanes::level_from_environment;
+pub(crate) use vitral::light_text::{direction, not_negative, number, numbers, positive, switch, vector};
 use vitral::{
-    Coherence, Culling, DVec3, Execution, MaterialOverride, UnknownName, Visibility, Workers, execution, names,
+    Coherence, Culling, Execution, LightEdit, MaterialOverride, UnknownName, Visibility, Workers, execution, names,
 };
-
-/// A finite number.
-pub(crate) fn number(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("`{text}` is not a finite number")),
-    }
-}
-
-/// A finite number above 0.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })
-}
-
-/// A finite number of at least 0.
-pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("a number of at least 0 is required".to_owned()) })
-}
 
 /// A finite number of at least 0, in single precision.
 pub(crate) fn intensity(text: &str) -> Result<f32, String> {
@@ -95,24 +78,6 @@ where
         Ok(value) if range.contains(&value) => Ok(value),
         _ => Err(format!("a whole number from {} to {} is required", range.start(), range.end())),
     }
-}
-
-/// `N` finite numbers, separated by commas.
-pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
-    let count = values.len();
-    values.try_into().map_err(|_| format!("{N} numbers are required, `{text}` has {count}"))
-}
-
-/// A point or a direction, `x,y,z`.
-pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
-    numbers::<3>(text).map(DVec3::from_array)
-}
-
-/// A direction, `x,y,z`, not all 0.
-pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
-    let v = vector(text)?;
-    if v.try_normalize().is_some() { Ok(v) } else { Err("a direction of some length is required".to_owned()) }
 }
 
 /// `1024x768` or `1024,768`.
@@ -216,15 +181,6 @@ pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
     Ok(Deciders::Named(named))
 }
 
-/// `on` or `off`.
-pub(crate) fn switch(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("`{text}` is not one of on, off")),
-    }
-}
-
 /// Frames of a turntable: `3` or `0-9`, both ends included.
 pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u32>, String> {
     let (first, last) = text.split_once('-').unwrap_or((text, text));
@@ -236,10 +192,20 @@ pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u32>, String> {
 
 /// A material override `NAME.PROPERTY=VALUE`.
 pub(crate) fn material(text: &str) -> Result<MaterialOverride, String> {
-    MaterialOverride::parse(text).map_err(|e| match hint(&e) {
-        Some(hint) => format!("{e}; {hint}"),
-        None => e.to_string(),
-    })
+    MaterialOverride::parse(text).map_err(with_hint)
+}
+
+/// An edit of a light `LIGHT.FIELD=VALUE`.
+pub(crate) fn light_edit(text: &str) -> Result<LightEdit, String> {
+    LightEdit::parse(text).map_err(with_hint)
+}
+
+/// An error and its hint, in one line.
+fn with_hint(error: vitral::Error) -> String {
+    match hint(&error) {
+        Some(hint) => format!("{error}; {hint}"),
+        None => error.to_string(),
+    }
 }
 
 /// The name of an OBJ file.
@@ -252,6 +218,7 @@ pub(crate) fn obj_file(text: &str) -> Result<PathBuf, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vitral::DVec3;
 
     #[test]
     fn sizes_and_amounts() {

@@ -655,6 +655,75 @@ fn figures_are_seen_from_their_own_camera_unless_the_view_is_chosen() {
 }
 
 #[test]
+fn a_scene_file_with_one_camera_is_seen_from_it() {
+    let folder = Folder::new("one-camera");
+    let camera = r#"{"position": [0, 0, 9], "focal-point": [0, 0, 0], "view-up": [0, 1, 0],
+        "projection": {"type": "perspective", "view-angle": 0.9}}"#;
+    let scene = |cameras: &str| {
+        format!(r#"{{"vitral-scene": 1, "meshes": [{{"builtin": "sphere"}}], "cameras": [{cameras}]}}"#)
+    };
+    folder.file("none.json", scene(""));
+    folder.file("one.json", scene(camera));
+    folder.file("two.json", scene(&format!("{camera}, {camera}")));
+    let picture = |arguments: &[&str]| {
+        let output = render(&folder, &[arguments, &["-o", "a.png"]].concat());
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        folder.read("a.png")
+    };
+    let own = picture(&["one.json"]);
+    assert_eq!(own, picture(&["one.json", "--camera-index", "0"]));
+    // The sphere has a camera of its own, which is not the file's.
+    let framed = picture(&["none.json"]);
+    assert_eq!(framed, picture(&["two.json"]));
+    assert_eq!(framed, picture(&["one.json", "--view", "iso"]));
+    for option in
+        ["--eye-rotation=0,0,0", "--camera-zoom-factor=2", "--camera-direction=0,0,-1", "--camera-view-angle=20"]
+    {
+        assert_eq!(picture(&["one.json", option]), picture(&["none.json", option]), "{option}");
+    }
+    // A state says what was chosen, and what was not.
+    for view in [&[][..], &["--view", "iso"]] {
+        let first = picture(&[&["one.json", "--save-state", "s.json"], view].concat());
+        assert_eq!(first, picture(&["--load-state", "s.json"]), "{view:?}");
+    }
+}
+
+#[test]
+fn one_field_of_a_light_is_edited() {
+    let folder = Folder::new("light-edit");
+    let entry = r#"{"name": "LIGHT0", "diffuse": [1, 0, 0]}"#;
+    let mesh = r#""vitral-scene": 1, "meshes": [{"builtin": "teapot"}]"#;
+    folder.file("red.json", format!(r#"{{{mesh}, "lights": [{entry}]}}"#));
+    let picture = |arguments: &[&str]| {
+        let output = render(&folder, &[arguments, &["-o", "a.png", "--save-state", "s.json"]].concat());
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", errors(&output));
+        folder.read("a.png")
+    };
+    let course = ["builtin:teapot", "--exercise", "4.2"];
+    let red = picture(&[&course[..], &["--light-edit", "LIGHT0.diffuse=1,0,0"]].concat());
+    assert_ne!(red, picture(&course));
+    for same in ["LIGHT0.diffuse=red", "0.diffuse=#ff0000", "*.diffuse=1,0,0"] {
+        assert_eq!(red, picture(&[&course[..], &["--light-edit", same]].concat()), "{same}");
+    }
+    assert_eq!(red, picture(&["--load-state", "s.json"]));
+    assert_eq!(red, picture(&["red.json"]), "a scene file keeps what its light leaves out");
+    // The later edit wins.
+    let twice = ["--light-edit", "LIGHT0.diffuse=0,1,0", "--light-edit", "LIGHT0.diffuse=1,0,0"];
+    assert_eq!(red, picture(&[&course[..], &twice].concat()));
+    for (edit, said) in [
+        ("LIGHT3.diffuse=1", "there is no light `LIGHT3`\nhint: there is LIGHT0"),
+        ("LIGHT0.colour=1", "lights have no field `colour`; there are ambient, diffuse"),
+        ("LIGHT0.cutoff=30", "light `LIGHT0` has no `cutoff`\nhint: a point light has ambient, diffuse"),
+        ("LIGHT0.diffuse=-1", "intensities of at least 0 are required"),
+        ("LIGHT0", "LIGHT.FIELD=VALUE is required"),
+    ] {
+        let output = render(&folder, &[&course[..], &["-o", "x.png", "--light-edit", edit]].concat());
+        assert_eq!(code(&output), 2, "{edit}: {}", errors(&output));
+        assert!(errors(&output).contains(said) && !folder.has("x.png"), "{edit}: {}", errors(&output));
+    }
+}
+
+#[test]
 fn stats_are_json() {
     let folder = Folder::new("stats");
     let output = render(&folder, &["builtin:cubs", "-o", "a.png", "--stats-file", "s.json", "--threads", "1"]);
@@ -664,6 +733,19 @@ fn stats_are_json() {
     for stage in ["prepare", "geometry", "tiles", "total"] {
         assert!(stats["frames"][0]["seconds"][stage].as_f64().unwrap() > 0.0, "{stage}: {stats}");
     }
+    let all =
+        ["-o", "a.png", "--dump", "d", "--pixel", "9,9", "--shadows", "volume", "--export-shadow-polygons", "s.obj"];
+    let output = render(&folder, &[&["builtin:cubs", "--stats-file", "s.json"], &all[..]].concat());
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).unwrap();
+    for stage in ["load", "dump", "shadow-polygons", "frames", "pixel"] {
+        assert!(stats["seconds"][stage].as_f64().unwrap() > 0.0, "{stage}: {stats}");
+    }
+    let panels = ["builtin:cubs", "--shadows", "map", "--panels", "-o", "p.png", "--stats-file", "s.json"];
+    assert_eq!(code(&render(&folder, &panels)), 0);
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).unwrap();
+    let of = |stage: &str| stats["frames"][0]["seconds"][stage].as_f64().unwrap();
+    assert!(of("panels") > of("total"), "{stats}");
 }
 
 #[test]

@@ -19,6 +19,7 @@ pub mod clip;
 pub mod forward;
 mod fragments;
 pub mod geometry;
+mod integer_depth;
 mod kernel;
 mod layers;
 mod samples;
@@ -31,6 +32,7 @@ mod tile;
 
 pub use fragments::FragmentSink;
 pub use geometry::{BackFaces, Batch, Draw, GeometryCounters, TileLists, Unsorted};
+pub use integer_depth::IntegerDepth;
 pub use kernel::block::{Block, BlockSink, InBlocks, RowSink};
 pub use kernel::nearest::NearestDepths;
 pub use kernel::plane::RowPlane;

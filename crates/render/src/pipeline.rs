@@ -4,6 +4,7 @@ mod assemble;
 mod checks;
 mod pixel;
 mod steps;
+mod stop_watch;
 
 use crate::display::DecodeTables;
 use crate::global::Whitted;
@@ -21,6 +22,7 @@ use checks::{check_indices, check_order, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
 use std::sync::Arc;
 pub use steps::watch_steps;
+use stop_watch::StopWatch;
 use vitral_exec::Limit;
 use vitral_frame::{Frame, Plane};
 use vitral_light::{Light, Rgb};
@@ -152,12 +154,15 @@ impl<'a> FrameContext<'a> {
         if has_color {
             self.render_color(session, stats, frame)?;
         }
+        let mut watch = StopWatch::start(&execution.budget);
         if channels.any_data() {
             let context = if has_color { &unwatched } else { self };
             context.render_data(session, stats, frame)?;
+            watch.add_to(&mut stats.seconds.data);
         }
         if channels.steps {
             unwatched.render_steps(session, frame)?;
+            watch.add_to(&mut stats.seconds.steps);
         }
         Ok(())
     }
@@ -165,24 +170,25 @@ impl<'a> FrameContext<'a> {
     /// The colour picture, with all samples.
     fn render_color(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
         let Self { settings, execution, .. } = *self;
-        let clock = || execution.budget.elapsed();
+        let mut watch = StopWatch::start(&execution.budget);
         let pattern = SamplePattern::new(settings.picture.samples as usize);
         let mut grid = self.take_grid(session, pattern.len())?;
 
         // Cull, prepare the view and what illumination needs of the whole scene.
-        let t0 = clock();
         let view = self.view(session, pattern, &mut stats.cull);
         let tables = DecodeTables::new(settings.picture.color_space);
+        watch.add_to(&mut stats.seconds.prepare);
         let radiosity = self.radiosity(view.session, &mut stats.radiosity)?;
+        watch.add_to(&mut stats.seconds.radiosity);
         let shadows = self.shadows(&view)?;
+        watch.add_to(&mut stats.seconds.shadows);
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
-        let t1 = clock();
+        watch.add_to(&mut stats.seconds.prepare);
         let marks = marks::build(&view, settings, constants.fade, execution)?;
-        let t2 = clock();
+        watch.add_to(&mut stats.seconds.marks);
 
         // Find what is visible, and shade each tile as it is finished.
-        let shaded = self.shade_tiles(&constants, &marks, &mut grid, stats);
-        let t3 = clock();
+        let shaded = self.shade_tiles(&constants, &marks, &mut grid, stats, &mut watch);
         drop(constants);
         drop(shadows);
         drop(view);
@@ -191,12 +197,10 @@ impl<'a> FrameContext<'a> {
 
         // Put the tiles together.
         self.assemble_color(picture, &shown, frame)?;
-        stats.seconds.prepare = t1 - t0;
-        stats.seconds.marks = t2 - t1;
+        watch.add_to(&mut stats.seconds.assemble);
         stats.seconds.geometry = resolved.geometry_seconds;
-        stats.seconds.tiles = t3 - t2 - resolved.geometry_seconds;
+        stats.seconds.tiles -= resolved.geometry_seconds;
         stats.tracing.rays_per_second = stats.tracing.rate(stats.seconds.tiles);
-        stats.seconds.assemble = clock() - t3;
         Ok(())
     }
 
@@ -207,6 +211,7 @@ impl<'a> FrameContext<'a> {
         (marks, mark_colors): &(Marks, MarkColors),
         grid: &mut TileGrid,
         stats: &mut Stats,
+        watch: &mut StopWatch<'_>,
     ) -> Result<ShadedTiles, Error> {
         let Self { settings, viewport, execution, .. } = *self;
 
@@ -227,8 +232,10 @@ impl<'a> FrameContext<'a> {
         // Hand each tile on to it.
         let marks = (!mark_colors.is_empty()).then_some(marks);
         let resolved = self.visibility().resolve(constants.view, marks, grid, execution, &sink);
+        watch.add_to(&mut stats.seconds.tiles);
         stats.picture = sink.counters();
         let shown = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Shown::default()) };
+        watch.add_to(&mut stats.seconds.compose);
         let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
         let resolved = resolved?;
         stats.tracing = traced?;

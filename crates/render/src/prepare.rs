@@ -54,6 +54,8 @@ pub struct PreparedView<'a> {
     pub coherence: CoherenceSet,
     /// Whether layers come in the order of a list of polygons, where the algorithm makes one.
     pub lists_layers: bool,
+    /// Bits of integer depths, of the z-buffer.
+    pub depth_bits: Option<u32>,
     /// Most layers in a tile.
     layer_limit: usize,
     /// What may be visible, in scene order.
@@ -104,6 +106,7 @@ impl<'a> PreparedView<'a> {
             screen,
             acceleration,
             coherence,
+            depth_bits: settings.depth_bits,
             lists_layers: settings.transparency.order.needs_list,
             layer_limit,
             instances,

@@ -268,21 +268,31 @@ counters! {
     }
 }
 
-/// Seconds a stage of the colour picture; the passes for data channels count in the total alone. Rasterising and shading
-/// share the tiles, so they count as one.
+/// Seconds a stage, which together are the whole but for a few allocations. The first ones are those of the colour picture;
+/// rasterising and shading share the tiles, so they count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct StageSeconds {
-    /// Culling and preparing the view.
+    /// Culling, preparing the view and what illumination needs of it.
     pub prepare: f64,
+    /// Solving for radiosity, or finding the solution that is known.
+    pub radiosity: f64,
+    /// What shadows need before the first point is asked for: maps, volumes, polygons.
+    pub shadows: f64,
     /// Vertices and triangle setup.
     pub geometry: f64,
     /// Visibility in the tiles, illumination and shading.
     pub tiles: f64,
     /// Lines, points and edges.
     pub marks: f64,
+    /// What needs all tiles: translucent surfaces, pictures of passes.
+    pub compose: f64,
     /// Putting the tiles together.
     pub assemble: f64,
+    /// The pass for the data channels (depth, ids, normals, shadows), all its stages.
+    pub data: f64,
+    /// The pass for the picture of the steps.
+    pub steps: f64,
     /// All.
     pub total: f64,
 }

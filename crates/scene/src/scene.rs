@@ -23,6 +23,9 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras, each placed by the node that names it.
     pub cameras: Vec<Camera>,
+    /// Index into [`Scene::cameras`] of the one from which the scene is seen where nothing is said about the view; `None`: the scene
+    /// is framed.
+    pub own_camera: Option<u32>,
     /// Global ambient light (Ia of the course), RGB, on top of the lights' own.
     pub ambient: [f32; 3],
     /// Which ways are up in models of the formats that the scene comes from, each once, that of the first model first.
@@ -157,6 +160,8 @@ impl Scene {
         self.roots.extend(other.roots.into_iter().map(|r| r + nodes));
         self.lights.extend(other.lights);
         self.cameras.extend(other.cameras);
+        // What one of them is seen from may not show the other.
+        self.own_camera = None;
         for k in 0..3 {
             self.ambient[k] = self.ambient[k].max(other.ambient[k]);
         }

@@ -36,6 +36,8 @@ pub struct World {
     pub lights: Vec<Light>,
     /// Cameras in world space, in the order of [`Scene::cameras`]; one that several nodes name, in scene order.
     pub cameras: Vec<Camera>,
+    /// The one of these that is [`Scene::own_camera`].
+    pub own_camera: Option<usize>,
     /// The box round all instances.
     pub bounds: Aabb,
     /// For each mesh of the scene, the boxes round its runs of triangles ([`Mesh::run_bounds`]), model space.
@@ -142,6 +144,7 @@ impl World {
 
         // Put the cameras in the order of the scene's list.
         cameras.sort_by_key(|&(c, _)| c);
+        world.own_camera = scene.own_camera.and_then(|own| cameras.iter().position(|&(c, _)| c == own));
         world.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
         Ok(world)
     }

@@ -12,7 +12,9 @@ use vitral_raster::{SamplePattern, TileGrid};
 use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::NullSink;
-use vitral_render::{Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder};
+use vitral_render::{
+    Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder, Visibility,
+};
 use vitral_scene::{Camera, Scene};
 
 /// An algorithm of the registry, and for rays the structure.
@@ -46,6 +48,7 @@ impl Entrant {
         let mut settings =
             Settings { visibility: self.algorithm.choice(), acceleration: self.acceleration, ..settings.clone() };
         settings.transparency.order = TransparencyOrder::default();
+        settings.depth_bits = settings.depth_bits.filter(|_| settings.visibility == Visibility::Z_BUFFER);
         settings.picture.channels = Channels { passes: false, buffers: false, ..settings.picture.channels };
         settings
     }

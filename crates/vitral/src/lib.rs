@@ -54,6 +54,8 @@ pub mod explain;
 mod files;
 pub mod info;
 pub mod internals;
+mod light_edit;
+pub mod light_text;
 mod load;
 mod material_override;
 pub mod names;
@@ -68,9 +70,9 @@ mod viewpoint;
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, read};
+pub use light_edit::{LightEdit, light_fields};
 pub use load::{
-    LoadOptions, Normals, builtin_names, default_camera, load, load_builtin, load_bytes, load_bytes_with, load_on,
-    load_with,
+    LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on, load_with,
 };
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;

@@ -141,13 +141,6 @@ pub fn builtin_names() -> &'static [(&'static str, &'static str)] {
     builtin::names()
 }
 
-/// The camera of the scene from which models of this name are usually seen: figures among the built-in scenes have one.
-/// Others are framed.
-pub fn default_camera(path: impl AsRef<Path>) -> Option<usize> {
-    let name = path.as_ref().to_str()?.strip_prefix("builtin:")?;
-    builtin::is_figure(name).then_some(0)
-}
-
 /// Sees to the normals.
 fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
     match options.normals {
@@ -248,11 +241,10 @@ mod tests {
     fn figures_have_a_camera() {
         let figures = ["refraction", "rod", "lens", "mirrors", "cornell", "realism"];
         for (name, _) in builtin::names() {
-            let camera = default_camera(format!("builtin:{name}"));
+            let scene = load_builtin(name).unwrap();
             let is_figure = figures.contains(name) || name.starts_with("defect-");
-            assert_eq!(camera, is_figure.then_some(0), "{name}");
-            assert!(camera.is_none() || !load_builtin(name).unwrap().cameras.is_empty());
+            assert_eq!(scene.own_camera, is_figure.then_some(0), "{name}");
+            assert!(scene.own_camera.is_none() || !scene.cameras.is_empty());
         }
-        assert_eq!(default_camera("cornell"), None);
     }
 }

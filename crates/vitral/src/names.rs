@@ -89,19 +89,24 @@ pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// For `#[serde(with)]`: a view as its name.
+/// For `#[serde(with)]`: a view as its name, none as null.
 pub(crate) mod serde_view {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
     use vitral_scene::View;
 
-    pub(crate) fn serialize<S: Serializer>(view: &View, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(super::view_name(*view))
+    pub(crate) fn serialize<S: Serializer>(view: &Option<View>, serializer: S) -> Result<S::Ok, S::Error> {
+        match view {
+            Some(view) => serializer.serialize_str(super::view_name(*view)),
+            None => serializer.serialize_none(),
+        }
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<View, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        super::view(&name)
-            .map_err(|e| D::Error::custom(format!("{e}: choose {}", super::list(super::VIEWS.map(|v| v.1)))))
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<View>, D::Error> {
+        let named = |name: String| {
+            super::view(&name)
+                .map_err(|e| D::Error::custom(format!("{e}: choose {}", super::list(super::VIEWS.map(|v| v.1)))))
+        };
+        Option::<String>::deserialize(deserializer)?.map(named).transpose()
     }
 }
 

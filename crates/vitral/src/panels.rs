@@ -57,6 +57,7 @@ fn six(
 ) -> Result<Picture, Error> {
     let with = renderer.settings.clone();
     let own_lights = renderer.lights.replace(lights.to_vec());
+    let edits = std::mem::take(&mut renderer.light_edits);
     let intensity = renderer.light_intensity.replace(1.0);
     let without = with.clone().with_shadows(Shadows::NONE);
     let made = || {
@@ -93,6 +94,7 @@ fn six(
     };
     let made = made();
     renderer.lights = own_lights;
+    renderer.light_edits = edits;
     renderer.light_intensity = intensity;
     made
 }

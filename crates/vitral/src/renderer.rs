@@ -1,6 +1,6 @@
 //! The short way from a model or scene to pictures.
 
-use crate::{Channel, Error, LoadOptions, Picture, SystemClock, Viewpoint, default_camera, load_on};
+use crate::{Channel, Error, LightEdit, LoadOptions, Picture, SystemClock, Viewpoint, load_on};
 use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
@@ -36,6 +36,8 @@ pub struct Renderer {
     /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has neither
     /// lights nor ambient light.
     pub lights: Option<Vec<Light>>,
+    /// Changes of single fields of these lights, in order. One that fits no light is an error of the picture.
+    pub light_edits: Vec<LightEdit>,
     /// Multiplies all lights; `None`: 1, but for the scene's own photometric lights (candela and lux, as in glTF) the
     /// [exposure](Self::exposure).
     pub light_intensity: Option<f32>,
@@ -71,8 +73,8 @@ impl Renderer {
         Self::with_execution(scene, execution(0))
     }
 
-    /// Reads a model: a file, `builtin:NAME`, or `-` for standard input. The model is framed; built-in scenes that are
-    /// figures are seen from their own camera ([`default_camera`]).
+    /// Reads a model: a file, `builtin:NAME`, or `-` for standard input. The model is framed; scene files with
+    /// one camera and built-in figures are seen from their own ([`Scene::own_camera`]).
     ///
     /// # Errors
     /// A file that is missing, malformed, not of a known format or above the limit.
@@ -87,9 +89,8 @@ impl Renderer {
     pub fn open_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Self, Error> {
         let (path, execution) = (path.as_ref(), execution(0));
         let mut renderer = Self::with_execution(load_on(path, options, &execution.workers)?, execution)?;
-        let viewpoint = Viewpoint { camera_index: default_camera(path), ..Viewpoint::default() };
         let usual_up = renderer.up;
-        viewpoint.apply(&mut renderer, usual_up)?;
+        Viewpoint::default().or_own(renderer.world()).apply(&mut renderer, usual_up)?;
         Ok(renderer)
     }
 
@@ -138,6 +139,7 @@ impl Renderer {
             lens: Lens::default(),
             moves: Moves::default(),
             lights: None,
+            light_edits: Vec::new(),
             light_intensity: None,
             ambient: [0.0; 3],
             meter: LightMeter::read(session.world()),
@@ -208,18 +210,13 @@ impl Renderer {
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else, without ambient light, default ones; with
-    /// [`light_intensity`](Self::light_intensity) applied.
+    /// [`light_edits`](Self::light_edits) and [`light_intensity`](Self::light_intensity) applied. Edits that do not fit are left out.
     pub fn frame_lights(&self, camera: &Camera) -> Vec<Light> {
-        let mut lights = match &self.lights {
-            Some(lights) => lights.clone(),
-            // A scene that has light from everywhere says what it is lit by.
-            None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
-            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => {
-                self.fixed_lights()
-            }
-            None if self.world().lights.is_empty() => default_lights(camera),
-            None => self.world().lights.clone(),
-        };
+        let mut lights = self.unedited_lights(camera);
+        for edit in &self.light_edits {
+            // [`Self::check_light_edits`] tells what does not fit.
+            let _ = edit.apply(&mut lights);
+        }
         let exposure = self.exposure();
         for light in &mut lights {
             let exposed = if light.photometric { exposure } else { 1.0 };
@@ -229,6 +226,29 @@ impl Renderer {
             }
         }
         lights
+    }
+
+    /// Whether every edit fits a light of a picture from `camera`.
+    pub(crate) fn check_light_edits(&self, camera: &Camera) -> Result<(), Error> {
+        if self.light_edits.is_empty() {
+            return Ok(());
+        }
+        let mut lights = self.unedited_lights(camera);
+        self.light_edits.iter().try_for_each(|edit| edit.apply(&mut lights))
+    }
+
+    /// The lights that edits change.
+    fn unedited_lights(&self, camera: &Camera) -> Vec<Light> {
+        match &self.lights {
+            Some(lights) => lights.clone(),
+            // A scene that has light from everywhere says what it is lit by.
+            None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
+            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => {
+                self.fixed_lights()
+            }
+            None if self.world().lights.is_empty() => default_lights(camera),
+            None => self.world().lights.clone(),
+        }
     }
 
     /// The factor that brings the scene's photometric lights to where pictures show them, for the ambient light of the next
@@ -273,6 +293,7 @@ impl Renderer {
     /// # Errors
     /// As [`render`](Self::render).
     pub fn render_from(&mut self, camera: &Camera) -> Result<Picture, Error> {
+        self.check_light_edits(camera)?;
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
         let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;

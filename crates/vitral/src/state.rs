@@ -4,12 +4,13 @@
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
 use crate::load::load_on;
-use crate::{Error, Light, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
-use serde::{Deserialize, Serialize};
+use crate::{Error, Light, LightEdit, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
 use vitral_math::DVec3;
 use vitral_render::{Background, ColorSpace};
+use vitral_scene::LightForm;
 use vitral_scene::lab::LabView;
 
 /// The version of the form.
@@ -39,7 +40,10 @@ pub struct State {
     /// From where the scene is seen.
     pub viewpoint: Viewpoint,
     /// The lights, world space; `null`: the scene's, or default ones.
+    #[serde(deserialize_with = "lights")]
     pub lights: Option<Vec<Light>>,
+    /// Changes of single fields of these lights, in order.
+    pub light_edits: Vec<LightEdit>,
     /// Multiplies all lights; `null`: 1, and what brings the scene's own lights to where pictures show them.
     pub light_intensity: Option<f32>,
     /// Global ambient light on top of the scene's own.
@@ -48,6 +52,12 @@ pub struct State {
     pub settings: Settings,
     /// Number of views around the model; `null`: one picture.
     pub turntable: Option<usize>,
+}
+
+/// Lights of which each may leave fields out.
+fn lights<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<Light>>, D::Error> {
+    let forms = Option::<Vec<LightForm>>::deserialize(deserializer)?;
+    Ok(forms.map(|forms| forms.into_iter().map(Light::from).collect()))
 }
 
 /// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then z, then moved. Lights in
@@ -71,6 +81,7 @@ impl Default for State {
             objects: Objects::default(),
             viewpoint: Viewpoint::default(),
             lights: None,
+            light_edits: Vec::new(),
             light_intensity: None,
             ambient: [0.0; 3],
             settings: Settings::default(),
@@ -220,14 +231,22 @@ impl State {
     /// Sets all that a renderer decides: settings, viewpoint, lights.
     ///
     /// # Errors
-    /// A viewpoint without sense.
+    /// A viewpoint without sense; an edit that names a light, field or value that is not there.
     pub fn apply(&self, renderer: &mut Renderer) -> Result<(), Error> {
         renderer.settings = self.settings.clone();
         renderer.lights.clone_from(&self.lights);
         renderer.light_intensity = self.light_intensity;
         renderer.ambient = self.ambient;
         let usual_up = renderer.scene().usual_up();
-        self.viewpoint.apply(renderer, usual_up)
+        match self.turntable {
+            None => self.viewpoint.or_own(renderer.world()).apply(renderer, usual_up)?,
+            // A turntable goes round all that there is.
+            Some(_) => self.viewpoint.apply(renderer, usual_up)?,
+        }
+        let raw = self.settings.picture.color_space == ColorSpace::Raw;
+        let edit = |edit: &LightEdit| if raw { edit.raw() } else { edit.clone() };
+        renderer.light_edits = self.light_edits.iter().map(edit).collect();
+        renderer.check_light_edits(&renderer.frame_camera())
     }
 }
 
@@ -286,10 +305,11 @@ mod tests {
     fn a_state_comes_back_from_json() {
         let mut state = State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
         state.viewpoint =
-            Viewpoint { view: View::Top, up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
+            Viewpoint { view: Some(View::Top), up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
         state.settings.picture.background = Background::Color { color: [0.25, 0.5, 1.0] };
         state.lights = Some(vitral_scene::lab::lights());
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
+        state.light_edits.push(LightEdit::parse("LIGHT0.diffuse=1,0,0").unwrap());
         assert_eq!(State::from_json(&state.to_json(), "s").unwrap(), state);
         assert_eq!(State::from_json("{}", "s").unwrap(), State::default());
     }
@@ -372,7 +392,10 @@ mod tests {
             (state.settings.picture.width, state.settings.picture.height, state.settings.shading.model),
             (99, 768, Shading::Flat)
         );
-        assert_eq!((state.settings.picture.background, state.viewpoint.view), (Background::Transparent, View::Left));
+        assert_eq!(
+            (state.settings.picture.background, state.viewpoint.view),
+            (Background::Transparent, Some(View::Left))
+        );
         assert_eq!(state.models, ["a.obj"]);
         let before = state.clone();
         assert!(state.overlay("{\"models\": 3}", "c").is_err());
@@ -402,6 +425,28 @@ mod tests {
         assert!(warnings.contains("+Y is up, as in the first model; others usually have +Z up"), "{warnings}");
         assert_eq!(up(&[&solid, "builtin:cubs"], Some(Axis::PlusX)), (Axis::PlusX, String::new()));
         std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn fields_of_lights_are_edited_whatever_lights_there_are() {
+        let lights = |text: &str| {
+            let state = State::from_json(text, "s").unwrap();
+            let mut renderer = Renderer::new(state.load_scene().unwrap()).unwrap();
+            state.apply(&mut renderer).map(|()| renderer.frame_lights(&renderer.frame_camera()))
+        };
+        // The scene's own, those of the state, those that follow the camera.
+        let edit =
+            |light: &str| format!(r#""light-edits": [{{"light": "{light}", "field": "diffuse", "value": "red"}}]"#);
+        let own = lights(&format!(r#"{{"models": ["builtin:sphere"], {}}}"#, edit("LIGHT1"))).unwrap();
+        assert_eq!(own[1], Light { diffuse: [1.0, 0.0, 0.0], ..vitral_scene::lab::lights()[1].clone() });
+        let named = r#""lights": [{"name": "LIGHT0", "specular": [0, 0, 0]}], "light-intensity": 0.5"#;
+        let named = lights(&format!(r#"{{"models": ["builtin:teapot"], {named}, {}}}"#, edit("0"))).unwrap();
+        let expected = Light { specular: [0.0; 3], diffuse: [0.5, 0.0, 0.0], ..vitral_scene::lab::lights()[0].clone() };
+        assert_eq!(named, [Light { ambient: expected.ambient.map(|c| c * 0.5), ..expected }]);
+        let usual = lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("key"))).unwrap();
+        assert_eq!((usual[0].name.as_str(), usual[0].diffuse), ("key", [1.0, 0.0, 0.0]));
+        let error = lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("LIGHT9"))).unwrap_err();
+        assert_eq!(error.to_string(), "there is no light `LIGHT9`");
     }
 
     #[test]

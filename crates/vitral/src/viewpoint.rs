@@ -1,7 +1,7 @@
 //! From where a scene is seen, as users say it: a standard side or a place, then moves round the model.
 
 use crate::names::{serde_axis, serde_view};
-use crate::{Axis, Camera, Error, Lens, Moves, Projection, Renderer, View};
+use crate::{Axis, Camera, Error, Lens, Moves, Projection, Renderer, View, World};
 use serde::{Deserialize, Serialize};
 use vitral_math::{Aabb, DVec3};
 use vitral_scene::lab::LabView;
@@ -11,9 +11,9 @@ use vitral_scene::lab::LabView;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Viewpoint {
-    /// The side a framed model is seen from.
+    /// The side a framed model is seen from; `None`: [`View::Iso`], or the scene's own camera where nothing else is said either.
     #[serde(with = "serde_view")]
-    pub view: View,
+    pub view: Option<View>,
     /// Which way is up; `None`: as is usual for the first model's format.
     #[serde(with = "serde_axis")]
     pub up: Option<Axis>,
@@ -53,7 +53,7 @@ pub struct Viewpoint {
 impl Default for Viewpoint {
     fn default() -> Self {
         Self {
-            view: View::default(),
+            view: None,
             up: None,
             camera_index: None,
             eye_rotation: None,
@@ -73,6 +73,15 @@ impl Default for Viewpoint {
 }
 
 impl Viewpoint {
+    /// This viewpoint; where it says nothing, the scene's [own camera](vitral_scene::Scene::own_camera), if it has one.
+    #[must_use]
+    pub fn or_own(&self, world: &World) -> Self {
+        match world.own_camera {
+            Some(own) if *self == Self::default() => Self { camera_index: Some(own), ..Self::default() },
+            _ => self.clone(),
+        }
+    }
+
     /// Sets view, axis, lens and camera of `renderer`. `usual_up` is the upward axis where none was chosen. A model
     /// that is framed, and seen from elsewhere or enlarged at most, leaves the camera open, so that turntables can choose
     /// their distance.
@@ -81,7 +90,7 @@ impl Viewpoint {
     /// [`Error::Usage`] for a camera that the scene has not, and for numbers without sense.
     pub fn apply(&self, renderer: &mut Renderer, usual_up: Axis) -> Result<(), Error> {
         self.check(renderer)?;
-        renderer.view = self.view;
+        renderer.view = self.view.unwrap_or_default();
         renderer.up = self.up.unwrap_or(usual_up);
         renderer.lens = match (self.orthographic, self.view_angle_degrees) {
             (true, _) => Lens::Parallel,
@@ -296,7 +305,7 @@ mod tests {
             viewpoint.apply(&mut renderer, Axis::PlusY).unwrap();
             renderer.frame_camera()
         };
-        let front = of(Viewpoint { view: View::Front, ..Viewpoint::default() });
+        let front = of(Viewpoint { view: Some(View::Front), ..Viewpoint::default() });
         let along = of(Viewpoint { direction: Some([0.0, 0.0, -3.0]), ..Viewpoint::default() });
         assert!(along.position.abs_diff_eq(front.position, 1e-9), "{along:?} is not {front:?}");
         let below = of(Viewpoint { direction: Some([0.0, 1.0, 0.0]), ..Viewpoint::default() });

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 use vitral_frame::Encoding;
 use vitral_light::{Light, Material};
-use vitral_scene::Camera;
+use vitral_scene::{Camera, LightForm};
 
 /// The version of the form, the value of the root key `vitral-scene`.
 pub const VERSION: u32 = 1;
@@ -29,7 +29,7 @@ pub(super) struct SceneForm {
     pub(super) nodes: Option<Vec<NodeForm>>,
     pub(super) roots: Option<Vec<u32>>,
     #[serde(default, deserialize_with = "objects")]
-    pub(super) lights: Vec<Light>,
+    pub(super) lights: Vec<LightForm>,
     #[serde(default, deserialize_with = "objects")]
     pub(super) cameras: Vec<Camera>,
     #[serde(default)]
@@ -62,9 +62,9 @@ fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> R
     Ok(Vec::<Object<T>>::deserialize(deserializer)?.into_iter().map(|object| object.0).collect())
 }
 
-/// An object, or null for none.
-fn object_if_any<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    Ok(Option::<Object<T>>::deserialize(deserializer)?.map(|object| object.0))
+/// A light, or null for none.
+fn light_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {
+    Ok(Option::<Object<LightForm>>::deserialize(deserializer)?.map(|object| object.0.into()))
 }
 
 /// A list of objects, or null for none.
@@ -204,7 +204,7 @@ pub(super) struct NodeForm {
     pub(super) children: Vec<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) mesh: Option<u32>,
-    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "object_if_any")]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "light_if_any")]
     pub(super) light: Option<Light>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) camera: Option<u32>,

@@ -54,7 +54,8 @@ impl Report<'_> {
 pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scene, Error> {
     let form = form::parse(bytes, file)?;
     let report = Report { file };
-    let mut scene = Scene { lights: form.lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
+    let lights = form.lights.into_iter().map(Into::into).collect();
+    let mut scene = Scene { lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
     for (i, light) in scene.lights.iter().enumerate() {
         light.check().map_err(|what| report.at(format!("lights[{i}]"), what))?;
     }
@@ -64,6 +65,7 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     for (i, camera) in scene.cameras.iter().enumerate() {
         check_camera(camera, &format!("cameras[{i}]"), &report)?;
     }
+    let own_camera = (scene.cameras.len() == 1).then_some(0);
     let places = add_textures(form.textures, &mut scene, &report, origin)?;
     scene.materials = form.materials;
     settle_materials(&mut scene, &places, &report)?;
@@ -84,6 +86,8 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     if scene.ups.is_empty() {
         scene.ups.push(Axis::PlusY);
     }
+    // Models that nodes brought in have cameras, too.
+    scene.own_camera = own_camera;
     Ok(scene)
 }
 

@@ -62,6 +62,13 @@ impl<S: Simd> RowPlane<S> {
         self.within(away(x, self.first[0]) * self.dz_dx + (away(y, self.first[1]) * self.dz_dy + self.z))
     }
 
+    /// The same at these eight pixels alone, whose depths are `z`.
+    #[inline(always)]
+    #[must_use]
+    pub fn pinned(&self, z: F32x8<S>) -> Self {
+        Self { low: z, high: z, ..*self }
+    }
+
     #[inline(always)]
     fn within(&self, z: F32x8<S>) -> F32x8<S> {
         lanes::Lanes::min(lanes::Lanes::max(z, self.low), self.high)

@@ -34,6 +34,15 @@ pub enum SettingsError {
         /// What it exploits.
         choices: String,
     },
+    /// Bits of an integer depth.
+    #[error("integer depths of {0} bits: 8 to 32 are possible")]
+    DepthBits(u32),
+    /// Integer depths of an algorithm that has none.
+    #[error("only the z-buffer has integer depths, and `{0}` was chosen")]
+    IntegerDepth(Visibility),
+    /// Integer depths, and passes that compare depths of their own.
+    #[error("integer depths were chosen, and the order of transparency `{0}` compares others")]
+    PassesOfIntegers(&'static str),
     /// Turns of a ray.
     #[error("{0} turns of a ray: 1 to 64 are possible")]
     MaxDepth(u32),

@@ -44,6 +44,7 @@ flat! {
     "visibility" => visibility;
     "acceleration" => acceleration;
     "coherence" => coherence;
+    "depth-bits" => depth_bits;
     "cull" => cull;
     "illumination" => shading.illumination;
     "shading" => shading.model;

@@ -36,6 +36,8 @@ pub struct Settings {
     pub acceleration: Option<Acceleration>,
     /// Kinds of coherence that the visibility algorithm uses; `None`: all that it exploits. They do not change the picture.
     pub coherence: Option<Vec<Coherence>>,
+    /// Bits of an integer depth, `8..=32`, of the z-buffer alone: it shows what few of them do. `None`: depths are of floating point.
+    pub depth_bits: Option<u32>,
     /// What is thrown away early.
     pub cull: Culling,
     /// How light is reflected, and where that is computed.
@@ -324,6 +326,15 @@ impl Settings {
 
     fn check_visibility(&self) -> Result<(), SettingsError> {
         let visibility = self.visibility;
+        if let Some(bits) = self.depth_bits.filter(|bits| !(8..=32).contains(bits)) {
+            return Err(SettingsError::DepthBits(bits));
+        }
+        if self.depth_bits.is_some() && visibility != Visibility::Z_BUFFER {
+            return Err(SettingsError::IntegerDepth(visibility));
+        }
+        if self.depth_bits.is_some() && self.transparency.order.draws_passes {
+            return Err(SettingsError::PassesOfIntegers(self.transparency.order.name));
+        }
         if self.acceleration.is_some() && !self.casts_rays() {
             let choices = Visibility::names(|row| row.casts_rays);
             return Err(SettingsError::Acceleration { visibility, choices });

@@ -124,7 +124,7 @@ impl<'v, 'a> Facets<'v, 'a> {
     ) {
         let (level, pattern) = (self.execution.level, &self.view.pattern);
         if let Some(marks) = marks {
-            hide_behind(level, &marks.hiding, index, tile, pattern);
+            hide_behind((level, None), &marks.hiding, index, tile, pattern);
         }
         let all = marks.map(|m| &m.all);
         if sink.takes_passes() {

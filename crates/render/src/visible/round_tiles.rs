@@ -7,7 +7,7 @@ use super::front_end::BYTES_A_TRIANGLE;
 use super::overdraw::Overdraw;
 use super::sink::{TileSink, layer_list};
 use super::tiles::{PASSES, hand_on_in_passes};
-use super::walk::{hide_behind, walk};
+use super::walk::{hide_behind, walk, walk_integer};
 use crate::marks::Marks;
 use crate::{Execution, PreparedView};
 use std::sync::Mutex;
@@ -60,12 +60,15 @@ impl<'a> RoundTiles<'a> {
         // Let marks hide what is behind them, then walk the triangles. Layers that are asked for in passes wait.
         let marks = self.marks.filter(|_| round.is_last);
         if let Some(marks) = marks {
-            hide_behind(level, &marks.hiding, index, tile, &view.pattern);
+            hide_behind((level, view.depth_bits), &marks.hiding, index, tile, &view.pattern);
         }
         let batches = round.batches.iter().map(|(layered, batch)| (*layered, batch));
         let batches = batches.chain(marks.map(|marks| (true, &marks.all)));
         let batches: Vec<_> = batches.filter(|(layered, _)| !(passes && *layered)).collect();
-        walk(level, &batches, index, tile, &view.pattern, &mut layers);
+        match view.depth_bits {
+            None => walk(level, &batches, index, tile, &view.pattern, &mut layers),
+            Some(bits) => walk_integer((level, bits), &batches, index, tile, &view.pattern, &mut layers),
+        }
 
         // Hand the finished tile on.
         if round.is_last {

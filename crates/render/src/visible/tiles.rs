@@ -59,7 +59,7 @@ pub(super) fn each_tile(
         if counted.is_ok() {
             // Test lines and points against the finished depth.
             if let Some(marks) = marks {
-                hide_behind(execution.level, &marks.hiding, index, tile, &view.pattern);
+                hide_behind((execution.level, None), &marks.hiding, index, tile, &view.pattern);
                 collect_layers(execution.level, &marks.all, index, tile, &view.pattern, &mut layers);
             }
             layers.finish();

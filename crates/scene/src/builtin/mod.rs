@@ -105,12 +105,7 @@ fn recipe(name: &str) -> Option<&'static Recipe> {
     const { &SCENES }.iter().find(|s| s.name == name)
 }
 
-/// Whether the scene of this name (without `builtin:`) is a figure, meant to be seen from its own camera 0.
-pub fn is_figure(name: &str) -> bool {
-    recipe(name).is_some_and(|r| r.is_figure)
-}
-
 /// The built-in scene of this name (without `builtin:`).
 pub fn scene(name: &str) -> Option<Scene> {
-    recipe(name).map(|r| Scene { ups: vec![Axis::PlusY], ..(r.make)() })
+    recipe(name).map(|r| Scene { ups: vec![Axis::PlusY], own_camera: r.is_figure.then_some(0), ..(r.make)() })
 }

@@ -5,6 +5,7 @@ mod common;
 mod culling;
 mod cut_outs;
 mod defects;
+mod depth_bits;
 mod depth_cue;
 mod determinism;
 mod equal_planes;

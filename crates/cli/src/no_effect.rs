@@ -1,0 +1,254 @@
+//! Options that were typed and change nothing beside the others: each is told in a warning.
+//!
+//! [`ROWS`] has a row for each pair of an option and a condition under which it does nothing. An option that was not typed, or
+//! typed with the value that it has anyway, is never told; nor are options that by their nature leave pictures as they are
+//! (`--cull`, `--coherence`, `--threads`, ...).
+
+use crate::render_args::RenderArgs;
+use std::sync::Arc;
+use vitral::{
+    AlphaMode, AreaShape, Camera, Global, Illumination, Interpolation, Light, LightKind, Lines, Normals, Projection,
+    Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View, Viewpoint,
+};
+
+/// An option, when it does nothing, and what is said then.
+struct Row {
+    /// As typed.
+    option: &'static str,
+    /// Whether it was typed, with another value than the one that holds without it.
+    given: fn(&RenderArgs) -> bool,
+    /// Whether it does nothing.
+    idle: fn(&Case) -> bool,
+    /// Why.
+    why: &'static str,
+}
+
+const fn row(option: &'static str, given: fn(&RenderArgs) -> bool, idle: fn(&Case) -> bool, why: &'static str) -> Row {
+    Row { option, given, idle, why }
+}
+
+const DARK: &str = "with --lighting off surfaces show their own colours";
+const CONSTANT: &str = "with --illumination constant surfaces show their own colours";
+const AMBIENT: &str = "with --illumination ambient no light comes from anywhere in particular";
+const DATA: &str = "no colour picture is made";
+const WIRES: &str = "edges alone are drawn, in one colour";
+const OPAQUE: &str = "with --transparency none every surface is opaque";
+const SOLID: &str = "the models have no transparent surfaces";
+const NO_CASTER: &str = "no light casts shadows";
+const FLAT: &str = "with --shading flat each face has its own normal";
+const PARALLEL: &str = "the projection is parallel";
+
+/// What does nothing beside what. Rows of one option stand together; the first that holds is told.
+const ROWS: [Row; 42] = [
+    row("--samples", |a| a.picture.samples.is_some(), Case::makes_no_color, "channels of data have one sample a pixel"),
+    row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
+    row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),
+    row("--color-space", |a| a.picture.color_space.is_some(), Case::makes_no_color, DATA),
+    row("--depth-cue", |a| a.algorithms.depth_cue.is_some(), Case::makes_no_color, DATA),
+    row("--illumination", gives_illumination, Case::makes_no_color, DATA),
+    row("--illumination", gives_illumination, Case::draws_wires, WIRES),
+    row("--illumination", gives_illumination, |c| c.is_dark() && !c.is_constant(), DARK),
+    row("--shading", gives_shading, Case::makes_no_color, DATA),
+    row("--shading", gives_shading, Case::draws_wires, WIRES),
+    row("--shading", gives_shading, |c| c.is_dark() && c.is_plain(), DARK),
+    row("--shading", gives_shading, |c| c.is_constant() && c.is_plain(), CONSTANT),
+    row("--interpolation", gives_interpolation, Case::makes_no_color, DATA),
+    row("--interpolation", gives_interpolation, Case::draws_wires, WIRES),
+    row("--interpolation", gives_interpolation, Case::is_parallel, PARALLEL),
+    row("--transparency", gives_transparency, Case::makes_no_color, DATA),
+    row("--transparency", gives_transparency, Case::draws_wires, WIRES),
+    row("--transparency", gives_transparency, Case::is_solid, SOLID),
+    row("--transparency-order", gives_order, Case::makes_no_color, DATA),
+    row("--transparency-order", gives_order, Case::draws_wires, WIRES),
+    row("--transparency-order", gives_order, Case::is_opaque, OPAQUE),
+    row("--transparency-order", gives_order, Case::is_solid, SOLID),
+    row("--kay-exponent", |a| a.algorithms.kay_exponent.is_some(), Case::is_solid, SOLID),
+    row("--scatter-samples", gives_scatter, Case::is_opaque, OPAQUE),
+    row("--scatter-samples", gives_scatter, |c| !c.scatters(), "the models have no translucent surfaces"),
+    row("--shadows", gives_shadows, |c| c.makes_no_color() && !c.shows_shadows(), DATA),
+    row("--shadows", gives_shadows, |c| c.draws_wires() && !c.shows_shadows(), WIRES),
+    row("--shadows", gives_shadows, |c| c.is_dark() && !c.shows_shadows(), DARK),
+    row("--shadows", gives_shadows, |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row("--shadows", gives_shadows, |c| c.is_ambient() && !c.shows_shadows(), AMBIENT),
+    row("--shadows", gives_shadows, |c| !c.casts_shadows(), NO_CASTER),
+    row("--light-samples", gives_light_samples, |c| !c.has_areas(), "no light has an area"),
+    row("--light", |a| !a.light.light.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
+    row("--light", |a| !a.light.light.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
+    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row("--light-intensity", gives_intensity, Case::makes_no_color, DATA),
+    row("--light-intensity", gives_intensity, Case::is_dark, DARK),
+    row("--light-intensity", gives_intensity, Case::is_constant, CONSTANT),
+    row("--normals", gives_normals, |c| c.is_flat() && !c.shows_normals(), FLAT),
+    row("--view", gives_view, Case::has_camera, "--camera-index and --camera-direction say from where"),
+    row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
+];
+
+fn gives_illumination(args: &RenderArgs) -> bool {
+    args.algorithms.illumination.is_some_and(|model| model != Illumination::default())
+}
+
+fn gives_shading(args: &RenderArgs) -> bool {
+    args.algorithms.shading.is_some_and(|model| model != Shading::default())
+}
+
+fn gives_interpolation(args: &RenderArgs) -> bool {
+    args.algorithms.interpolation.is_some_and(|kind| kind != Interpolation::default())
+}
+
+fn gives_transparency(args: &RenderArgs) -> bool {
+    args.algorithms.transparency.is_some_and(|model| model != Transparency::default())
+}
+
+fn gives_order(args: &RenderArgs) -> bool {
+    args.algorithms.transparency_order.is_some_and(|order| order != TransparencyOrder::default())
+}
+
+fn gives_scatter(args: &RenderArgs) -> bool {
+    args.algorithms.scatter_samples.is_some_and(|count| count != Settings::default().transparency.scatter_samples)
+}
+
+fn gives_shadows(args: &RenderArgs) -> bool {
+    args.algorithms.shadows.is_some_and(|algorithm| !algorithm.is_none)
+}
+
+fn gives_light_samples(args: &RenderArgs) -> bool {
+    args.algorithms.light_samples.is_some_and(|count| count != Settings::default().shadows.light_samples)
+}
+
+fn gives_intensity(args: &RenderArgs) -> bool {
+    args.light.light_intensity.is_some_and(|factor| factor != 1.0)
+}
+
+fn gives_normals(args: &RenderArgs) -> bool {
+    args.algorithms.normals.is_some_and(|normals| normals != Normals::default())
+}
+
+fn gives_view(args: &RenderArgs) -> bool {
+    args.camera.view.is_some_and(|view| view != View::default())
+}
+
+/// What is about to be rendered.
+struct Case {
+    /// An explained pixel or a dump tells of light and normals, whatever channels are made.
+    told: bool,
+    /// Panels or a file show shadows by themselves.
+    files: bool,
+    viewpoint: Viewpoint,
+    settings: Settings,
+    scene: Arc<Scene>,
+    camera: Camera,
+    lights: Vec<Light>,
+}
+
+impl Case {
+    fn new(args: &RenderArgs, state: &State, renderer: &Renderer) -> Self {
+        let camera = renderer.frame_camera();
+        Self {
+            told: args.report.pixel.is_some() || args.output.dump.is_some(),
+            files: args.output.panels || args.output.export_shadow_polygons.is_some(),
+            viewpoint: state.viewpoint.clone(),
+            settings: renderer.settings.clone(),
+            scene: Arc::clone(renderer.scene()),
+            camera,
+            lights: renderer.frame_lights(&camera),
+        }
+    }
+
+    /// Whether all that comes out are channels of data.
+    fn makes_no_color(&self) -> bool {
+        let channels = self.settings.picture.channels;
+        !(channels.color || channels.steps || self.told)
+    }
+
+    /// Whether shadows are shown by themselves.
+    fn shows_shadows(&self) -> bool {
+        self.told || self.files || self.settings.picture.channels.any_shadow()
+    }
+
+    /// Whether normals are shown by themselves.
+    fn shows_normals(&self) -> bool {
+        self.told || self.settings.picture.channels.normal
+    }
+
+    fn draws_wires(&self) -> bool {
+        matches!(self.settings.picture.lines, Lines::Wireframe | Lines::WireframeHiddenLine)
+    }
+
+    fn is_dark(&self) -> bool {
+        !self.settings.shading.lighting
+    }
+
+    fn is_constant(&self) -> bool {
+        self.settings.shading.illumination == Illumination::Constant
+    }
+
+    fn is_ambient(&self) -> bool {
+        self.settings.shading.illumination == Illumination::Ambient
+    }
+
+    fn is_flat(&self) -> bool {
+        self.settings.shading.model == Shading::Flat && self.settings.global.model == Global::None
+    }
+
+    /// Whether each surface has one colour: no texture, no colours of vertices.
+    fn is_plain(&self) -> bool {
+        let scene = &self.scene;
+        scene.textures.is_empty() && scene.meshes.iter().all(|mesh| mesh.colors.is_none())
+    }
+
+    fn is_opaque(&self) -> bool {
+        self.settings.transparency.model == Transparency::None
+    }
+
+    /// Whether nothing that the models have is seen through.
+    fn is_solid(&self) -> bool {
+        let scene = &self.scene;
+        let opaque = scene.materials.iter().all(|material| material.alpha_mode != AlphaMode::Blend);
+        opaque && self.is_plain()
+    }
+
+    fn scatters(&self) -> bool {
+        let scene = &self.scene;
+        scene.materials.iter().any(|material| material.transmission == Transmission::Translucent)
+    }
+
+    fn casts_shadows(&self) -> bool {
+        self.lights.iter().any(|light| light.enabled && light.shadow && light.kind != LightKind::Ambient)
+    }
+
+    fn has_areas(&self) -> bool {
+        let is_point = |shape: &AreaShape| matches!(shape, AreaShape::Disc { radius, .. } if *radius == 0.0);
+        self.lights.iter().any(|light| matches!(&light.kind, LightKind::Area { shape } if !is_point(shape)))
+    }
+
+    fn is_parallel(&self) -> bool {
+        matches!(self.camera.projection, Projection::Parallel { .. })
+    }
+
+    /// Whether an angle of view has no say in a parallel projection: it has one where it opens a camera of the model first.
+    fn is_parallel_without_angle(&self) -> bool {
+        let viewpoint = &self.viewpoint;
+        let opened = viewpoint.camera_index.is_some() && viewpoint.orthographic;
+        self.is_parallel() && !opened
+    }
+
+    /// Whether the direction of view comes from elsewhere than from a side.
+    fn has_camera(&self) -> bool {
+        let viewpoint = &self.viewpoint;
+        let alone = viewpoint.direction.is_some() && viewpoint.position.is_none() && viewpoint.focal_point.is_none();
+        viewpoint.camera_index.is_some() || alone
+    }
+}
+
+/// A warning for each option that was typed and changes nothing.
+pub(crate) fn warnings(args: &RenderArgs, state: &State, renderer: &Renderer) -> Vec<String> {
+    let case = Case::new(args, state, renderer);
+    let mut told: Vec<(&str, &str)> = Vec::new();
+    for row in &ROWS {
+        if told.iter().all(|(option, _)| *option != row.option) && (row.given)(args) && (row.idle)(&case) {
+            told.push((row.option, row.why));
+        }
+    }
+    told.into_iter().map(|(option, why)| format!("{option}: no effect, {why}")).collect()
+}

@@ -7,9 +7,11 @@
 //! [`picture`] draws the steps over the image.
 
 pub mod legend;
+pub mod outlines;
 pub mod picture;
 pub mod tables;
 
+use outlines::{Contour, CutPolygon, SortedPolygon};
 use serde::Serialize;
 use tables::{Bucket, Crossing, TablePolygon};
 
@@ -17,6 +19,11 @@ use tables::{Bucket, Crossing, TablePolygon};
 pub trait Observer: std::fmt::Debug + Send + Sync {
     /// A step was done.
     fn step(&self, step: &Step);
+
+    /// Whether it reads [`Step::FirstOrder`] and [`Step::Clip`], whose outlines grow with the square of the scene.
+    fn reads_clips(&self) -> bool {
+        true
+    }
 }
 
 /// What was found about a window of Warnock's.
@@ -284,25 +291,46 @@ pub enum Step {
         /// Its corners.
         outline: Vec<[f32; 2]>,
     },
-    /// Weiler–Atherton: a list was clipped with a polygon.
+    /// Weiler–Atherton: the polygons in their first order, the one with the nearest point first.
+    FirstOrder {
+        /// The polygons.
+        polygons: Vec<SortedPolygon>,
+    },
+    /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the outside list: clips of the
+    /// inside list follow, then that of the outside list.
     Clip {
-        /// Left and top of the tile.
-        tile: [u32; 2],
-        /// The facet of the clipping polygon.
+        /// The clip's own number, from 0 in the order of steps.
+        clip: u32,
+        /// The clip whose inside list was clipped; none for the first list.
+        parent: Option<u32>,
+        /// First facet of the clipping polygon.
         facet: u32,
-        /// Parts inside that it does not hide, its own among them.
-        inside: u32,
-        /// Parts outside.
-        outside: u32,
-        /// The preliminary order erred: the inside is treated again.
+        /// The clipping polygon's corners in order, clockwise, as it came in, pixels.
+        outline: Vec<[f32; 2]>,
+        /// Polygons of the list with an area inside the clipping polygon, in the list's order, the clipping polygon among
+        /// them.
+        cut: Vec<CutPolygon>,
+        /// First facets of the inside list, in order: what is inside and not hidden.
+        inside: Vec<u32>,
+        /// First facets of the outside list, in order, at most [`MAX_LISTED`](outlines::MAX_LISTED) of them.
+        outside: Vec<u32>,
+        /// How many polygons the outside list has.
+        outside_count: u32,
+        /// First facets of polygons with a part that was removed, since the clipping polygon hides it.
+        hidden: Vec<u32>,
+        /// The preliminary order erred: the inside list is clipped again.
         again: bool,
     },
     /// Weiler–Atherton: a visible polygon.
     Visible {
-        /// The facet.
+        /// Its first facet.
         facet: u32,
-        /// The edges of its outline and its holes.
-        edges: Vec<[[f32; 2]; 2]>,
+        /// The clip in whose inside list it was left.
+        clip: Option<u32>,
+        /// Square pixels.
+        area: f64,
+        /// Its outlines, those around it before its holes.
+        contours: Vec<Contour>,
     },
 }
 
@@ -321,9 +349,13 @@ impl Step {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 holds(edges.map(|(a, b)| [*a, *b]), [x, y])
             }
-            Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
+            Self::Visible { contours, .. } => holds(contours.iter().flat_map(Contour::edges), [x, y]),
+            Self::Clip { outline, .. } => {
+                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
+            }
             Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::Clip { .. } | Self::Space { .. } | Self::EdgeTable { .. } => false,
+            Self::FirstOrder { .. } | Self::Space { .. } | Self::EdgeTable { .. } => false,
         }
     }
 
@@ -372,7 +404,19 @@ impl Step {
             Self::Piece { order, facet, cuts, .. } => {
                 format!("place {order} in the list, from the back: facet {facet}, cut {cuts} time(s)")
             }
-            Self::Visible { facet, edges } => format!("a visible polygon of facet {facet}, with {} edges", edges.len()),
+            Self::Clip { clip, parent, facet, inside, outside_count, hidden, again, .. } => {
+                let within = parent.map_or(String::new(), |parent| format!(" of the inside of clip {parent}"));
+                let order = if *again { ", which is clipped again" } else { "" };
+                format!(
+                    "clip {clip}{within} with facet {facet}: inside {}{order}; {outside_count} outside, {} hidden",
+                    few(inside),
+                    hidden.len()
+                )
+            }
+            Self::Visible { facet, contours, .. } => {
+                let edges: usize = contours.iter().map(|contour| contour.corners.len()).sum();
+                format!("a visible polygon of facet {facet}, with {edges} edges")
+            }
             other => format!("{other:?}"),
         }
     }

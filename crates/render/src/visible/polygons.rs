@@ -54,7 +54,7 @@ impl<'f> Polygons<'f> {
     }
 
     /// [`Self::new`]; `same_face` says whether two facets are of one face.
-    fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
+    pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
         let mut polygons = Self { polygons: Vec::new(), triangles: Vec::new(), corners: Vec::new() };
         // The polygons of the face at hand.
         let mut growing: Vec<Growing<'f>> = Vec::new();
@@ -119,6 +119,12 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
     /// clipped and came out in parts.
     pub(super) fn facet(self) -> u32 {
         self.plane.facet
+    }
+
+    /// Its lowest and highest facet.
+    pub(super) fn facets(self) -> [u32; 2] {
+        let own = self.plane.facet;
+        self.triangles.iter().fold([own; 2], |[low, high], t| [low.min(t.facet), high.max(t.facet)])
     }
 
     /// Its plane, with the depths of all corners as the range; the corners in it are those of its first triangle alone.
